@@ -16,7 +16,7 @@ from scenic.compiler.compile import compile_text
 from scenic.compiler.tracebacks import SOURCE_NAME, Locator
 from scenic.failures import diagnose, placed
 from scenic.graph.domain import Domain
-from scenic.language.diagnostics import Diagnostic
+from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.errors import (
     InvalidScenarioError,
     ScenarioChoiceError,
@@ -168,7 +168,7 @@ def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
             help="install it: pip install 'scenic-lang[deep]'",
         )
         return (missing.diagnostic(),)
-    from scenic.analysis.report import prove
+    from scenic.analysis.report import prove, prove_dead, prove_in_time
 
     filename = str(path)
     try:
@@ -180,6 +180,13 @@ def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
         if found is None:
             raise
         return (found,)
+    graph, facts = scenario.outline.graph, conditions(scenario.outline)
+    proven = (
+        *prove(graph, facts),
+        *prove_in_time([item.formula for item in scenario.requirements if item.formula]),
+    )
+    if all(item.severity is not Severity.ERROR for item in proven):
+        proven += prove_dead(graph, contract(graph, facts).domain)
     return tuple(
         Diagnostic(
             item.code,
@@ -190,7 +197,7 @@ def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
             item.help,
             item.labels,
         )
-        for item in prove(scenario.outline.graph, conditions(scenario.outline))
+        for item in proven
     )
 
 

@@ -6,11 +6,18 @@ from typing import Final
 from scenic.analysis.contraction import contract
 from scenic.analysis.facts import Fact
 from scenic.analysis.smt import Contradiction, Support, Verdict, judge
+from scenic.analysis.supports import supports
+from scenic.analysis.traces import contradictions
+from scenic.graph.domain import Domain
 from scenic.graph.node import Graph, Node
 from scenic.graph.operations import TABLE
 from scenic.language.diagnostics import Diagnostic, Label, Severity
 from scenic.language.names import NAMES
 from scenic.language.spans import Span
+from scenic.runtime.dynamics.declarations import Required
+
+_SHOWN: Final = 5
+"""Options that are shown by name."""
 
 _MEND: Final = "no scene can meet all of the marked places; change one of them"
 
@@ -30,6 +37,48 @@ def prove(graph: Graph, conditions: Sequence[Fact]) -> tuple[Diagnostic, ...]:
         if core:
             found = [_contradiction(Contradiction(core, ()), verdict)]
     found += [_tautology(condition) for condition in verdict.tautologies]
+    return tuple(found)
+
+
+def prove_in_time(requirements: Sequence[Required]) -> tuple[Diagnostic, ...]:
+    """Temporal requirements that no simulation meets (SC700)."""
+    found = []
+    for core, length in contradictions(requirements):
+        *others, last = core
+        if others:
+            message = (
+                "this requirement cannot hold together with the others marked, however a simulation goes on"
+            )
+            advice = f"without it {length} {'state' if length == 1 else 'states'} would meet the others; change one of them"
+        else:
+            message = "this requirement cannot hold, however a simulation goes on"
+            advice = "no simulation can meet it; change or remove it"
+        labels = tuple(
+            Label(other.span, "while this is required") for other in others if other.span is not None
+        )
+        found.append(
+            Diagnostic("SC700", message, last.span, Severity.ERROR, last.filename, help=advice, labels=labels)
+        )
+    return tuple(found)
+
+
+def prove_dead(graph: Graph, domain: Domain) -> tuple[Diagnostic, ...]:
+    """Options of choices that no scene has, since the requirements exclude them (SC702)."""
+    found = []
+    for row in supports(graph, domain):
+        dead = [text for number, text in enumerate(row.options) if number not in row.left]
+        if not dead or row.span is None:
+            continue
+        shown = ", ".join(dead[:_SHOWN]) + (", ..." if len(dead) > _SHOWN else "")
+        found.append(
+            Diagnostic(
+                "SC702",
+                f"{len(dead)} of the {len(row.options)} options of this choice never occur: {shown}",
+                row.span,
+                Severity.WARNING,
+                help="the requirements exclude them; remove them, or check the requirements",
+            )
+        )
     return tuple(found)
 
 

@@ -81,7 +81,7 @@ def supports(graph: Graph, domain: Domain) -> tuple[DrawnSupport, ...]:
             continue
         options = options_of(node, graph.nodes)
         ends = _ends(after[node])
-        left = tuple(range(int(ends[0]), int(ends[1]) + 1)) if options and ends else ()
+        left = _options_left(node, graph, domain) if options else ()
         rows.append(DrawnSupport(kind, span, _ends(before[node]), ends, options, left, removed))
     return tuple(rows)
 
@@ -115,6 +115,22 @@ def options_of(choice: Node, nodes: Sequence[Node]) -> tuple[str, ...]:
                 for option in node.operands[1:]
             )
     return ()
+
+
+def _options_left(choice: Node, graph: Graph, domain: Domain) -> tuple[int, ...]:
+    """The options that some box of each part of a domain holds."""
+    axis = graph.axes[choice.operands[0]]
+    left: set[int] | None = None
+    for part in domain.parts:
+        lower, upper = np.zeros((part.boxes, graph.dimension)), np.ones((part.boxes, graph.dimension))
+        lower[:, axis], upper[:, axis] = part.lower[:, axis], part.upper[:, axis]
+        bounds = over([choice], graph.axes, lower, upper)[choice]
+        if bounds is None:
+            continue
+        ends = zip(bounds.lower.astype(int).tolist(), bounds.upper.astype(int).tolist(), strict=True)
+        mine = {option for low, high in ends for option in range(low, high + 1)}
+        left = mine if left is None else left & mine
+    return tuple(sorted(left or ()))
 
 
 def _shown(value: Any) -> str:

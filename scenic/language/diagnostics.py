@@ -195,6 +195,7 @@ CODES: Final = MappingProxyType(
         # Found by analysis.
         "SC700": "requirements contradict each other",
         "SC701": "requirement always holds",
+        "SC702": "option never occurs",
         # The tools themselves.
         "SC900": "not supported yet",
         "SC999": "internal error",

@@ -8,7 +8,7 @@ The verdicts are those of RV-LTL (Bauer, Leucker and Schallhart, "Comparing LTL 
 That a formula which its operands do not decide is valid, as ``always (a or not a)`` is, goes unnoticed.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from enum import IntEnum
 from functools import partial
 from typing import Final, TypeAlias
@@ -86,6 +86,11 @@ class Monitor:
         self._left: _Clauses = _FALSE
         self.verdict: Verdict | None = None
         """The verdict on the states so far; ``None`` before the first."""
+
+    @property
+    def left(self) -> Hashable:
+        """What is left to hold, with the verdict: monitors of one formula that are equal in it go on alike."""
+        return self.verdict, self._left
 
     def add(self, evaluate: Callable[[int], bool]) -> Verdict:
         """The verdict after one more state, in which ``evaluate`` gives the truth of atoms by their number.
