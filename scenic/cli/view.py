@@ -1,8 +1,10 @@
 """``scenic view``: a page, 3D files or images of scenes that `scenic sample` has written as JSON Lines."""
 
 import sys
+import threading
+import webbrowser
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from itertools import chain, islice
 from pathlib import Path
 from typing import Final
@@ -17,11 +19,13 @@ from scenic.formats.reading import ReadScene, SceneFileError, read_scenes, scene
 __all__ = ["view"]
 
 _STANDARD_INPUT: Final = "-"
+_SHOWN: Final = 4
+"""Scenes on the page of a program that is watched."""
 _PAGES: Final = frozenset({".html", ".htm"})
 
 
 @click.command()
-@click.argument("file", metavar="SCENES.jsonl", type=click.Path())
+@click.argument("file", metavar="FILE", type=click.Path())
 @click.option(
     "-o",
     "--output",
@@ -52,6 +56,13 @@ _PAGES: Final = frozenset({".html", ".htm"})
     callback=outlook_option,
     help="Where images look from: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
 )
+@click.option(
+    "--watch",
+    is_flag=True,
+    help="FILE is a program: show new scenes in the browser whenever it is saved. Runs the program each time.",
+)
+@click.option("--seed", metavar="S", type=int, default=0, help="Seed of the scenes of --watch.  [default: 0]")
+@click.option("--no-browser", is_flag=True, help="With --watch: only show the address, open no browser.")
 def view(
     file: str,
     outputs: tuple[str, ...],
@@ -59,14 +70,19 @@ def view(
     count: int | None,
     image_size: tuple[int, int] | None,
     outlook: Mapping[str, float],
+    watch: bool,
+    seed: int,
+    no_browser: bool,
 ) -> int:
     """Show scenes that `scenic sample -o SCENES.jsonl` has saved; - reads them from standard input.
 
-    The program is not run. Meshes of files are read again; a form that cannot be had any more is shown as its box.
+    The program is not run, unless --watch is given. Meshes of files are read again; a form that cannot be had any more is shown as its box.
 
     Exit codes: 0 success, 2 a file cannot be read or written or holds no scenes.
     """
     source = Path(file)
+    if watch:
+        return _watch(source, count or _SHOWN, seed, no_browser)
     if not outputs:
         if file == _STANDARD_INPUT:
             raise click.UsageError("scenes from standard input need a name for what is made: -o scenes.html")
@@ -101,6 +117,21 @@ def view(
                 take(scene)
     for reason in dict.fromkeys(revival.substituted.values()):
         sys.stderr.write(f"warning: {reason}: boxes stand for what has this form\n")
+    return CLEAN
+
+
+def _watch(program: Path, count: int, seed: int, no_browser: bool) -> int:
+    """Serve the page that follows a program, until the user ends it."""
+    from scenic.playground.watching import Watch, served
+
+    if not program.is_file():
+        raise click.UsageError(f"there is no program '{program}' to watch")
+    with served(Watch(program.absolute(), count=count, seed=seed)) as address:
+        click.echo(f"{address}\nsave {program.name} to see new scenes; Ctrl+C ends this")
+        if not no_browser:
+            webbrowser.open(address)
+        with suppress(KeyboardInterrupt):
+            threading.Event().wait()
     return CLEAN
 
 

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from typing import Final
 
-__all__ = ["RunError", "sample_page", "simulation_page"]
+__all__ = ["RunError", "analysis_text", "sample_page", "simulation_page"]
 
 TIME_LIMIT: Final = 20.0
 """Seconds in which scenes must be found."""
@@ -57,6 +57,14 @@ def simulation_page(
         view = os.path.join(folder, "simulation.html")
         command = ["simulate", filename, "--view", view, "--seed", str(seed), "--time", str(steps)]
         return _run([*command, *_chosen(scenario)], "", os.path.dirname(filename), view, go_on)
+
+
+def analysis_text(filename: str, *, go_on: Callable[[], None] = lambda: None) -> str:
+    """Text about what the program in a file costs to sample, and what rejects its candidates. **Runs the program.**
+
+    Raises `RunError` as `sample_page` does.
+    """
+    return _run(["analyze", filename], "", os.path.dirname(filename), None, go_on)
 
 
 def _chosen(scenario: str | None) -> list[str]:
