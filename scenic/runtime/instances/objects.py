@@ -14,10 +14,11 @@ from typing import Any, ClassVar, Self
 
 from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError
+from scenic.language.properties import CLASSES
 from scenic.runtime.elements.shapes import BoxShape
 from scenic.runtime.geometry.scalar_bodies import meet
 from scenic.runtime.instances.mutators import OrientationMutator, PositionMutator
-from scenic.runtime.instances.properties import Property, PropertyDefinition, combine
+from scenic.runtime.instances.properties import ATTRIBUTES, Property, PropertyDefinition, combine
 from scenic.runtime.program.context import here
 from scenic.runtime.python.class_members import bind
 from scenic.runtime.regions.base import Region
@@ -45,17 +46,17 @@ from scenic.runtime.visibility.flat import sees_in_plane
 from scenic.runtime.visibility.seeing import occluders_of, sees
 
 
-def builtin(
-    value: Callable[[Any], Any], *dependencies: str, attributes: tuple[str, ...] = ()
-) -> tuple[Callable[[Any], Any], tuple[str, ...], tuple[str, ...]]:
-    """A built-in default: how to compute it, what it reads, its attributes."""
-    return value, dependencies, attributes
-
-
-def _definitions(table: Mapping[str, Any]) -> dict[str, PropertyDefinition]:
+def _definitions(name: str, defaults: Mapping[str, Callable[[Any], Any]]) -> dict[str, PropertyDefinition]:
+    """The properties of a built-in class as declared in `scenic.language.properties`, with the functions of their defaults."""
     return {
-        name: PropertyDefinition(name, frozenset(attributes), value, dependencies, is_builtin=True)
-        for name, (value, dependencies, attributes) in table.items()
+        each.name: PropertyDefinition(
+            each.name,
+            frozenset(word for word in ATTRIBUTES if getattr(each, word)),
+            defaults[each.name],
+            each.needs,
+            is_builtin=True,
+        )
+        for each in CLASSES[name].properties
     }
 
 
@@ -98,26 +99,25 @@ class Point:
     _resolutions: ClassVar[dict[Any, Any]]
     """What combinations of specifiers come to; see `scenic.runtime.instances.resolution`."""
     _definitions: ClassVar[Mapping[str, PropertyDefinition]] = _definitions(
+        "Point",
         {
-            "position": builtin(lambda _: vector(0, 0, 0), attributes=("dynamic",)),
-            "width": builtin(lambda _: 0),
-            "length": builtin(lambda _: 0),
-            "height": builtin(lambda _: 0),
-            "baseOffset": builtin(lambda _: vector(0, 0, 0)),
-            "contactTolerance": builtin(lambda _: 0),
-            "onDirection": builtin(lambda _: None),
-            "viewAngles": builtin(lambda _: (2 * math.pi, math.pi)),
-            "visibleDistance": builtin(lambda _: 50),
-            "viewRayDensity": builtin(lambda _: 5),
-            "viewRayCount": builtin(lambda _: None),
-            "viewRayDistanceScaling": builtin(lambda _: False),
-            "regionContainedIn": builtin(lambda _: None),
-            "mutationScale": builtin(lambda _: 0),
-            "positionStdDev": builtin(lambda _: vector(1, 1, 0)),
-            "mutator": builtin(
-                lambda self: PositionMutator(self.positionStdDev), "positionStdDev", attributes=("additive",)
-            ),
-        }
+            "position": lambda _: vector(0, 0, 0),
+            "width": lambda _: 0,
+            "length": lambda _: 0,
+            "height": lambda _: 0,
+            "baseOffset": lambda _: vector(0, 0, 0),
+            "contactTolerance": lambda _: 0,
+            "onDirection": lambda _: None,
+            "viewAngles": lambda _: (2 * math.pi, math.pi),
+            "visibleDistance": lambda _: 50,
+            "viewRayDensity": lambda _: 5,
+            "viewRayCount": lambda _: None,
+            "viewRayDistanceScaling": lambda _: False,
+            "regionContainedIn": lambda _: None,
+            "mutationScale": lambda _: 0,
+            "positionStdDev": lambda _: vector(1, 1, 0),
+            "mutator": lambda self: PositionMutator(self.positionStdDev),
+        },
     )
 
     def __new__(cls, *_args: Any, **_kwargs: Any) -> Self:
@@ -267,36 +267,24 @@ class OrientedPoint(Point):
     """A position with an orientation."""
 
     _definitions = _definitions(
+        "OrientedPoint",
         {
-            "yaw": builtin(lambda _: 0, attributes=("dynamic",)),
-            "pitch": builtin(lambda _: 0, attributes=("dynamic",)),
-            "roll": builtin(lambda _: 0, attributes=("dynamic",)),
-            "parentOrientation": builtin(lambda _: Orientation()),
-            "orientation": builtin(
-                lambda self: operate(
-                    "compose",
-                    self.parentOrientation,
-                    Orientation.fromEuler(self.yaw, self.pitch, self.roll),
-                ),
-                "yaw",
-                "pitch",
-                "roll",
-                "parentOrientation",
-                attributes=("dynamic", "final"),
+            "yaw": lambda _: 0,
+            "pitch": lambda _: 0,
+            "roll": lambda _: 0,
+            "parentOrientation": lambda _: Orientation(),
+            "orientation": lambda self: operate(
+                "compose",
+                self.parentOrientation,
+                Orientation.fromEuler(self.yaw, self.pitch, self.roll),
             ),
-            "heading": builtin(
-                lambda self: self.orientation.yaw, "orientation", attributes=("dynamic", "final")
-            ),
-            "viewAngle": builtin(lambda _: 2 * math.pi),
-            "viewAngles": builtin(lambda self: (self.viewAngle, math.pi), "viewAngle"),
-            "headingStdDev": builtin(lambda _: math.radians(5)),
-            "orientationStdDev": builtin(lambda self: vector(self.headingStdDev, 0, 0), "headingStdDev"),
-            "mutator": builtin(
-                lambda self: OrientationMutator(self.orientationStdDev),
-                "orientationStdDev",
-                attributes=("additive",),
-            ),
-        }
+            "heading": lambda self: self.orientation.yaw,
+            "viewAngle": lambda _: 2 * math.pi,
+            "viewAngles": lambda self: (self.viewAngle, math.pi),
+            "headingStdDev": lambda _: math.radians(5),
+            "orientationStdDev": lambda self: vector(self.headingStdDev, 0, 0),
+            "mutator": lambda self: OrientationMutator(self.orientationStdDev),
+        },
     )
 
     def toHeading(self) -> Any:
@@ -338,41 +326,33 @@ class Object(OrientedPoint):
     """A physical object: a shape with a size, in a place, that collides with others."""
 
     _definitions = _definitions(
+        "Object",
         {
-            "shape": builtin(lambda _: BoxShape()),
-            "width": builtin(lambda self: self.shape.width, "shape"),
-            "length": builtin(lambda self: self.shape.length, "shape"),
-            "height": builtin(lambda self: self.shape.height, "shape"),
-            "allowCollisions": builtin(lambda _: False),
-            "regionContainedIn": builtin(lambda _: None),
-            "baseOffset": builtin(
-                lambda self: vector(0, 0, operate("divide", operate("negative", self.height), 2)), "height"
-            ),
-            "contactTolerance": builtin(lambda _: 1e-4),
-            "sideComponentThresholds": builtin(lambda _: ((-0.5, 0.5),) * 3),
-            "cameraOffset": builtin(lambda _: vector(0, 0, 0)),
-            "visionSensorOffset": builtin(
-                lambda self: vector(0, operate("divide", self.length, 2), 0), "length"
-            ),
-            "requireVisible": builtin(lambda _: False),
-            "occluding": builtin(lambda _: True),
-            "showVisibleRegion": builtin(lambda _: False),
-            "color": builtin(lambda _: None),
-            "render": builtin(lambda _: True),
-            "velocity": builtin(
-                lambda self: operate("rotate", self.orientation, vector(0, self.speed, 0)),
-                "speed",
-                "orientation",
-                attributes=("dynamic",),
-            ),
-            "speed": builtin(lambda _: 0, attributes=("dynamic",)),
-            "angularVelocity": builtin(lambda _: vector(0, 0, 0), attributes=("dynamic",)),
-            "angularSpeed": builtin(lambda _: 0, attributes=("dynamic",)),
-            "behavior": builtin(lambda _: None),
-            "lastActions": builtin(lambda _: ()),
-            "sensors": builtin(lambda _: {}),
-            "observations": builtin(lambda _: {}, attributes=("final",)),
-        }
+            "shape": lambda _: BoxShape(),
+            "width": lambda self: self.shape.width,
+            "length": lambda self: self.shape.length,
+            "height": lambda self: self.shape.height,
+            "allowCollisions": lambda _: False,
+            "regionContainedIn": lambda _: None,
+            "baseOffset": lambda self: vector(0, 0, operate("divide", operate("negative", self.height), 2)),
+            "contactTolerance": lambda _: 1e-4,
+            "sideComponentThresholds": lambda _: ((-0.5, 0.5),) * 3,
+            "cameraOffset": lambda _: vector(0, 0, 0),
+            "visionSensorOffset": lambda self: vector(0, operate("divide", self.length, 2), 0),
+            "requireVisible": lambda _: False,
+            "occluding": lambda _: True,
+            "showVisibleRegion": lambda _: False,
+            "color": lambda _: None,
+            "render": lambda _: True,
+            "velocity": lambda self: operate("rotate", self.orientation, vector(0, self.speed, 0)),
+            "speed": lambda _: 0,
+            "angularVelocity": lambda _: vector(0, 0, 0),
+            "angularSpeed": lambda _: 0,
+            "behavior": lambda _: None,
+            "lastActions": lambda _: (),
+            "sensors": lambda _: {},
+            "observations": lambda _: {},
+        },
     )
 
     @property
@@ -545,14 +525,15 @@ def _fill(instance: Any, name: str) -> None:
 
 
 TWO_D_DEFAULTS: Mapping[str, PropertyDefinition] = MappingProxyType(
-    _definitions(
-        {
-            "baseOffset": builtin(lambda _: vector(0, 0, 0)),
-            "contactTolerance": builtin(lambda _: 0),
-            "requireVisible": builtin(lambda _: True),
-            "occluding": builtin(lambda _: False),
-            "height": builtin(lambda self: operate("maximum", self.width, self.length), "width", "length"),
-        }
-    )
+    {
+        name: PropertyDefinition(name, frozenset(), value, tuple(needs), is_builtin=True)
+        for name, value, *needs in (
+            ("baseOffset", lambda _: vector(0, 0, 0)),
+            ("contactTolerance", lambda _: 0),
+            ("requireVisible", lambda _: True),
+            ("occluding", lambda _: False),
+            ("height", lambda self: operate("maximum", self.width, self.length), "width", "length"),
+        )
+    }
 )
 """Built-in defaults of objects that differ in 2D mode (section 5.5)."""
