@@ -13,6 +13,7 @@ from scenic.analysis.contraction import contract
 from scenic.analysis.facts import Fact
 from scenic.compiler import loader
 from scenic.compiler.compile import compile_text
+from scenic.compiler.parser import bare_text
 from scenic.compiler.tracebacks import SOURCE_NAME, Locator
 from scenic.failures import diagnose, placed
 from scenic.graph.domain import Domain
@@ -241,9 +242,9 @@ class _Options:
     """Whether a parameter that the program does not use is an error."""
 
     def digest(self, text: str) -> str:
-        """The digest of a program and of all options that change its scenes."""
+        """The digest of a program, whatever its comments and blanks, and of all options that change its scenes."""
         return program_digest(
-            text,
+            bare_text(text),
             {
                 "params": dict(self.params),
                 "model": self.model,

@@ -19,18 +19,19 @@ __all__ = ["check_again", "check_text", "in_order"]
 
 
 def check_text(
-    text: str, *, filename: str, surroundings_of: SurroundingsOf | None = None
+    text: str, *, filename: str, surroundings_of: SurroundingsOf | None = None, typing: bool = False
 ) -> tuple[Diagnostic, ...]:
     """What the lexer, the parser, the resolver and the compiler have to say, in order of place.
 
     Without what comments of the program silence, and with what is wrong with these comments. ``surroundings_of`` finds
     out about the modules that the program imports (`scenic.project.surroundings`); without it, nothing is known of them.
+    ``typing`` says that somebody is writing the program: what a half-typed line may still bind is then not missed.
     """
     # Nearly all that is made of a text is gone when this returns: only then it is time to look for garbage.
     with no_garbage_collection():
         source = Source(text, filename)
         parsed = parse(source.text, filename=filename)
-        return check_again(parsed, source, surroundings_of=surroundings_of).diagnostics
+        return check_again(parsed, source, surroundings_of=surroundings_of, typing=typing).diagnostics
 
 
 def check_again(
@@ -41,6 +42,7 @@ def check_again(
     surroundings_of: SurroundingsOf | None = None,
     before: Checked | None = None,
     go_on: Callable[[], None] = lambda: None,
+    typing: bool = False,
 ) -> Checked:
     """The same for a program that is parsed already, and of which an earlier version may have been checked.
 
@@ -53,6 +55,7 @@ def check_again(
         surroundings_of=surroundings_of,
         before=before,
         go_on=go_on,
+        typing=typing,
     )
     found = in_order(map(_as_shown, checked.diagnostics), filename=source.filename)
     kept = apply_ignores(source.text, found, filename=source.filename)

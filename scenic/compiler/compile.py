@@ -98,17 +98,26 @@ def check_parsed(
     surroundings_of: SurroundingsOf | None = None,
     before: Checked | None = None,
     go_on: Callable[[], None] = lambda: None,
+    typing: bool = False,
 ) -> Checked:
     """What can be said of a program without running any of it.
 
     That is all that `compile_text` says, what is legal but hardly meant, and what will fail once it is reached. Only
     what Python may complain of is compiled, and only what has changed of that. ``surroundings_of`` finds out about the
     modules that the program imports. ``resolution`` are its names, if they are bound already, ``before`` is what was
-    found in an earlier version of it. ``go_on`` is called between steps, and may raise to stop.
+    found in an earlier version of it. ``go_on`` is called between steps, and may raise to stop. ``typing`` says that
+    somebody is writing the program.
     """
     warned = MappingProxyType({}) if before is None else before.warned
     found, names, kept = _checked(
-        parsed, source, True, surroundings_of, go_on, resolution, None if before is None else before.kept
+        parsed,
+        source,
+        True,
+        surroundings_of,
+        go_on,
+        resolution,
+        None if before is None else before.kept,
+        typing,
     )
     if names is None:
         return Checked(found, warned, kept)
@@ -188,13 +197,16 @@ def _checked(
     go_on: Callable[[], None] = lambda: None,
     bound: Resolution | None = None,
     before: Kept | None = None,
+    typing: bool = False,
 ) -> tuple[tuple[Diagnostic, ...], Resolution | None, Kept | None]:
     """What is wrong with a parsed program; its names, if it has no errors; what to keep for its next version."""
     found = list(parsed.diagnostics)
     try:
         with recursion_limit(DEEPEST):
             go_on()
-            resolution, context = resolve_within(parsed.tree, source, surroundings_of, bound, go_on, before)
+            resolution, context = resolve_within(
+                parsed.tree, source, surroundings_of, bound, go_on, before, typing
+            )
             go_on()
             hints = lint(context, go_on) if thorough else ()
     except RecursionError:

@@ -11,19 +11,20 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 from typing import Any, Final, TypeAlias
 
 from scenic.compiler.actions import Actions, Problem
 from scenic.compiler.actions.common import Place
 from scenic.compiler.generated import WORDS, build_parser
 from scenic.compiler.lexer import lex
-from scenic.compiler.tokens import ENDMARKER, NEWLINE, TokenLists, Tokens
+from scenic.compiler.tokens import DEDENT, ENDMARKER, INDENT, NEWLINE, TokenLists, Tokens
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
 from scenic.language.garbage import no_garbage_collection
 from scenic.language.source import Source
 from scenic.language.spans import Span
 
-__all__ = ["ParseResult", "parse"]
+__all__ = ["ParseResult", "bare_text", "parse"]
 
 DEEPEST: Final = 1_000_000
 """The deepest recursion that is tried; some 300 MB of Python frames, which use no C stack."""
@@ -74,6 +75,18 @@ def parse(text: str, *, filename: str = "<string>") -> ParseResult:
     with no_garbage_collection():
         parsed = parse_tokens(lex(text, WORDS))
         return result_of(parsed, filename)
+
+
+def bare_text(text: str) -> str:
+    """The tokens of a text, one a line: equal for texts that differ in comments, blanks and empty lines alone."""
+    tokens = lex(text, WORDS)
+    return "\n".join(
+        _LAYOUT.get(kind) or repr(word) for kind, word in zip(tokens.kinds, tokens.texts, strict=True)
+    )
+
+
+_LAYOUT: Final[Mapping[int, str]] = MappingProxyType({NEWLINE: "end", INDENT: "in", DEDENT: "out"})
+"""What stands for tokens that are nothing but layout."""
 
 
 def result_of(parsed: Parsed, filename: str, longest_line: int | None = None) -> ParseResult:

@@ -54,11 +54,13 @@ def resolve_within(
     resolution: Resolution | None = None,
     go_on: Callable[[], None] = lambda: None,
     before: Kept | None = None,
+    typing: bool = False,
 ) -> tuple[Resolution, Context]:
     """The same, with what ``surroundings_of`` finds out about the imports; also returns what further checks need.
 
     ``resolution`` are the names of the tree, if they are bound already, ``before`` is what was said of the version before.
-    ``go_on`` is called now and then, and may raise to stop.
+    ``go_on`` is called now and then, and may raise to stop. ``typing`` says that somebody is writing the program, so that
+    what a half-typed line may still bind is not missed.
     """
     with no_garbage_collection():
         bound = bind(tree) if resolution is None else resolution
@@ -70,7 +72,7 @@ def resolve_within(
             wildcard = True
         known = bound.with_findings((), wildcard=wildcard)
         go_on()
-        context = Context(tree, source, known, surroundings, before)
+        context = Context(tree, source, known, surroundings, before, typing=typing)
         diagnostics = check(context, provided=PROVIDED, go_on=go_on)
     return known.with_findings(diagnostics, wildcard=wildcard), context
 

@@ -210,6 +210,7 @@ class Snapshot:
             surroundings_of=surroundings_of,
             before=self._checked,
             go_on=go_on,
+            typing=True,
         )
         self._checked = checked
         return checked.diagnostics

@@ -524,3 +524,15 @@ def test_functions_that_depend_on_the_object_are_called_when_it_is_there() -> No
     item = thing(text)
     assert (item.a, item.b) == pytest.approx((0.25, 1))
     assert [item.c[0], item.c[1]["d"]] == pytest.approx([-0.5, 0.5])
+
+
+def test_bounds_of_slices_may_depend_on_the_object() -> None:
+    text = """
+field = VectorField("f", lambda place: 1)
+numbers = Uniform([1, 2, 3], [4, 5, 6])
+ego = new Object with tail numbers[int((0 relative to field).yaw):],
+    with kept filter(lambda x: x > 0, [-1, (0 relative to field).yaw, 3])
+"""
+    found = scenario(text).sample(1, seed=0)[0].egoObject
+    assert found.tail in ([2, 3], [5, 6])
+    assert found.kept == [1, 3]

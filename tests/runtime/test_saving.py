@@ -115,10 +115,12 @@ def test_data_of_another_program_or_damaged_is_refused() -> None:
     loaded = scenario(PROGRAM)
     (scene,) = loaded.sample(1, seed=0)
     data = loaded.sceneToBytes(scene)
-    for other in (scenario(PROGRAM + "\n"), scenario(PROGRAM, params={"p": 1})):
+    for other in (scenario(PROGRAM + "y = 1\n"), scenario(PROGRAM, params={"p": 1})):
         with pytest.raises(SerializationError, match="another program"):
             other.sceneFromBytes(data)
-    assert fingerprint(scenario(PROGRAM + "\n").sceneFromBytes(data, verify=False)) == fingerprint(scene)
+    assert fingerprint(scenario(PROGRAM + "y = 1\n").sceneFromBytes(data, verify=False)) == fingerprint(scene)
+    remarked = scenario("# A remark.\n\n" + PROGRAM.replace("\n", "\n\n") + "# Another one.\n")
+    assert fingerprint(remarked.sceneFromBytes(data)) == fingerprint(scene)
     with pytest.raises(SerializationError, match="other random values"):
         scenario("x = Range(0, 1)\nparam x = x").sceneFromBytes(data, verify=False)
     name, number = next(iter(json.loads(data)["numbers"].items()))

@@ -72,11 +72,15 @@ class Context:
         resolution: Resolution,
         surroundings: Surroundings | None = None,
         before: Kept | None = None,
+        *,
+        typing: bool = False,
     ) -> None:
         self.tree = tree
         self.source = source
         self.resolution = resolution
         self.surroundings = surroundings
+        self.typing: Final = typing
+        """Whether somebody is writing the program, in an editor."""
         if before is None:
             # All of them will be asked for: they are put together at once.
             _ = resolution.references
@@ -129,7 +133,14 @@ class Context:
         resolution, surroundings = self.resolution, self.surroundings
         imports = [key for stretch in resolution.stretches for key in stretch.importing]
         modules = None if surroundings is None else surroundings.state
-        return (self.source.filename, resolution.wildcard, resolution.reflective, modules, *imports)
+        return (
+            self.typing,
+            self.source.filename,
+            resolution.wildcard,
+            resolution.reflective,
+            modules,
+            *imports,
+        )
 
     @cached_property
     def _changed(self) -> frozenset[str] | None:

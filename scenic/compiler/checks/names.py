@@ -12,7 +12,7 @@ from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.unfinished import (
-    alone_names,
+    begun_names,
     begun_word,
     compared_names,
     may_bind_more,
@@ -82,7 +82,7 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             continue
         if skipped is None:
             skipped = _skipped_words(context)
-            alone = alone_names(context)
+            alone = begun_names(context)
             words = {each.id for each in alone}
             compared = compared_names(context)
             meant = {each.id for each in compared}

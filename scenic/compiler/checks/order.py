@@ -10,7 +10,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import in_compose
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.places import word_span
-from scenic.compiler.checks.unfinished import alone_names
+from scenic.compiler.checks.unfinished import begun_names
 from scenic.compiler.scopes import PROVIDED, Scope, ScopeKind, Stretch
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Label
@@ -79,7 +79,7 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
             early += [node for node in _reads_at_once(stretch, name) if node.lineno <= last_line]
         defined.update(stretch.kinds)
     reported: set[str] = set()
-    half_typed = min(map(position, alone_names(context)), default=None)
+    half_typed = min(map(position, begun_names(context)), default=None)
     for node in sorted(early, key=position):
         name = node.id
         if name in reported or node in resolution.tolerated:
@@ -140,7 +140,7 @@ def _read_early(stretch: Stretch) -> frozenset[str]:
 
 def _ego(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic]:
     """SC209: a use of the ego, said or implied, before the first assignment to it."""
-    if context.resolution.reflective or any("ego".startswith(name.id) for name in alone_names(context)):
+    if context.resolution.reflective or any("ego".startswith(name.id) for name in begun_names(context)):
         return  # It may be set in ways that the text does not show, or be about to be.
     brings = (lambda _: True) if context.surroundings is None else context.surroundings.sets_ego
     if any(brings(node) for node, _ in context.nodes(scenic.Model)):

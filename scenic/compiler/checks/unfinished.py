@@ -16,7 +16,15 @@ from scenic.language.diagnostics import Diagnostic
 from scenic.language.keywords import SOFT_KEYWORDS, TEMPORAL_OPERATORS
 from scenic.language.statements import STATEMENTS
 
-__all__ = ["alone_names", "begun_word", "compared_names", "may_bind_more", "text_before", "unfinished"]
+__all__ = [
+    "alone_names",
+    "begun_names",
+    "begun_word",
+    "compared_names",
+    "may_bind_more",
+    "text_before",
+    "unfinished",
+]
 
 _ENDS: Final = ("", ",", ")", "]", "}", ";", ":", "#")
 """What may follow where something is missing: the end of the line, or one of these."""
@@ -27,6 +35,24 @@ _HALF_BOUND: Final = re.compile(
     r"|(?=.*[,(\[*])\s*(?:[*(\[ ]{0,9}+[^\W\d]\w*+[)\] ]{0,9}+,)*[*(\[ ]{0,9}+\w*+$"
 )
 """An assignment that ends with ``=`` or an open bracket, or the beginning of its targets."""
+
+_BINDING: Final = (
+    "async",
+    "behavior",
+    "case",
+    "class",
+    "def",
+    "except",
+    "for",
+    "from",
+    "import",
+    "match",
+    "model",
+    "monitor",
+    "scenario",
+    "with",
+)
+"""First words of statements that bind names of any kind."""
 
 
 @cache
@@ -123,6 +149,11 @@ def alone_names(context: Context) -> set[ast.Name]:
     }
 
 
+def begun_names(context: Context) -> set[ast.Name]:
+    """The same while somebody is typing; none in a program that is written."""
+    return alone_names(context) if context.typing else set()
+
+
 def _alone_in(stretch: Stretch) -> frozenset[str]:
     return frozenset(name.id for name in _alone(stretch))
 
@@ -167,10 +198,12 @@ def _names_in_row(value: ast.expr) -> Iterator[ast.Name]:
 def may_bind_more(context: Context) -> bool:
     """Whether a statement is half typed, so that any name may be one that the rest of it binds.
 
-    Such are names that nothing binds and that are whole statements, assignments that end with ``=`` or an open bracket, and beginnings of targets.
+    Such are assignments that end with ``=`` or an open bracket, beginnings of targets and, while somebody is typing, names in
+    a row, and those that may become the first word of a statement that binds others.
     """
-    if alone_names(context):
-        return True
+    for name in begun_names(context):
+        if "," in context.source.line(name.lineno) or any(word.startswith(name.id) for word in _BINDING):
+            return True
     return any(
         _HALF_BOUND.match(context.source.line(node.lineno))
         for node, _ in context.nodes(scenic.ErrorStatement)

@@ -18,6 +18,7 @@ from scenic.runtime.program.context import here
 from scenic.runtime.python.class_members import member
 from scenic.runtime.values.applying import apply, operate
 from scenic.runtime.values.choices import MISSING, MOST_OPTIONS, drawn_option, select
+from scenic.runtime.values.lazy import defer, is_lazy
 from scenic.runtime.values.nodes import DICTIONARY, LIST, TUPLE, as_node, as_value, kind_of
 from scenic.runtime.values.random_values import Random, is_random
 
@@ -73,6 +74,8 @@ def element_at(node: Node, index: Any) -> Any:
 
 def element(value: Random, index: Any) -> Any:
     """What a random container, or a choice among containers, has at an index."""
+    if is_lazy(index):
+        return defer(element, value, index)
     if holds_instances(value.node):
         # Instances as they are in the sample; that they are instances is not known before (section 8.1).
         return Random.later(operator.getitem, value, index)

@@ -150,12 +150,14 @@ def reads_of(value: Any, within: tuple[int, ...] = ()) -> frozenset[str]:
         for item in value.values() if kind is dict else value:
             if type(item) not in _NUMBERS and (reads := reads_of(item, inside)):
                 found |= reads
+    elif kind is slice:
+        found = reads_of((value.start, value.stop, value.step))
     return found
 
 
 def is_lazy(value: Any) -> bool:
-    """Whether a value is lazy or a container with lazy parts."""
-    return isinstance(value, Lazy) or (type(value) in (tuple, list, dict) and bool(reads_of(value)))
+    """Whether a value is lazy, or a container or slice with lazy parts."""
+    return isinstance(value, Lazy) or (type(value) in (tuple, list, dict, slice) and bool(reads_of(value)))
 
 
 def resolve(value: Any, instance: Any) -> Any:
@@ -165,6 +167,8 @@ def resolve(value: Any, instance: Any) -> Any:
     if is_lazy(value):
         if isinstance(value, dict):
             return {key: resolve(item, instance) for key, item in value.items()}
+        if isinstance(value, slice):
+            return slice(*(resolve(item, instance) for item in (value.start, value.stop, value.step)))
         return type(value)(resolve(item, instance) for item in value)
     return value
 

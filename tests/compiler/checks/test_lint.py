@@ -174,7 +174,7 @@ def test_errors_of_other_kinds(text: str, expected: list[tuple[str, int, int]]) 
     ],
 )
 def test_what_is_half_typed_accuses_no_other_line(text: str, line: int) -> None:
-    found = [item for item in check_text(text, filename="f") if item.severity is Severity.ERROR]
+    found = [item for item in check_text(text, filename="f", typing=True) if item.severity is Severity.ERROR]
     assert {item.span.line for item in found if item.span} <= {line}
 
 
