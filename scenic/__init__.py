@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from scenic.runtime.elements.sensors import DepthSensor, RGBSensor, SSSensor
     from scenic.runtime.elements.specifiers import specifier
     from scenic.runtime.python.bounded import bounded
-    from scenic.runtime.scenes.established_api import setDebuggingOptions
+    from scenic.runtime.scenes.established_api import setDebuggingOptions, setSeed
     from scenic.runtime.scenes.scenario import Scenario
     from scenic.runtime.scenes.scene import Scene
     from scenic.simulators.replays import Conditioned
@@ -79,6 +79,7 @@ _HOMES = MappingProxyType(
         "Scenario": "scenic.runtime.scenes.scenario",
         "Scene": "scenic.runtime.scenes.scene",
         "setDebuggingOptions": "scenic.runtime.scenes.established_api",
+        "setSeed": "scenic.runtime.scenes.established_api",
         "specifier": "scenic.runtime.elements.specifiers",
     }
 )
@@ -114,6 +115,7 @@ __all__ = [
     "scenarioFromFile",
     "scenarioFromString",
     "setDebuggingOptions",
+    "setSeed",
     "specifier",
 ]
 

@@ -247,7 +247,9 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
         "scenic.core.simulators": _homes(
             ("scenic.simulators.simulator", "Simulator"),
             ("scenic.simulators.simulation", "Simulation"),
-            ("scenic.simulators.results", "SimulationResult TerminationType"),
+            ("scenic.simulators.results", "SimulationResult SimulationState TerminationType"),
+            ("scenic.simulators.stepped", "TerminatedSimulationException"),
+            ("scenic.batch.group", "SimulatorGroup"),
             ("scenic.simulators.dummy", "DummySimulator DummySimulation"),
             ("scenic.simulators.actions", "Action"),
             (_ERRORS, "SimulationCreationError DivergenceError GuardViolation RejectSimulationException"),

@@ -163,12 +163,13 @@ def sampled_in_processes(
     *,
     seed: int,
     processes: int,
+    first: int = 0,
     max_attempts: int | None = None,
     time_limit: float | None = None,
     source: PointSet | None = None,
     executor: Executor | None = None,
 ) -> Iterator[Scene]:
-    """Scenes 0 to ``n`` of a seed, found by several processes: our own, or those of ``executor``.
+    """Scenes ``first`` to ``first + n`` of a seed, found by several processes: our own, or those of ``executor``.
 
     Workers return the numbers of each scene's accepted candidates. The parent evaluates these candidates alone.
 
@@ -178,7 +179,7 @@ def sampled_in_processes(
 
     """
     deadline = None if time_limit is None else time.monotonic() + time_limit
-    job = Job(seed, 0, n, max_attempts, deadline, source)
+    job = Job(seed, first, first + n, max_attempts, deadline, source)
     engine = Processes(processes) if executor is None else OverExecutor(executor, max(2, processes))
     for made in in_processes(scenario, _accepted_attempts, job, engine):
         if made.missing:

@@ -21,7 +21,7 @@ from scenic.language.spans import Span
 from scenic.language.spelling import nearest_attribute
 from scenic.runtime.dynamics.copies import Copies
 from scenic.runtime.dynamics.driving import Sourcing
-from scenic.runtime.dynamics.run import Run
+from scenic.runtime.dynamics.run import Ending, Run
 from scenic.runtime.instances.properties import Finals
 from scenic.runtime.python.ownership import PRELUDE
 from scenic.runtime.python.random_state import preserved, restore, seed_globals, states
@@ -206,6 +206,16 @@ class Simulation(ABC):
             self.executeActions({agent: tuple(actions)})
             agent.__dict__["lastActions"] = done[agent]
 
+    @property
+    def is_over(self) -> bool:
+        """Whether the simulation has ended or was given up."""
+        return self._destroyed
+
+    def end(self, reason: str) -> None:
+        """End a simulation that is advanced step by step, in the present state."""
+        self._run.ending = Ending("terminatedByUser", reason)
+        self.advanceOnce()
+
     def cancel(self) -> None:
         """Give up a simulation that is advanced step by step: there is no result, and no file of its records remains."""
         with self._isolated:
@@ -230,6 +240,8 @@ class Simulation(ABC):
                 if not going:
                     break
                 yield True
+                if run.ending is not None:  # somebody outside has ended it
+                    break
                 self._tell_state(self.actionSequence[-1])
                 self.advance()
             self._tell_state(ActionsTaken())

@@ -2,13 +2,14 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Self
 
 from scenic.graph.points import PointSet
 from scenic.language.errors import GuardViolation, RejectionException, RejectSimulationException
 from scenic.runtime.dynamics.driving import Sourcing, driven
 from scenic.runtime.scenes.scene import Scene
 from scenic.simulators.simulation import Simulation
+from scenic.simulators.stepped import SteppedSimulation
 
 __all__ = ["Simulator"]
 
@@ -16,8 +17,17 @@ __all__ = ["Simulator"]
 class Simulator(ABC):
     """Runs scenes; a subclass provides `createSimulation`."""
 
-    def __init__(self) -> None:
+    def __init__(self, verbosity: int = 0) -> None:
         self._destroyed = False
+        self.verbosity = verbosity
+        """What simulations print where `simulate` is not told otherwise, from 0 to 3."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        if not getattr(self, "_destroyed", False):
+            self.destroy()
 
     def simulate(
         self,
@@ -47,7 +57,7 @@ class Simulator(ABC):
             maxIterations: simulations tried.
             timestep: seconds in a step; the simulator's own if ``None``.
             name: of the simulation; where several may be tried the number of the try is appended.
-            verbosity: what to print, from 0 (the default) to 3.
+            verbosity: what to print, from 0 to 3; that of the simulator if ``None``.
             raiseGuardViolations: let a violated guard that nothing catches be raised, rather than reject the simulation.
             replay: bytes of an earlier simulation's `getReplay`.
             enableReplay: see `Simulation`, as all that follow.
@@ -63,9 +73,11 @@ class Simulator(ABC):
         """
         if getattr(self, "_destroyed", False):
             raise RuntimeError("the simulator has been destroyed")
+        if verbosity is None:
+            verbosity = getattr(self, "verbosity", 0)
         for iteration in range(1, maxIterations + 1):
             label = str(iteration) if name is None else name if maxIterations == 1 else f"{name}.{iteration}"
-            tells = verbosity is not None and verbosity >= 2
+            tells = verbosity >= 2
             if tells:
                 print(f"  Starting simulation {label}...")  # noqa: T201 - asked for by the user
             if source is not None:
@@ -75,7 +87,7 @@ class Simulator(ABC):
                     scene,
                     maxSteps,
                     name=label,
-                    verbosity=0 if verbosity is None else verbosity,
+                    verbosity=verbosity,
                     raiseGuardViolations=raiseGuardViolations,
                     timestep=timestep,
                     replay=replay,
@@ -101,6 +113,27 @@ class Simulator(ABC):
                 )
             return done
         return None
+
+    def simulateStepped(
+        self, scene: Scene, maxSteps: int | None = None, *, name: str | None = None, **options: Any
+    ) -> SteppedSimulation:
+        """A simulation that its caller advances, to be entered by ``with``: it begins there, and is cleaned up at the end.
+
+        Args:
+            scene: what to simulate.
+            maxSteps: steps at most.
+            name: of the simulation.
+            options: for the constructor of `Simulation`.
+
+        """
+        if getattr(self, "_destroyed", False):
+            raise RuntimeError("the simulator has been destroyed")
+        options = {"timestep": None, "verbosity": getattr(self, "verbosity", 0), **options}
+        return SteppedSimulation(
+            self.createSimulation(
+                scene, maxSteps=maxSteps, name="1" if name is None else name, deferred=True, **options
+            )
+        )
 
     def replay(self, scene: Scene, replay: bytes, **options: Any) -> Simulation | None:
         """Run a scene as an earlier simulation ran, given the bytes of its `getReplay`."""

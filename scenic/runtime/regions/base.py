@@ -346,6 +346,19 @@ class Region(metaclass=_RegionType):
         """Distance from a point to the nearest point of the region, in metres."""
         return self.distance_from(point)
 
+    def closestPointTo(self, point: Any) -> Vector:
+        """The point of the region nearest to a point; of fixed regions.
+
+        Raises:
+            NotImplementedError: for a kind of region whose nearest points are not known.
+
+        """
+        place = np.array([tuple(to_vector(point, "`closestPointTo`"))])
+        found = self.nearest(place, *self.fixed_columns("the nearest point"))
+        if found is None:
+            raise unsupported(f"the nearest point of a region of the kind {type(self).__name__}")
+        return Vector.of(found[0].tolist())
+
     def intersects(self, other: Any) -> Any:
         """Whether the region shares a point with another, or with an object."""
         if is_body(other) and (single := self.at_once) is not None:

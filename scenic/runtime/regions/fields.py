@@ -121,6 +121,19 @@ class VectorField:
             return as_value(later(_FOLLOW, _followed, (self.value, place, length, law)))
         return _followed(self.value, place, length, law)
 
+    def followFromTrajectory(
+        self, position: Any, distance: float, steps: int | None = None, stepSize: float | None = None
+    ) -> list[Any]:
+        """The places on the way of `followFrom`: where it starts, and where each step ends."""
+        place = to_vector(position, "`followFromTrajectory`")
+        count = _steps(
+            distance, (steps, self.minSteps, self.defaultStepSize if stepSize is None else stepSize)
+        )
+        places = [place]
+        for _ in range(count):
+            places.append(self.followFrom(places[-1], distance / count, steps=1))
+        return places
+
     @staticmethod
     def forUnionOf(regions: Iterable[Any], tolerance: float = 0) -> "PiecewiseVectorField | None":  # noqa: ARG004 - of the established call
         """The field that takes each point's orientation from the first region that holds it; ``None`` without any."""

@@ -61,6 +61,10 @@ class LineRegion(Region):
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return self.pieces.nearest(points)[0]
 
+    def closestPointTo(self, point: Any) -> Vector:
+        place = np.array([tuple(to_vector(point, "`closestPointTo`"))])
+        return Vector.of(self.pieces.nearest(place)[2][0].tolist())
+
     def orientations(self, points: Points, *columns: Column) -> Column:
         return self.pieces.frames[self.pieces.nearest(points)[1]]
 
@@ -239,6 +243,37 @@ class PolylineRegion(LineRegion):
         place = np.array([tuple(to_vector(point))])
         place[:, 2] = 0
         return Vector.of(self.pieces.nearest(place)[2][0].tolist())
+
+    @property
+    def midpoint(self) -> Vector:
+        """The point halfway along the line."""
+        return self.pointAlongBy(0.5, normalized=True)
+
+    def reverse(self) -> "PolylineRegion":
+        """The same line from its end to its start."""
+        import shapely
+
+        parts = [shapely.reverse(part) for part in getattr(self.lineString, "geoms", [self.lineString])]
+        return self._made_of(shapely.MultiLineString(parts[::-1]) if len(parts) > 1 else parts[0])
+
+    def substring(self, start: float, end: float, normalized: bool = False) -> "PolylineRegion":
+        """The part between two distances along the line (shares of its length if ``normalized``), from their end if negative.
+
+        Raises:
+            ScenicValueError: if nothing lies between them, or the line has several parts.
+
+        """
+        from shapely.ops import substring
+
+        if len(self.chains) > 1:
+            raise ScenicValueError("a line of several parts has no part between two distances", span=here())
+        return self._made_of(substring(self.lineString, start, end, normalized=normalized))
+
+    def _made_of(self, line: Any) -> "PolylineRegion":
+        """A line with the orientation of this one: along its own segments, or that of the field."""
+        if line.geom_type == "Point":
+            raise ScenicValueError("no part of the line lies between these two distances", span=here())
+        return PolylineRegion(polyline=line, orientation=True if self._follows_segments else self.orientation)
 
     def equallySpacedPoints(self, num: int) -> list[Vector]:
         """So many points from start to end, equally far apart along the line."""

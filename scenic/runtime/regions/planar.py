@@ -27,6 +27,7 @@ from scenic.runtime.regions.flat import Flat, meets_flat, rows_of
 from scenic.runtime.regions.scalar_regions import Disc, Polygon, Rectangle, Single
 from scenic.runtime.regions.spaces import Nowhere
 from scenic.runtime.values.values import (
+    Vector,
     apply,
     is_number,
     is_random,
@@ -164,6 +165,10 @@ class PlanarRegion(Region):
 
     def distances(self, points: Points, *columns: Column) -> Column:
         return np.hypot(self.beside(points, *columns), points[:, 2] - self.heights(*columns))
+
+    def closestPointTo(self, point: Any) -> Vector:
+        place = super().closestPointTo(point)
+        return Vector.of((place.x, place.y, float(self.heights(*self.fixed_columns("the nearest point"))[0])))
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
         """Vertically onto the plane; a point beside the region lands nowhere."""

@@ -12,7 +12,7 @@ from scenic.language.errors import ScenicTypeError, ScenicValueError
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Mask, Points, Region
-from scenic.runtime.values.values import is_random, to_vector
+from scenic.runtime.values.values import Vector, is_random, to_vector
 
 
 class PointSetRegion(Region):
@@ -68,6 +68,10 @@ class PointSetRegion(Region):
 
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return np.asarray(self.kdTree.query(points)[0], dtype=np.float64)
+
+    def closestPointTo(self, point: Any) -> Vector:
+        place = tuple(to_vector(point, "`closestPointTo`"))
+        return Vector.of(self.points[self.kdTree.query(place)[1]].tolist())
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
         return self.points.min(axis=0)[np.newaxis], self.points.max(axis=0)[np.newaxis]

@@ -6,6 +6,7 @@ Signatures are those that existing scripts use; `scenic.established` maps the na
 import functools
 import itertools
 import math
+import random
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, Final, TextIO
@@ -370,6 +371,12 @@ def alwaysGlobalOrientation(thing: Any) -> bool:
 globalOrientation = Orientation()  # noqa: N816 - the established name
 
 
+def setSeed(seed: int) -> None:
+    """Seed Python's and NumPy's global generators, and so the scenes that `Scenario.generate` makes from then on."""
+    random.seed(seed)
+    np.random.seed(seed % 2**32)  # noqa: NPY002 - the global one is meant
+
+
 def setDebuggingOptions(
     *,
     verbosity: int = 0,
@@ -418,6 +425,7 @@ __all__ = [
     "rotateVector",
     "scenicToJSON",
     "setDebuggingOptions",
+    "setSeed",
     "toDistribution",
     "toHeading",
     "toOrientation",

@@ -79,6 +79,11 @@ _KEPT: Final = frozenset({"_foreseen", "_external_sampler"})
 """Attributes of a scenario that conditions do not replace."""
 
 
+def _check_workers(workers: int, limit: float, feedback: Any) -> None:
+    if workers > 0 and (limit != math.inf or feedback is not None):
+        raise ValueError("several processes go without `maxIterations` and `feedback`")
+
+
 class Scenario:
     """A compiled program, which samples scenes and simulates them.
 
@@ -490,18 +495,112 @@ class Scenario:
         )
 
     def generateBatch(
-        self, numScenes: int, maxIterations: float = math.inf, verbosity: int = 0, feedback: Any = None
-    ) -> tuple[list[Scene], int]:
+        self,
+        numScenes: int,
+        maxIterations: float = math.inf,
+        verbosity: int = 0,
+        feedback: Any = None,
+        numWorkers: int = 0,
+        mute: bool = True,
+        serialized: bool = False,
+    ) -> tuple[list[Any], int]:
         """Scenes, and the total number of candidates tried for them, ``maxIterations`` at most.
 
         Without that limit, a scene for which `DEFAULT_ATTEMPTS` candidates were rejected ends the search, too.
+
+        Args:
+            numScenes: how many.
+            maxIterations: candidates tried for all of them.
+            verbosity: accepted for compatibility.
+            feedback: accepted for compatibility.
+            numWorkers: processes that look for scenes; 0 is this one. The scenes are the same.
+            mute: accepted for compatibility: nothing is printed.
+            serialized: give scenes as bytes (`sceneToBytes`).
+
+        Raises:
+            RejectionException: if the scenes are not found within the limit.
+            ValueError: for several processes with a limit of candidates or feedback.
+
         """
+        _check_workers(numWorkers, maxIterations, feedback)
         most = DEFAULT_ATTEMPTS if maxIterations == math.inf else int(maxIterations)
-        scenes = self.sample(numScenes, max_attempts=most)
+        scenes = self.sample(numScenes, max_attempts=most, processes=max(1, numWorkers))
         tried = sum(scene.attempts for scene in scenes)
         if tried > maxIterations:
             raise RejectionException(f"failed to generate {numScenes} scenes in {maxIterations} iterations")
-        return scenes, tried
+        return (list(map(self.sceneToBytes, scenes)) if serialized else scenes), tried
+
+    def generateStream(
+        self,
+        numScenes: float = math.inf,
+        maxIterations: float = math.inf,
+        verbosity: int = 0,
+        feedback: Any = None,
+        numWorkers: int = 0,
+        bufferSize: int | None = None,
+        mute: bool = True,
+        serialized: bool = False,
+        deterministic: bool = True,
+        iterationCount: bool = False,
+    ) -> Iterator[Any]:
+        """Scenes in order, looked for when they are wanted.
+
+        Args:
+            numScenes: how many; `math.inf` for a stream without an end.
+            maxIterations: candidates tried for one scene.
+            verbosity: accepted for compatibility.
+            feedback: accepted for compatibility.
+            numWorkers: processes that look for scenes; 0 is this one. The scenes are the same.
+            bufferSize: scenes looked for at a time.
+            mute: accepted for compatibility: nothing is printed.
+            serialized: give scenes as bytes (`sceneToBytes`).
+            deterministic: accepted for compatibility: scenes always come in order.
+            iterationCount: yield pairs of a scene and the number of candidates tried for it.
+
+        Raises:
+            RejectionException: if a scene is not found.
+            ValueError: for several processes with a limit of candidates or feedback.
+
+        """
+        _check_workers(numWorkers, maxIterations, feedback)
+        limit = None if maxIterations == math.inf else int(maxIterations)
+        return self._generated(
+            numScenes,
+            random.getrandbits(SEED_BITS),
+            limit,
+            numWorkers,
+            bufferSize or 64 * max(1, numWorkers),
+            serialized=serialized,
+            counted=iterationCount,
+        )
+
+    def _generated(
+        self,
+        count: float,
+        seed: int,
+        limit: int | None,
+        workers: int,
+        block: int,
+        *,
+        serialized: bool,
+        counted: bool,
+    ) -> Iterator[Any]:
+        """See `generateStream`."""
+        first = 0
+        while first < count:
+            size = int(min(block, count - first))
+            if workers > 0 and self._services.sample is not None:
+                found: Iterable[Scene | Exhausted] = self._services.sample(
+                    self, size, seed=seed, first=first, processes=workers
+                )
+            else:
+                found = self.stream(size, seed=seed, first=first, max_attempts=limit)
+            for scene in found:
+                if isinstance(scene, Exhausted):
+                    raise RejectionException(exhaustion_message(scene))
+                value = self.sceneToBytes(scene) if serialized else scene
+                yield (value, scene.attempts) if counted else value
+            first += size
 
     def _sampling_error(self, error: CandidateError) -> Exception:
         cause, check = error.__cause__, error.check

@@ -114,6 +114,11 @@ class Scene:
         return self._family.workspace
 
     @property
+    def scenario(self) -> Any:
+        """The `Scenario` that the scene was made of."""
+        return self._family.scenario
+
+    @property
     def digest(self) -> str:
         """What a saved scene remembers of the program."""
         return self._family.digest

@@ -60,6 +60,8 @@ def to_vector(value: Any, what: str = "") -> Any:
         return vector(*value)
     if hasattr(value, "toVector") and not isinstance(value, type):
         return value.toVector()
+    if getattr(value, "geom_type", None) == "Point":  # shapely's
+        return vector(*next(iter(value.coords)))
     raise wrong_type(VECTOR, value, what)
 
 
