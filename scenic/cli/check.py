@@ -5,6 +5,7 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Final
 
 import click
@@ -13,14 +14,17 @@ from scenic.cli.checking import Checker, Fixing, Outcome, Task, fault
 from scenic.cli.discovery import STANDARD_INPUT, discover
 from scenic.cli.output import FINDINGS, exit_code, has_colours, show_diagnostics, summary
 from scenic.cli.render import FORMATS, Report, Sources, render
+from scenic.cli.watching import watch
 from scenic.configuration.project import PLAIN, Configurations, read_configuration
+from scenic.formats.files import write
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.errors import ScenicError
-from scenic.language.selection import is_selector, similar_selector
+from scenic.language.selection import EVERYTHING, is_selector, similar_selector
 from scenic.language.source import Source
 
 __all__ = ["check"]
 
+_ALL: Final = "ALL"
 _FAILING: Final = (Severity.ERROR, Severity.WARNING)
 
 _ENOUGH_BYTES: Final = 30_000 if sys.platform == "linux" else 100_000
@@ -34,8 +38,10 @@ _PATIENCE: Final = 1.0
 """Seconds after which progress is shown on a terminal."""
 
 
-def _selectors(_context: click.Context, _option: click.Parameter, given: tuple[str, ...]) -> tuple[str, ...]:
+def _selectors(_context: click.Context, option: click.Parameter, given: tuple[str, ...]) -> tuple[str, ...]:
     codes = tuple(code for each in given for part in each.split(",") if (code := part.strip()))
+    if option.name == "select" and _ALL in codes:
+        return EVERYTHING
     for code in codes:
         if not is_selector(code):
             meant = similar_selector(code)
@@ -59,7 +65,7 @@ def _selectors(_context: click.Context, _option: click.Parameter, given: tuple[s
     metavar="CODES",
     multiple=True,
     callback=_selectors,
-    help="Show these codes only: SC304, or SC3 for all that begin so; with commas between, or repeated.",
+    help="Show these codes only: SC304, SC3 for all that begin so, or ALL; with commas between, or repeated.",
 )
 @click.option(
     "--ignore", metavar="CODES", multiple=True, callback=_selectors, help="Do not show these codes."
@@ -86,6 +92,15 @@ def _selectors(_context: click.Context, _option: click.Parameter, given: tuple[s
     "-v", "--verbose", is_flag=True, help="Say also which imports bring names that cannot be known."
 )
 @click.option("--exit-zero", is_flag=True, help="Exit with 0 although there are findings.")
+@click.option("--statistics", is_flag=True, help="Show only how many findings there are of each code.")
+@click.option(
+    "-o",
+    "--output-file",
+    metavar="FILE",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Write what is found to this file.",
+)
+@click.option("-w", "--watch", "watching", is_flag=True, help="Check again whenever a file changes.")
 def check(
     paths: tuple[str, ...],
     output_format: str,
@@ -101,6 +116,9 @@ def check(
     jobs: int | None,
     verbose: bool,
     exit_zero: bool,
+    statistics: bool,
+    output_file: Path | None,
+    watching: bool,
 ) -> int:
     """Report what is wrong with programs and road maps (.xodr).
 
@@ -116,6 +134,13 @@ def check(
         raise click.UsageError("--config and --no-config exclude each other.")
     if deep and STANDARD_INPUT in paths:
         raise click.UsageError("--deep runs files; it cannot be used with standard input.")
+    if statistics and (output_format != "text" or diff):
+        raise click.UsageError("--statistics goes with the format text, and not with --diff.")
+    if watching:
+        if STANDARD_INPUT in paths or fix or diff:
+            raise click.UsageError("--watch goes neither with standard input nor with --fix and --diff.")
+        context = click.get_current_context()
+        watch(paths, lambda: context.invoke(context.command, **{**context.params, "watching": False}))
     fixed_configuration = PLAIN if no_config else None if config is None else read_configuration(config)
     configurations = Configurations(fixed_configuration)
     found = discover(paths, configurations)
@@ -171,8 +196,13 @@ def check(
     if output_format == "beside":
         show_diagnostics(diagnostics, sources)
         return code
-    report = Report(diagnostics, sources, len(tasks), fixed, code, has_colours(sys.stdout))
-    sys.stdout.write(render(output_format, report))
+    colours = output_file is None and has_colours(sys.stdout)
+    report = Report(diagnostics, sources, len(tasks), fixed, code, colours)
+    text = render("statistics" if statistics else output_format, report)
+    if output_file is None:
+        sys.stdout.write(text)
+    else:
+        write(output_file, text.encode("utf-8", "backslashreplace"))
     if output_format == "text" and (diagnostics or fixed or sys.stderr.isatty()):
         sys.stdout.flush()
         sys.stderr.write(_conclusion(report))

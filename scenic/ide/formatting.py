@@ -1,7 +1,7 @@
 """Writing a document in the usual style.
 
 What a statement looks like is the unparser's decision (`scenic.compiler.unparser`): its spacing, quotes and
-parentheses. What a tree does not hold is kept as it stands: comments, blank lines (up to two), and the layout of
+parentheses; numbers and parentheses that group stay as written (`as_written`). What a tree does not hold is kept as it stands: comments, blank lines (up to two), and the layout of
 statements that are written over several lines, which are only moved with their block. Lines are never split or joined.
 
 The result means the same and formats to itself; a text with mistakes is left alone. The style is described in
@@ -11,6 +11,7 @@ The result means the same and formats to itself; a text with mistakes is left al
 import ast
 import difflib
 import re
+from bisect import bisect_left, bisect_right
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -20,6 +21,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.incremental import revise
 from scenic.compiler.tokens import DEDENT, ENDMARKER, FSTRING_MIDDLE, INDENT, NEWLINE, STRING, Tokens
 from scenic.compiler.unparser import UnparseError, unparse
+from scenic.ide.as_written import Token, as_written
 from scenic.ide.snapshot import Snapshot
 from scenic.language.diagnostics import Edit
 from scenic.language.spans import Span
@@ -342,6 +344,7 @@ class _Layout:
     """The text in the making."""
 
     def __init__(self, tokens: Tokens) -> None:
+        self._tokens = tokens
         self._lines: list[str] = []
         self._old = tokens.text.split("\n")
         self._fixed = set(_lines_in_strings(tokens))
@@ -420,16 +423,27 @@ class _Layout:
     def _moved(self, line: _Line, depth: int) -> None:
         """A line as it stands, moved to its indentation; what is inside strings stays where it is."""
         first = self._old[line.first - 1]
-        shift = len(_INDENTATION) * depth - (len(first) - len(first.lstrip()))
+        shift = len(_INDENTATION) * depth - _width(first)
         for number in range(line.first, line.last + 1):
             text = self._old[number - 1]
             if number in self._fixed:
                 self._lines.append(text if number + 1 in self._fixed else text.rstrip())
                 continue
             bare = text.strip(" \t\f")
-            width = max(0, len(text.expandtabs()) - len(text.expandtabs().lstrip()) + shift) if bare else 0
+            width = max(0, _width(text) + shift) if bare else 0
             keep = number + 1 in self._fixed
             self._lines.append(" " * width + (text.lstrip() if keep else bare))
+
+    def _tokens_between(self, line: int, begin: int, end: int | None) -> list[Token]:
+        """The tokens of a line from one column on, maybe before another one."""
+        tokens = self._tokens
+        return [
+            Token(tokens.kinds[index], tokens.texts[index])
+            for index in range(bisect_left(tokens.lines, line), bisect_right(tokens.lines, line))
+            if tokens.columns[index] >= begin
+            and (end is None or tokens.columns[index] < end)
+            and tokens.kinds[index] not in (NEWLINE, INDENT, DEDENT, ENDMARKER)
+        ]
 
     def _written(self, line: _Line, units: Sequence[_Unit]) -> list[str] | None:
         """A line as the unparser writes it; ``None`` if it stays as it stands."""
@@ -445,14 +459,21 @@ class _Layout:
                 return None
             found.append(f"{_INDENTATION * line.depth}{clause[1]}:")
         base = units[0].depth - (line.depth + len(found)) if units else 0
-        for unit in units:
+        places = [unit.place[1] for unit in units]
+        for unit, begin, end in zip(units, places, [*places, None][1:], strict=True):
             if unit.text is None:
                 return None
-            text = unit.text
+            text = as_written(self._tokens_between(line.first, begin, end), unit.text)
             if not found and old.startswith("elif", start):
                 text = f"el{text}"
             found.append(_INDENTATION * (unit.depth - base) + text)
         return found
+
+
+def _width(line: str) -> int:
+    """How far a line is indented."""
+    expanded = line.expandtabs()
+    return len(expanded) - len(expanded.lstrip())
 
 
 _CLAUSE: Final = re.compile(r"(else|finally|try|setup|compose)[ \t]*:")

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from scenic.cli.watching import watch
 from tests.cli.commands import run_here
 from tests.processes import interruptible
 
@@ -339,3 +340,42 @@ def test_faults_of_ours_in_other_commands_ask_for_a_report(
     assert "please report" in result.stderr
     assert ", in sample\n" in result.stderr
     assert ", in fail\n" in result.stderr
+
+
+def test_reports_go_to_files_and_into_numbers(tmp_path: Path) -> None:
+    program, report = tmp_path / "a.scenic", tmp_path / "report.json"
+    program.write_text("import os\nimport re\nx = y\n")
+
+    def said(*options: str) -> str:
+        found = run("check", "--no-config", *options, program)
+        assert found.returncode == 1, found.stderr
+        return found.stdout
+
+    assert said("--format", "json", "--output-file", str(report)) == ""
+    assert len(json.loads(report.read_text())["diagnostics"]) == 3
+    first, second = said("--statistics").splitlines()
+    assert first.split()[:3] == ["2", "SC206", "[*]"]
+    assert second.split()[:2] == ["1", "SC202"]
+    assert said("--select", "SC202,ALL", "--statistics") == said("--statistics")
+
+
+def test_watching_checks_again_when_something_changes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    program = tmp_path / "a.scenic"
+    program.write_text("x = 1\n")
+    looks = 0
+
+    def wait(_seconds: float) -> None:
+        nonlocal looks
+        looks += 1
+        if looks == 1:
+            (tmp_path / "helper.py").write_text("y = 2\n")
+        elif looks == 3:
+            raise KeyboardInterrupt
+
+    runs: list[int] = []
+    monkeypatch.setattr("scenic.cli.watching.time.sleep", wait)
+    with pytest.raises(KeyboardInterrupt):
+        watch([str(program)], lambda: runs.append(looks))
+    assert runs == [0, 1]

@@ -1,8 +1,8 @@
 import json
-import re
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -138,6 +138,9 @@ def test_repairs_are_shown_where_they_say_more(diagnostic: Diagnostic, advice: l
     assert [line.removeprefix("  = help: ") for line in shown("x", diagnostic) if "= help" in line] == advice
 
 
+ROOT = Path(__file__).parents[2]
+SARIF = json.loads((ROOT / "tests/data/sarif.schema.json").read_text())
+
 ODD = Diagnostic(
     "SC300",
     "50% of: a,b\nmore",
@@ -156,7 +159,7 @@ NOTED = at(1, 0, 2, 1, severity=Severity.INFORMATION)
 def test_json() -> None:
     report = Report([ODD, UNREADABLE, NOTED], files=2, fixed=4)
     content = json.loads(render("json", report))
-    assert content["version"] == 1
+    jsonschema.validate(content, json.loads((ROOT / "docs/reference/check.schema.json").read_text()))
     assert content["summary"] == {
         "files": 2,
         "errors": 1,
@@ -194,84 +197,25 @@ def sarif(*diagnostics: Diagnostic, code: int = 1) -> dict[str, Any]:
     text = render("sarif", Report(diagnostics, exit_code=code))
     text.encode("utf-8")
     log = json.loads(text)
-    assert (log["version"], len(log["runs"])) == ("2.1.0", 1)
+    jsonschema.validate(log, SARIF)
+    assert len(log["runs"]) == 1
     run: dict[str, Any] = log["runs"][0]
     return run
 
 
-REGION = {"startLine", "startColumn", "endLine", "endColumn"}
-"""As the schema has it: the properties of each object, those required first, and what their values are."""
-
-
-def check_message(message: dict[str, str]) -> None:
-    assert set(message) == {"text"}
-    assert message["text"]
-
-
-def check_place(place: dict[str, Any]) -> None:
-    assert {"artifactLocation"} <= set(place) <= {"artifactLocation", "region"}
-    check_artifact(place["artifactLocation"])
-    if "region" in place:
-        check_region(place["region"])
-
-
-def check_artifact(artifact: dict[str, str]) -> None:
-    assert {"uri"} <= set(artifact) <= {"uri", "uriBaseId"}
-    # RFC 3986, section 2: what else may stand in a URI is percent-encoded.
-    assert re.fullmatch(r"(?:[A-Za-z0-9._~:/?#\[\]@!$&'()*+,;=-]|%[0-9A-F]{2})+", artifact["uri"])
-    assert artifact["uri"].startswith("file:///") is ("uriBaseId" not in artifact)
-
-
-def check_region(region: dict[str, int]) -> None:
-    assert set(region) == REGION
-    assert all(isinstance(value, int) and value >= 1 for value in region.values())
-    assert (region["startLine"], region["startColumn"]) <= (region["endLine"], region["endColumn"])
-
-
 def check_structure(run: dict[str, Any]) -> None:
-    """What the schema of SARIF 2.1.0 asks of the parts that are used (sections 3.14 to 3.58 of the standard)."""
-    assert set(run) == {"tool", "invocations", "originalUriBaseIds", "columnKind", "results"}
-    assert run["columnKind"] in ("utf16CodeUnits", "unicodeCodePoints")
-    assert all(base["uri"].endswith("/") for base in run["originalUriBaseIds"].values())
-    driver = run["tool"]["driver"]
-    assert driver["name"] == "scenic"
-    rules = driver["rules"]
-    assert len({rule["id"] for rule in rules}) == len(rules)
-    for rule in rules:
-        assert set(rule) == {"id", "shortDescription", "help"}
-        check_message(rule["shortDescription"])
-        assert rule["help"]["text"]
-        assert set(rule["help"]) <= {"text", "markdown"}
-    (invocation,) = run["invocations"]
-    assert isinstance(invocation["executionSuccessful"], bool)
-    assert isinstance(invocation["exitCode"], int)
-    notes = [
-        note
-        for kind in ("toolExecutionNotifications", "toolConfigurationNotifications")
-        for note in invocation.get(kind, [])
-    ]
-    for note in notes:
-        assert {"level", "message"} <= set(note) <= {"level", "message", "locations", "associatedRule"}
-        assert rules[note["associatedRule"]["index"]]["id"] == note["associatedRule"]["id"]
-    allowed = {"ruleId", "ruleIndex", "level", "message", "locations", "relatedLocations", "fixes"}
+    """What no schema says: results and notes name their rules, and regions end after they begin."""
+    rules = run["tool"]["driver"]["rules"]
     for result in run["results"]:
-        assert {"ruleId", "ruleIndex", "level", "message"} <= set(result) <= allowed
         assert rules[result["ruleIndex"]]["id"] == result["ruleId"]
-        for fix in result.get("fixes", []):
-            assert set(fix) == {"description", "artifactChanges"}
-            check_message(fix["description"])
-            for change in fix["artifactChanges"]:
-                check_artifact(change["artifactLocation"])
-                assert change["replacements"]
-                for replacement in change["replacements"]:
-                    check_region(replacement["deletedRegion"])
-                    assert set(replacement) <= {"deletedRegion", "insertedContent"}
-    for item in (*notes, *run["results"]):
-        assert item["level"] in ("none", "note", "warning", "error")
-        check_message(item["message"])
-        for location in (*item.get("locations", []), *item.get("relatedLocations", [])):
-            assert set(location) <= {"id", "physicalLocation", "message"}
-            check_place(location["physicalLocation"])
+        for location in (*result.get("locations", []), *result.get("relatedLocations", [])):
+            region = location["physicalLocation"].get("region")
+            if region is not None:
+                begin = (region["startLine"], region["startColumn"])
+                assert begin <= (region["endLine"], region["endColumn"])
+    for kind in ("toolExecutionNotifications", "toolConfigurationNotifications"):
+        for note in run["invocations"][0].get(kind, []):
+            assert rules[note["associatedRule"]["index"]]["id"] == note["associatedRule"]["id"]
 
 
 def test_sarif(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -320,4 +264,4 @@ def test_any_text_in_any_format(text: str, filename: str) -> None:
         assert render(name, report)
     assert json.loads(render("json", report))["diagnostics"][0]["message"] == text
     assert render("github", report).count("\n") == 1
-    check_artifact(sarif(diagnostic)["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"])
+    check_structure(sarif(diagnostic))

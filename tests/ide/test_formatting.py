@@ -229,3 +229,26 @@ def test_ranges_of_programs_mean_the_same(index: int) -> None:
     first = chance.randint(1, count)
     after = _formatted(text, first, min(count, first + chance.randrange(6)))
     assert ast.dump(parse(after).tree) == ast.dump(tree)
+
+
+def test_numbers_and_grouping_stay_as_written() -> None:
+    text = "x = 0x1F+1_000*1e-4\ny=(a and b)or c\nz=(a*b)+(c)\nif (p or q) and r: w = (-.5)\nrequire ((always x)) and y\n"
+    formatted = format_text(text)
+    check(text, formatted)
+    assert formatted == (
+        "x = 0x1F + 1_000 * 1e-4\ny = (a and b) or c\nz = (a * b) + c\n"
+        "if (p or q) and r:\n    w = -.5\nrequire (always x) and y\n"
+    )
+
+
+def test_tabs() -> None:
+    for text in (
+        'class A:\n\t"""Doc."""\n\twidth: 3\n',
+        'class A:\n\t"""Doc.\n\tMore."""\n\twidth: Range(1,\n\t\t2)\n',
+        "def f():\n\tx = g(1,\n\t      2)\n\treturn x\n",
+        "if True:\n\tego = new Object at (1,\n\t\t2),\n\t\tfacing 3 deg\n",
+    ):
+        formatted = format_text(text)
+        check(text, formatted)
+        assert formatted is not None
+        assert formatted.split("\n")[1].startswith("    ")

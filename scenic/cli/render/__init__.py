@@ -21,9 +21,11 @@ FORMATS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
 )
 """The output formats by name: module, which is imported when it is wanted, and function in it."""
 
+_STATISTICS: Final = ("scenic.cli.render.statistics_format", "render_statistics")
+
 
 def render(name: str, report: Report) -> str:
-    """A report in one of the formats."""
-    module, function = FORMATS[name]
+    """A report in one of the formats, or as ``statistics``."""
+    module, function = _STATISTICS if name == "statistics" else FORMATS[name]
     renderer: Callable[[Report], str] = getattr(import_module(module), function)
     return renderer(report)
