@@ -11,13 +11,13 @@ behavior Cautious(speed):
 
 lane = Uniform(*filter(lambda l: l._laneToRight is None, [s for l in network.lanes for s in l.sections])).lane
 block = new Debris on lane.centerline, with width 2, with length 1
-new Debris on shoulder, with width 0.5, with length 0.5
 ego = new Car following roadDirection from block for Range(-60, -45),
     with speed 8,
     with behavior Cautious(12)
 follower = new Car following roadDirection from ego for Range(-25, -15),
     with speed 8,
     with behavior Cautious(12)
+new Debris on visible shoulder, with width 0.5, with length 0.5
 
 require block in network.drivableRegion
 require (distance from ego to lane.centerline[0]) > 100

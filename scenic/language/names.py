@@ -429,6 +429,17 @@ LIFTED_METHODS: Final = frozenset(
         # Orientations
         "approxEq",
         "localAnglesFor",
+        # Road networks and their elements
+        "crossingAt",
+        "elementAt",
+        "intersectionAt",
+        "laneAt",
+        "laneGroupAt",
+        "laneSectionAt",
+        "roadAt",
+        "sectionAt",
+        "shoulderAt",
+        "sidewalkAt",
         # Points and objects
         "canSee",
         "containsPoint",

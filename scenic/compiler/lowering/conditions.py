@@ -320,7 +320,8 @@ def _pair(operator: ast.cmpop, left: ast.expr, right: ast.expr, origin: ast.AST)
         case ast.NotIn():
             return prelude_call("invert", [prelude_call("contains", [left, right], origin)], origin)
         case ast.Is() | ast.IsNot():
-            raise _OpaqueError
+            same = prelude_call("identical", [left, right], origin)
+            return prelude_call("invert", [same], origin) if isinstance(operator, ast.IsNot) else same
     return prelude_call("compare", [constant(_COMPARISONS[type(operator)], origin), left, right], origin)
 
 

@@ -15,6 +15,7 @@ from scenic.runtime.regions.base import Points, Region
 from scenic.runtime.regions.fields import RegionField
 from scenic.runtime.regions.lines import PolylineRegion
 from scenic.runtime.regions.planar import PolygonalRegion
+from scenic.runtime.values.frozen import Frozen
 from scenic.runtime.values.values import Orientation
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ def _required(value: Any, what: str) -> Any:
     return value
 
 
-class NetworkElement(PolygonalRegion):
+class NetworkElement(Frozen, PolygonalRegion):
     """A part of a road network.
 
     Attributes:
@@ -531,7 +532,7 @@ class Intersection(NetworkElement):
         return tuple(lane.orientation[point] for lane in lanes if lane is not None)
 
 
-class Maneuver:
+class Maneuver(Frozen):
     """A way through an intersection, or on along a road.
 
     Attributes:
@@ -588,7 +589,7 @@ class Maneuver:
         return f"<Maneuver {self.type.name} {self.startLane.uid} -> {self.endLane.uid}>"
 
 
-class Signal:
+class Signal(Frozen):
     """A traffic sign or light."""
 
     def __init__(self, uid: str, openDriveID: str, country: str, type: str) -> None:

@@ -19,6 +19,9 @@ __all__ = ["Finder", "RoadDirection"]
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
+_RUN = 16
+"""Segments of a guide that a circle is drawn around."""
+
 
 class Finder:
     """Finds elements by place.
@@ -104,12 +107,12 @@ class RoadDirection(TabulatedField):
 
     @cached_property
     def _segments(self) -> tuple[Floats, Floats, Floats, Floats, Indices, Indices]:
-        """Starts, steps, squared lengths and headings of the segments of all guides, and which are those of each."""
+        """Starts and steps ``(2, k)``, squared lengths and headings of the segments of all guides, and which are those of each."""
         parts = [Segments(guide.line) for guide in self._guides[0]]
         counts = np.array([len(part.starts) for part in parts], dtype=np.intp)
         return (
-            np.concatenate([part.starts for part in parts]),
-            np.concatenate([part.delta for part in parts]),
+            np.ascontiguousarray(np.concatenate([part.starts for part in parts]).T),
+            np.ascontiguousarray(np.concatenate([part.delta for part in parts]).T),
             np.concatenate([part.square for part in parts]),
             np.concatenate([part.heading for part in parts]),
             np.cumsum(counts) - counts,
@@ -165,21 +168,57 @@ class RoadDirection(TabulatedField):
 
     def _along(self, places: Floats, guide: Indices) -> Floats:
         """Headings of the segments of guides that are nearest to places."""
-        starts, delta, square, heading, first, counts = self._segments
+        starts, delta, square, heading, _, _ = self._segments
         result = np.empty(len(places))
         block = 65536
         for begin in range(0, len(places), block):
             mine = guide[begin : begin + block]
-            owner, place = expand(counts[mine])
-            segment = first[mine][owner] + place
-            offset = places[begin : begin + block][owner] - starts[segment]
-            share = np.clip((offset * delta[segment]).sum(axis=1) / square[segment], 0, 1)
-            away = ((offset - share[:, None] * delta[segment]) ** 2).sum(axis=1)
-            least = np.minimum.reduceat(away, np.cumsum(counts[mine]) - counts[mine])
+            some = places[begin : begin + block]
+            owner, segment = self._near_segments(some, mine)
+            # Coordinate by coordinate: sums over an axis of two are slow.
+            x = some[:, 0].copy()[owner] - starts[0][segment]
+            y = some[:, 1].copy()[owner] - starts[1][segment]
+            along, up = delta[0][segment], delta[1][segment]
+            share = np.clip((x * along + y * up) / square[segment], 0, 1)
+            away = (x - share * along) ** 2 + (y - share * up) ** 2
+            changes = np.flatnonzero(owner[1:] != owner[:-1]) + 1
+            least = np.minimum.reduceat(away, np.concatenate([[0], changes]))
             best = np.flatnonzero(away == least[owner])
-            _, once = np.unique(owner[best], return_index=True)
-            result[begin : begin + block] = heading[segment[best[once]]]
+            first = np.concatenate([[True], owner[best[1:]] != owner[best[:-1]]])
+            result[begin : begin + block] = heading[segment[best[first]]]
         return result
+
+    @cached_property
+    def _runs(self) -> tuple[Floats, Floats, Indices, Indices, Indices, Indices]:
+        """Runs of up to `_RUN` segments of a guide: centre and radius of a circle around each, where its segments begin and how
+        many they are; then where the runs of each guide begin, and how many they are.
+        """
+        starts, delta, _, _, first, counts = self._segments
+        starts, delta = starts.T, delta.T
+        runs = -(-counts // _RUN)
+        guide, place = expand(runs)
+        begin = first[guide] + place * _RUN
+        size = np.minimum(counts[guide] - place * _RUN, _RUN)
+        owner, step = expand(size)
+        segment = begin[owner] + step
+        bounds = np.cumsum(size) - size
+        ends = starts + delta
+        lower = np.minimum.reduceat(np.minimum(starts, ends)[segment], bounds)
+        upper = np.maximum.reduceat(np.maximum(starts, ends)[segment], bounds)
+        radius = np.hypot(*(upper - lower).T) / 2 + 1e-6  # more than rounding takes away
+        return (lower + upper) / 2, radius, begin, size, np.cumsum(runs) - runs, runs
+
+    def _near_segments(self, places: Floats, guide: Indices) -> tuple[Indices, Indices]:
+        """Pairs of places and segments of their guides, in order, among them the nearest segments of each place."""
+        centre, radius, begin, size, first, runs = self._runs
+        owner, place = expand(runs[guide])
+        run = first[guide][owner] + place
+        away = np.hypot(*(places[owner] - centre[run]).T)
+        most = np.minimum.reduceat(away + radius[run], np.cumsum(runs[guide]) - runs[guide])
+        near = away - radius[run] <= most[owner]
+        owner, run = owner[near], run[near]
+        pair, step = expand(size[run])
+        return owner[pair], begin[run][pair] + step
 
     def _value(self, point: Any) -> float:
         headings, _ = self.headings(np.array([[point.x, point.y, 0.0]]))

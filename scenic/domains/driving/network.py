@@ -1,6 +1,6 @@
 """Road networks: all elements of a map, and which of them are where (section 2.7 of the driving specification)."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
@@ -22,6 +22,7 @@ from scenic.domains.driving.elements import (
 )
 from scenic.domains.driving.elevation import Elevation
 from scenic.domains.driving.lookups import Finder, RoadDirection
+from scenic.domains.driving.random_elements import NestedFinder, element_at
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import RejectionException
 from scenic.runtime.python.opaque import call_later
@@ -29,13 +30,14 @@ from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.lines import PolylineRegion
 from scenic.runtime.regions.planar import PolygonalRegion
 from scenic.runtime.regions.spaces import nowhere
+from scenic.runtime.values.frozen import Frozen
 from scenic.runtime.values.lazy import Lazy, defer
 from scenic.runtime.values.values import is_random, to_vector
 
 __all__ = ["RoadNetwork"]
 
 
-class RoadNetwork:
+class RoadNetwork(Frozen):
     """A road network, which never changes.
 
     Attributes:
@@ -67,6 +69,7 @@ class RoadNetwork:
         """Polygons that close gaps between the ends of linked lanes."""
         self._elevation = Elevation(())
         self._finders: dict[Any, Finder] = {}
+        self._nested_finders: dict[str, NestedFinder] = {}
 
     # What there is
 
@@ -186,7 +189,7 @@ class RoadNetwork:
         if isinstance(place, Lazy):
             return defer(self.findPointIn, place, elems, reject)
         if is_random(place):
-            return call_later(self.findPointIn, place, elems, reject)
+            return element_at(self._finder(tuple(elems)), place, reject)
         found = self._finder(tuple(elems)).at(place.x, place.y)
         if found is None and reject:
             raise RejectionException(
@@ -217,11 +220,11 @@ class RoadNetwork:
 
     def laneSectionAt(self, point: Any, reject: Any = False) -> Any:
         """The lane section at a point."""
-        return self._through(point, reject, self.laneAt, "sectionAt")
+        return self._through(point, reject, self.lanes, "sections")
 
     def laneGroupAt(self, point: Any, reject: Any = False) -> Any:
         """The lane group at a point."""
-        return self._through(point, reject, self.roadAt, "laneGroupAt")
+        return self._through(point, reject, self.allRoads, "laneGroups")
 
     def crossingAt(self, point: Any, reject: Any = False) -> Any:
         """The pedestrian crossing at a point."""
@@ -239,15 +242,22 @@ class RoadNetwork:
         """The shoulder at a point."""
         return self.findPointIn(point, self.shoulders, reject)
 
-    def _through(self, point: Any, reject: Any, outer: Callable[..., Any], inner: str) -> Any:
-        """An element that is found through the one that it is in."""
+    def _through(self, point: Any, reject: Any, elems: Sequence[NetworkElement], parts: str) -> Any:
+        """A part of the element at a point."""
         place = self.vector(point)
         if isinstance(place, Lazy):
-            return defer(self._through, place, reject, outer, inner)
+            return defer(self._through, place, reject, elems, parts)
         if is_random(place):
-            return call_later(self._through, place, reject, outer, inner)
-        found = outer(place, reject)
-        return None if found is None else getattr(found, inner)(place, reject)
+            return element_at(self._nested(parts, elems), place, reject)
+        found = self.findPointIn(place, elems, reject)
+        return None if found is None else self.findPointIn(place, getattr(found, parts), reject)
+
+    def _nested(self, parts: str, elems: Sequence[NetworkElement]) -> NestedFinder:
+        finder = self._nested_finders.get(parts)
+        if finder is None:
+            inner = [self._finder(tuple(getattr(element, parts))) for element in elems]
+            finder = self._nested_finders[parts] = NestedFinder(self._finder(tuple(elems)), inner)
+        return finder
 
     def nominalDirectionsAt(self, point: Any, reject: Any = False) -> Any:
         """The directions of traffic that are possible at a point: several in an intersection, none off the road."""

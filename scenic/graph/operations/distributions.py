@@ -235,12 +235,15 @@ def _select_kind(operands: Any, payload: Any) -> Kind:
 
 
 def _select(call: Call, index: Column, *options: Column) -> Column:
-    if all(status is None for status in call.operands) and _are_alike(call, options):
+    status = call.operands[0]
+    is_table = all(other is None for other in call.operands[1:]) and _are_alike(call, options)
+    if is_table and status is None:
         # Options that are the same in every lane: a table.
         table: Column = np.concatenate(options)
         return table[index]
     call.inherit(0, np.ones(1, dtype=np.bool_))
-    status = call.operands[0]
+    if is_table:
+        return np.concatenate(options)[np.where(status == 0, index, 0)]
     index = np.broadcast_to(index, (call.lanes,))
     if status is not None:
         index = np.where(status == 0, index, -1)

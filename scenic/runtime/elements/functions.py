@@ -3,13 +3,14 @@
 import builtins
 import math
 from collections.abc import Callable
+from types import FunctionType
 from typing import Any
 
 from scenic.language.errors import RandomControlFlowError
 from scenic.language.types import SCALAR
 from scenic.runtime.program.context import here, verbosity
 from scenic.runtime.python.opaque import call_later, is_later
-from scenic.runtime.python.purity import is_pure
+from scenic.runtime.python.purity import global_names, is_pure
 from scenic.runtime.values.lazy import Lazy, defer, is_lazy
 from scenic.runtime.values.values import (
     Random,
@@ -115,11 +116,27 @@ def filter(function: Callable[[Any], Any] | None, values: Any) -> Any:
         return defer(filter, function, values)
     if not is_later(function, values):
         return _kept(function, values)
-    if function is None or is_pure(function):
-        chosen = over_options([as_node(values)], lambda items: _kept(function, items))
-        if chosen is not None:
-            return chosen
-    return call_later(_kept, function, values)
+    chosen = _kept_of_options(function, values)
+    return call_later(_kept, function, values) if chosen is None else chosen
+
+
+def _kept_of_options(function: Callable[[Any], Any] | None, values: Any) -> Any:
+    """What is kept of each option of a choice, as a choice; ``None`` where only samples can tell.
+
+    Random names that the function reads have to be choices by the same draw.
+    """
+    scope = getattr(function, "__globals__", {})
+    drawn = {name: scope[name] for name in global_names(function) if isinstance(scope.get(name), Random)}
+    if function is not None and not is_pure(function, drawn):
+        return None
+
+    def kept(items: Any, *given: Any) -> list[Any]:
+        if not given:
+            return _kept(function, items)
+        names = {**scope, **dict(zip(drawn, given, strict=True))}
+        return _kept(FunctionType(function.__code__, names, argdefs=function.__defaults__), items)  # type: ignore[union-attr] # it reads names
+
+    return over_options([as_node(values), *map(as_node, drawn.values())], kept)
 
 
 def _kept(function: Callable[[Any], Any] | None, values: Any) -> list[Any]:

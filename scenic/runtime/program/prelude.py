@@ -60,14 +60,18 @@ from scenic.runtime.regions.choice import as_region
 from scenic.runtime.regions.spaces import Workspace, everywhere
 from scenic.runtime.temporal.formulas import is_temporal
 from scenic.runtime.values.choices import per_option
+from scenic.runtime.values.frozen import Frozen
 from scenic.runtime.values.lazy import definite
 from scenic.runtime.values.methods import OrientationMethods, VectorMethods
 from scenic.runtime.values.values import (
+    IDENTITY,
     Random,
+    apply,
     as_node,
     as_value,
     describe,
     is_answered_by_code,
+    is_choice_of_frozen,
     is_random,
     operate,
     to_orientation,
@@ -422,7 +426,7 @@ class Prelude(Dynamics):
 
     def call(self, value: Any, name: str, *args: Any) -> Any:
         """A method that takes random arguments; any other is called on samples."""
-        if not isinstance(value, VectorMethods | OrientationMethods | Region | Random | Object):
+        if not isinstance(value, VectorMethods | OrientationMethods | Region | Random | Object | Frozen):
             raise conditions.NotSymbolicError
         if isinstance(value, Object) and getattr(type(value), name, None) is not getattr(Object, name, None):
             raise conditions.NotSymbolicError  # The program's own method: never traced.
@@ -439,6 +443,13 @@ class Prelude(Dynamics):
         if isinstance(left, Point) or isinstance(right, Point):
             raise conditions.NotSymbolicError  # Whether two instances are equal is decided on their samples.
         return operate(COMPARISONS[operator], left, right)
+
+    def identical(self, left: Any, right: Any) -> Any:
+        """``left is right`` of objects that never change, and random choices among them."""
+        nodes = [as_node(left), as_node(right)]
+        if not all(map(is_choice_of_frozen, nodes)):
+            raise conditions.NotSymbolicError
+        return apply(IDENTITY, left, right)
 
     def contains(self, item: Any, container: Any) -> Any:
         """``item in container``: containment in a region, else Python's."""

@@ -8,11 +8,14 @@ name that could be bound anew to something else.
 import builtins
 import dis
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
+from enum import EnumType
 from types import BuiltinFunctionType, CodeType, FunctionType
 from typing import Any, Final
 
-__all__ = ["is_pure"]
+from scenic.runtime.values.frozen import is_frozen
+
+__all__ = ["global_names", "is_pure"]
 
 _BUILTIN: Final = frozenset(
     {
@@ -37,18 +40,45 @@ _EFFECTS: Final = (
 )
 """Beginnings of the names of instructions that change what others see, or look beyond the program."""
 
-_ATTRIBUTES: Final = frozenset(
-    {"x", "y", "z", "real", "imag", "count", "index", "keys", "values", "items", "get"}
+_LOADS: Final = ("LOAD_GLOBAL", "LOAD_NAME")
+
+_ATTRIBUTES: Final = frozenset({"count", "index", "keys", "values", "items", "get"})
+"""Methods of containers that change nothing."""
+
+_CHANGING: Final = frozenset(
+    {
+        *dir(list),
+        *dir(dict),
+        *dir(set),
+        "fill",
+        "partition",
+        "put",
+        "resize",
+        "sample",
+        "setflags",
+        "uniformPointInner",
+    }
 )
-"""Attributes of data that change nothing, besides those of `math`."""
+"""Attributes that may change a container or an array, or draw. No object that never changes has such a one."""
 
 
-def is_pure(function: Any) -> bool:
-    """Whether the result of a call with data follows from the arguments alone."""
-    return _is_pure(function, frozenset())
+def is_pure(function: Any, given: Collection[str] = ()) -> bool:
+    """Whether the result of a call with data, or objects that never change, follows from the arguments alone.
+
+    Global names that are ``given`` count as arguments.
+    """
+    return _is_pure(function, frozenset(), given)
 
 
-def _is_pure(function: Any, within: frozenset[CodeType]) -> bool:
+def global_names(function: Any) -> list[str]:
+    """The global names that a function of the program reads itself, or what is nested in it."""
+    if not isinstance(function, FunctionType):
+        return []
+    found = (step.argval for step in _instructions(function.__code__) if step.opname in _LOADS)
+    return list(dict.fromkeys(found))
+
+
+def _is_pure(function: Any, within: frozenset[CodeType], given: Collection[str] = ()) -> bool:
     if getattr(function, "__module__", None) == FUNCTIONS:
         function = getattr(function, "__wrapped__", function)
     if isinstance(function, type | BuiltinFunctionType):
@@ -60,7 +90,8 @@ def _is_pure(function: Any, within: frozenset[CodeType]) -> bool:
     if function.__closure__ or not all(isinstance(value, _DATA) for value in defaults):
         return False
     return all(
-        _is_harmless(instruction, function.__globals__, within)
+        (instruction.opname in _LOADS and instruction.argval in given)
+        or _is_harmless(instruction, function.__globals__, within)
         for instruction in _instructions(function.__code__)
     )
 
@@ -80,12 +111,15 @@ def _is_harmless(
 ) -> bool:
     if instruction.opname.startswith(_EFFECTS):
         return False
-    if instruction.opname in ("LOAD_GLOBAL", "LOAD_NAME"):
+    if instruction.opname in _LOADS:
         name = instruction.argval
         own = names.get("__builtins__", builtins)
         builtin = own if isinstance(own, dict) else vars(own)
         value = names.get(name, builtin.get(name))
-        return value is math or isinstance(value, _DATA) or _is_pure(value, within)
+        if value is math or isinstance(value, _DATA) or is_frozen(value) or isinstance(value, EnumType):
+            return True
+        return _is_pure(value, within)
     if instruction.opname in ("LOAD_ATTR", "LOAD_METHOD"):
-        return instruction.argval in _ATTRIBUTES or hasattr(math, instruction.argval)
+        name = instruction.argval
+        return name in _ATTRIBUTES or not (name.startswith("__") or name in _CHANGING)
     return True

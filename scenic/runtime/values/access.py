@@ -14,10 +14,12 @@ from scenic.graph.kinds import Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, always, by_lane
 from scenic.graph.operations import TABLE
+from scenic.language.errors import RejectionException
 from scenic.runtime.program.context import here
 from scenic.runtime.python.class_members import member
 from scenic.runtime.values.applying import apply, operate
-from scenic.runtime.values.choices import MISSING, MOST_OPTIONS, drawn_option, select
+from scenic.runtime.values.choices import MISSING, MOST_OPTIONS, REJECTED, drawn_option, rejection, select
+from scenic.runtime.values.frozen import is_frozen
 from scenic.runtime.values.lazy import defer, is_lazy
 from scenic.runtime.values.nodes import DICTIONARY, LIST, TUPLE, as_node, as_value, kind_of
 from scenic.runtime.values.random_values import Random, is_random
@@ -30,6 +32,11 @@ def element_of(index: Node, lists: Sequence[Sequence[Node]], draw: Random) -> An
 
     Samples in which the list is empty are rejected.
     """
+    everything = [element for elements in lists for element in elements]
+    if everything and all(element.is_constant and is_frozen(element.value) for element in everything):
+        # One list after the other, and the place in all of them.
+        place = apply(_PLACE_IN_ALL, as_value(index), draw, payload=tuple(map(len, lists)))
+        return select(as_node(place), everything)
     results = []
     for elements in lists:
         if elements:
@@ -102,7 +109,8 @@ def attribute(value: Random, name: str) -> Any:
         return as_value(node.operands[1 + names.index(name)])
     if node.operation is TABLE["select"]:
         index, *options = node.operands
-        return select(index, [_attribute_of_option(option, name) for option in options])
+        rejects = any(option.is_constant and is_frozen(option.value) for option in options)
+        return select(index, [_attribute_of_option(option, name, rejects) for option in options])
     if node.kind.is_number and hasattr(0.0 if node.kind is Kind.SCALAR else 0, name):
         return apply(_GETATTR, value, name)
     if node.kind.is_number or node.kind in (Kind.VECTOR, Kind.ORIENTATION):
@@ -119,7 +127,7 @@ def called(value: Random, args: Sequence[Any], kwargs: dict[str, Any]) -> Any:
         index, *options = node.operands
         results = []
         for option in options:
-            if option.operation is MISSING:
+            if option.operation in (MISSING, REJECTED):
                 results.append(option)
             elif option.is_constant and _is_of_runtime(option.value) and not _draws(option.value):
                 results.append(_traced(option.value, args, kwargs))
@@ -167,14 +175,19 @@ def _call_in_lanes(function: Node, args: Sequence[Any], kwargs: dict[str, Any]) 
     return construction.make_node(operation, operands, span=here())
 
 
-def _attribute_of_option(option: Node, name: str) -> Node:
-    if option.operation is MISSING:
+def _attribute_of_option(option: Node, name: str, rejects: bool = False) -> Node:
+    """An attribute of an option; where that is ``None``, its samples are rejected or at fault."""
+    if option.operation in (MISSING, REJECTED):
         return option
     value = drawn_option(option)
+    if value is None and rejects:
+        return rejection(RejectionException(f"there is nothing here that could have an attribute {name!r}"))
     if kind_of(value) is Kind.OBJECT and _is_computed(type(value), name):  # type: ignore[arg-type] # classes are hashable
         return as_node(Random.later(getattr, value, name))
     try:
         return as_node(getattr(value, name))
+    except RejectionException as error:
+        return rejection(error)
     except AttributeError as error:
         return construction.make_node(MISSING, (), error, here())
 
@@ -235,6 +248,36 @@ _PLACE = Operation(
         np.clip(np.floor(draw.upper * count) + 1, 0, count - 1),
     ),
     stacks=True,
+)
+
+
+def _place_in_all(call: Call, index: Any, draw: Any) -> Any:
+    counts = np.array(call.payload)
+    starts, mine = np.cumsum(counts) - counts, counts[index]
+    if (mine == 0).any():
+        call.reject(mine == 0)
+    # A place that there is, also where the sample is rejected.
+    place = starts[index] + np.clip((draw * mine).astype(np.int64), 0, np.maximum(mine - 1, 0))
+    return np.minimum(place, counts.sum() - 1)
+
+
+def _bounds_in_all(payload: tuple[int, ...], index: Bounds, _draw: Bounds) -> Bounds:
+    ends = np.cumsum(payload)
+    last = len(payload) - 1
+    first = np.clip(index.lower, 0, last).astype(np.int64)
+    final = np.clip(index.upper, 0, last).astype(np.int64)
+    lower = np.minimum((ends - payload)[first], ends[-1] - 1)
+    return Bounds(lower.astype(np.float64), np.maximum(lower, ends[final] - 1).astype(np.float64))
+
+
+_PLACE_IN_ALL = Operation(
+    "place in lists",
+    always(Kind.INTEGER),
+    _place_in_all,
+    "The place, among the elements of several lists one after the other, of that which a number of the unit interval draws from "
+    "the list of an index. Payload the lengths; an empty list rejects the sample.",
+    bounds=_bounds_in_all,
+    rejects=lambda _operands, lengths: 0 in lengths,
 )
 
 

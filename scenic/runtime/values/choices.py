@@ -1,5 +1,6 @@
 """Choices, option by option: a function of a choice is the choice among its results."""
 
+import operator
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
@@ -11,13 +12,15 @@ from scenic.graph.kinds import Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
+from scenic.language.errors import RejectionException
 from scenic.runtime.program.context import current, here
 from scenic.runtime.python.ownership import is_own_function
 from scenic.runtime.values.definite import Orientation, Vector
+from scenic.runtime.values.frozen import is_frozen
 from scenic.runtime.values.nodes import CONTAINERS_MADE, as_node, as_value, kind_of
 from scenic.runtime.values.random_values import Random
 
-MOST_OPTIONS = 256
+MOST_OPTIONS = 4096
 """Options of a choice for each of which a call is made at once, at most."""
 
 
@@ -38,6 +41,8 @@ def over_options(operands: Sequence[Node], function: Callable[..., Any]) -> Any:
         values = [(node if node.is_constant else node.operands[place]).value for node in operands]
         try:
             results.append(as_node(function(*values)))
+        except RejectionException as error:
+            results.append(rejection(error))
         except Exception as error:  # noqa: BLE001 - whatever it raises is an error where this option is drawn
             results.append(construction.make_node(MISSING, (), error, here()))
     return select(index, results)
@@ -50,13 +55,33 @@ def _is_choice_of_data(node: Node) -> bool:
     return all(option.is_constant and _is_data(option.value) for option in node.operands[1:])
 
 
+def is_choice_of_frozen(node: Node) -> bool:
+    """Whether a node is an object that never changes or ``None``, or a choice among such constants."""
+    options = node.operands[1:] if node.operation is TABLE["select"] else (node,)
+    return all(each.is_constant and (each.value is None or is_frozen(each.value)) for each in options)
+
+
+def _identical(_call: Call, left: Any, right: Any) -> Any:
+    return np.frompyfunc(operator.is_, 2, 1)(left, right).astype(np.bool_)
+
+
+IDENTITY = Operation(
+    "is",
+    always(Kind.BOOLEAN),
+    _identical,
+    "Whether two Python objects are one and the same.",
+)
+
+
 def _is_data(value: Any) -> bool:
     cls = type(value)
     if cls in (list, tuple, set, frozenset):
         return all(map(_is_data, value))
     if cls is dict:
         return all(_is_data(key) and _is_data(item) for key, item in value.items())
-    return value is None or cls in (int, float, bool, str, bytes, slice, Vector, Orientation)
+    if value is None or cls in (int, float, bool, str, bytes, slice, Vector, Orientation):
+        return True
+    return is_frozen(value)
 
 
 def is_answered_by_code(value: Any, methods: Sequence[str]) -> bool:
@@ -82,6 +107,16 @@ def _has_own(value: Any, methods: Sequence[str]) -> bool:
 
 
 def select(index: Node, options: Sequence[Node]) -> Any:
+    """The choice among options by an index; of those that reject samples only constants are left."""
+    rejecting = [option.operation is REJECTED for option in options]
+    if (
+        any(rejecting)
+        and not all(rejecting)
+        and all(node.is_constant or node.operation is REJECTED for node in options)
+    ):
+        index = construction.make_node(_ADMITTED, [index], tuple(rejecting), here())
+        other = options[rejecting.index(False)]
+        options = [other if rejects else node for node, rejects in zip(options, rejecting, strict=True)]
     return as_value(construction.make_node(TABLE["select"], [index, *options], span=here()))
 
 
@@ -97,6 +132,44 @@ MISSING = Operation(
     "An attribute that an option of a choice does not have; an error only where that option is drawn.",
     pure=False,
     faults=True,
+)
+
+
+def rejection(error: RejectionException) -> Node:
+    """What an option gives that rejects the samples which draw it."""
+    return construction.make_node(REJECTED, (), str(error), here())
+
+
+def _rejected(call: Call) -> Any:
+    call.reject(np.ones(1, dtype=np.bool_))
+    return np.empty(1, dtype=object)
+
+
+REJECTED = Operation(
+    "rejected option",
+    always(Kind.OTHER),
+    _rejected,
+    "What an option of a choice refuses to give; a sample that draws it is rejected. The payload says why.",
+    pure=False,
+    rejects=True,
+)
+
+
+def _admitted(call: Call, index: Any) -> Any:
+    rejects = np.array(call.payload)[index]
+    if rejects.any():
+        call.reject(rejects)
+    return index
+
+
+_ADMITTED = Operation(
+    "admitted option",
+    always(Kind.INTEGER),
+    _admitted,
+    "An index that rejects samples in which it draws an option which refuses what is asked of it; payload which ones do.",
+    bounds=lambda _payload, index: index,
+    inverse=lambda _payload, result, _index: [result],
+    rejects=True,
 )
 
 

@@ -30,12 +30,16 @@ from scenic.runtime.values.applying import (
     uniform,
 )
 from scenic.runtime.values.choices import (
+    IDENTITY,
     as_drawn,
     is_answered_by_code,
+    is_choice_of_frozen,
     is_open,
     options_of,
     over_options,
     per_option,
+    rejection,
+    select,
 )
 from scenic.runtime.values.coercions import (
     to_heading,
@@ -62,6 +66,7 @@ from scenic.runtime.values.random_values import Random, is_random
 
 __all__ = [
     "CODEC",
+    "IDENTITY",
     "NOTHING",
     "Orientation",
     "OrientedVector",
@@ -78,6 +83,7 @@ __all__ = [
     "folded",
     "holds_instances",
     "is_answered_by_code",
+    "is_choice_of_frozen",
     "is_number",
     "is_open",
     "is_orientation",
@@ -89,6 +95,8 @@ __all__ = [
     "over_options",
     "per_option",
     "random_key",
+    "rejection",
+    "select",
     "to_heading",
     "to_orientation",
     "to_scalar",
