@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-fast lint types fuzz generate docs docs-serve dist playground extension pythons clean
+.PHONY: demo test test-fast lint types fuzz semantics generate docs docs-serve dist playground extension pythons clean
 
 $(STAMP): pyproject.toml hatch_build.py
 	$(PYTHON) -c 'import sys; sys.exit("Scenic needs Python 3.11 or newer; this is " + sys.version.split()[0]) if sys.version_info < (3, 11) else None'
@@ -32,6 +32,10 @@ types: $(STAMP)
 
 fuzz: $(STAMP)
 	$(BIN)/python -m fuzz $(if $(MINUTES),--minutes $(MINUTES)) $(FUZZ)
+
+# Typed programs, from text to scenes and simulations.
+semantics: $(STAMP)
+	$(BIN)/python -m fuzz.semantics --programs $(or $(PROGRAMS),500) --jobs 2 $(if $(SEED),--seed $(SEED))
 
 # After a change of grammar/scenic.gram or scenic/language: makes the parser again (imports notice a stale one too), and
 # what editors and docs/reference/syntax.md take from the grammar.
