@@ -24,6 +24,7 @@ from scenic.language.errors import (
     ScenicSyntaxError,
     compile_error,
 )
+from scenic.language.extras import installation
 from scenic.language.garbage import promote_young
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
@@ -166,7 +167,7 @@ def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
 
         missing = MissingLibraryError(
             "the deep check needs the library z3, which is not installed",
-            help="install it: pip install 'scenic-lang[deep]'",
+            help=f"install it: {installation('deep')}",
         )
         return (missing.diagnostic(),)
     from scenic.analysis.report import prove, prove_dead, prove_in_time

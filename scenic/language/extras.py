@@ -22,6 +22,7 @@ EXTRAS: Final[Mapping[str, Extra]] = MappingProxyType(
         extra.name: extra
         for extra in (
             Extra("view", "images", ("PIL",)),
+            Extra("deep", "proofs that requirements contradict each other", ("z3",)),
             Extra("mujoco", "simulations with contacts and friction", ("mujoco", "coacd")),
             Extra("gym", "environments of Gymnasium", ("gymnasium",)),
             Extra("falsify", "samplers that learn", ("cma", "optuna")),
