@@ -1,6 +1,6 @@
 """Scenes in which hardly any candidate passes: ``python -m benchmarks.dense [NAME ...] [--lanes N]``.
 
-For each scenario: seconds a scene, log10 of its probability, and effective sample size, made by `Scenario.sample(approximate=N)`; where
+For each scenario: processor seconds a scene, log10 of its probability, and effective sample size, made by `Scenario.sample(approximate=N)`; where
 rejection finds scenes at all within ten seconds, its seconds a scene, too. Run by hand on a quiet machine; nothing here is a test.
 """
 
@@ -46,12 +46,12 @@ PATIENCE = 10
 
 def rejection(scenario: "scenic.Scenario") -> float | None:
     """Seconds a scene by rejection; ``None`` where it finds none in the time."""
-    begun, found = time.perf_counter(), 0
+    begun, found = time.process_time(), 0
     for result in scenario.stream(200, seed=1, time_limit=PATIENCE, max_attempts=10**9):
         if isinstance(result, Exhausted):
             break
         found += 1
-    return (time.perf_counter() - begun) / found if found else None
+    return (time.process_time() - begun) / found if found else None
 
 
 def main() -> None:
@@ -62,9 +62,9 @@ def main() -> None:
     for name in given.names or PROGRAMS:
         scenario = scenic.scenarioFromString(PROGRAMS[name])
         exact = rejection(scenario)
-        begun = time.perf_counter()
+        begun = time.process_time()
         (scene,) = scenario.sample(1, seed=1, approximate=given.lanes)
-        spent = (time.perf_counter() - begun) / given.lanes
+        spent = (time.process_time() - begun) / given.lanes
         told = scene.approximation
         assert told is not None
         by_rejection = "none found" if exact is None else f"{exact * 1e3:.2f} ms"

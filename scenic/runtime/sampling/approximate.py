@@ -38,9 +38,12 @@ _LIVELY: Final = 0.35
 """Blocks are moved once this share of lanes, or less, has lived since they were moved last."""
 
 _STEPS: Final = (0.5, 0.1, 0.02)
-"""How far moves go along an axis of the cube, one sweep after the other; 0.5 draws anew."""
+"""How far moves go along an axis of the cube; 0.5 draws anew."""
 
-_SWEEPS: Final = (6, 60)
+_OTHERS: Final = 4
+"""One in so many sweeps has another step than the one by which lanes have got furthest."""
+
+_SWEEPS: Final = (4, 60)
 """Sweeps at the end, at least and at most."""
 
 _CORRELATED: Final = 0.1
@@ -94,6 +97,7 @@ def approximated(
     *,
     lanes: int,
     max_attempts: int,
+    checks: Sequence[Check],
     fixing: Callable[[Source], Source] = lambda source: source,
 ) -> Iterator[Accepted | Exhausted]:
     """Scenes ``first`` to ``first + count`` of a seed, in order; scene ``k`` is lane ``k % lanes`` of block ``k // lanes``.
@@ -105,13 +109,14 @@ def approximated(
         count: how many.
         lanes: scenes that are made together.
         max_attempts: candidates for each lane and block of draws, on average, before all are given up.
+        checks: those of the plan, or of its components, which are the same but for what cannot fail.
         fixing: puts fixed draws in the place of some.
 
     Raises:
         CandidateError: a scene failed that nothing rejects.
 
     """
-    sampler = _Sampler(engine, max_attempts, fixing)
+    sampler = _Sampler(engine, max_attempts, checks, fixing)
     for group in range(first // lanes, -(-(first + count) // lanes)):
         wanted = range(max(first, group * lanes), min(first + count, (group + 1) * lanes))
         try:
@@ -126,8 +131,15 @@ def approximated(
 class _Sampler:
     """Makes groups of scenes of one plan."""
 
-    def __init__(self, engine: Engine, max_attempts: int, fixing: Callable[[Source], Source]) -> None:
+    def __init__(
+        self,
+        engine: Engine,
+        max_attempts: int,
+        checks: Sequence[Check],
+        fixing: Callable[[Source], Source],
+    ) -> None:
         self._engine = engine
+        self._checks = checks
         self._fixing = fixing
         self._max_attempts = max_attempts
         plan = engine.plan
@@ -199,7 +211,7 @@ class _Sampler:
         """So many lanes in which these soft requirements need not hold."""
         plan = self._plan(inactive)
         state = _State(self._reads, lanes)
-        roots = np.arange(lanes)
+        roots, pace = np.arange(lanes), _Steps()
         survival: list[float] = []
         log_probability, since = 0.0, 1.0
         blocks = plan.blocks
@@ -212,16 +224,15 @@ class _Sampler:
             since *= share
             if since < _LIVELY and number + 1 < len(blocks):
                 since = 1.0
-                for step in _STEPS[:2]:
-                    self._sweep(random, state, plan.moves(number), step)
+                self._sweep(random, state, plan.moves(number), pace)
         start, correlation, sweeps = state.copy(), 1.0, 0
         constrained = plan.moves(len(blocks) - 1)
         if min(survival, default=1.0) == 1.0:
             constrained, correlation = (), 0.0  # no lane was lost: all are independent
         while constrained and sweeps < _SWEEPS[1]:
-            self._sweep(random, state, constrained, _STEPS[sweeps % len(_STEPS)])
+            self._sweep(random, state, constrained, pace)
             sweeps += 1
-            if sweeps >= _SWEEPS[0] and sweeps % len(_STEPS) == 0:
+            if sweeps >= _SWEEPS[0]:
                 correlation = max(start.correlation(state, block.numbers) for block, _ in constrained)
                 if correlation < _CORRELATED:
                     break
@@ -259,14 +270,18 @@ class _Sampler:
         return np.concatenate(ancestors), tried
 
     def _sweep(
-        self, random: np.random.Generator, state: "_State", moves: Sequence[_Move], step: float
+        self, random: np.random.Generator, state: "_State", moves: Sequence[_Move], pace: "_Steps"
     ) -> None:
         """Move each block of each lane once, where all checks still hold after it."""
+        step, moved = pace.step, 0
         for block, checks in moves:
             trial = state.copy()
             trial.redraw(random, block, step)
             # All draws of a block have the law of the cube before and after, so that a move is good if its lane is.
-            state.put_block(np.flatnonzero(self._passes(trial, checks)), trial, block)
+            good = np.flatnonzero(self._passes(trial, checks))
+            state.put_block(good, trial, block)
+            moved += len(good)
+        pace.learn(step, moved / max(1, len(moves) * len(state)))
 
     def _passes(self, state: "_State", checks: Sequence[Check]) -> NDArray[np.bool_]:
         """Which lanes none of the checks rejects."""
@@ -288,7 +303,7 @@ class _Sampler:
         plan = self._plans.get(inactive)
         if plan is None:
             left_out = {id(self._soft[number]) for number in inactive}
-            checks = [check for check in self._engine.plan.checks if id(check) not in left_out]
+            checks = [check for check in self._checks if id(check) not in left_out]
             plan = self._plans[inactive] = _Blocks(_blocks_of(self._reads, checks))
         return plan
 
@@ -309,6 +324,26 @@ def _joined(reports: Sequence[Approximation], lanes: int) -> Approximation:
         max(report.sweeps for report in reports),
         max(report.correlation for report in reports),
     )
+
+
+class _Steps:
+    """How far the next sweep's moves go: by the step with which lanes have got furthest so far, now and then by another."""
+
+    def __init__(self) -> None:
+        self._reached: dict[float, float] = {}
+        self._sweeps = 0
+
+    @property
+    def step(self) -> float:
+        """The step of the next sweep."""
+        if len(self._reached) < len(_STEPS) or self._sweeps % _OTHERS == _OTHERS - 1:
+            return _STEPS[self._sweeps % len(_STEPS)]
+        return max(_STEPS, key=lambda step: self._reached[step])
+
+    def learn(self, step: float, accepted: float) -> None:
+        """Take a sweep into account in which that share of moves was good."""
+        self._sweeps += 1
+        self._reached[step] = accepted * step**2
 
 
 class _Reads:

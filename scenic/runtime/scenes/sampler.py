@@ -117,6 +117,7 @@ class Sampler:
             count,
             lanes=lanes,
             max_attempts=self._most_attempts(max_attempts),
+            checks=[check for engine in self.engines for check in engine.plan.checks],
             fixing=self._fixed,
         )
 
