@@ -183,10 +183,9 @@ def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
             raise
         return (found,)
     graph, facts = scenario.outline.graph, conditions(scenario.outline)
-    proven = (
-        *prove(graph, facts),
-        *prove_in_time([item.formula for item in scenario.requirements if item.formula]),
-    )
+    proven = prove(graph, facts)
+    temporal = [item.formula for item in scenario.requirements if item.formula and item.probability == 1]
+    proven += prove_in_time(temporal, {item.span for item in proven if item.severity is Severity.ERROR})
     if all(item.severity is not Severity.ERROR for item in proven):
         proven += prove_dead(graph, contract(graph, facts).domain)
     return tuple(

@@ -1,6 +1,6 @@
 """What analysis proves, as diagnostics."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Final
 
 from scenic.analysis.contraction import contract
@@ -40,11 +40,15 @@ def prove(graph: Graph, conditions: Sequence[Fact]) -> tuple[Diagnostic, ...]:
     return tuple(found)
 
 
-def prove_in_time(requirements: Sequence[Required]) -> tuple[Diagnostic, ...]:
-    """Temporal requirements that no simulation meets (SC700)."""
+def prove_in_time(
+    requirements: Sequence[Required], told: Collection[Span | None] = ()
+) -> tuple[Diagnostic, ...]:
+    """Temporal requirements that no simulation meets (SC700); ``told`` are places of requirements that no scene meets."""
     found = []
     for core, length in contradictions(requirements):
         *others, last = core
+        if last.span in told:
+            continue
         if others:
             message = (
                 "this requirement cannot hold together with the others marked, however a simulation goes on"

@@ -59,16 +59,22 @@ def contradictions(requirements: Sequence[Required]) -> list[tuple[tuple[Require
 def shortest_trace(requirements: Sequence[Required]) -> int | None:
     """How many states a shortest trace has that meets all requirements; ``None`` if there is none."""
     number: dict[Hashable, int] = {}
+    fixed: dict[int, bool] = {}
     atoms = [[number.setdefault(_key(atom), len(number)) for atom in item.atoms] for item in requirements]
-    if len(number) > MOST_ATOMS:
+    for item, mine in zip(requirements, atoms, strict=True):
+        fixed |= {
+            place: bool(atom()) for place, atom in zip(mine, item.atoms, strict=True) if _is_fixed(atom)
+        }
+    if len(number) - len(fixed) > MOST_ATOMS:
         raise _UndecidedError
+    choices = [(fixed[place],) if place in fixed else (False, True) for place in range(len(number))]
     start = tuple(Monitor(item.formula) for item in requirements)
     waiting: deque[tuple[int, tuple[Monitor, ...]]] = deque([(0, start)])
     seen: set[Hashable] = set()
     added = 0
     while waiting:
         length, monitors = waiting.popleft()
-        for truths in product((False, True), repeat=len(number)):
+        for truths in product(*choices):
             added += 1
             if added > MOST_STATES:
                 raise _UndecidedError
@@ -99,6 +105,12 @@ def _groups(requirements: Sequence[Required]) -> list[list[Required]]:
         groups.append((keys, [*members, item]))
     order = {id(item): place for place, item in enumerate(requirements)}
     return [sorted(members, key=lambda item: order[id(item)]) for _, members in groups]
+
+
+def _is_fixed(atom: Kept) -> bool:
+    """Whether an atom is made of constants alone."""
+    function = atom.function
+    return isinstance(function, FunctionType) and not atom.captured and not function.__code__.co_names
 
 
 def _key(atom: Kept) -> Hashable:
