@@ -14,7 +14,7 @@ CONTRADICTIONS = {
     "require always (x < 2 implies ego.x > 1)\nrequire always x < 2\nrequire eventually not (ego.x > 1)\n": (7, [5, 6], "1 state would"),
     "require next next ego.x > 5\nrequire always not ego.x > 5\n": (6, [5], "3 states would"),
     "require ego.x > 5 until ego.y > 5\nrequire always not ego.y > 5\n": (6, [5], "1 state would"),
-    "require ego.x > 5\nrequire always ego.y > 3\nrequire always not ego.x > 5\n": (7, [5], "1 state would"),
+    "require eventually ego.x > 5\nrequire always ego.y > 3\nrequire always not ego.x > 5\n": (7, [5], "1 state would"),
     "require always (ego.x > 1 implies next not ego.x > 1)\nrequire always ego.x > 1\nrequire next next ego.x > 1\n": (6, [5], "1 state would"),
 }  # fmt: skip
 """Programs with the line that is blamed, the lines beside it, and what is said of a witness."""
