@@ -216,16 +216,19 @@ def reader(types: Sequence[Type], label: str) -> Read:
 
 
 def _reading_places(types: Sequence[Type], label: str) -> Read:
-    """`reader` for a vector, or something else; points are the most frequent ones."""
+    """`reader` for a vector, or a vector or a region; points are the most frequent ones."""
+    takes_regions = REGION in types
 
     def read(value: Any) -> Any:
         if type(value) is Vector:
             return value
         if isinstance(value, Point):
             return value.position
+        if takes_regions and isinstance(value, Region):
+            return value
         if is_lazy(value):
             return UNDECIDED
-        if len(types) == 1:
+        if not takes_regions:
             return to_vector(value, label)
         found = type_of(value, types, label)
         return UNDECIDED if found is None else _READINGS[found].convert(value, label)
@@ -261,17 +264,17 @@ _CONVERTED: Final[Mapping[Type, Callable[[Any, str], Any]]] = MappingProxyType(
 )
 
 
-def converter(types: Sequence[Type], label: str) -> Read:
+def converter(types: Sequence[Type], label: str) -> Read | None:
     """The function that converts an operand of a specifier: a lazy value gives a lazy one, as it is read with the instance.
 
-    Operands of several types, and those of a type that depends on where the instance is, stay as they are.
+    ``None`` for operands of several types, and for those of a type that depends on where the instance is: they stay as they are.
 
     Raises:
         ScenicTypeError: when it is called with a value of a wrong type.
 
     """
     convert = _CONVERTED.get(types[0]) if len(types) == 1 else None
-    return (lambda value: value) if convert is None else lambda value: convert(value, label)
+    return None if convert is None else lambda value: convert(value, label)
 
 
 def bound(declared: Operator, function: Callable[..., Any], drawn: Callable[..., Any]) -> Bound:

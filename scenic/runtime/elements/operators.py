@@ -15,7 +15,7 @@ from scenic.language.operators import FRAMES, SIDES
 from scenic.language.operators import OPERATORS as DECLARED
 from scenic.language.types import FIELD, ORIENTED_POINT, SCALAR, VECTOR
 from scenic.runtime.elements.operands import Bound, Ego, bound, type_of
-from scenic.runtime.instances.objects import oriented_point
+from scenic.runtime.instances.objects import OrientedPoint, oriented_point
 from scenic.runtime.program.context import current, here
 from scenic.runtime.python.opaque import call_later
 from scenic.runtime.regions.base import Region
@@ -172,6 +172,8 @@ def _relative_to(ego: Ego, value: Any, frame: Any) -> Any:
     """Section 7.1: the first row of the table that fits."""
     if type(value) is Vector and type(frame) is Vector:
         return value + frame
+    if type(frame) is Vector and isinstance(value, OrientedPoint):
+        return value.relativize(frame)
     if is_lazy(value) or is_lazy(frame):
         return defer(_relative_to, ego, value, frame)
     types = [type_of(operand, FRAMES, "`relative to`") for operand in (value, frame)]

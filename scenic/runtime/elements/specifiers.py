@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Any
 
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
-from scenic.language.operators import EGO, Operand
+from scenic.language.operators import EGO
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS, SpecifierDeclaration
 from scenic.language.types import OBJECT, REGION, VECTOR
@@ -86,25 +86,25 @@ class _Declared:
     """Priorities if the declared conditions hold."""
     needs: frozenset[str]
     modifies: frozenset[str]
-    reads: tuple[Read, ...]
-    """The conversions of operands; the name of the property is the first one of ``with``."""
-    ego_at: tuple[int, ...]
-    """Operands for which the ego stands in."""
+    conversions: tuple[tuple[int, Read], ...]
+    """Operands that are converted, and how."""
+    egos: Mapping[int, Read]
+    """Operands for which the ego stands in, and how it is converted."""
     reads_ego: bool
     reads_workspace: bool
 
     @classmethod
     def of(cls, declared: SpecifierDeclaration) -> "_Declared":
+        reads = [converter(each.types, declared.label(each)) for each in declared.operands]
         return cls(
             MappingProxyType({item.property: item.priority for item in declared.specifies if not item.when}),
             MappingProxyType({item.property: item.priority for item in declared.specifies}),
             frozenset(declared.needs),
             frozenset(declared.modifies),
-            (
-                *(() if declared.specifies else (_same,)),
-                *(_reading(declared, each) for each in declared.operands),
+            tuple((i, read) for i, read in enumerate(reads) if read is not None),
+            MappingProxyType(
+                {i: reads[i] or _same for i, each in enumerate(declared.operands) if each.default == EGO}
             ),
-            tuple(i for i, operand in enumerate(declared.operands) if operand.default == EGO),
             declared.reads_ego,
             declared.reads_workspace,
         )
@@ -112,14 +112,6 @@ class _Declared:
 
 def _same(value: Any) -> Any:
     return value
-
-
-def _reading(declared: SpecifierDeclaration, operand: Operand) -> Read:
-    """The conversion of an operand, which leaves it out where the text does."""
-    convert = converter(operand.types, declared.label(operand))
-    if operand.default is None:
-        return convert
-    return lambda value: None if value is None else convert(value)
 
 
 _DECLARED = MappingProxyType({name: _Declared.of(declared) for name, declared in SPECIFIERS.items()})
@@ -483,10 +475,13 @@ def specify(name: str, ego: Ego, workspace: Space, *operands: Any) -> Specifier:
     the operands that the text leaves out (``None``), as declared. A wrong operand is told before a missing ego.
     """
     declared = _DECLARED[name]
-    given = [read(value) for read, value in zip(declared.reads, operands, strict=True)]
-    for index in declared.ego_at:
+    given = [*operands]
+    for index, read in declared.conversions:
+        if given[index] is not None or index not in declared.egos:
+            given[index] = read(given[index])
+    for index, read in declared.egos.items():
         if given[index] is None:
-            given[index] = declared.reads[index](ego())
+            given[index] = read(ego())
     if declared.reads_ego:
         given.insert(0, ego())
     if declared.reads_workspace:
