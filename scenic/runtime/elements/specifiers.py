@@ -92,10 +92,19 @@ class _Declared:
     """Operands for which the ego stands in, and how it is converted."""
     reads_ego: bool
     reads_workspace: bool
+    only: Read | None
+    """The conversion of the operand where there is one only, which is never left out."""
+    is_plain: bool
+    """Whether the operands are all that it is built from, as they are."""
 
     @classmethod
     def of(cls, declared: SpecifierDeclaration) -> "_Declared":
         reads = [converter(each.types, declared.label(each)) for each in declared.operands]
+        reads_more = (
+            declared.reads_ego
+            or declared.reads_workspace
+            or any(each.default == EGO for each in declared.operands)
+        )
         return cls(
             MappingProxyType({item.property: item.priority for item in declared.specifies if not item.when}),
             MappingProxyType({item.property: item.priority for item in declared.specifies}),
@@ -107,6 +116,8 @@ class _Declared:
             ),
             declared.reads_ego,
             declared.reads_workspace,
+            reads[0] if len(reads) == 1 and declared.operands[0].default is None and not reads_more else None,
+            not (any(reads) or reads_more),
         )
 
 
@@ -468,13 +479,8 @@ def specifier(
     return lambda function: UserSpecifier(function, priorities, reads, modifies)
 
 
-def specify(name: str, ego: Ego, workspace: Space, *operands: Any) -> Specifier:
-    """One specifier; what lazy operands read, it depends on.
-
-    ``ego`` and ``workspace`` are functions: a program without an ego fails only where one is needed. They stand in for
-    the operands that the text leaves out (``None``), as declared. A wrong operand is told before a missing ego.
-    """
-    declared = _DECLARED[name]
+def _converted(declared: _Declared, ego: Ego, workspace: Space, operands: Sequence[Any]) -> Sequence[Any]:
+    """What a specifier is built from: its operands, converted, after the ego or the workspace where it reads them."""
     given = [*operands]
     for index, read in declared.conversions:
         if given[index] is not None or index not in declared.egos:
@@ -486,6 +492,22 @@ def specify(name: str, ego: Ego, workspace: Space, *operands: Any) -> Specifier:
         given.insert(0, ego())
     if declared.reads_workspace:
         given.insert(0, workspace())
+    return given
+
+
+def specify(name: str, ego: Ego, workspace: Space, *operands: Any) -> Specifier:
+    """One specifier; what lazy operands read, it depends on.
+
+    ``ego`` and ``workspace`` are functions: a program without an ego fails only where one is needed. They stand in for
+    the operands that the text leaves out (``None``), as declared. A wrong operand is told before a missing ego.
+    """
+    declared = _DECLARED[name]
+    if declared.only is not None:
+        given: Sequence[Any] = (declared.only(operands[0]),)
+    elif declared.is_plain:
+        given = operands
+    else:
+        given = _converted(declared, ego, workspace, operands)
     found = BUILDERS[name](*given)
     reads = reads_of(operands)
     return replace(found, dependencies=found.dependencies | reads) if reads else found
