@@ -17,7 +17,7 @@ def main() -> None:
     """Print a table."""
     options = argparse.ArgumentParser()
     options.add_argument(
-        "samplers", nargs="*", default=["random", "halton", "ce", "mab", "eg", "sa", "cma", "tpe"]
+        "samplers", nargs="*", default=["random", "halton", "ce", "mab", "eg", "sa", "cma", "tpe", "bo"]
     )
     options.add_argument("--seeds", type=int, default=20)
     options.add_argument("--most", type=int, default=2000)
