@@ -348,8 +348,8 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
                 program.top = _run_chosen(module, state, options.scenario)
                 program.ego, program.workspace = state.ego, state.workspace
                 apply_noise(program)
-                if context.looks:
-                    # Only now everything is there that may hide something.
+                if context.looks or context.has_later_elements:
+                    # Only now everything is there that may hide something, or that a condition speaks of.
                     program.requirements[:] = [item.rebuilt() for item in program.requirements]
             program.external_names = _external_names({**program.parameters, **vars(module)}, context)
             _settle_parameters(program, strict=options.strict_params)

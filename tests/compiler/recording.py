@@ -157,6 +157,21 @@ class Recorder:
     def contains(self, item: Any, container: Any) -> Any:
         return item in container
 
+    def iterated(self, _name: str, function: Any, *sequences: Any) -> list[Any]:
+        return list(function(*sequences))
+
+    def each(self, sequence: Any, function: Any, spread: bool) -> list[Any]:
+        return [value for item in sequence for value in (function(*item) if spread else function(item))]
+
+    def given(self, test: Any, make: Any) -> list[Any]:
+        return make() if test else []
+
+    def over(self, _name: str, function: Any, values: Any) -> Any:
+        return function(values)
+
+    def identical(self, left: Any, right: Any) -> bool:
+        return left is right
+
     def all_of(self, *values: Any) -> Any:
         for value in values:
             if not value:

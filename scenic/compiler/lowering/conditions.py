@@ -249,6 +249,8 @@ class _Symbolic:
                 return rebuilt(node, elts=self._all(elements))
             case ast.Call():
                 return self._call(node)
+            case ast.ListComp():
+                return self._unrolled(node)
             case scenic.Operation(operator=operator, operands=operands):
                 args = [
                     start_of(ast.Constant(None), node) if operand is None else self.expression(operand)
@@ -292,9 +294,47 @@ class _Symbolic:
             left, begin = following, comparator
         return pairs[0] if len(pairs) == 1 else prelude_call("all_of", pairs, node)
 
+    def _unrolled(self, node: ast.ListComp | ast.GeneratorExp) -> ast.expr:
+        """The elements of a comprehension: calls of the prelude with what it iterates over, and a function of an element."""
+        body: ast.expr = at(ast.List([self.expression(node.elt)], ast.Load()), node.elt)
+        for generator in reversed(node.generators):
+            if generator.is_async:
+                raise _OpaqueError
+            names = _target_names(generator.target)
+            for test in reversed(generator.ifs):
+                body = prelude_call("given", [self.expression(test), lambda_([], body, body)], test)
+            each = lambda_([(part.id, part) for part in names], body, body)
+            spread = constant(isinstance(generator.target, ast.Tuple), generator.target)
+            body = prelude_call("each", [self._iterated(generator.iter), each, spread], generator.iter)
+        return body
+
+    def _iterated(self, node: ast.expr) -> ast.expr:
+        """What is iterated over: the runtime accepts it if its elements are fixed."""
+        match node:
+            case ast.Call(func=ast.Name(id="range" | "zip" | "enumerate" | "reversed") as callee, args=args):
+                if node.keywords or any(isinstance(arg, ast.Starred) for arg in args):
+                    raise _OpaqueError
+                if self._resolution.binding(callee) is not None:
+                    raise _OpaqueError  # The program's own function of this name.
+                parts = [self._iterated(arg) for arg in args]
+                return prelude_call("iterated", [constant(callee.id, callee), callee, *parts], node)
+            case _:
+                return self.expression(node)
+
     def _call(self, node: ast.Call) -> ast.expr:
         if node.keywords or any(isinstance(arg, ast.Starred) for arg in node.args):
             raise _OpaqueError
+        over = _over_elements(node)
+        if over is not None:
+            callee, elements = over
+            if self._resolution.binding(callee) is not None:
+                raise _OpaqueError  # The program's own function of this name.
+            found = (
+                self._unrolled(elements)
+                if isinstance(elements, ast.GeneratorExp)
+                else self.expression(elements)
+            )
+            return prelude_call("over", [constant(callee.id, callee), callee, found], node)
         match node.func:
             case ast.Name(id=function) if function in CONVERSIONS:
                 return prelude_call("convert", [constant(function, node.func), *self._all(node.args)], node)
@@ -311,6 +351,25 @@ class _Symbolic:
                 return prelude_call("call", args, node)
             case _:
                 raise _OpaqueError
+
+
+def _over_elements(node: ast.Call) -> tuple[ast.Name, ast.expr] | None:
+    """The function and the argument of a call that takes the elements of one argument, as ``all(... for ...)``."""
+    match node:
+        case ast.Call(func=ast.Name(id="all" | "any" | "sum") as callee, args=[elements]):
+            return callee, elements
+        case ast.Call(func=ast.Name(id="min" | "max") as callee, args=[ast.GeneratorExp() as elements]):
+            return callee, elements
+    return None
+
+
+def _target_names(target: ast.expr) -> list[ast.Name]:
+    """The names that a comprehension gives its elements, or their parts."""
+    parts = target.elts if isinstance(target, ast.Tuple) else [target]
+    names = [part for part in parts if isinstance(part, ast.Name)]
+    if len(names) < len(parts) or len({part.id for part in names}) < len(names):
+        raise _OpaqueError
+    return names
 
 
 def _pair(operator: ast.cmpop, left: ast.expr, right: ast.expr, origin: ast.AST) -> ast.expr:

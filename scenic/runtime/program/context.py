@@ -81,8 +81,18 @@ class Context:
         """Where the program itself, rather than its model, has set each of its parameters: place and file."""
         self.model_place: tuple[Span | None, str | None] = None, None
         """Place and file of the program's ``model`` statement."""
+        self.unrolled: list[tuple[Sequence[Any], tuple[Any, ...]]] = []
+        """Sequences that conditions were unrolled over, with the elements that they had."""
         self.looks = False
         """Whether some condition asks what is seen: it has to be made again when all objects are there."""
+
+    @property
+    def has_later_elements(self) -> bool:
+        """Whether a sequence that a condition was unrolled over has other elements now."""
+        return any(
+            len(sequence) != len(before) or any(a is not b for a, b in zip(sequence, before, strict=True))
+            for sequence, before in self.unrolled
+        )
 
     @property
     def present(self) -> Sequence[Any]:

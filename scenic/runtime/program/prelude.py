@@ -46,7 +46,7 @@ from scenic.runtime.instances.placeholders import may_mutate, stand_in
 from scenic.runtime.instances.properties import ATTRIBUTES, PropertyDefinition
 from scenic.runtime.instances.resolution import build
 from scenic.runtime.program import builtins as names
-from scenic.runtime.program import conditions
+from scenic.runtime.program import conditions, unrolling
 from scenic.runtime.program.conditions import Condition
 from scenic.runtime.program.context import Context, current, here
 from scenic.runtime.program.outcome import Module, Program, Requirement
@@ -445,7 +445,9 @@ class Prelude(Dynamics):
         return operate(COMPARISONS[operator], left, right)
 
     def identical(self, left: Any, right: Any) -> Any:
-        """``left is right`` of objects that never change, and random choices among them."""
+        """``left is right`` of instances, of objects that never change, and of random choices among these."""
+        if all(item is None or isinstance(item, Point) for item in (left, right)):
+            return left is right  # so are their samples
         nodes = [as_node(left), as_node(right)]
         if not all(map(is_choice_of_frozen, nodes)):
             raise conditions.NotSymbolicError
@@ -469,6 +471,8 @@ class Prelude(Dynamics):
 
     def invert(self, value: Any) -> Any:
         """``not`` of a truth value inside an expression."""
+        if isinstance(value, bool):
+            return not value
         return as_value(conditions.connect("not", [conditions.truth(value)]))
 
     def _logic(self, operation: str, values: Sequence[Any]) -> Any:
@@ -476,6 +480,23 @@ class Prelude(Dynamics):
         if not all(node.kind is Kind.BOOLEAN for node in nodes):
             raise conditions.NotSymbolicError  # Python's `and` and `or` give an operand, not a truth value.
         return as_value(conditions.connect(operation, nodes))
+
+    def iterated(self, name: str, function: Any, *sequences: Any) -> Any:
+        """What one of Python's own functions gives to iterate over, of fixed sequences."""
+        return unrolling.iterated(self.provided(name, function), sequences)
+
+    def each(self, sequence: Any, function: Callable[..., list[Any]], spread: bool) -> list[Any]:
+        """The values of a comprehension, by a function of an element, or of its parts."""
+        return unrolling.each(sequence, function, spread=spread)
+
+    def given(self, test: Any, make: Callable[[], list[Any]]) -> list[Any]:
+        """The values behind an ``if`` of a comprehension."""
+        return unrolling.given(test, make)
+
+    def over(self, name: str, function: Any, values: Any) -> Any:
+        """``all``, ``any``, ``sum``, ``min`` or ``max`` of fixed sequences."""
+        self.provided(name, function)
+        return unrolling.over(name, values)
 
     def choose(self, test: Condition, then: Callable[[], Any], otherwise: Callable[[], Any]) -> Any:
         """``then if test else otherwise``."""

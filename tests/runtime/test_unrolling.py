@@ -1,0 +1,121 @@
+"""Comprehensions, `all`, `any`, `sum`, `max` and `min` over fixed sequences: what Python gives on samples, without calling it."""
+
+import pytest
+
+from scenic.graph.node import Graph
+from scenic.runtime.scenes.scenario import Scenario
+from tests.runtime.programs import fingerprint, scenario
+
+OBJECTS = """
+ego = new Object at (Range(-5, 5), Range(-5, 5)), with allowCollisions True
+others = [new Object at (Range(-9, 9), Range(-9, 9)), with allowCollisions True for i in range(3)]
+pair = (others[0], ego)
+limits, either = (3, 4, 5), Uniform(others, pair)
+x, n = Range(-3, 3), DiscreteRange(0, 4)
+def same(value):
+    return value
+"""
+
+UNROLLED = (
+    "all((distance from o) < 9 for o in others)",
+    "all([o.position.x < 5 for o in others])",
+    "not any(o.position.x > 3 for o in others)",
+    "any((o.position.x > 3) == (o.position.y > 3) for o in pair)",
+    "sum(o.position.x for o in pair) > 1",
+    "sum([o.position.x > 0 for o in others]) >= 2",
+    "sum(n * i for i in range(5)) > 20",
+    "max(o.position.x for o in others) > 4",
+    "min(o.position.x for o in others) < min(o.position.y for o in others)",
+    "max([x, ego.position.x]) < 2",
+    "all((distance from a to b) > 3 for a in others for b in others if a is not b)",
+    "all(o.position.x < limit for o, limit in zip(others, limits))",
+    "all(o.position.x < i + 2 for i, o in enumerate(others))",
+    "all(others[i].position.x < others[i + 1].position.x for i in range(2))",
+    "all(o.position.x < 3 for o in reversed(others) if o is not None)",
+    "all(all(abs(o.position.x - p.position.x) < 8 for p in pair) for o in others)",
+    "any([x > 1, n > 2])",
+    "all([])",
+    "ego.position.x > 0 and any(o.position.x > i for i in range(3) for o in pair)",
+)
+"""Conditions that become nodes."""
+
+OPAQUE = (
+    "all(same(o.position.x) < 5 for o in others)",
+    "all(o.position.x < 5 for o in others if o.position.y > 1)",
+    "all(i < 3 for i in range(n))",
+    "any(o.position.x > 3 for o in either)",
+    "sum(len(str(o.position.x)) for o in pair) > 10",
+    "max((o.position.x for o in others), default=1) > 0",
+    "[o.position.x for o in others][0] == max({o.position.x for o in others})",
+)
+"""Conditions that Python computes."""
+
+
+def runs_python(program: Scenario) -> bool:
+    nodes = [node for check in program.outline.checks for node in check.nodes]
+    return any(node.runs_python for node in Graph(nodes).nodes)
+
+
+def opaque(condition: str) -> str:
+    """The same condition in a function of the program, which is called on samples."""
+    return f"def holds():\n    return bool({condition})\nrequire holds()\n"
+
+
+@pytest.mark.parametrize("condition", UNROLLED)
+def test_fixed_sequences_become_nodes_of_the_same_value(condition: str) -> None:
+    program = scenario(f"{OBJECTS}require {condition}\n")
+    assert not runs_python(program)
+    slow = scenario(f"{OBJECTS}{opaque(condition)}")
+    assert runs_python(slow)
+    unpruned = program.within(slow.domain)
+    found = [(fingerprint(item), item.attempts) for item in unpruned.sample(6, seed=2)]
+    assert found == [(fingerprint(item), item.attempts) for item in slow.sample(6, seed=2)]
+
+
+@pytest.mark.parametrize("condition", OPAQUE)
+def test_what_is_not_fixed_is_called_on_samples(condition: str) -> None:
+    program = scenario(f"{OBJECTS}require {condition}\n")
+    assert runs_python(program)
+    program.sample(2, seed=1)
+
+
+def test_names_of_the_program_come_before_those_of_python() -> None:
+    for definition in ("def all(values):\n    return True\n", "from builtins import any as all\n"):
+        program = scenario(f"{OBJECTS}{definition}require all([True, x > 2])\n")
+        assert runs_python(program)
+        program.sample(1, seed=1)
+
+
+def test_elements_that_are_added_later_count() -> None:
+    text = (
+        "things = [new Object at (Range(0, 9), 0)]\n"
+        "require all(o.position.x > 5 for o in things)\n"
+        "things.append(new Object at (Range(0, 9), 5))\n"
+    )
+    for scene in scenario(text).sample(10, seed=0):
+        assert all(item.position.x > 5 for item in scene.objects)
+
+
+def test_mutated_objects_are_meant_as_they_come_out() -> None:
+    text = (
+        "things = [new Object at (i * 5, 0) for i in range(2)]\n"
+        "mutate\n"
+        "require all(o.position.y > 0.2 for o in things)\n"
+    )
+    program = scenario(text)
+    assert not runs_python(program)
+    for scene in program.sample(10, seed=0):
+        assert all(item.position.y > 0.2 for item in scene.objects)
+
+
+def test_many_elements_are_left_to_python() -> None:
+    program = scenario("x = Range(0, 1)\nego = new Object\nrequire all(x < i for i in range(1, 5000))\n")
+    assert runs_python(program)
+
+
+def test_a_fault_behind_the_first_false_element_does_not_count() -> None:
+    program = scenario("x = Range(-1, 1)\nego = new Object\nrequire any([x < 0, 1 / (x - abs(x)) < 0])\n")
+    with pytest.raises(ZeroDivisionError):
+        program.sample(20, seed=0)
+    program = scenario("x = Range(-1, 1)\nego = new Object\nrequire any([x < 0, 1 / (x + abs(x)) > 0])\n")
+    assert len(program.sample(20, seed=0)) == 20
