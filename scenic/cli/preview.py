@@ -6,6 +6,11 @@ from typing import Final
 
 import click
 
+from scenic.cli.output import exit_code, show_diagnostics
+from scenic.cli.render import Sources
+from scenic.language.errors import ParseCompileError
+from scenic.language.source import Source
+
 __all__ = ["preview"]
 
 _MEMORY: Final = 8 << 30
@@ -26,15 +31,25 @@ def preview(filename: str, scenario: str | None, seed: int, count: int, time_lim
     # What the program prints must not get into the page.
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
 
+    from scenic.failures import diagnose
     from scenic.formats.html import Page
     from scenic.pipeline import scenarioFromString
     from scenic.runtime.sampling.report import Exhausted
 
-    loaded = scenarioFromString(text, scenario=scenario, filename=filename)
     page = Page(os.path.basename(filename))
-    for result in loaded.stream(count, seed=seed, time_limit=time_limit):
-        if not isinstance(result, Exhausted):
-            page.add(result)
+    try:
+        loaded = scenarioFromString(text, scenario=scenario, filename=filename)
+        for result in loaded.stream(count, seed=seed, time_limit=time_limit):
+            if not isinstance(result, Exhausted):
+                page.add(result)
+    except Exception as error:
+        told = diagnose(error)
+        found = error.diagnostics if isinstance(error, ParseCompileError) else [] if told is None else [told]
+        if not found:
+            raise
+        # The text that is quoted is the one in the editor, whatever the file holds.
+        show_diagnostics(found, Sources([Source(text, filename)]))
+        return exit_code(found)
     if not len(page):
         click.echo("no scene was found that meets all requirements within the limits", err=True)
         return 3

@@ -48,6 +48,8 @@ class _Pair:
 
 def as_written(old: Sequence[Token], text: str) -> str:
     """One line that the unparser has written, with the numbers and the grouping of the tokens that it comes from."""
+    if _bare("".join(token.text for token in old)) == _bare(text):
+        return text
     tokens = lex(text, WORDS)
     new = [
         (Token(kind, word), begin, end)
@@ -60,6 +62,10 @@ def as_written(old: Sequence[Token], text: str) -> str:
     for start, end, written in sorted(edits or (), reverse=True):
         text = text[:start] + written + text[end:]
     return text
+
+
+def _bare(text: str) -> str:
+    return text.replace(" ", "").rstrip(":;")
 
 
 def _edits(old: Sequence[Token], new: Sequence[tuple[Token, int, int]]) -> list[tuple[int, int, str]] | None:

@@ -1,12 +1,14 @@
 """Running a program because its user asked for that: in a process of its own, within limits of time and size."""
 
 import os
+import signal
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
-from typing import Final
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from typing import IO, Final
 
 __all__ = ["RunError", "analysis_text", "sample_page", "simulation_page"]
 
@@ -15,6 +17,8 @@ TIME_LIMIT: Final = 20.0
 _START: Final = 15.0
 """Seconds that the process may take besides, to begin and to write."""
 _LARGEST: Final = 64 << 20
+_LONGEST: Final = 1 << 20
+"""Bytes of a message that are shown."""
 _INTERVAL: Final = 0.02
 
 
@@ -91,26 +95,39 @@ def _run(arguments: list[str], text: str, folder: str, view: str | None, go_on: 
             start_new_session=True,
         )
         try:
-            code = _wait(process, go_on)
+            code = _wait(process, (page, said), go_on)
         finally:
-            if process.poll() is None:
-                process.kill()
-                process.wait()
+            _end(process)
         if code == 0 and view is not None and os.path.exists(view):
             with open(view, "rb") as stream:
                 return stream.read(_LARGEST).decode()
         if code != 0 or view is not None:
             said.seek(0)
-            reason = said.read(_LARGEST).decode(errors="replace").strip()
+            reason = said.read(_LONGEST).decode(errors="replace").strip()
             raise RunError(reason or f"the program ended with code {code}")
         page.seek(0)
-        return page.read(_LARGEST).decode()
+        found = page.read(_LARGEST).decode()
+        if not found.strip():
+            raise RunError("the program ended the process before there was anything to show")
+        return found
 
 
-def _wait(process: "subprocess.Popen[bytes]", go_on: Callable[[], None]) -> int:
+def _end(process: "subprocess.Popen[bytes]") -> None:
+    """End a process with all that it has started."""
+    if sys.platform == "win32":
+        process.kill()
+    else:
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+
+
+def _wait(process: "subprocess.Popen[bytes]", outputs: Sequence[IO[bytes]], go_on: Callable[[], None]) -> int:
     end = time.monotonic() + TIME_LIMIT + _START
     while (code := process.poll()) is None:
         go_on()
+        if any(os.fstat(each.fileno()).st_size > _LARGEST for each in outputs):
+            raise RunError(f"the program writes more than {_LARGEST >> 20} MB")
         if time.monotonic() > end:
             raise RunError(f"the program took longer than {TIME_LIMIT + _START:.0f} seconds")
         time.sleep(_INTERVAL)

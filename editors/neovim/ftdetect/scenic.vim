@@ -1,1 +1,1 @@
-au BufNewFile,BufRead *.scenic setfiletype scenic
+au BufNewFile,BufRead *.scenic,*.sc setfiletype scenic

@@ -10,12 +10,15 @@ const address = (path) => `${location.protocol === "https:" ? "wss" : "ws"}://${
 
 self.MonacoEnvironment = { getWorker: () => new Worker("worker.js") };
 
-languages.register({ id: "scenic", extensions: [".scenic"], aliases: ["Scenic"] });
+languages.register({ id: "scenic", extensions: [".scenic", ".sc"], aliases: ["Scenic"] });
 languages.setLanguageConfiguration("scenic", config.language.configuration
   ? revived(config.language.configuration) : {});
 languages.setMonarchTokensProvider("scenic", config.language.tokens);
 
-const model = editor.createModel(config.text, "scenic", Uri.parse(config.uri));
+// What was written survives a reload of the page, in this tab.
+const kept = `scenic ${config.uri}`;
+const model = editor.createModel(sessionStorage.getItem(kept) ?? config.text, "scenic", Uri.parse(config.uri));
+model.onDidChangeContent(() => sessionStorage.setItem(kept, model.getValue()));
 const view = editor.create(byId("editor"), {
   model,
   automaticLayout: true,
