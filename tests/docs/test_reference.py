@@ -11,6 +11,7 @@ from scenic.language.diagnostics import CODES
 from scenic.language.keywords import HARD_KEYWORDS, SOFT_KEYWORDS
 from scenic.language.names import NAMES
 from scenic.language.operators import OPERATORS, SIDES
+from scenic.language.properties import CLASSES
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS
 
@@ -46,9 +47,12 @@ def test_every_element_has_a_section_of_its_page() -> None:
 def test_every_word_of_the_language_is_in_an_example() -> None:
     examples = code()
     words = {*HARD_KEYWORDS, *SOFT_KEYWORDS} - PYTHON_WORDS
+    properties = {item.name for cls in CLASSES.values() for item in cls.properties}
     sides = {f"{side} of" for side in SIDES}
     missing = [
-        word for word in sorted({*words, *NAMES, *sides}) if not re.search(rf"(?<!\w){word}(?!\w)", examples)
+        word
+        for word in sorted({*words, *NAMES, *sides, *properties})
+        if not re.search(rf"(?<!\w){word}(?!\w)", examples)
     ]
     assert missing == []
 
