@@ -36,7 +36,7 @@ for lot in range(50):
 places = [new Point in CircularRegion((i, 0), 1.2) for i in range(40)]
 things = [new Object at place, with width 0.2, with length 0.2 for place in places]
 for one, other in zip(things, things[1:]):
-    require 0.3 < (distance from one to other) < 1
+    require 0.3 < (distance from one to other) < 1.5
 """,
 }
 

@@ -1,11 +1,14 @@
 """Finds out what a scenario is like to sample."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from scenic.analysis.supports import DrawnSupport, places_of, supports
 from scenic.assessment.assessment import Assessment, ValueRow
 from scenic.assessment.drawing import Whereabouts
 from scenic.language.spans import Span
+from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.values.values import as_node
@@ -16,7 +19,7 @@ CANDIDATES = 20_000
 """Candidates of each component, at most, on which estimates rest."""
 
 _SHOWN = 100
-"""Scenes whose objects are drawn."""
+"""Scenes whose objects are drawn; where rejection finds none, approximate ones, made together."""
 
 
 def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -> Assessment:
@@ -36,8 +39,12 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
     graph, domain = scenario.outline.graph, scenario.domain
     impossible = scenario.impossible
     estimates = () if impossible else scenario.estimates(seed=seed, candidates=candidates)
-    likely = all(part.accepted for part in estimates)
-    scenes = scenario.stream(_SHOWN, seed=seed, max_attempts=candidates) if estimates and likely else ()
+    scenes: Iterable[Scene | Exhausted] = ()
+    if estimates and all(part.accepted for part in estimates):
+        scenes = scenario.stream(_SHOWN, seed=seed, max_attempts=candidates)
+    elif estimates:
+        tries = max(1, candidates // _SHOWN)
+        scenes = scenario.stream(_SHOWN, seed=seed, approximate=_SHOWN, max_attempts=tries)
     found = [scene for scene in scenes if isinstance(scene, Scene)]
     places = []
     for number, item in enumerate(scenario.objects):
@@ -51,7 +58,15 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
         ValueRow(_text(scenario.text, row), None if row.span is None else row.span.line, row)
         for row in supports(graph, domain)
     )
-    return Assessment(scenario.filename, values, tuple(places), domain.volume, estimates, tuple(impossible))
+    return Assessment(
+        scenario.filename,
+        values,
+        tuple(places),
+        domain.volume,
+        estimates,
+        tuple(impossible),
+        found[0].approximation if found else None,
+    )
 
 
 def _text(program: str, row: DrawnSupport) -> str:

@@ -13,6 +13,7 @@ from scenic.analysis.supports import DrawnSupport
 from scenic.assessment.drawing import Whereabouts, png, svg
 from scenic.language.spans import Span
 from scenic.runtime.sampling.estimating import ComponentEstimate, RequirementEstimate
+from scenic.runtime.sampling.report import Approximation
 
 __all__ = ["Assessment", "ValueRow"]
 
@@ -52,6 +53,7 @@ class Assessment:
         kept: the share of all combinations of draws that analysis leaves, 0 to 1.
         components: what was estimated of each independent component.
         impossible: labels of requirements that are proven to fail in every scene.
+        approximation: how probable scenes are by approximate ones, where no candidate of some component was accepted.
 
     """
 
@@ -61,10 +63,13 @@ class Assessment:
     kept: float
     components: tuple[ComponentEstimate, ...]
     impossible: tuple[str, ...]
+    approximation: Approximation | None = None
 
     @property
     def acceptance(self) -> float:
         """The estimated probability that a candidate passes, after what analysis has removed."""
+        if self.approximation is not None:
+            return math.exp(self.approximation.log_probability)
         return math.prod(part.acceptance for part in self.components)
 
     @property
@@ -75,13 +80,18 @@ class Assessment:
     @property
     def log_probability(self) -> float:
         """Natural logarithm of the probability that a sample of the program's values meets every requirement."""
+        if self.approximation is not None:
+            return self.approximation.log_probability + math.log(self.kept)
         if any(part.accepted == 0 for part in self.components):
             return -math.inf
         return sum(math.log(part.acceptance) for part in self.components) + math.log(self.kept)
 
     @property
     def error(self) -> float:
-        """Standard error of `log_probability`, by the counts; infinite where some component was never accepted."""
+        """Standard error of `log_probability`, by the counts; infinite where nothing was accepted."""
+        if self.approximation is not None:
+            lost = sum((1 - share) / share for share in self.approximation.survival)
+            return math.sqrt(lost / self.approximation.lanes)
         if any(part.accepted == 0 for part in self.components):
             return math.inf
         return math.sqrt(sum((1 - part.acceptance) / part.accepted for part in self.components))
@@ -100,6 +110,11 @@ class Assessment:
         if self.impossible:
             return [f"no scene exists: {', '.join(self.impossible)}"]
         lines = [f"analysis removes {1 - self.kept:.4g} of all combinations of draws"]
+        if self.approximation is not None:
+            tried = max(part.candidates for part in self.components)
+            lines.append(
+                f"none of {tried} candidates met every requirement; `--approximate` finds scenes all the same"
+            )
         if self.acceptance:
             lines.append(
                 f"about {_candidates(self.acceptance_before)} a scene without analysis, {_candidates(self.acceptance)} with it"

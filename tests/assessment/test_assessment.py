@@ -84,6 +84,17 @@ def test_what_is_told(tmp_path: Path) -> None:
     assert "requirement on line 7" in shown.stdout
 
 
+def test_what_rejection_does_not_find() -> None:
+    # Each of twelve numbers in a tenth of its range, and all of them read by the last requirement: one candidate in 10^12.
+    lines = "".join(f"x{number} = Range(0, 1)\nrequire same(x{number}) < 0.1\n" for number in range(12))
+    every = ", ".join(f"x{number}" for number in range(12))
+    found = scenic.analyze(scenario(f"{SAME}{lines}require same({every}) < 2\n"), candidates=10_000)
+    assert found.approximation is not None
+    assert found.log_probability == pytest.approx(12 * math.log(0.1), abs=6 * found.error)
+    assert found.error < 2
+    assert "`--approximate` finds scenes" in str(found)
+
+
 def test_what_has_no_scenes(tmp_path: Path) -> None:
     path = tmp_path / "never.scenic"
     path.write_text("x = Range(0, 1)\nrequire x > 2\n")
