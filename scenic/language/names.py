@@ -223,12 +223,15 @@ _ALL = (
     _function("min(a, b, ...)", "The smallest of its arguments.", lifted=True, operation="minimum"),
     _function("abs(x)", "The absolute value.", None, lifted=True, operation="absolute"),
     _function(
-        "round(x, digits=None)",
+        "round(number, ndigits=None)",
         "The nearest integer, or number with so many decimals.",
         lifted=True,
         operation="round",
+        is_complete=True,
     ),
-    _function("len(x)", "The number of elements.", lifted=True, operation="len", result=SCALAR),
+    _function(
+        "len(x)", "The number of elements.", lifted=True, operation="len", result=SCALAR, is_complete=True
+    ),
     _function("str(x)", "Conversion to text, also of random values.", None, lifted=True, operation="str"),
     _function(
         "int(x)",
@@ -246,10 +249,12 @@ _ALL = (
         operation="float",
         result=SCALAR,
     ),
-    _function("filter(function, values)", "The values for which the function is true, as a list."),
+    _function(
+        "filter(function, values)", "The values for which the function is true, as a list.", is_complete=True
+    ),
     _function("range(stop)", "Python's range; its arguments must not be random."),
     _function(
-        "resample(distribution)",
+        "resample(value)",
         "An independent draw of the same distribution.",
         "scenic.runtime.elements.distributions",
         is_complete=True,
@@ -263,11 +268,13 @@ _ALL = (
     _function(
         "distributionFunction(function)",
         "Makes a Python function accept random arguments: it is then called with sampled ones.",
+        is_complete=True,
     ),
     _function(
         "distributionMethod(method)",
         "Makes a method written in Python accept random arguments: it is then called with sampled ones.",
         "scenic.runtime.python.custom_distributions",
+        is_complete=True,
     ),
     _function(
         "simulation()",
@@ -328,15 +335,19 @@ _ALL = (
         "VerifaiRange(low, high, buckets=None, weights=None)",
         "A real number that an external sampler may choose.",
         result=SCALAR,
+        is_complete=True,
     ),
     _external(
         "VerifaiDiscreteRange(low, high, weights=None)",
         "An integer that an external sampler may choose.",
         result=SCALAR,
+        is_complete=True,
     ),
-    _external("VerifaiOptions(options)", "An option that an external sampler may choose."),
+    _external("VerifaiOptions(options)", "An option that an external sampler may choose.", is_complete=True),
     _external("VerifaiParameter", "Base of the values that an external sampler may choose."),
-    _external("TimeSeries(parameter)", "An external parameter that has another value at every step."),
+    _external(
+        "TimeSeries(param)", "An external parameter that has another value at every step.", is_complete=True
+    ),
     # Shapes
     _shape("BoxShape(dimensions=(1, 1, 1), scale=1)", "A cuboid."),
     _shape("CylinderShape(dimensions=(1, 1, 1), scale=1, sections=24)", "A cylinder along the Z axis."),
