@@ -76,6 +76,8 @@ def options_for(client: types.ClientCapabilities) -> Mapping[str, Any]:
             types.CodeActionKind.QuickFix,
             FIX_ALL,
             ORGANIZE,
+            types.CodeActionKind.RefactorExtract,
+            types.CodeActionKind.RefactorInline,
         ]
         found[types.TEXT_DOCUMENT_CODE_ACTION] = types.CodeActionOptions(kinds, resolve_provider=True)
     if get_capability(client, "text_document.range_formatting.ranges_support"):

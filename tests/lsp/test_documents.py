@@ -297,7 +297,13 @@ def test_repairs(client: Client, tmp_path: Path) -> None:
     uri = (tmp_path / "room.scenic").as_uri()
     text = "import os\r\nego = new Object with name '😀', with wdth 3\r\nif True\r\n    pass\r\n"
     provider = client.start({**FULL, "workspace": {}})["codeActionProvider"]
-    assert provider["codeActionKinds"] == ["quickfix", "source.fixAll.scenic", "source.organizeImports"]
+    assert provider["codeActionKinds"] == [
+        "quickfix",
+        "source.fixAll.scenic",
+        "source.organizeImports",
+        "refactor.extract",
+        "refactor.inline",
+    ]
     client.open(uri, text)
     client.published(uri)
 
@@ -325,6 +331,22 @@ def test_repairs(client: Client, tmp_path: Path) -> None:
     assert [each["kind"] for each in actions("w|dth")] == ["quickfix", "quickfix", "source.fixAll.scenic"]
     assert actions("w|dth", only=["refactor", "quick"]) == []
     assert actions("eg|o", only=["quickfix"]) == []
+
+
+def test_a_selection_can_be_extracted(client: Client) -> None:
+    client.start(FULL)
+    client.open("untitled:a", "ego = new Object at f(1) @ 2\n")
+    params = {
+        "textDocument": {"uri": "untitled:a"},
+        "range": {"start": {"line": 0, "character": 20}, "end": {"line": 0, "character": 24}},
+        "context": {"diagnostics": [], "only": ["refactor"]},
+    }
+    (action,) = client.request("textDocument/codeAction", params)
+    assert action["kind"] == "refactor.extract"
+    (change,) = action["edit"]["documentChanges"]
+    assert applied("ego = new Object at f(1) @ 2\n", change["edits"]) == (
+        "value = f(1)\nego = new Object at value @ 2\n"
+    )
 
 
 def test_all_repairs_can_be_worked_out_later(client: Client) -> None:

@@ -11,6 +11,7 @@ from scenic.ide.dedenting import dedented
 from scenic.ide.diagnostics import found_in
 from scenic.ide.formatting import formatting
 from scenic.ide.importing import can_organize, missing_imports, organize_imports
+from scenic.ide.refactoring import Refactoring, extract_variable, inline_variable
 from scenic.ide.repairs import can_repair_all, ignoring, repair_all, repairs, touch
 from scenic.language.diagnostics import Diagnostic, Edit
 from scenic.language.spans import Span
@@ -23,6 +24,8 @@ from scenic.lsp.session import Session
 __all__ = ["HANDLERS"]
 
 _QUICK_FIX: Final = types.CodeActionKind.QuickFix
+_EXTRACT: Final = types.CodeActionKind.RefactorExtract
+_INLINE: Final = types.CodeActionKind.RefactorInline
 
 
 # Code actions
@@ -41,6 +44,11 @@ def _actions(session: Session, params: types.CodeActionParams) -> list[types.Cod
         for item, edit in ignoring(document.snapshot, found, span):
             title = f"Silence {item.code} on this line"
             actions.append(_action(session, document, title, _QUICK_FIX, [edit], item))
+    if _wanted(_EXTRACT, only):
+        actions += _refactoring(session, document, _EXTRACT, extract_variable(document.snapshot, span))
+    if _wanted(_INLINE, only):
+        inlined = inline_variable(document.snapshot, span.line, span.column)
+        actions += _refactoring(session, document, _INLINE, inlined)
     # An editor asks with each move of the cursor what is offered there.
     automatic = params.context.trigger_kind is types.CodeActionTriggerKind.Automatic and not only
     if not automatic and _wanted(FIX_ALL, only) and can_repair_all(found):
@@ -48,6 +56,12 @@ def _actions(session: Session, params: types.CodeActionParams) -> list[types.Cod
     if not automatic and _wanted(ORGANIZE, only) and can_organize(document.snapshot, found):
         actions += _of_document(session, document, ORGANIZE, "Organize imports")
     return actions
+
+
+def _refactoring(
+    session: Session, document: Document, kind: str, found: Refactoring | None
+) -> list[types.CodeAction]:
+    return [] if found is None else [_action(session, document, found.title, kind, found.edits)]
 
 
 def _quick_fixes(
