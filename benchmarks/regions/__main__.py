@@ -65,7 +65,12 @@ def main() -> None:
     parser.add_argument("--region", action="append", choices=REGIONS, help="only this one; repeatable")
     parser.add_argument("--question", action="append", choices=QUESTIONS, help="only this one; repeatable")
     parser.add_argument("--child", help=argparse.SUPPRESS)
+    parser.add_argument("--laws", action="store_true", help="compare laws with plain rejection, not times")
     options = parser.parse_args()
+    if options.laws:
+        from benchmarks.regions import laws
+
+        sys.exit(0 if laws.main() else 1)
     if options.child:
         child(options.child)
         return
