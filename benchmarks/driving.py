@@ -4,19 +4,17 @@ PATH is called as in `benchmarks.compare`. The programs are those of ``examples/
 not know, both run it with that replaced (`REPLACED`). For each, the table shows the load, and milliseconds a scene through
 ``sample(200)``, its first call included, and through a loop of ``generate()``, ours and theirs, with the ratios; the last line
 holds their geometric means and the least of each. Ours reads position and heading of every object of every scene; theirs is the
-time of ``generate`` alone, from the second scene on. All run in processes of their own, in turns. Times are those of the processor:
-of the other one, its own times by the clock, multiplied by the share of the processor that its process had.
+time of ``generate`` alone, from the second scene on. All run in processes of their own, in turns.
 
 With ``--laws N`` it compares N scenes of either instead: the least p-value, over the objects, of a two-sample test of
 Kolmogorov and Smirnov of x, y and heading, and of a chi-squared test of which lanes hold the objects, with Bonferroni's
-correction. Run by hand; nothing here is a test.
+correction. Run by hand on a quiet machine; nothing here is a test.
 """
 
 import argparse
 import json
 import math
 import random
-import resource
 import shlex
 import statistics
 import subprocess
@@ -68,15 +66,15 @@ def child(path: str, kind: str, scenes: int) -> None:
     """What our fresh process does: prints what was measured, or rows of scenes, as JSON."""
     import scenic
 
-    begun = time.process_time()
+    begun = time.perf_counter()
     scenario = scenic.scenarioFromFile(path, mode2D=True)
-    found: dict[str, Any] = {"load": (time.process_time() - begun) * 1e3}
+    found: dict[str, Any] = {"load": (time.perf_counter() - begun) * 1e3}
 
     def read(scene: Any) -> list[list[float]]:
         return [[item.position.x, item.position.y, item.heading] for item in scene.objects]
 
     random.seed(3)
-    begun = time.process_time()
+    begun = time.perf_counter()
     if kind == "loop":
         for _ in range(scenes):
             read(scenario.generate()[0])
@@ -84,7 +82,7 @@ def child(path: str, kind: str, scenes: int) -> None:
         rows = [read(scene) for scene in scenario.sample(scenes, seed=3)]
         if kind == "rows":
             found["rows"] = rows
-    found["scene"] = (time.process_time() - begun) / scenes * 1e3
+    found["scene"] = (time.perf_counter() - begun) / scenes * 1e3
     print(json.dumps(found))
 
 
@@ -98,18 +96,10 @@ def ours(path: Path, kind: str, scenes: int) -> Any:
 def theirs(command: str, path: Path, scenes: int, seed: int) -> list[Any]:
     """The lines that the other implementation prints: one a scene, and one of its load."""
     extra = ["-n", str(scenes), "--seed", str(seed), "--2d", "--time", "--max-iterations", "1000000"]
-    begun, before = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN)
     shown = subprocess.run(
         [*shlex.split(command), str(path), *extra], capture_output=True, text=True, check=False
     )
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    share = used / (time.perf_counter() - begun)
     rows = [json.loads(line) for line in shown.stdout.splitlines()]
-    for row in rows:
-        for name in ("seconds", "compile_s"):
-            if name in row:
-                row[name] *= share
     for row in rows:
         if "error" in row:
             raise SystemExit(f"{path.name}: {row['error']}")

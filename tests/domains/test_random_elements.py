@@ -93,3 +93,19 @@ def test_an_element_that_no_place_has(program):
     text = program.split("inter =")[0] + "ego = new Car at (Range(5000, 6000), 0)\nparam lane = ego.lane\n"
     with pytest.raises(RejectionException):
         scenic.scenarioFromString(text, mode2D=True).generate(maxIterations=50)
+
+
+@pytest.mark.parametrize(
+    ("text", "counts"),
+    [
+        ("inter = Uniform(*filter(lambda i: i.is3Way, network.intersections))", "line 4 left 0 of 1"),
+        (
+            "inter = Uniform(*network.intersections, *network.intersections)\n"
+            "none = filter(lambda m: m.startLane is m.endLane, inter.maneuvers)\nturn = Uniform(*none)",
+            "line 5 left 0 of 24",
+        ),
+    ],
+)
+def test_a_filter_that_leaves_nothing_says_so(program, text, counts):
+    with pytest.raises(scenic.InvalidScenarioError, match=counts):
+        scenic.scenarioFromString(program.split("inter =")[0] + text + "\nego = new Car\n", mode2D=True)

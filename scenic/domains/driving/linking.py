@@ -193,6 +193,8 @@ class _Linker:
                 start = incoming.lane_at(end, link.source)
                 lane = connecting.lane_at(connection.contact, link.target)
                 if start is None or lane is None:
+                    self._tell_of_missing(link.source, incoming, end, connection)
+                    self._tell_of_missing(link.target, connecting, connection.contact, connection)
                     continue
                 if (start.sections[0].isForward) != (end == "end"):
                     continue  # traffic comes out of the junction there
@@ -231,6 +233,15 @@ class _Linker:
         intersection.signals = tuple(signals.values())
         for road in inside:
             self._network.connectingRoads += (road.road,)
+
+    def _tell_of_missing(self, id: int, road: BuiltRoad, end: str, connection: records.Connection) -> None:
+        """Report a lane that a connection names and the file lacks; one that is not for traffic is no mistake."""
+        section = road.record.sections[0 if end == "start" else -1]
+        if all(lane.id != id for lane in section.lanes):
+            message = (
+                f"a connection names lane {id} of road {road.record.id}, which is not there: no maneuver"
+            )
+            self._tell(Problem("SC623", message, connection.line, "lane of connection"))
 
     def _touching(
         self, incoming: BuiltRoad, junction: str, connecting: BuiltRoad, connection: records.Connection

@@ -8,7 +8,7 @@ from typing import Any
 
 from scenic.language.errors import RandomControlFlowError
 from scenic.language.types import SCALAR
-from scenic.runtime.program.context import here, verbosity
+from scenic.runtime.program.context import current, here, verbosity
 from scenic.runtime.python.opaque import call_later, is_later
 from scenic.runtime.python.purity import global_names, is_pure
 from scenic.runtime.values.lazy import Lazy, defer, is_lazy
@@ -18,6 +18,7 @@ from scenic.runtime.values.values import (
     is_number,
     is_random,
     operate,
+    options_of,
     over_options,
     wrong_type,
 )
@@ -115,9 +116,24 @@ def filter(function: Callable[[Any], Any] | None, values: Any) -> Any:
     if is_lazy(values):
         return defer(filter, function, values)
     if not is_later(function, values):
-        return _kept(function, values)
+        values = list(values)
+        kept = _kept(function, values)
+        if not kept:
+            _note_empty(kept, builtins.len(values))
+        return kept
     chosen = _kept_of_options(function, values)
-    return call_later(_kept, function, values) if chosen is None else chosen
+    if chosen is None:
+        return call_later(_kept, function, values)
+    if all(option == [] for option in options_of(chosen)):
+        _note_empty(chosen, sum(map(builtins.len, options_of(values))))
+    return chosen
+
+
+def _note_empty(result: Any, count: int) -> None:
+    """Note where a filter left nothing of some elements: a choice from its result says so."""
+    context = current.get()
+    if context is not None and context.is_symbolic:
+        context.emptied.append((result, count, here()))
 
 
 def _kept_of_options(function: Callable[[Any], Any] | None, values: Any) -> Any:

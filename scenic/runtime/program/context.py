@@ -84,6 +84,8 @@ class Context:
         self.unrolled: list[tuple[Sequence[Any], tuple[Any, ...]]] = []
         """Sequences that conditions were unrolled over, with the elements that they had."""
         self.looks = False
+        self.emptied: list[tuple[Any, int, Span | None]] = []
+        """Results of filters in which nothing is left: the result, of how many elements, and where."""
         """Whether some condition asks what is seen: it has to be made again when all objects are there."""
 
     @property

@@ -5,8 +5,9 @@ from typing import Any
 
 from scenic.graph.node import Node
 from scenic.graph.operations import TABLE
-from scenic.language.errors import RejectionException
+from scenic.language.errors import InvalidScenarioError, RejectionException
 from scenic.runtime.elements.distributions import Uniform
+from scenic.runtime.program.context import current, here
 from scenic.runtime.python.opaque import call_later
 from scenic.runtime.python.purity import is_pure
 from scenic.runtime.values.values import (
@@ -30,6 +31,8 @@ def spread(function: Callable[..., Any], parts: Parts, keywords: Mapping[str, An
     ``Uniform(*xs)`` of a random list draws one of its elements, each equally likely; a sample in which it has none is
     rejected. Any other function is called with the sampled arguments.
     """
+    if function is Uniform:
+        _refuse_nothing(parts)
     if not any(is_starred and isinstance(value, Random) for is_starred, value in parts):
         return function(*_arguments(parts), **keywords)
     if function is Uniform:
@@ -39,6 +42,21 @@ def spread(function: Callable[..., Any], parts: Parts, keywords: Mapping[str, An
         if chosen is not None:
             return chosen
     return call_later(_call, function, parts, **keywords)
+
+
+def _refuse_nothing(parts: Parts) -> None:
+    """Raise an error where there is nothing to draw from but the result of a filter that left nothing."""
+    context = current.get()
+    if context is None or len(parts) != 1:
+        return
+    for result, count, place in context.emptied:
+        if result is parts[0][1]:
+            line = "" if place is None else f" in line {place.line}"
+            raise InvalidScenarioError(
+                f"`Uniform` has nothing to choose from: the filter{line} left 0 of {count}",
+                span=here(),
+                help="choose another map, or ask for less in the filter",
+            )
 
 
 def _for_each_option(parts: Parts, function: Callable[..., Any]) -> Any:

@@ -4,10 +4,13 @@ import colorsys
 import random
 from typing import Any, Final, NamedTuple
 
+from scenic.graph.kinds import Kind
+from scenic.graph.operation import Operation, always, by_lane
 from scenic.runtime.elements.distributions import Discrete, Normal, Range
 from scenic.runtime.instances.mutators import Mutator
+from scenic.runtime.program.context import next_address
 from scenic.runtime.python.opaque import call_later
-from scenic.runtime.values.values import is_random
+from scenic.runtime.values.values import apply, is_random
 
 __all__ = ["Color", "ColorMutator", "NoisyColorDistribution"]
 
@@ -72,13 +75,24 @@ def NoisyColorDistribution(
         for part in (hueNoise, lightnessNoise, saturationNoise)
     ]
     values = (baseColor, *noise)
-    return call_later(_shifted, *values) if is_random(values) else _shifted(*values)
+    if is_random(values):
+        next_address()  # which a call of Python code took here: later draws of this place keep their numbers
+    return apply(_SHIFTED, *values)
 
 
 def _shifted(color: Any, hue: float, lightness: float, saturation: float) -> Color:
     h, l, s = colorsys.rgb_to_hls(*color)  # noqa: E741 - the names of the colour space
     parts = (_clamped(h + hue), _clamped(l + lightness), _clamped(s + saturation))
     return Color(*colorsys.hls_to_rgb(*parts))
+
+
+_SHIFTED: Final = Operation(
+    "shifted colour",
+    always(Kind.OTHER),
+    by_lane,
+    "A colour whose hue, lightness and saturation are shifted.",
+    python=_shifted,
+)
 
 
 def _clamped(part: float) -> float:
