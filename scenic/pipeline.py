@@ -352,12 +352,13 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
                     # Only now everything is there that may hide something, or that a condition speaks of.
                     program.requirements[:] = [item.rebuilt() for item in program.requirements]
             program.external_names = _external_names({**program.parameters, **vars(module)}, context)
+            program.variables = _names(module, state.ego)
             _settle_parameters(program, strict=options.strict_params)
             workspace = state.workspace or Workspace(everywhere)
             outlined = outline(program, state.ego, workspace, mode_2d=options.mode_2d)
     finally:
         current.reset(token)
-    return _Ran(program, outlined, state.ego, workspace, _names(module, state.ego), _regions(module))
+    return _Ran(program, outlined, state.ego, workspace, program.variables, _regions(module))
 
 
 def _narrowed(outlined: Outline) -> tuple[Domain, tuple[str, ...]]:
@@ -471,7 +472,7 @@ def _settle_parameters(program: Program, *, strict: bool) -> None:
         program.parameters[name] = value
 
 
-def _names(module: ModuleType, ego: Object | None) -> dict[int, str]:
+def _names(module: ModuleType, ego: Object | None) -> Mapping[int, str]:
     """Variables of the module that hold instances."""
     names: dict[int, str] = {}
     for name, value in vars(module).items():

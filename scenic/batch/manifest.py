@@ -28,6 +28,12 @@ class DatasetError(Located):
     code = "SC612"
 
 
+class NoDatasetError(DatasetError):
+    """There is no data set in a folder."""
+
+    code = "SC600"
+
+
 @dataclass(frozen=True, slots=True)
 class Part:
     """A complete file of a data set.
@@ -174,7 +180,7 @@ class Manifest:
             parts = [Part(**{**part, "missing": tuple(part["missing"])}) for part in content.pop("parts")]
             return cls(**content, parts=tuple(parts))
         except FileNotFoundError:
-            raise DatasetError(
+            raise NoDatasetError(
                 f"there is no data set in '{folder}': it has no {NAME}",
                 help="give the folder that `scenic sample -o FOLDER/` has made",
             ) from None

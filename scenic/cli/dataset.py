@@ -3,10 +3,15 @@
 import os
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from scenic.cli.output import CLEAN, FINDINGS, has_colours
+
+if TYPE_CHECKING:
+    from scenic.batch.manifest import Manifest
+
 
 __all__ = ["dataset"]
 
@@ -36,7 +41,7 @@ def info(folder: Path) -> int:
         ("not found", f"{missing:,}"),
         ("state", "complete" if manifest.is_complete else f"{done:,} looked for; go on with --resume"),
         ("seed", str(manifest.seed)),
-        ("format", f"{manifest.form}, {len(manifest.parts)} parts of {manifest.part_size:,}"),
+        ("format", f"{manifest.form}, {_parts(manifest)} of {manifest.part_size:,}"),
         ("acceptance", f"{manifest.rows / attempts:.3g}" if attempts else "unknown"),
         ("time", f"{manifest.seconds:.1f} s"),
         ("meshes", ", ".join(manifest.meshes) or "none"),
@@ -86,8 +91,13 @@ def verify(folder: Path, program: str | None, share: str) -> int:
         print(f"{folder / item.file}: {item.what}")
     if not manifest.is_complete:
         print(f"{folder}: not complete: {manifest.rows:,} of {manifest.count:,} scenes")
-    print(f"{len(manifest.parts)} parts, {compared:,} scenes compared, {len(found)} damaged")
+    print(f"{_parts(manifest)}, {compared:,} scenes compared, {len(found)} damaged")
     return FINDINGS if found else CLEAN
+
+
+def _parts(manifest: "Manifest") -> str:
+    count = len(manifest.parts)
+    return f"{count} part" if count == 1 else f"{count} parts"
 
 
 def _share(text: str) -> float:
@@ -115,5 +125,5 @@ def merge(folders: tuple[Path, ...], output: Path) -> int:
     from scenic.batch.verifying import merge as joined
 
     manifest = joined(folders, output)
-    print(f"{manifest.rows:,} scenes in {len(manifest.parts)} parts")
+    print(f"{manifest.rows:,} scenes in {_parts(manifest)}")
     return CLEAN

@@ -95,6 +95,7 @@ __all__ = ["falsify"]
 @click.option("--static", is_flag=True, help="Search scenes by themselves, without simulations.")
 @simulator_option
 @click.option(
+    "--time",
     "--steps",
     "max_steps",
     metavar="STEPS",
@@ -105,7 +106,13 @@ __all__ = ["falsify"]
 @timestep_option
 @program_options
 @click.option(
-    "-j", "jobs", metavar="J", type=click.IntRange(min=1), default=1, help="Processes.  [default: 1]"
+    "-j",
+    "--jobs",
+    "jobs",
+    metavar="J",
+    type=click.IntRange(min=1),
+    default=1,
+    help="Processes.  [default: 1]",
 )
 @click.option("--dask", metavar="ADDRESS", help="Simulate on a Dask cluster: the address of its scheduler.")
 @click.option(
@@ -170,10 +177,10 @@ def falsify(
 
     if resume and seed is None and output is not None and (output / "manifest.json").exists():
         seed = int(manifest_of(output)["seed"])
+    loaded = load(Path(file), params=parameters, model=model, scenario=scenario, mode2D=mode_2d)
     if seed is None:
         seed = secrets.randbits(32)
         sys.stderr.write(f"seed {seed} (the same search again: --seed {seed})\n")
-    loaded = load(Path(file), params=parameters, model=model, scenario=scenario, mode2D=mode_2d)
     wanted = [
         *(Objective(name=item) for item in objectives),
         *(Objective(expression=item) for item in expressions),
@@ -194,7 +201,7 @@ def falsify(
     folder = None if output is None else SearchFolder(output, plan.settings(loaded), resume=resume)
     with (
         ended_by_signals(),
-        progress_bar(count, shown=not sys.stdout.isatty()) as advance,
+        progress_bar(count, "searching", shown=not sys.stdout.isatty()) as advance,
         engine_of(jobs, dask) as engine,
     ):
         limits = Limits(count, stop_after, time_limit, lambda _row: advance(1, 1))

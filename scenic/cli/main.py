@@ -154,6 +154,9 @@ def main() -> None:
 
 
 def _run() -> int:
+    if sys.stdout is None:
+        # The caller has closed it: who wants no output gets none.
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - it lasts as long as the process
     arguments = sys.argv[1:]
     wanted = [item for item in arguments if item in GLOBAL]
     if arguments[:1] not in ([name] for name in _COMMANDS):

@@ -32,8 +32,8 @@ def engine_of(jobs: int, dask: str | None) -> "Iterator[Engine | None]":
 
 
 @contextmanager
-def progress_bar(count: int, *, shown: bool) -> Iterator[Callable[[int, int], None]]:
-    """A progress bar on the error stream if that is a terminal: scenes, rate, acceptance, time left.
+def progress_bar(count: int, doing: str, *, shown: bool) -> Iterator[Callable[[int, int], None]]:
+    """A progress bar on the error stream if that is a terminal: what is being done, how much of it, rate, acceptance, time left.
 
     The function it gives takes how many more scenes are done, and the candidates they took.
     """
@@ -44,7 +44,7 @@ def progress_bar(count: int, *, shown: bool) -> Iterator[Callable[[int, int], No
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
     columns = (
-        TextColumn("sampling"),
+        TextColumn(doing),
         BarColumn(),
         MofNCompleteColumn(),
         TextColumn("{task.fields[rate]}"),
@@ -54,7 +54,7 @@ def progress_bar(count: int, *, shown: bool) -> Iterator[Callable[[int, int], No
     begun = time.monotonic()
     made = tried = 0
     with Progress(*columns, console=console, transient=True, redirect_stdout=False) as progress:
-        task = progress.add_task("sampling", total=count, rate="")
+        task = progress.add_task(doing, total=count, rate="")
 
         def advance(scenes: int, attempts: int) -> None:
             nonlocal made, tried

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
 
     from scenic.runtime.scenes.scenario import Scenario
+    from scenic.runtime.scenes.scene import Scene
 
 
 __all__ = ["sample"]
@@ -33,7 +34,13 @@ __all__ = ["sample"]
 @click.command()
 @click.argument("file", metavar="FILE", type=click.Path())
 @click.option(
-    "-n", "count", metavar="N", type=click.IntRange(min=1), default=1, help="How many scenes.  [default: 1]"
+    "-n",
+    "--count",
+    "count",
+    metavar="N",
+    type=click.IntRange(min=1),
+    default=1,
+    help="How many scenes.  [default: 1]",
 )
 @click.option(
     "--first",
@@ -175,7 +182,8 @@ def sample(
 ) -> int:
     """Sample scenes from a program.
 
-    Files for several scenes are numbered: room-000.glb, room-001.glb, ... Files are complete or absent.
+    On a terminal scenes are shown as tables, elsewhere as JSON Lines. Files for several scenes are numbered: room-000.glb,
+    room-001.glb, ... Files are complete or absent; what an interrupted run has made is kept in OUT.part.
 
     Exit codes: 0 success, 1 the program has errors, 2 wrong usage (also a file that cannot be read or written, and an
     unknown parameter), 3 some scenes were not found within the limits (the others are written), 130 interrupted.
@@ -209,6 +217,7 @@ def sample(
         elif sinks.is_table(named):
             table = named
         elif sinks.is_lines(named):
+            sinks.check_lines(named)
             target = named
         else:
             chosen.append(sinks.scene_file(named, count, first))
@@ -268,17 +277,18 @@ def sample(
     job = batches.Job(seed, first + done, first + count, max_attempts, deadline, **batches.method_of(points))
     missing: list[Exhausted] = []
     to_terminal = target == sinks.STANDARD_OUTPUT and sys.stdout.isatty()
+    shown = _Shown() if to_terminal else None
     left = None if deadline is None else max(0.0, deadline - time.monotonic()) + PATIENCE
     endless = _limited(
         left,
         f"a candidate was still being evaluated {PATIENCE:g} s after the time limit of {time_limit or 0:g} s",
         "look for a loop without end in what is called on samples",
     )
-    with ended_by_signals(), endless, ExitStack() as stack:
+    with _told_what_is_kept(grown, count), ended_by_signals(), endless, ExitStack() as stack:
         takers = [stack.enter_context(sink) for sink in chosen]
         put = _to_output if grown is None else stack.enter_context(grown).write
         engine = stack.enter_context(engine_of(jobs, dask))
-        advance = stack.enter_context(progress_bar(count, shown=not to_terminal))
+        advance = stack.enter_context(progress_bar(count, "sampling", shown=not to_terminal))
         advance(done, 0)
         run = Run(engine, deadline, advance)
         if dataset is not None or table is not None:
@@ -300,7 +310,7 @@ def sample(
                 assert table is not None
                 finished = write_table(loaded, table, manifest, run)
             missing.extend(finished.missing)
-        elif engine is not None and count - done > 1:
+        elif engine is not None and count - done > 1 and shown is None:
             for made in batches.in_processes(loaded, lines.block, job, engine):
                 put(made.encoded)
                 missing.extend(made.missing)
@@ -312,9 +322,13 @@ def sample(
                 else:
                     for take in takers:
                         take(result)
-                    if target is not None:
+                    if shown is not None:
+                        shown.show(result)
+                    elif target is not None:
                         put(lines.encoded(result))
                 advance(1, result.attempts)
+    if shown is not None:
+        shown.finish()
     if loaded.approximation is not None:
         sys.stderr.write(f"{loaded.approximation}\n")
     if missing:
@@ -354,6 +368,39 @@ def _profiled(
     )
     render_profile(found, Console(no_color=not has_colours(sys.stdout), highlight=False))
     return CLEAN if found.scenes == count else NOT_ALL
+
+
+@contextmanager
+def _told_what_is_kept(grown: GrowingFile | None, count: int) -> Iterator[None]:
+    """Says, when a run is interrupted, how many scenes are kept and how to go on."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        kept = 0 if grown is None else len(grown.lines_kept())
+        if grown is not None and kept:
+            sys.stderr.write(f"{kept:,} of {count:,} kept in '{grown.part}'; continue with --resume\n")
+        raise
+
+
+class _Shown:
+    """Scenes as tables on a terminal."""
+
+    def __init__(self) -> None:
+        from rich.console import Console
+
+        self._console = Console(no_color=not has_colours(sys.stdout), highlight=False)
+
+    def show(self, scene: "Scene") -> None:
+        """Print the parameters and objects of a scene."""
+        from scenic.cli.render.scenes import render_scene
+
+        render_scene(scene, self._console)
+
+    def finish(self) -> None:
+        """Say how to save scenes."""
+        self._console.print(
+            "save scenes with -o scenes.jsonl, look at them with --view page.html", style="dim"
+        )
 
 
 PATIENCE: Final = 10.0

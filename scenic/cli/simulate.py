@@ -3,8 +3,9 @@
 import faulthandler
 import secrets
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import closing
+from itertools import chain
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
@@ -34,6 +35,7 @@ __all__ = ["simulate"]
 @click.argument("file", metavar="FILE", type=click.Path())
 @click.option(
     "-n",
+    "--count",
     "count",
     metavar="N",
     type=click.IntRange(min=1),
@@ -56,6 +58,7 @@ __all__ = ["simulate"]
 @simulator_option
 @click.option(
     "--time",
+    "--steps",
     "max_steps",
     metavar="STEPS",
     type=click.IntRange(min=0),
@@ -102,7 +105,13 @@ __all__ = ["simulate"]
 )
 @swept_program_options
 @click.option(
-    "-j", "jobs", metavar="J", type=click.IntRange(min=1), default=1, help="Processes.  [default: 1]"
+    "-j",
+    "--jobs",
+    "jobs",
+    metavar="J",
+    type=click.IntRange(min=1),
+    default=1,
+    help="Processes.  [default: 1]",
 )
 @click.option("--dask", metavar="ADDRESS", help="Simulate on a Dask cluster: the address of its scheduler.")
 @click.option(
@@ -209,20 +218,27 @@ def simulate(
     code = CLEAN
     with (
         ended_by_signals(),
-        progress_bar(missing, shown=not sys.stdout.isatty()) as advance,
+        progress_bar(missing, "simulating", shown=not sys.stdout.isatty()) as advance,
         engine_of(jobs, dask) as engine,
     ):
         for setting, batch in batches:
             with closing(batch.rows([k for k in numbers if k not in setting.rows], engine)) as rows:
-                for row in rows:
-                    setting.rows[row.k] = row
-                    advance(1, 1)
+                if setting.parameters:
+                    print(f"{setting.label}:")
+                waiting = iter(numbers)
+                due = next(waiting, None)
+                for row in chain([None], rows):
+                    if row is not None:
+                        setting.rows[row.k] = row
+                        advance(1, 1)
+                    # Simulations are told in order, each as soon as those before it are.
+                    while due is not None and due in setting.rows:
+                        code = max(code, _show(setting.rows[due]))
+                        due = next(waiting, None)
+                    sys.stdout.flush()
     settings = [setting for setting, _ in batches]
-    for setting in settings:
-        if setting.parameters:
-            print(f"{setting.label}:")
-        for k in numbers:
-            code = max(code, _show(setting.rows[k]))
+    if len(settings) * count > 1:
+        print(_total([row for setting in settings for row in setting.rows.values()], max_steps))
     if keep != "none" or table is not None or len(settings) > 1:
         for setting in settings:
             if len(settings) * count > 1:
@@ -247,6 +263,20 @@ _FORMS: Final[Mapping[str, "Form"]] = MappingProxyType(
 )
 
 
+def _total(rows: "Sequence[SimulationRow]", max_steps: int) -> str:
+    """What came of all simulations, in one line."""
+    made = [row.about for row in rows if row.about is not None]
+    late = sum(about["ended"] == "timeLimit" for about in made)
+    parts = [f"{len(made):,} of {len(rows):,} simulations"]
+    if late:
+        parts.append(f"{late:,} reached the time limit (--time {max_steps})")
+    if rejected := sum(row.missing is not None for row in rows):
+        parts.append(f"{rejected:,} rejected")
+    if failed := sum(row.error is not None for row in rows):
+        parts.append(f"{failed:,} failed")
+    return ", ".join(parts)
+
+
 def _show(row: "SimulationRow") -> int:
     """Print what came of a simulation; the exit code that it asks for."""
     if row.error is not None:
@@ -258,7 +288,8 @@ def _show(row: "SimulationRow") -> int:
         for reason, times in row.rejections:
             print(f"  {reason}: {times} {'try' if times == 1 else 'tries'}")
         return NOT_ALL
-    print(f"simulation {row.k}: {row.about['steps']} steps, {row.about['reason']}")
+    more = "; --time gives more" if row.about["ended"] == "timeLimit" else ""
+    print(f"simulation {row.k}: {row.about['steps']} steps, {row.about['reason']}{more}")
     for item in row.about["requirements"]:
         verdict = "not evaluated" if item["verdict"] is None else item["verdict"].lower().replace("_", " ")
         margin = item["robustness"]

@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Any
 
-from scenic.formats.files import check_folder, check_writable, numbered, write
+from scenic.formats.files import check_folder, check_writable, is_special, numbered, write
 from scenic.formats.scenes import Scene
 from scenic.language.errors import Located
 
@@ -68,6 +68,16 @@ def is_lines(path: Path) -> bool:
     if path != STANDARD_OUTPUT and suffix in _OTHER_FORMATS:
         raise OutputChoiceError(f"scenes are not written as '{suffix}' files", help=_OTHER_FORMATS[suffix])
     return suffix not in _SOLID
+
+
+def check_lines(path: Path) -> None:
+    """Raises ``OutputChoiceError`` if a file of JSON Lines has a name that tells of something else."""
+    suffix = path.suffix.lower()
+    if path != STANDARD_OUTPUT and suffix not in {"", ".jsonl"} and not is_special(path):
+        known = ", ".join(sorted({".jsonl", ".parquet", *_SOLID}))
+        raise OutputChoiceError(
+            f"'{suffix}' tells of no format that scenes are written as", help=f"known endings are {known}"
+        )
 
 
 def scene_file(path: Path, count: int, first: int = 0) -> Sink:
@@ -153,6 +163,10 @@ def images(
         check_writable(path)
         folder, target = None, path
     else:
+        if path.suffix.lower() in {".jpg", ".jpeg", ".gif", ".bmp", ".webp", ".tif", ".tiff", ".svg"}:
+            raise OutputChoiceError(
+                f"--png makes no '{path.suffix}' file", help="give a name that ends in .png, or a folder"
+            )
         check_folder(path if path.exists() else path.resolve().parent)
         folder, target = path, path / f"{stem}.png"
     _check_numbered(target, count, first)

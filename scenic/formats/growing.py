@@ -1,9 +1,8 @@
 """A file of lines that grows, and can be taken up again after whatever ended its run.
 
 While it grows it has the name of the file with ``.part`` after it, and holds whole lines but for, at most, the last one of
-a run that was killed. It gets its own name when it is complete. A run that is ended in an orderly way (Ctrl-C, an error)
-gives it its name too, with the lines that there are, unless that would replace an older file. A device or a pipe is written to
-as it is.
+a run that was killed. It gets its own name when it is complete: a run that is
+ended, by Ctrl-C or an error, leaves the lines that there are in the ``.part``. A device or a pipe is written to as it is.
 """
 
 import contextlib
@@ -34,7 +33,6 @@ class GrowingFile:
         self._is_special = is_special(path)
         self.path = path if self._is_special else path.resolve()
         self.part = self.path.with_name(f"{self.path.name}.part")
-        self._replaces = self.path.exists() and not resume
         self._stream: BinaryIO | None = None
         self._resume = resume
         self._is_empty = True
@@ -43,14 +41,21 @@ class GrowingFile:
         """The whole lines of the earlier run that is resumed; a torn last line is left out."""
         if not self._resume or self._is_special:
             return []
-        earlier = self.part if self.part.exists() else self.path
+        return max(self._lines(self.part), self._lines(self.path), key=len)
+
+    def _lines(self, path: Path) -> list[bytes]:
+        """The whole lines of a file; none if it is not there."""
         try:
-            data = earlier.read_bytes()
+            data = path.read_bytes()
         except FileNotFoundError:
             return []
         except OSError as error:
             raise _refusal(self.path, error) from error
         return data[: data.rfind(b"\n") + 1].splitlines(keepends=True)
+
+    def lines_kept(self) -> list[bytes]:
+        """The whole lines that a run which was ended has left."""
+        return [] if self._is_special else self._lines(self.part)
 
     def __enter__(self) -> Self:
         kept = self.kept()
@@ -59,7 +64,11 @@ class GrowingFile:
                 # A device or a pipe keeps its name, and has no content to go on with.
                 self._stream = self.path.open("wb")
                 return self
-            if self._resume and not self.part.exists() and self.path.exists():
+            if (
+                self._resume
+                and self.path.exists()
+                and not (self.part.exists() and len(self._lines(self.part)) >= len(kept))
+            ):
                 os.replace(self.path, self.part)
             self._stream = self.part.open("r+b" if self._resume and self.part.exists() else "wb")
             self._stream.truncate(sum(map(len, kept)))
@@ -93,7 +102,7 @@ class GrowingFile:
             return
         if self._is_empty and kind is not None:
             self.part.unlink(missing_ok=True)
-        elif kind is None or not self._replaces:
+        elif kind is None:
             os.replace(self.part, self.path)
 
 

@@ -227,14 +227,15 @@ def test_a_page_and_images(stub: Stub, tmp_path: Path, monkeypatch: pytest.Monke
 
 @pytest.mark.parametrize("option", ["-o", "--view", "--png"])
 def test_outputs_are_checked_before_sampling(stub: Stub, tmp_path: Path, option: str) -> None:
-    result = run(option, tmp_path / "missing" / "folder" / "out.x")
+    result = run(option, tmp_path / "missing" / "folder" / ("out.jsonl" if option == "-o" else "out.x"))
     assert isinstance(result.exception, OutputError)
     assert stub.options == {}
     assert os.listdir(tmp_path) == []
 
 
 @pytest.mark.parametrize(
-    ("name", "help"), [("a.png", "--png"), ("a.html", "--view"), ("a.gltf", ".glb"), ("a.STL", ".glb")]
+    ("name", "help"),
+    [("a.xyz", ".jsonl"), ("a.png", "--png"), ("a.html", "--view"), ("a.gltf", ".glb"), ("a.STL", ".glb")],
 )
 def test_other_formats_are_refused(stub: Stub, tmp_path: Path, name: str, help: str) -> None:
     result = run("-o", tmp_path / name)
@@ -291,7 +292,10 @@ def test_an_interrupted_run_keeps_its_whole_lines(
     stub.interrupt_at, stub.interrupt = 2, interrupt
     result = run("-n", 5, "-o", tmp_path / "out.jsonl", "--view", tmp_path / "page.html")
     assert isinstance(result.exception, click.Abort | SystemExit)
-    kept = tmp_path / ("out.jsonl" if is_new else "out.jsonl.part")
+    if interrupt is raise_interrupt:
+        assert "2 of 5 kept" in result.stderr
+        assert "continue with --resume" in result.stderr
+    kept = tmp_path / "out.jsonl.part"
     assert [row["k"] for row in lines(kept.read_text())] == [0, 1]
     if not is_new:
         # What was there before is replaced only by a run that is complete.

@@ -66,13 +66,14 @@ def test_a_run_that_is_ended_keeps_its_lines_and_no_run_without_lines_leaves_any
         return names(tmp_path)
 
     assert run() == run(b"") == {}
-    assert run(b"one\n", b"") == {"out": b"one\n"}
-    # What would replace an older file waits beside it.
-    assert run() == {"out": b"one\n"}
-    assert run(b"two\n") == {"out": b"one\n", "out.part": b"two\n"}
-    # The lines of the later run are those that are taken up.
-    assert run(b"three\n", resume=True) == {"out": b"two\nthree\n"}
-    assert run(resume=True) == {"out": b"two\nthree\n"}
+    assert run(b"one\n", b"") == {"out.part": b"one\n"}
+    assert run(b"two\n", resume=True) == {"out.part": b"one\ntwo\n"}
+    # A complete file stays beside the lines of a run that was ended.
+    os.replace(tmp_path / "out.part", tmp_path / "out")
+    assert run(b"three\n") == {"out": b"one\ntwo\n", "out.part": b"three\n"}
+    # The longest is taken up.
+    assert run(b"four\n", resume=True) == {"out.part": b"one\ntwo\nfour\n"}
+    assert GrowingFile(tmp_path / "out").lines_kept() == [b"one\n", b"two\n", b"four\n"]
 
 
 @contextmanager

@@ -69,6 +69,8 @@ class Program:
     """Where each instance was created, by its identity: span and file."""
     external_names: Mapping[int, str] = field(default_factory=dict)
     """What the program calls its external parameters, by address."""
+    variables: Mapping[int, str] = field(default_factory=dict)
+    """Variables that hold instances, by the instance's identity."""
     names: Globals = field(default_factory=Globals)
     """Global names as they are when the program has run, for the functions and methods in its scenes."""
     scopes: list[dict[str, Any]] = field(default_factory=list)

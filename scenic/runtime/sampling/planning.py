@@ -325,7 +325,8 @@ def _is_true(node: Node) -> bool:
 
 def _object_nodes(program: Program, item: Object) -> ObjectNodes:
     span, _ = _place(program, item)
-    label = _name(item) if span is None else f"{_name(item)} (line {span.line})"
+    name = _called(program, item)
+    label = name if span is None else f"{name} (line {span.line})"
     values = (*body_operands(item), item.allowCollisions)
     position, orientation, size, shape, allowed = (as_node(value) for value in values)
     return ObjectNodes(position, orientation, size, shape, allowed, label, span)
@@ -379,6 +380,12 @@ def _requirements(program: Program) -> list[Check]:
             )
         )
     return checks
+
+
+def _called(program: Program, item: Object) -> str:
+    """The property `name` of an object, else the variable that holds it, else its class."""
+    given = getattr(item, "name", None)
+    return given if isinstance(given, str) and given else program.variables.get(id(item), _name(item))
 
 
 def _name(item: Any) -> str:
