@@ -266,7 +266,7 @@ _FORMS: Final[Mapping[str, "Form"]] = MappingProxyType(
 def _total(rows: "Sequence[SimulationRow]", max_steps: int) -> str:
     """What came of all simulations, in one line."""
     made = [row.about for row in rows if row.about is not None]
-    late = sum(about["ended"] == "timeLimit" for about in made)
+    late = sum(map(_is_late, made))
     parts = [f"{len(made):,} of {len(rows):,} simulations"]
     if late:
         parts.append(f"{late:,} reached the time limit (--time {max_steps})")
@@ -275,6 +275,11 @@ def _total(rows: "Sequence[SimulationRow]", max_steps: int) -> str:
     if failed := sum(row.error is not None for row in rows):
         parts.append(f"{failed:,} failed")
     return ", ".join(parts)
+
+
+def _is_late(about: Mapping[str, Any]) -> bool:
+    """Whether the limit of the command ended a simulation, rather than one of the program."""
+    return bool(about["reason"] == f"reached time limit ({about['steps']} steps)")
 
 
 def _show(row: "SimulationRow") -> int:
@@ -288,7 +293,7 @@ def _show(row: "SimulationRow") -> int:
         for reason, times in row.rejections:
             print(f"  {reason}: {times} {'try' if times == 1 else 'tries'}")
         return NOT_ALL
-    more = "; --time gives more" if row.about["ended"] == "timeLimit" else ""
+    more = "; --time gives more" if _is_late(row.about) else ""
     print(f"simulation {row.k}: {row.about['steps']} steps, {row.about['reason']}{more}")
     for item in row.about["requirements"]:
         verdict = "not evaluated" if item["verdict"] is None else item["verdict"].lower().replace("_", " ")
