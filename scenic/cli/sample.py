@@ -116,6 +116,17 @@ __all__ = ["sample"]
 )
 @click.option("--dask", metavar="ADDRESS", help="Sample on a Dask cluster: the address of its scheduler.")
 @click.option(
+    "--sampler",
+    metavar="NAME",
+    help="Let a sampler of `scenic falsify` (halton, grid, cma, ...) choose the external parameters, else all draws.",
+)
+@click.option(
+    "--minimize",
+    "minimized",
+    metavar="EXPR",
+    help="With --sampler: an expression over parameters, `ego` and `objects` that samplers which learn make small.",
+)
+@click.option(
     "--view", metavar="PAGE.html", help="Make a page in which the scenes can be turned and stepped through."
 )
 @click.option(
@@ -172,6 +183,8 @@ def sample(
     form: str | None,
     part_size: int,
     dask: str | None,
+    sampler: str | None,
+    minimized: str | None,
     view: str | None,
     png: str | None,
     camera: str | None,
@@ -242,6 +255,14 @@ def sample(
         raise click.UsageError("--resume needs a file or a data set to go on with: -o OUT.jsonl, -o FOLDER/")
     if form is not None and dataset is None:
         raise click.UsageError("--format is for data sets: -o FOLDER/")
+    if minimized is not None and sampler is None:
+        raise click.UsageError("--minimize needs a sampler that learns: --sampler cma")
+    if sampler is not None and (
+        jobs > 1 or resume or sobol or first or profile or dask or dataset is not None or table is not None
+    ):
+        raise click.UsageError(
+            "--sampler goes without -j, --dask, --resume, --first, --sobol, --profile, data sets and Parquet"
+        )
     grown = None if target in (None, sinks.STANDARD_OUTPUT) else GrowingFile(target, resume=resume)
     deadline = None if time_limit is None else time.monotonic() + time_limit
 
@@ -275,6 +296,14 @@ def sample(
         sys.stderr.write(f"seed {seed} (the same scenes again: --seed {seed})\n")
     lines = SceneLines((path.name, loaded.digest), changed=properties == "changed", points=points)
     job = batches.Job(seed, first + done, first + count, max_attempts, deadline, **batches.method_of(points))
+    if sampler is None:
+        results = batches.results_of(loaded, job)
+    else:
+        from scenic.falsification.objectives import Objective
+        from scenic.falsification.sampling import sampled_by
+
+        objective = None if minimized is None else Objective(expression=minimized)
+        results = sampled_by(loaded, sampler, count, seed=seed, objective=objective)
     missing: list[Exhausted] = []
     to_terminal = target == sinks.STANDARD_OUTPUT and sys.stdout.isatty()
     shown = _Shown() if to_terminal else None
@@ -316,7 +345,7 @@ def sample(
                 missing.extend(made.missing)
                 advance(made.job.last - made.job.first, made.attempts)
         else:
-            for result in batches.results_of(loaded, job):
+            for result in results:
                 if isinstance(result, Exhausted):
                     missing.append(result)
                 else:

@@ -10,11 +10,14 @@ from click.testing import CliRunner, Result
 
 import scenic
 from scenic.cli.falsify import falsify as command
-from scenic.falsification.objectives import ObjectiveError
+from scenic.falsification.objectives import Objective, ObjectiveError
 from scenic.falsification.report import importances, load_result, report_page
+from scenic.falsification.sampling import sampled_by
 from scenic.falsification.search import FalsificationResult, SearchError
 from scenic.falsification.store import SearchFolderError, read_rows
 from scenic.language.errors import InvalidScenarioError
+from scenic.runtime.scenes.scene import Scene
+from tests.cli.commands import run_here
 
 BRAKE = """
 from scenic.simulators.kinematic import SetVelocity
@@ -203,3 +206,26 @@ def test_the_command(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "report.html").exists()
     rare = run(*common, "--threshold", "-2.999")
     assert rare.return_value == 3
+
+
+def test_sampling_by_a_sampler(tmp_path: Path) -> None:
+    program = tmp_path / "two.scenic"
+    program.write_text(
+        "x = VerifaiRange(0, 1)\ny = VerifaiRange(0, 1)\nparam x = x, far = abs(x - 0.3) + abs(y - 0.9)\n"
+        "ego = new Object at (x, Range(0, 1))\n"
+    )
+    done = run_here(
+        ["sample", program, "-n", 8, "--seed", 1, "--sampler", "halton", "-o", tmp_path / "halton.jsonl"]
+    )
+    assert done.returncode == 0, done.stderr
+    scenes = [json.loads(line) for line in (tmp_path / "halton.jsonl").read_text().splitlines()]
+    assert [scene["params"]["x"] for scene in scenes[:3]] == [0.5, 0.25, 0.75]
+    assert len({scene["objects"][0]["position"][1] for scene in scenes}) == 8
+    found = list(sampled_by(scenic.load(program), "cma", 60, seed=1, objective=Objective(expression="far")))
+    values = [scene.params["far"] for scene in found if isinstance(scene, Scene)]
+    assert len(values) == 60
+    assert sum(values[-12:]) < 0.5 * sum(values[:12])
+    grid = run_here(["sample", program, "-n", 2, "--seed", 1, "--sampler", "gird"])
+    assert "did you mean 'grid'" in grid.stderr
+    assert run_here(["sample", program, "--sampler", "cma", "-j", 2]).returncode == 2
+    assert run_here(["sample", program, "--minimize", "far"]).returncode == 2

@@ -1,0 +1,64 @@
+"""Scenes whose draws a sampler chooses, without a search's rows and files."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from scenic.falsification.objectives import Objective
+from scenic.falsification.samplers import make_sampler
+from scenic.falsification.samplers.protocol import Exhausted as NoMorePoints
+from scenic.falsification.space import space_of
+from scenic.language.errors import InvalidScenarioError
+from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.scenes.scene import Scene
+
+if TYPE_CHECKING:
+    from scenic.runtime.scenes.scenario import Scenario
+
+__all__ = ["sampled_by"]
+
+_TOGETHER: Final = 64
+"""Points asked for at a time where the sampler does not care."""
+_ATTEMPTS: Final = 1000
+
+
+def sampled_by(
+    scenario: "Scenario", name: str, count: int, *, seed: int, objective: Objective | None = None
+) -> Iterator[Scene | Exhausted]:
+    """Scenes of the points that a sampler chooses: of the external parameters, if there are any, else of all draws.
+
+    Scenes that break a requirement are reported as `Exhausted`; draws that are not chosen are tried again up to a thousand times.
+
+    Args:
+        scenario: the scenario.
+        name: the name of the sampler.
+        count: how many scenes, or fewer where the sampler has no more points.
+        seed: of the sampler and of all other draws.
+        objective: the number that samplers which learn make small; without it they are told only which points were rejected.
+
+    """
+    space = space_of(scenario)
+    if not len(space):
+        raise InvalidScenarioError(
+            "there is nothing that a sampler could choose: nothing in the program is random",
+            help="draw something by `Range`, or `VerifaiRange`",
+        )
+    sampler = make_sampler(name, space, seed)
+    attempts = 1 if len(space) == len(scenario.axes) else _ATTEMPTS
+    made = 0
+    while made < count:
+        try:
+            points = sampler.ask(sampler.batch or _TOGETHER)[: count - made]
+        except NoMorePoints:
+            return
+        numbers = space.numbers(points)
+        columns = {item.address: numbers[:, place] for place, item in enumerate(space.coordinates)}
+        values = np.full(len(points), np.nan)
+        results = scenario.chosen(columns, len(points), seed=seed, first=made, max_attempts=attempts)
+        for place, result in enumerate(results):
+            if not isinstance(result, Exhausted):
+                values[place] = 0.0 if objective is None else objective.of_scene(result)
+            yield result
+        sampler.tell(points, values)
+        made += len(points)
