@@ -100,8 +100,9 @@ def test_an_element_that_no_place_has(program):
     [
         ("inter = Uniform(*filter(lambda i: i.is3Way, network.intersections))", "line 4 left 0 of 1"),
         (
-            "inter = Uniform(*network.intersections, *network.intersections)\n"
-            "none = filter(lambda m: m.startLane is m.endLane, inter.maneuvers)\nturn = Uniform(*none)",
+            """inter = Uniform(*network.intersections, *network.intersections)
+none = filter(lambda m: m.startLane is m.endLane, inter.maneuvers)
+turn = Uniform(*none)""",
             "line 5 left 0 of 24",
         ),
     ],
