@@ -293,6 +293,14 @@ class Stretch:
         return found
 
     @cached_property
+    def mentions(self) -> Mapping[str, Sequence[tuple[int, int]]]:
+        """Where each name is read or written: line and column."""
+        found: dict[str, list[tuple[int, int]]] = {}
+        for each in self.references.values():
+            found.setdefault(each.node.id, []).append((each.node.lineno, each.node.col_offset))
+        return found
+
+    @cached_property
     def loaded(self) -> frozenset[Binding]:
         """What is read here of what scopes within the module bind."""
         return frozenset(

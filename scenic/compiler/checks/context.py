@@ -351,11 +351,10 @@ class Context:
     def mentions(self, name: str) -> list[tuple[int, int]]:
         """Where a name is read or written, in order."""
         return sorted(
-            position(reference.node)
+            place
             for stretch in self.resolution.stretches
             if name in stretch.common("mentioned", _mentioned)
-            for reference in stretch.references.values()
-            if reference.node.id == name
+            for place in stretch.mentions[name]
         )
 
     # What is said about it
@@ -546,4 +545,4 @@ ProgramRule = Callable[[Context], Iterator[Diagnostic]]
 
 
 def _mentioned(stretch: Stretch) -> frozenset[str]:
-    return frozenset(reference.node.id for reference in stretch.references.values())
+    return frozenset(stretch.mentions)
