@@ -35,6 +35,8 @@ class _Maker:
     objects: list[str] = field(default_factory=list)
     classes: list[str] = field(default_factory=lambda: ["Object"])
     behaviors: list[str] = field(default_factory=list)
+    fixed: bool = False
+    """Whether no distribution may be made: in requirements and behaviors."""
 
     def pick(self, *options: str) -> str:
         return str(self.draw(st.sampled_from(options)))
@@ -56,22 +58,24 @@ class _Maker:
     # Expressions
 
     def number(self, depth: int = 2) -> str:
-        leaves = [
-            lambda: self.pick(*_NUMBERS),
-            lambda: f"Range({self.pick('-2', '0')}, {self.pick('1', '3')})",
-        ]
+        leaves = [lambda: self.pick(*_NUMBERS)]
+        if not self.fixed:
+            leaves.append(lambda: f"Range({self.pick('-2', '0')}, {self.pick('1', '3')})")
         if self.numbers:
             leaves.append(lambda: self.pick(*self.numbers))
         inner = depth - 1
-        others = [
-            lambda: f"({self.number(inner)} {self.pick('+', '-', '*')} {self.number(inner)})",
-            lambda: f"{self.pick('abs', 'sin', 'cos')}({self.number(inner)})",
-            lambda: f"{self.pick('max', 'min')}({self.number(inner)}, {self.number(inner)})",
+        drawn = [
             lambda: f"Uniform({self.number(inner)}, {self.number(inner)})",
             lambda: f"DiscreteRange({self.pick('-1', '0')}, {self.pick('2', '4')})",
             lambda: f"Normal({self.number(0)}, 1)",
             lambda: f"TruncatedNormal({self.number(0)}, 1, -3, 3)",
             lambda: f"Discrete({{{self.number(inner)}: 1, {self.number(inner)}: 2}})",
+        ]
+        others = [
+            *(() if self.fixed else drawn),
+            lambda: f"({self.number(inner)} {self.pick('+', '-', '*')} {self.number(inner)})",
+            lambda: f"{self.pick('abs', 'sin', 'cos')}({self.number(inner)})",
+            lambda: f"{self.pick('max', 'min')}({self.number(inner)}, {self.number(inner)})",
             lambda: f"({self.number(inner)} if {self.pick('True', 'False')} else {self.number(inner)})",
             lambda: f"{self.vector(inner)}.{self.pick('x', 'y', 'z')}",
             lambda: f"(distance from {self.vector(inner)} to {self.vector(inner)})",
@@ -88,7 +92,8 @@ class _Maker:
         return self.one(depth, leaves, others)
 
     def angle(self) -> str:
-        return self.pick("30 deg", "-1", "Range(0, 360) deg", "Range(-0.5, 0.5)", "Uniform(0, 90) * 1 deg")
+        drawn = () if self.fixed else ("Range(0, 360) deg", "Range(-0.5, 0.5)", "Uniform(0, 90) * 1 deg")
+        return self.pick("30 deg", "-1", *drawn)
 
     def vector(self, depth: int = 2) -> str:
         inner = depth - 1
@@ -104,7 +109,7 @@ class _Maker:
             lambda: f"({self.vector(inner)} + {self.vector(inner)})",
             lambda: f"({self.vector(inner)} offset by {self.vector(inner)})",
             lambda: f"({self.vector(inner)} offset along {self.angle()} by {self.vector(inner)})",
-            lambda: f"Uniform({self.vector(inner)}, {self.vector(inner)})",
+            lambda: self.chosen(self.vector(inner), self.vector(inner)),
             lambda: f"{self.vector(inner)}.rotatedBy({self.angle()})",
         ]
         if self.objects:
@@ -123,7 +128,7 @@ class _Maker:
     def region(self, depth: int = 1) -> str:
         inner = depth - 1
         leaves = [
-            lambda: f"CircularRegion({self.vector(0)}, {self.pick('3', '6', 'Range(4, 7)')})",
+            lambda: f"CircularRegion({self.vector(0)}, {self.chosen('3', '6')})",
             lambda: (
                 f"RectangularRegion({self.vector(0)}, {self.angle()}, {self.pick('4', '8')}, {self.pick('5', '9')})"
             ),
@@ -139,7 +144,7 @@ class _Maker:
             lambda: (
                 f"{self.region(inner)}.{self.pick('union', 'difference', 'intersect')}({self.region(inner)})"
             ),
-            lambda: f"Uniform({self.region(inner)}, {self.region(inner)})",
+            lambda: self.chosen(self.region(inner), self.region(inner)),
         ]
         if self.objects:
             others.append(lambda: f"{self.thing()}.{self.pick('topSurface', 'visibleRegion')}")
@@ -148,8 +153,12 @@ class _Maker:
     def thing(self) -> str:
         name = self.pick(*self.objects)
         if len(self.objects) > 1 and self.rarely(7):
-            return f"Uniform({name}, {self.pick(*self.objects)})"
+            return self.chosen(name, self.pick(*self.objects))
         return name
+
+    def chosen(self, one: str, other: str) -> str:
+        """A random choice, where it may be one."""
+        return one if self.fixed else f"Uniform({one}, {other})"
 
     def condition(self, depth: int = 1) -> str:
         inner = depth - 1
@@ -253,6 +262,7 @@ def _behavior(maker: _Maker, name: str) -> str:
 
 def _requirement(maker: _Maker, moving: bool) -> str:
     word = maker.pick("require", "require", "require[0.7]")
+    maker.fixed = True
     condition = maker.condition()
     if moving and word == "require" and maker.upto(1):
         condition = maker.pick(
@@ -261,6 +271,7 @@ def _requirement(maker: _Maker, moving: bool) -> str:
             f"({condition}) until ({maker.condition()})",
             f"({condition}) implies next ({maker.condition()})",
         )
+    maker.fixed = False
     return f"{word} {condition}"
 
 

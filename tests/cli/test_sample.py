@@ -38,6 +38,7 @@ class Stub:
         self.reason = "attempts"
         self.sampled = 0
         self.interrupt_at = -1
+        self.approximation = None
         self.interrupt: Callable[[], None] = lambda: None
 
     def load(self, path: Path, **options: Any) -> "Stub":
@@ -90,6 +91,7 @@ def test_options_reach_the_pipeline(stub: Stub) -> None:
         "first": 0,
         "seed": -3,
         "params": {"a": 5, "b": "x=y", "c": ""},
+        "approximate": None,
         "scenario": "Main",
         "model": "m.n",
         "mode2D": True,
