@@ -157,8 +157,8 @@ class _Maker:
         return name
 
     def chosen(self, one: str, other: str) -> str:
-        """A random choice, where it may be one."""
-        return one if self.fixed else f"Uniform({one}, {other})"
+        """A random choice, where it may be one, now and then."""
+        return f"Uniform({one}, {other})" if not self.fixed and self.rarely(2) else one
 
     def condition(self, depth: int = 1) -> str:
         inner = depth - 1
