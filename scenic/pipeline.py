@@ -338,6 +338,7 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
     context = Context(locate=span_of, name=locator.name, mode_2d=options.mode_2d)
     program = Program(overrides=dict(options.params), context=context)
     context.parameter = program.parameter
+    context.given_parameters = frozenset(options.params)
     modules = Loader(_Modules(Path(filename).parent), context, program, model=options.model)
     token = current.set(context)
     try:

@@ -4,6 +4,7 @@ from typing import Any
 
 from scenic.domains.driving.roads import Network
 from scenic.language.errors import InvalidScenarioError
+from scenic.language.spans import Span
 from scenic.runtime.program.builtins import running_simulation
 from scenic.runtime.program.context import current
 
@@ -59,11 +60,15 @@ def network_of_program(parameters: Any) -> Network:
 
 
 def _wrong(parameter: str, message: str, help: str) -> SettingError:
-    """An error at the place where the program sets a parameter, else at its `model` statement."""
+    """An error where a parameter is set: outside of the program, by a statement of it, else by its `model` statement."""
     error = SettingError(message, help=help)
     context = current.get()
     if context is None:
         return error
+    if parameter in context.given_parameters:
+        # The program has no line that would have to change.
+        error.message = f"{message} (given as `--param {parameter}=...`, or in `params`)"
+        return error.at((Span(1, 0, 1, 0), f"--param {parameter}"))
     return error.at(context.parameter_places.get(parameter, context.model_place))
 
 

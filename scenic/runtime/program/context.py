@@ -77,6 +77,8 @@ class Context:
         """What an external sampler may choose, by address."""
         self.parameter: Callable[[str, Any], Any] = lambda _name, default: default
         """A global parameter as the program has set it so far, or else a default."""
+        self.given_parameters: frozenset[str] = frozenset()
+        """The parameters whose values are given from outside, and win over the program's own."""
         self.parameter_places: dict[str, tuple[Span | None, str | None]] = {}
         """Where the program itself, rather than its model, has set each of its parameters: place and file."""
         self.model_place: tuple[Span | None, str | None] = None, None
