@@ -6,6 +6,6 @@ model scenic.simulators.newtonian.driving_model
 ego = new Car with behavior FollowLaneBehavior(target_speed=7)
 other = new Car on ego.oppositeLaneGroup, with behavior FollowLaneBehavior(target_speed=7)
 
-require (relative heading of other from ego) > 150 deg
+require abs(relative heading of other from ego) > 150 deg
 require 20 < (distance from ego to other) < 60
 require other.road is ego.road
