@@ -42,7 +42,7 @@ def runs(problem: str, ranges: list[Any], name: str, seed: int, most: int) -> in
     from verifai.features import Box, Feature, FeatureSpace
     from verifai.samplers.feature_sampler import FeatureSampler
 
-    np.random.seed(seed)  # noqa: NPY002 - VerifAI draws from the global generators  # noqa: NPY002 - the library draws from the global one
+    np.random.seed(seed)  # noqa: NPY002 - VerifAI draws from the global generators
     random.seed(seed)
     space = FeatureSpace(
         {f"x{place}": Feature(Box((float(low), float(high)))) for place, (low, high) in enumerate(ranges)}
