@@ -50,7 +50,7 @@ def milliseconds(engine: Engine, lanes: int, rounds: int) -> float:
     inner._pace = OfSize(lanes)
     times = []
     for seed in range(rounds + SETTLING):
-        pending = Pending(inner._chances)
+        pending = Pending(inner._chances, inner._soft_places)
         pending.add([(seed, number) for number in range(lanes)])
         begun = time.thread_time()
         inner._round(pending, {}, 10**6, lanes, lanes, more=False)

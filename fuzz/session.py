@@ -35,8 +35,9 @@ _LONGEST: Final = 40.0
 """For so many seconds a failure is shrunk at most."""
 _ENDLESS: Final = 0.5
 """What takes longer than this is still far too long, where shorter texts are looked for that take too long."""
-_UNFINISHED: Final = frozenset({"SC900", "SC120"})
-"""Errors of programs that are right, but need more than this version, or the running Python, has."""
+_UNFINISHED: Final = frozenset({"SC900", "SC120", "SC214", "SC404"})
+"""Errors of programs that are right, but need more than this version or the running Python has, and errors about values, whose
+kinds the grammar does not know."""
 _WORDS: Final = 8
 _ROUNDS_APART: Final = 1 << 20
 

@@ -21,7 +21,7 @@ import scenic
 from scenic.formats.coco import LabelledImages
 from scenic.simulators.cameras import Present
 
-PROGRAM = Path(__file__).parent / "intersection.scenic"
+PROGRAM = Path(__file__).parent / "labels.scenic"
 CAMERA = "front"
 MOST_STEPS = 120
 

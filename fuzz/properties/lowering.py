@@ -19,8 +19,8 @@ from scenic.language.spans import Span
 
 __all__ = ["OF_TEXTS", "Lowering", "check_code", "check_places", "lowered"]
 
-_HARMLESS: Final = frozenset({"SC202", "SC203", "SC204"})
-"""Errors that make no difference to lowering: names that are not defined, or not yet."""
+_HARMLESS: Final = frozenset({"SC202", "SC203", "SC204", "SC214", "SC404"})
+"""Errors that make no difference to lowering: names that are not defined, or not yet, and values of the wrong kind."""
 
 _COMPLAINTS: Final = (
     r"duplicate argument '.*' in function definition",

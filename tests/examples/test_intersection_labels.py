@@ -11,7 +11,7 @@ import trimesh
 
 import scenic
 
-PROGRAM = Path(__file__).parents[2] / "examples" / "intersection_labels" / "intersection.scenic"
+PROGRAM = Path(__file__).parents[2] / "examples" / "intersection_labels" / "labels.scenic"
 HALF = np.array([0.75, math.radians(30)])
 STEP = math.radians(0.1)
 

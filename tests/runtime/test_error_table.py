@@ -31,7 +31,6 @@ ERRORS: list[tuple[type[Exception], str, str, str]] = [
     (ScenicSyntaxError, 'SC101', "x = «'»abc", "add `'`"),
     (ScenicSyntaxError, "SC110", "new Object at«» \n", ""),
     (ScenicSyntaxError, "SC201", "«take 3»", "it can stand in a behavior"),
-    (ScenicSyntaxError, "SC201", "behavior B():\n    «do B(), B()»\n", "only scenarios run in parallel, in a"),
     (ScenicSyntaxError, "SC200", "«ego», x = 1, 2", "write `ego = value` as a statement of its"),
     (ScenicSyntaxError, "SC200", "«ego» += 3", "write `ego = value` as a statement of its"),
     (ScenicSyntaxError, "SC200", "import math as «ego»", "write `ego = value` as a statement of its"),

@@ -123,7 +123,7 @@ def test_simulations_are_data() -> None:
     data = scenario.simulationToBytes(first)
     again = scenario.simulationFromBytes(data, simulator, maxSteps=6, enableDivergenceCheck=True)
     assert taken(again)[:4] == taken(first)
-    other = scenic.scenarioFromString(DRAWING + "\n")
+    other = scenic.scenarioFromString(DRAWING + "another = 3\n")
     with pytest.raises(SerializationError, match="another program"):
         other.simulationFromBytes(data, simulator, maxSteps=4)
     assert taken(other.simulationFromBytes(data, simulator, verify=False, maxSteps=4)) == taken(first)

@@ -46,8 +46,6 @@ class C:
         wait
 behavior B():
     take 1, 2
-    do f(), f()
-    #^^^^^^^^^^ SC201 `do` with several targets cannot be used in a behavior
     abort
     #^^^^ SC201 `abort` outside of a try-interrupt statement
     try:
