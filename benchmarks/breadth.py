@@ -37,7 +37,7 @@ CROWD = "".join(
 
 
 def child(path: str) -> None:
-    """What our fresh process does: prints milliseconds a scene as JSON."""
+    """The work of our fresh process: prints milliseconds a scene as JSON."""
     import scenic
 
     begun = time.perf_counter()

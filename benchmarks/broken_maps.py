@@ -60,7 +60,7 @@ def _break(root: Any, draw: random.Random) -> str:
 
 
 def judged(text: str) -> tuple[str, int]:
-    """What loading a variant comes to, ``"error"``, ``"network"`` or a traceback, and the number of diagnostics."""
+    """The outcome of loading a variant, ``"error"``, ``"network"`` or a traceback, and the number of diagnostics."""
     try:
         network = network_of.__wrapped__(text.encode(), "broken.xodr", UNCACHED)
         _ = network.drivableRegion, network.walkableRegion, network.curbRegion, network.shoulderRegion

@@ -63,7 +63,7 @@ def prepared(folder: Path) -> list[Path]:
 
 
 def child(path: str, kind: str, scenes: int) -> None:
-    """What our fresh process does: prints what was measured, or rows of scenes, as JSON."""
+    """The work of our fresh process: prints what was measured, or rows of scenes, as JSON."""
     import scenic
 
     begun = time.perf_counter()
@@ -87,7 +87,7 @@ def child(path: str, kind: str, scenes: int) -> None:
 
 
 def ours(path: Path, kind: str, scenes: int) -> Any:
-    """What a fresh process prints."""
+    """The output of a fresh process."""
     command = [sys.executable, "-m", "benchmarks.driving", "--child", str(path), kind, str(scenes)]
     done = subprocess.run(command, cwd=HERE.parent, capture_output=True, text=True, check=True)
     return json.loads(done.stdout)
@@ -172,7 +172,7 @@ def compare(command: str, programs: list[Path], scenes: int) -> None:
 
 
 def _lanes_of(places: Any, lanes: Any) -> list[int]:
-    """How many places lie in each lane first; the last number is that of places outside all."""
+    """Numbers of places by the lane that holds them first; the last is the number of places outside all lanes."""
     from scenic.domains.driving.lookups import Finder
 
     found = Finder(lanes, 0.05).near(places)

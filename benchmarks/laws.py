@@ -1,4 +1,4 @@
-"""Whether analysis leaves the law alone: ``python -m benchmarks.laws [--scenes N]``.
+"""Compares pruned and unpruned samples: ``python -m benchmarks.laws [--scenes N]``.
 
 Samples of programs with what analysis does and without it (Kolmogorov and Smirnov's test of every number that scenes show, and of a
 mixture of them): those in ``pruning/`` whose requirements a thousandth of samples meets, others of two and three dimensions, and

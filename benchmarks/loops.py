@@ -29,7 +29,7 @@ THEIRS = 200
 
 
 def child(path: str, folder: str, kind: str) -> None:
-    """What our fresh process does: prints milliseconds a scene as JSON."""
+    """The work of our fresh process: prints milliseconds a scene as JSON."""
     import scenic
 
     parameters = {"folder": folder} if "mesh" in Path(path).name else {}

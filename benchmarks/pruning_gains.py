@@ -1,4 +1,4 @@
-"""What analysis saves: ``python -m benchmarks.pruning_gains [--solver] [--candidates N]``.
+"""Candidates that analysis saves: ``python -m benchmarks.pruning_gains [--solver] [--candidates N]``.
 
 For each program in ``pruning/``, whose requirements few samples meet: candidates a scene without analysis and with it, and seconds
 to load without and with it. With ``--solver``, each box that intervals leave is asked of z3 as well: candidates a scene
