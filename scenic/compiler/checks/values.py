@@ -27,13 +27,7 @@ _ORDERED: Final = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 
 _PROPERTIES: Final = properties_of("Object")
 
-_PROPERTY_TYPES: Final = {
-    "vector": VECTOR,
-    "scalar": SCALAR,
-    "region": REGION,
-    "shape": SHAPE,
-    "orientation": ORIENTATION,
-}
+_PROPERTY_TYPES: Final = {each.name: each for each in (ORIENTATION, REGION, SCALAR, SHAPE, VECTOR)}
 """The types of properties by the words that declare them; of others the words are shown."""
 
 
