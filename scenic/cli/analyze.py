@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from scenic.cli.options import program_options
+from scenic.cli.options import program_argument, program_options
 from scenic.cli.output import CLEAN, FINDINGS, has_colours
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ __all__ = ["analyze"]
 
 
 @click.command("analyze")
-@click.argument("file", metavar="FILE", type=click.Path())
+@program_argument
 @program_options
 @click.option(
     "-n",

@@ -8,7 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from scenic.cli.options import named_values, program_options, seconds, simulator_option, timestep_option
+from scenic.cli.options import (
+    count_option,
+    dask_option,
+    jobs_option,
+    named_values,
+    program_argument,
+    program_options,
+    seconds,
+    seed_option,
+    simulator_option,
+    steps_option,
+    timestep_option,
+)
 from scenic.cli.output import CLEAN
 from scenic.cli.running import NOT_ALL, ended_by_signals, engine_of, progress_bar
 
@@ -19,15 +31,8 @@ __all__ = ["falsify"]
 
 
 @click.command()
-@click.argument("file", metavar="FILE", type=click.Path())
-@click.option(
-    "-n",
-    "count",
-    metavar="N",
-    type=click.IntRange(min=1),
-    default=1000,
-    help="Runs at most.  [default: 1000]",
-)
+@program_argument
+@count_option("Runs at most.", default=1000)
 @click.option(
     "--sampler",
     metavar="NAME",
@@ -86,35 +91,14 @@ __all__ = ["falsify"]
     type=click.IntRange(min=1),
     help="Points asked for at a time.  [default: the sampler's]",
 )
-@click.option(
-    "--seed",
-    metavar="S",
-    type=int,
-    help="Searches of one seed are always the same. Without it, one is drawn and shown.",
-)
+@seed_option("Searches")
 @click.option("--static", is_flag=True, help="Search scenes by themselves, without simulations.")
 @simulator_option
-@click.option(
-    "--time",
-    "--steps",
-    "max_steps",
-    metavar="STEPS",
-    type=click.IntRange(min=0),
-    default=100,
-    help="Steps of a simulation at most.  [default: 100]",
-)
+@steps_option
 @timestep_option
 @program_options
-@click.option(
-    "-j",
-    "--jobs",
-    "jobs",
-    metavar="J",
-    type=click.IntRange(min=1),
-    default=1,
-    help="Processes.  [default: 1]",
-)
-@click.option("--dask", metavar="ADDRESS", help="Simulate on a Dask cluster: the address of its scheduler.")
+@jobs_option("Processes.")
+@dask_option("Simulate")
 @click.option(
     "-o",
     "--output",

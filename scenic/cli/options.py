@@ -12,16 +12,23 @@ from typing import Any, Final, TypeVar
 import click
 
 __all__ = [
+    "count_option",
+    "dask_option",
+    "first_option",
     "image_size_option",
+    "jobs_option",
     "named_values",
     "no_cache_option",
     "outlook_option",
     "parameter_value",
+    "program_argument",
     "program_options",
     "seconds",
+    "seed_option",
     "settings_of",
     "simulator_option",
     "sobol_option",
+    "steps_option",
     "swept_program_options",
     "timestep_option",
 ]
@@ -143,6 +150,69 @@ no_cache_option = click.option(
     help="Neither read nor keep on disk what is computed of meshes.",
 )
 
+
+program_argument = click.argument("file", metavar="FILE", type=click.Path())
+
+
+def count_option(help: str, *, default: int = 1) -> Callable[[_Command], _Command]:
+    """The option ``-n``: how many results to make."""
+    return click.option(
+        "-n",
+        "--count",
+        "count",
+        metavar="N",
+        type=click.IntRange(min=1),
+        default=default,
+        help=f"{help}  [default: {default}]",
+    )
+
+
+def first_option(help: str) -> Callable[[_Command], _Command]:
+    """The option ``--first``: the number of the first result."""
+    return click.option(
+        "--first", metavar="K", type=click.IntRange(min=0), default=0, help=f"{help}  [default: 0]"
+    )
+
+
+def seed_option(things: str) -> Callable[[_Command], _Command]:
+    """The option ``--seed``, from which all ``things`` follow."""
+    return click.option(
+        "--seed",
+        metavar="S",
+        type=int,
+        help=f"{things} of one seed are always the same. Without it, one is drawn and shown.",
+    )
+
+
+def jobs_option(help: str) -> Callable[[_Command], _Command]:
+    """The option ``-j``: the number of processes."""
+    return click.option(
+        "-j",
+        "--jobs",
+        "jobs",
+        metavar="J",
+        type=click.IntRange(min=1),
+        default=1,
+        help=f"{help}  [default: 1]",
+    )
+
+
+def dask_option(verb: str) -> Callable[[_Command], _Command]:
+    """The option ``--dask``: a cluster to run on."""
+    return click.option(
+        "--dask", metavar="ADDRESS", help=f"{verb} on a Dask cluster: the address of its scheduler."
+    )
+
+
+steps_option = click.option(
+    "--time",
+    "--steps",
+    "max_steps",
+    metavar="STEPS",
+    type=click.IntRange(min=0),
+    default=100,
+    help="Steps of a simulation at most.  [default: 100]",
+)
 
 sobol_option = click.option(
     "--sobol",

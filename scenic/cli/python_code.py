@@ -7,6 +7,7 @@ from typing import Final
 import click
 
 from scenic.cli.deep import call_deep
+from scenic.cli.options import program_argument
 from scenic.cli.output import exit_code, show_diagnostics
 from scenic.cli.render import Sources
 from scenic.compiler.check import in_order
@@ -19,7 +20,7 @@ _FRAMES: Final = 10_000
 
 
 @click.command()
-@click.argument("file", metavar="FILE", type=click.Path())
+@program_argument
 def python_code(file: str) -> int:
     """Show the Python code that a program becomes."""
     source = read_source(file)

@@ -14,7 +14,19 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from scenic.cli import sinks
-from scenic.cli.options import image_size_option, outlook_option, program_options, seconds, sobol_option
+from scenic.cli.options import (
+    count_option,
+    dask_option,
+    first_option,
+    image_size_option,
+    jobs_option,
+    outlook_option,
+    program_argument,
+    program_options,
+    seconds,
+    seed_option,
+    sobol_option,
+)
 from scenic.cli.output import CLEAN, has_colours
 from scenic.cli.running import NOT_ALL, ended_by_signals, engine_of, progress_bar
 from scenic.formats.files import OutputError
@@ -32,31 +44,10 @@ __all__ = ["sample"]
 
 
 @click.command()
-@click.argument("file", metavar="FILE", type=click.Path())
-@click.option(
-    "-n",
-    "--count",
-    "count",
-    metavar="N",
-    type=click.IntRange(min=1),
-    default=1,
-    help="How many scenes.  [default: 1]",
-)
-@click.option(
-    "--first",
-    metavar="K",
-    type=click.IntRange(min=0),
-    default=0,
-    help="Number of the first scene; -n scenes from there on.  [default: 0]",
-)
-@click.option(
-    "-j",
-    "--jobs",
-    metavar="J",
-    type=click.IntRange(min=1),
-    default=1,
-    help="Make JSON Lines in so many processes. The scenes and their order are the same.  [default: 1]",
-)
+@program_argument
+@count_option("How many scenes.")
+@first_option("Number of the first scene; -n scenes from there on.")
+@jobs_option("Make JSON Lines in so many processes. The scenes and their order are the same.")
 @click.option(
     "--resume",
     is_flag=True,
@@ -69,12 +60,7 @@ __all__ = ["sample"]
     show_default=True,
     help="Which properties of objects JSON Lines tell: all, or those that the program gives.",
 )
-@click.option(
-    "--seed",
-    metavar="S",
-    type=int,
-    help="Scenes of one seed are always the same. Without it, one is drawn and shown.",
-)
+@seed_option("Scenes")
 @sobol_option
 @click.option(
     "--approximate",
@@ -114,7 +100,7 @@ __all__ = ["sample"]
     show_default=True,
     help="Scenes in each file of a data set.",
 )
-@click.option("--dask", metavar="ADDRESS", help="Sample on a Dask cluster: the address of its scheduler.")
+@dask_option("Sample")
 @click.option(
     "--sampler",
     metavar="NAME",

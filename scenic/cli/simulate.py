@@ -13,10 +13,17 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from scenic.cli.options import (
+    count_option,
+    dask_option,
+    first_option,
+    jobs_option,
+    program_argument,
     seconds,
+    seed_option,
     settings_of,
     simulator_option,
     sobol_option,
+    steps_option,
     swept_program_options,
     timestep_option,
 )
@@ -32,39 +39,12 @@ __all__ = ["simulate"]
 
 
 @click.command()
-@click.argument("file", metavar="FILE", type=click.Path())
-@click.option(
-    "-n",
-    "--count",
-    "count",
-    metavar="N",
-    type=click.IntRange(min=1),
-    default=1,
-    help="How many simulations.  [default: 1]",
-)
-@click.option(
-    "--first",
-    metavar="K",
-    type=click.IntRange(min=0),
-    default=0,
-    help="Number of the first one.  [default: 0]",
-)
-@click.option(
-    "--seed",
-    metavar="S",
-    type=int,
-    help="Simulations of one seed are always the same. Without it, one is drawn and shown.",
-)
+@program_argument
+@count_option("How many simulations.")
+@first_option("Number of the first one.")
+@seed_option("Simulations")
 @simulator_option
-@click.option(
-    "--time",
-    "--steps",
-    "max_steps",
-    metavar="STEPS",
-    type=click.IntRange(min=0),
-    default=100,
-    help="Steps of a simulation at most.  [default: 100]",
-)
+@steps_option
 @timestep_option
 @click.option(
     "--tries",
@@ -104,16 +84,8 @@ __all__ = ["simulate"]
     help="Seconds that the program may run within one step.  [default: 10]",
 )
 @swept_program_options
-@click.option(
-    "-j",
-    "--jobs",
-    "jobs",
-    metavar="J",
-    type=click.IntRange(min=1),
-    default=1,
-    help="Processes.  [default: 1]",
-)
-@click.option("--dask", metavar="ADDRESS", help="Simulate on a Dask cluster: the address of its scheduler.")
+@jobs_option("Processes.")
+@dask_option("Simulate")
 @click.option(
     "-o",
     "--output",

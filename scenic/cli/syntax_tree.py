@@ -7,6 +7,7 @@ from typing import Any, Final
 import click
 
 from scenic.cli.deep import call_deep
+from scenic.cli.options import program_argument
 from scenic.cli.output import exit_code, show_diagnostics
 from scenic.cli.render import Sources
 from scenic.compiler.check import in_order
@@ -23,7 +24,7 @@ _ALL_FIELDS: Final[dict[str, Any]] = {"show_empty": True} if sys.version_info >=
 
 
 @click.command()
-@click.argument("file", metavar="FILE", type=click.Path())
+@program_argument
 @click.option(
     "--positions", is_flag=True, help="Show where each node stands: lines from 1, columns in UTF-8 bytes."
 )

@@ -12,7 +12,7 @@ from typing import Final
 import click
 
 from scenic.cli import sinks
-from scenic.cli.options import image_size_option, outlook_option
+from scenic.cli.options import image_size_option, outlook_option, program_argument
 from scenic.cli.output import CLEAN
 from scenic.formats.reading import ReadScene, SceneFileError, read_scenes, scenes_of
 
@@ -25,7 +25,7 @@ _PAGES: Final = frozenset({".html", ".htm"})
 
 
 @click.command()
-@click.argument("file", metavar="FILE", type=click.Path())
+@program_argument
 @click.option(
     "-o",
     "--output",
