@@ -5,7 +5,7 @@ through names that are bound just once. `None` stands for all that is not certai
 """
 
 import ast
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final, Protocol
@@ -14,6 +14,7 @@ from scenic.compiler import tree as scenic
 from scenic.language.names import NAMES, NameKind
 from scenic.language.operators import OPERATORS
 from scenic.language.properties import attributes_of, properties_of
+from scenic.language.types import INSTANCES, Type
 
 __all__ = ["Kind", "KindOf", "accepts", "kind_of_type"]
 
@@ -52,7 +53,6 @@ FIELD: Final = Kind("vector field")
 FUNCTION: Final = Kind("function")
 ORIENTED_POINT: Final = Kind("oriented point")
 
-INSTANCES: Final = frozenset({"object", "oriented point", "point"})
 _SEQUENCES: Final = frozenset({"tuple", "list"})
 
 _OF_TYPE: Final[Mapping[str, Kind]] = MappingProxyType(
@@ -69,33 +69,6 @@ _OF_TYPE: Final[Mapping[str, Kind]] = MappingProxyType(
 )
 """The kinds of declared types; of others nothing is known."""
 
-_ACCEPTED: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
-    {
-        "scalar": frozenset({"number", "boolean"}),
-        "vector": INSTANCES | {"vector"},
-        "heading": INSTANCES | {"number", "boolean", "orientation", "vector", "region"},
-        "orientation": INSTANCES | {"number", "boolean", "orientation", "vector", "region"},
-        "Euler angles": frozenset({"vector"}),
-        "field": frozenset({"vector field", "region"}),
-        "vector field": frozenset({"vector field", "region"}),
-        "region": frozenset({"region", "workspace"}),
-        "object": frozenset({"object"}),
-        "point": INSTANCES,
-        "oriented point": frozenset({"object", "oriented point"}),
-        "shape": frozenset({"shape"}),
-        "None": frozenset({"nothing"}),
-    }
-)
-"""The kinds that do for each word of a declared type; a type with another word takes anything.
-
-A region may have a preferred orientation, and does for a field then.
-"""
-
-_COORDINATES: Final[Mapping[str, tuple[int, ...]]] = MappingProxyType(
-    {"vector": (2, 3), "heading": (3,), "orientation": (3,), "Euler angles": (3,)}
-)
-"""Numbers of elements of tuples and lists that do for a word of a declared type."""
-
 _DEEPEST: Final = 20
 """How far values are looked into."""
 
@@ -105,15 +78,14 @@ def kind_of_type(declared: str) -> Kind | None:
     return _OF_TYPE.get(declared)
 
 
-def accepts(declared: str, kind: Kind) -> bool:
-    """Whether values of a kind may be given where a type is declared; true if that is not certain."""
-    words = [word.strip() for part in declared.split(",") for word in part.split(" or ") if word.strip()]
+def accepts(types: Sequence[Type], kind: Kind) -> bool:
+    """Return whether values of a kind may be given where any of some types will do; true if that is not certain."""
+    if any(each.kinds is None for each in types):
+        return True
     if kind.name in _SEQUENCES:
-        sizes = {size for word in words for size in _COORDINATES.get(word, ())}
-        if any(word not in _ACCEPTED for word in words):
-            return True
-        return bool(sizes) and (kind.size is None or kind.size in sizes)
-    return any(word not in _ACCEPTED or kind.name in _ACCEPTED[word] for word in words)
+        lengths = {length for each in types for length in each.lengths}
+        return bool(lengths) and (kind.size is None or kind.size in lengths)
+    return any(kind.name in (each.kinds or ()) for each in types)
 
 
 class Meanings(Protocol):

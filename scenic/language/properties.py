@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
+from scenic.language.types import BOOLEAN, NONE, ORIENTATION, REGION, SCALAR, SHAPE, VECTOR, Type, listed
+
 __all__ = [
     "CLASSES",
     "PROPERTY_ATTRIBUTES",
@@ -23,12 +25,12 @@ __all__ = [
 class BuiltinProperty:
     """One property as one built-in class defines it.
 
-    ``type`` and ``default`` are in the words of the manual. ``needs`` are the properties that the default reads.
-    ``angle`` tells whether numbers in the value are angles in radians.
+    Its value has any of ``types``. ``default`` is in the words of the manual. ``needs`` are the properties that the
+    default reads. ``angle`` tells whether numbers in the value are angles in radians.
     """
 
     name: str
-    type: str
+    types: tuple[Type, ...]
     default: str
     documentation: str
     needs: tuple[str, ...] = ()
@@ -36,6 +38,11 @@ class BuiltinProperty:
     final: bool = False
     additive: bool = False
     angle: bool = False
+
+    @property
+    def type(self) -> str:
+        """The types in words, for documentation."""
+        return listed(self.types)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,67 +78,81 @@ PROPERTY_ATTRIBUTES: Final[Mapping[str, str]] = MappingProxyType(
 
 _P = BuiltinProperty
 
+
+def _words(name: str) -> Type:
+    """A type whose values the text of a program does not show."""
+    return Type(name, name)
+
+
 _POINT = BuiltinClass(
     "Point",
     None,
     "A position in space.",
     (
-        _P("position", "vector", "(0, 0, 0)", "Global position, in metres.", dynamic=True),
-        _P("width", "scalar", "0", "Extent along the local X axis; points have none."),
-        _P("length", "scalar", "0", "Extent along the local Y axis; points have none."),
-        _P("height", "scalar", "0", "Extent along the local Z axis; points have none."),
+        _P("position", (VECTOR,), "(0, 0, 0)", "Global position, in metres.", dynamic=True),
+        _P("width", (SCALAR,), "0", "Extent along the local X axis; points have none."),
+        _P("length", (SCALAR,), "0", "Extent along the local Y axis; points have none."),
+        _P("height", (SCALAR,), "0", "Extent along the local Z axis; points have none."),
         _P(
             "baseOffset",
-            "vector",
+            (VECTOR,),
             "(0, 0, 0)",
             "The base point, relative to the position, that `on` puts on a surface.",
         ),
         _P(
             "contactTolerance",
-            "scalar",
+            (SCALAR,),
             "0",
             "The small gap that `on` and the directional specifiers leave, in metres.",
         ),
         _P(
             "onDirection",
-            "vector or None",
+            (VECTOR, NONE),
             "None",
             "The direction in which `on` projects a position onto a surface.",
         ),
         _P(
             "viewAngles",
-            "pair of scalars",
+            (_words("pair of scalars"),),
             "(360 deg, 180 deg)",
             "Horizontal and vertical angle of view.",
             angle=True,
         ),
-        _P("visibleDistance", "scalar", "50", "How far it sees, in metres."),
+        _P("visibleDistance", (SCALAR,), "50", "How far it sees, in metres."),
         _P(
             "viewRayDensity",
-            "scalar",
+            (SCALAR,),
             "5",
             "Rays per degree, in each dimension, with which visibility is tested.",
         ),
-        _P("viewRayCount", "pair of integers or None", "None", "Numbers of rays, instead of a density."),
         _P(
-            "viewRayDistanceScaling", "boolean", "False", "Whether more rays are sent to things farther away."
+            "viewRayCount",
+            (_words("pair of integers"), NONE),
+            "None",
+            "Numbers of rays, instead of a density.",
+        ),
+        _P(
+            "viewRayDistanceScaling",
+            (BOOLEAN,),
+            "False",
+            "Whether more rays are sent to things farther away.",
         ),
         _P(
             "regionContainedIn",
-            "region or None",
+            (REGION, NONE),
             "None",
             "The region that must contain it; `None` means the workspace.",
         ),
-        _P("mutationScale", "scalar", "0", "Factor of the noise that mutation adds; 0 means none."),
+        _P("mutationScale", (SCALAR,), "0", "Factor of the noise that mutation adds; 0 means none."),
         _P(
             "positionStdDev",
-            "vector",
+            (VECTOR,),
             "(1, 1, 0)",
             "Standard deviation of the noise on the position, per axis.",
         ),
         _P(
             "mutator",
-            "tuple of mutators",
+            (_words("tuple of mutators"),),
             "a position mutator",
             "What adds the noise.",
             ("positionStdDev",),
@@ -148,7 +169,7 @@ _ORIENTED_POINT = BuiltinClass(
     (
         _P(
             "yaw",
-            "scalar",
+            (SCALAR,),
             "0",
             "Rotation about the Z axis of the parent orientation, in radians.",
             dynamic=True,
@@ -156,7 +177,7 @@ _ORIENTED_POINT = BuiltinClass(
         ),
         _P(
             "pitch",
-            "scalar",
+            (SCALAR,),
             "0",
             "Rotation about the X axis after the yaw, in radians.",
             dynamic=True,
@@ -164,7 +185,7 @@ _ORIENTED_POINT = BuiltinClass(
         ),
         _P(
             "roll",
-            "scalar",
+            (SCALAR,),
             "0",
             "Rotation about the Y axis after yaw and pitch, in radians.",
             dynamic=True,
@@ -172,13 +193,13 @@ _ORIENTED_POINT = BuiltinClass(
         ),
         _P(
             "parentOrientation",
-            "orientation",
+            (ORIENTATION,),
             "no rotation",
             "The frame in which yaw, pitch and roll are read.",
         ),
         _P(
             "orientation",
-            "orientation",
+            (ORIENTATION,),
             "parentOrientation turned by yaw, pitch, roll",
             "Global orientation.",
             ("yaw", "pitch", "roll", "parentOrientation"),
@@ -187,7 +208,7 @@ _ORIENTED_POINT = BuiltinClass(
         ),
         _P(
             "heading",
-            "scalar",
+            (SCALAR,),
             "orientation.yaw",
             "Global yaw, in radians: 0 is North (+Y), growing anticlockwise.",
             ("orientation",),
@@ -197,23 +218,23 @@ _ORIENTED_POINT = BuiltinClass(
         ),
         _P(
             "viewAngle",
-            "scalar",
+            (SCALAR,),
             "360 deg",
             "Horizontal angle of view; the older form of `viewAngles`.",
             angle=True,
         ),
         _P(
             "viewAngles",
-            "pair of scalars",
+            (_words("pair of scalars"),),
             "(viewAngle, 180 deg)",
             "Horizontal and vertical angle of view.",
             ("viewAngle",),
             angle=True,
         ),
-        _P("headingStdDev", "scalar", "5 deg", "Standard deviation of the noise on the yaw.", angle=True),
+        _P("headingStdDev", (SCALAR,), "5 deg", "Standard deviation of the noise on the yaw.", angle=True),
         _P(
             "orientationStdDev",
-            "vector",
+            (VECTOR,),
             "(headingStdDev, 0, 0)",
             "Standard deviations of the noise on yaw, pitch and roll.",
             ("headingStdDev",),
@@ -221,7 +242,7 @@ _ORIENTED_POINT = BuiltinClass(
         ),
         _P(
             "mutator",
-            "tuple of mutators",
+            (_words("tuple of mutators"),),
             "an orientation mutator, then the point's",
             "What adds the noise.",
             ("orientationStdDev",),
@@ -266,89 +287,109 @@ _OBJECT = BuiltinClass(
     "OrientedPoint",
     "A physical object: a shape with a size, in a place, that collides with others. The base of classes without bases.",
     (
-        _P("shape", "shape", "BoxShape()", "The form, apart from its size and place."),
+        _P("shape", (SHAPE,), "BoxShape()", "The form, apart from its size and place."),
         _P(
-            "width", "scalar", "shape.width", "Extent of the bounding box along the local X axis.", ("shape",)
+            "width",
+            (SCALAR,),
+            "shape.width",
+            "Extent of the bounding box along the local X axis.",
+            ("shape",),
         ),
         _P(
             "length",
-            "scalar",
+            (SCALAR,),
             "shape.length",
             "Extent of the bounding box along the local Y axis.",
             ("shape",),
         ),
         _P(
             "height",
-            "scalar",
+            (SCALAR,),
             "shape.height",
             "Extent of the bounding box along the local Z axis.",
             ("shape",),
         ),
-        _P("allowCollisions", "boolean", "False", "Whether it may overlap other objects."),
+        _P("allowCollisions", (BOOLEAN,), "False", "Whether it may overlap other objects."),
         _P(
             "regionContainedIn",
-            "region or None",
+            (REGION, NONE),
             "None",
             "The region that must contain it; `None` means the workspace.",
         ),
         _P(
             "baseOffset",
-            "vector",
+            (VECTOR,),
             "(0, 0, -height / 2)",
             "The base point that `on` puts on a surface.",
             ("height",),
         ),
         _P(
             "contactTolerance",
-            "scalar",
+            (SCALAR,),
             "1e-4",
             "The small gap that `on` and the directional specifiers leave.",
         ),
         _P(
             "sideComponentThresholds",
-            "three pairs of scalars",
+            (_words("three pairs of scalars"),),
             "((-0.5, 0.5),) * 3",
             "How steep a face may be and still belong to the surface of a side, per axis.",
         ),
-        _P("cameraOffset", "vector", "(0, 0, 0)", "Where it sees from, in its own frame."),
+        _P("cameraOffset", (VECTOR,), "(0, 0, 0)", "Where it sees from, in its own frame."),
         _P(
             "visionSensorOffset",
-            "vector",
+            (VECTOR,),
             "(0, length / 2, 0)",
             "Where vision sensors are mounted.",
             ("length",),
         ),
-        _P("requireVisible", "boolean", "False", "Whether the ego must see it."),
-        _P("occluding", "boolean", "True", "Whether it hides what is behind it."),
-        _P("showVisibleRegion", "boolean", "False", "Whether pictures show its view volume."),
+        _P("requireVisible", (BOOLEAN,), "False", "Whether the ego must see it."),
+        _P("occluding", (BOOLEAN,), "True", "Whether it hides what is behind it."),
+        _P("showVisibleRegion", (BOOLEAN,), "False", "Whether pictures show its view volume."),
         _P(
             "color",
-            "3 or 4 numbers in [0, 1], or None",
+            (_words("3 or 4 numbers in [0, 1]"), NONE),
             "None",
             "Colour in pictures: red, green, blue, opacity.",
         ),
-        _P("render", "boolean", "True", "Whether pictures show it."),
+        _P("render", (BOOLEAN,), "True", "Whether pictures show it."),
         _P(
             "velocity",
-            "vector",
+            (VECTOR,),
             "(0, speed, 0) turned by orientation",
             "Velocity at the start of a simulation.",
             ("speed", "orientation"),
             dynamic=True,
         ),
-        _P("speed", "scalar", "0", "Speed at the start of a simulation.", dynamic=True),
+        _P("speed", (SCALAR,), "0", "Speed at the start of a simulation.", dynamic=True),
         _P(
             "angularVelocity",
-            "vector",
+            (VECTOR,),
             "(0, 0, 0)",
             "Angular velocity at the start of a simulation.",
             dynamic=True,
         ),
-        _P("angularSpeed", "scalar", "0", "Angular speed at the start of a simulation.", dynamic=True),
-        _P("behavior", "behavior or None", "None", "What it does during a simulation."),
-        _P("lastActions", "tuple of actions", "()", "The actions that it took last; none while it decides."),
-        _P("sensors", "dictionary of sensors", "{}", "Its sensors by name."),
-        _P("observations", "dictionary", "{}", "The latest observation of each sensor.", final=True),
+        _P("angularSpeed", (SCALAR,), "0", "Angular speed at the start of a simulation.", dynamic=True),
+        _P(
+            "behavior",
+            (_words("behavior"), NONE),
+            "None",
+            "What it does during a simulation.",
+        ),
+        _P(
+            "lastActions",
+            (_words("tuple of actions"),),
+            "()",
+            "The actions that it took last; none while it decides.",
+        ),
+        _P("sensors", (_words("dictionary of sensors"),), "{}", "Its sensors by name."),
+        _P(
+            "observations",
+            (_words("dictionary"),),
+            "{}",
+            "The latest observation of each sensor.",
+            final=True,
+        ),
     ),
     (
         *(

@@ -6,10 +6,13 @@ from typing import Final
 
 __all__ = [
     "ANYTHING",
+    "BOOLEAN",
     "DIRECTION",
     "FIELD",
     "HEADING",
     "HEADING_OR_ANGLES",
+    "INSTANCES",
+    "NONE",
     "OBJECT",
     "ORIENTATION",
     "ORIENTED_POINT",
@@ -31,12 +34,22 @@ class Type:
     """One type that the language wants of a value.
 
     ``name`` is the type in documentation, ``noun`` the same in a message: "expected a number". ``advice`` says how a
-    program gets such a value.
+    program gets such a value. ``kinds`` are the kinds of values (`scenic.compiler.kinds`) that can be given for it, ``None``
+    if the text of a program does not show that; ``lengths`` are those of tuples and lists of numbers that can.
     """
 
     name: str
     noun: str
     advice: str = ""
+    kinds: frozenset[str] | None = None
+    lengths: frozenset[int] = frozenset()
+
+
+INSTANCES: Final = frozenset({"object", "oriented point", "point"})
+"""The kinds of values that `new` makes."""
+_ORIENTED: Final = INSTANCES | {"number", "boolean", "orientation", "vector", "region"}
+"""A region may have a preferred orientation."""
+_FIELDS: Final = frozenset({"vector field", "region"})
 
 
 ANYTHING: Final = Type("anything", "anything")
@@ -44,42 +57,80 @@ SCALAR: Final = Type(
     "scalar",
     "a number",
     "numbers are written plainly, drawn as by `Range(1, 2)`, or measured as by `distance to x`",
+    kinds=frozenset({"number", "boolean"}),
 )
-VECTOR: Final = Type("vector", "a vector", "write `(x, y, z)` or `x @ y`, or name a point or an object")
+VECTOR: Final = Type(
+    "vector",
+    "a vector",
+    "write `(x, y, z)` or `x @ y`, or name a point or an object",
+    kinds=INSTANCES | {"vector"},
+    lengths=frozenset({2, 3}),
+)
 SCALAR_OR_VECTOR: Final = Type(
-    "scalar or vector", "a number or a vector", "write a number, or a vector as `Vector(x, y, z)`"
+    "scalar or vector",
+    "a number or a vector",
+    "write a number, or a vector as `Vector(x, y, z)`",
+    kinds=INSTANCES | {"vector", "number", "boolean"},
+    lengths=frozenset({2, 3}),
 )
 """Either, not converted: a tuple is no vector here."""
 HEADING: Final = Type(
-    "heading", "a heading", "write an angle, as `30 deg`, or name an oriented point or an object"
+    "heading",
+    "a heading",
+    "write an angle, as `30 deg`, or name an oriented point or an object",
+    kinds=_ORIENTED,
+    lengths=frozenset({3}),
 )
 HEADING_OR_ANGLES: Final = Type(
     "heading or Euler angles",
     "a heading",
     "write an angle, as `30 deg`, or name an oriented point or an object",
+    kinds=_ORIENTED,
+    lengths=frozenset({3}),
 )
 """A heading; of three numbers, the first of the Euler angles that they are."""
 ORIENTATION: Final = Type(
     "orientation",
     "an orientation (a heading, Euler angles or an oriented point)",
     "write three Euler angles `(yaw, pitch, roll)`, or name an oriented point or an object",
+    kinds=_ORIENTED,
+    lengths=frozenset({3}),
 )
-DIRECTION: Final = Type("heading, orientation or field", ORIENTATION.noun, ORIENTATION.advice)
+DIRECTION: Final = Type(
+    "heading, orientation or field",
+    ORIENTATION.noun,
+    ORIENTATION.advice,
+    kinds=_ORIENTED | _FIELDS,
+    lengths=frozenset({3}),
+)
 """An orientation, or a field that has one at the place where it is wanted."""
 FIELD: Final = Type(
-    "vector field", "a vector field", "make one, as `VectorField('name', lambda position: 30 deg)`"
+    "vector field",
+    "a vector field",
+    "make one, as `VectorField('name', lambda position: 30 deg)`",
+    kinds=_FIELDS,
 )
 REGION: Final = Type(
     "region",
     "a region",
     "make one, as `CircularRegion((0, 0), 5)`, or take one of an object, as `x.topSurface`",
+    kinds=frozenset({"region", "workspace"}),
 )
-SHAPE: Final = Type("shape", "a shape", "make one, as `BoxShape()` or `MeshShape.fromFile(path)`")
-POINT: Final = Type("point", "a point or an object", "make one with `new Point` or `new Object`")
+SHAPE: Final = Type(
+    "shape", "a shape", "make one, as `BoxShape()` or `MeshShape.fromFile(path)`", kinds=frozenset({"shape"})
+)
+POINT: Final = Type(
+    "point", "a point or an object", "make one with `new Point` or `new Object`", kinds=INSTANCES
+)
 ORIENTED_POINT: Final = Type(
-    "oriented point", "an oriented point", "make one with `new OrientedPoint`, or give an object"
+    "oriented point",
+    "an oriented point",
+    "make one with `new OrientedPoint`, or give an object",
+    kinds=frozenset({"object", "oriented point"}),
 )
-OBJECT: Final = Type("object", "an object", "make one with `new Object`")
+OBJECT: Final = Type("object", "an object", "make one with `new Object`", kinds=frozenset({"object"}))
+NONE: Final = Type("None", "`None`", "write `None`", kinds=frozenset({"nothing"}))
+BOOLEAN: Final = Type("boolean", "a truth value", "write `True` or `False`")
 VIEW_ANGLES: Final = Type("pair of angles", "a pair of angles", "write two angles, as `(90 deg, 45 deg)`")
 
 

@@ -6,7 +6,7 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context, NodeRule
-from scenic.compiler.kinds import INSTANCES, Kind, accepts
+from scenic.compiler.kinds import Kind, accepts
 from scenic.compiler.scopes import Scope
 from scenic.compiler.traversal import position, walk
 from scenic.language.diagnostics import Diagnostic
@@ -16,7 +16,7 @@ from scenic.language.properties import properties_of
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.spelling import nearest
-from scenic.language.types import ORIENTATION, REGION, SCALAR, SHAPE, VECTOR, Type, listed, wanted
+from scenic.language.types import INSTANCES, VECTOR, Type, wanted
 
 __all__ = ["RULES"]
 
@@ -27,16 +27,13 @@ _ORDERED: Final = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 
 _PROPERTIES: Final = properties_of("Object")
 
-_PROPERTY_TYPES: Final = {each.name: each for each in (ORIENTATION, REGION, SCALAR, SHAPE, VECTOR)}
-"""The types of properties by the words that declare them; of others the words are shown."""
-
 
 def _wrong(
     title: str, types: Sequence[Type], value: ast.expr | None, context: Context
 ) -> Iterator[Diagnostic]:
     """SC404: a value that certainly does not do where some types are declared. ``title`` is quoted."""
     kind = context.kind_of(value)
-    if value is None or kind is None or accepts(listed(types), kind):
+    if value is None or kind is None or accepts(types, kind):
         return
     noun, advice = wanted(types)
     if types == (VECTOR,) and kind.size is not None:
@@ -44,12 +41,6 @@ def _wrong(
     else:
         message = f"{title}: expected {noun}, not {kind.phrase}"
     yield context.error("SC404", message, value, advice or f"give it {noun}")
-
-
-def _given(title: str, declared: str, value: ast.expr | None, context: Context) -> Iterator[Diagnostic]:
-    """SC404, of the value of a property."""
-    type_ = _PROPERTY_TYPES.get(declared) or Type(declared, declared)
-    yield from _wrong(title, (type_,), value, context)
 
 
 def _specifiers(node: scenic.New | scenic.Override, scope: Scope, context: Context) -> Iterator[Diagnostic]:
@@ -61,7 +52,7 @@ def _specifiers(node: scenic.New | scenic.Override, scope: Scope, context: Conte
             declared = _PROPERTIES.get(specifier.property)
             if declared is not None and specifier.operands:
                 title = f"`with {specifier.property}`"
-                yield from _given(title, declared.type, specifier.operands[0], context)
+                yield from _wrong(title, declared.types, specifier.operands[0], context)
         elif specifier.specifier in SPECIFIERS:
             element = SPECIFIERS[specifier.specifier]
             for operand, value in zip(element.operands, specifier.operands, strict=False):
@@ -108,7 +99,7 @@ def _property(node: scenic.PropertyDef, _scope: Scope, context: Context) -> Iter
     """``width: "3"``, ``size: self.lenth``."""
     declared = _PROPERTIES.get(node.name)
     if declared is not None and "additive" not in node.attributes:
-        yield from _given(f"`{node.name}`", declared.type, node.value, context)
+        yield from _wrong(f"`{node.name}`", declared.types, node.value, context)
 
 
 def _assign(node: ast.Assign, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
