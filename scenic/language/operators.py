@@ -48,6 +48,11 @@ class Operand:
         """The types in words, for documentation."""
         return listed(self.types)
 
+    @property
+    def may_be_ego(self) -> bool:
+        """Return whether the ego is meant where the operand is left out."""
+        return self.default == EGO
+
 
 @dataclass(frozen=True, slots=True)
 class Function:
@@ -78,7 +83,8 @@ class Operator:
 
     ``forms`` are all ways to write it, operands by their names. ``available`` tells whether this version builds it;
     a program that uses an operator that is not available is refused where it stands. ``angle`` tells whether the result
-    is an angle in radians. ``functions`` are those of the established Python API.
+    is an angle in radians. ``reads_scene`` tells whether the result depends on more than the operands: on the other objects,
+    or on the simulation that runs. ``functions`` are those of the established Python API.
     """
 
     name: str
@@ -88,7 +94,13 @@ class Operator:
     documentation: str
     available: bool = True
     angle: bool = False
+    reads_scene: bool = False
     functions: tuple[Function, ...] = ()
+
+    @property
+    def may_read_ego(self) -> bool:
+        """Return whether some operand may be left out and then is the ego."""
+        return any(operand.may_be_ego for operand in self.operands)
 
     def label(self, operand: Operand) -> str:
         """The operator as messages about an operand name it; see `label`."""
@@ -361,6 +373,7 @@ _ALL = (
         "boolean",
         ("viewer can see target",),
         "Whether the viewer sees the target past the other objects. For requirements and dynamic code only.",
+        reads_scene=True,
         functions=(Function("CanSee(X, Y)"),),
     ),
     Operator(
@@ -386,6 +399,7 @@ _ALL = (
         "boolean",
         ("initial scenario",),
         "True while the top-level scenario is set up, false in scenarios that start later.",
+        reads_scene=True,
     ),
     *(_side(side) for side in SIDES),
 )

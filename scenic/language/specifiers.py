@@ -67,6 +67,11 @@ class SpecifierDeclaration:
     reads_workspace: bool = False
     functions: tuple[Function, ...] = ()
 
+    @property
+    def may_read_ego(self) -> bool:
+        """Return whether the value may depend on the ego, though the text does not name it."""
+        return self.reads_ego or any(operand.may_be_ego for operand in self.operands)
+
     def label(self, operand: Operand) -> str:
         """The specifier as messages about an operand name it."""
         return label(self.forms, self.operands, operand)

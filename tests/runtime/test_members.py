@@ -348,6 +348,8 @@ def test_methods_that_read_nothing_random_themselves_keep_their_defaults_and_fin
         ("(x, 0) offset by (1, 2)", False),
         ("1 relative to x", False),
         ("(x, 0) offset along 30 deg by (1, 2)", False),
+        ("(follow F from (x, 1) for 2).position", False),
+        ("RectangularRegion((0, 0), 0, 4, 4) intersects CircularRegion((x, 0), 2)", False),
         ("str(ego.position.x)", True),
         ("distance to (x, 2)", True),
         ("angle from (x, 2)", True),
@@ -376,6 +378,7 @@ def test_what_is_called_of_the_prelude_without_an_ego_has_none() -> None:
             getattr(Prelude, name).__code__.co_names
         )
     assert set(OPERATORS) >= EGOLESS_OPERATORS
+    assert not {"can see", "initial scenario", "distance", "visible"} & EGOLESS_OPERATORS
 
 
 def test_what_a_class_holds_can_be_bound_anew() -> None:

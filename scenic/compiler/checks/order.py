@@ -14,7 +14,7 @@ from scenic.compiler.checks.unfinished import begun_names
 from scenic.compiler.scopes import PROVIDED, Scope, ScopeKind, Stretch
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Label
-from scenic.language.operators import EGO, OPERATORS
+from scenic.language.operators import OPERATORS
 from scenic.language.specifiers import SPECIFIERS
 
 __all__ = ["check_order"]
@@ -28,14 +28,8 @@ _DEFERRED: Final[tuple[type[ast.AST], ...]] = (
 """Statements whose expressions are evaluated later."""
 
 
-_OPERATORS: Final = frozenset(
-    name for name, each in OPERATORS.items() if any(operand.default == EGO for operand in each.operands)
-)
-_SPECIFIERS: Final = frozenset(
-    name
-    for name, each in SPECIFIERS.items()
-    if each.reads_ego or any(operand.default == EGO for operand in each.operands)
-)
+_OPERATORS: Final = frozenset(name for name, each in OPERATORS.items() if each.may_read_ego)
+_SPECIFIERS: Final = frozenset(name for name, each in SPECIFIERS.items() if each.may_read_ego)
 """Those that may be about the ego without naming it."""
 
 
@@ -250,8 +244,7 @@ def _uses_in(stretch: Stretch) -> Iterator[tuple[ast.AST, Scope]]:
 
 def _implied(node: Any, declared: Any) -> bool:
     return any(
-        value is None and operand.default == EGO
-        for value, operand in zip(node.operands, declared, strict=False)
+        value is None and operand.may_be_ego for value, operand in zip(node.operands, declared, strict=False)
     )
 
 

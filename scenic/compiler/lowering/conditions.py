@@ -27,7 +27,7 @@ from scenic.compiler.lowering.build import (
 from scenic.compiler.scopes import PROVIDED, Resolution, ScopeKind
 from scenic.compiler.traversal import walk
 from scenic.language.names import CONVERSIONS, LIFTED_FUNCTIONS, LIFTED_METHODS, TRACKED
-from scenic.language.operators import EGO, OPERATORS
+from scenic.language.operators import OPERATORS
 
 __all__ = ["Conditions", "implicit_ego"]
 
@@ -163,7 +163,7 @@ def implicit_ego(node: scenic.Operation) -> list[int]:
     return [
         index
         for index, (operand, declaration) in enumerate(zip(node.operands, declared, strict=True))
-        if operand is None and declaration.default == EGO
+        if operand is None and declaration.may_be_ego
     ]
 
 

@@ -19,7 +19,7 @@ from typing import Any, Final, NamedTuple
 
 from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError
-from scenic.language.operators import EGO, Operator
+from scenic.language.operators import Operator
 from scenic.language.types import (
     DIRECTION,
     FIELD,
@@ -290,7 +290,7 @@ def bound(declared: Operator, function: Callable[..., Any], drawn: Callable[...,
     """
     name, made = declared.name, DrawnRegion.made if declared.result == REGION.name else call_later
     reads = [reader(operand.types, declared.label(operand)) for operand in declared.operands]
-    egos = [operand.default == EGO for operand in declared.operands]
+    egos = [operand.may_be_ego for operand in declared.operands]
 
     def undecided(call: Bound, ego: Ego, given: tuple[Any, ...], operands: tuple[Any, ...]) -> Any:
         return defer(call, ego, *given) if is_lazy(given) else made(drawn, name, *operands)

@@ -13,7 +13,6 @@ from types import MappingProxyType
 from typing import Any
 
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
-from scenic.language.operators import EGO
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS, SpecifierDeclaration
 from scenic.language.types import OBJECT, REGION, VECTOR
@@ -100,11 +99,7 @@ class _Declared:
     @classmethod
     def of(cls, declared: SpecifierDeclaration) -> "_Declared":
         reads = [converter(each.types, declared.label(each)) for each in declared.operands]
-        reads_more = (
-            declared.reads_ego
-            or declared.reads_workspace
-            or any(each.default == EGO for each in declared.operands)
-        )
+        reads_more = declared.may_read_ego or declared.reads_workspace
         return cls(
             MappingProxyType({item.property: item.priority for item in declared.specifies if not item.when}),
             MappingProxyType({item.property: item.priority for item in declared.specifies}),
@@ -112,7 +107,7 @@ class _Declared:
             frozenset(declared.modifies),
             tuple((i, read) for i, read in enumerate(reads) if read is not None),
             MappingProxyType(
-                {i: reads[i] or _same for i, each in enumerate(declared.operands) if each.default == EGO}
+                {i: reads[i] or _same for i, each in enumerate(declared.operands) if each.may_be_ego}
             ),
             declared.reads_ego,
             declared.reads_workspace,

@@ -11,6 +11,8 @@ from functools import cached_property, lru_cache
 from types import CellType, FunctionType, GetSetDescriptorType, MemberDescriptorType
 from typing import Any, Final
 
+from scenic.language.operators import OPERATORS
+
 __all__ = [
     "CACHED",
     "CONTAINERS",
@@ -35,8 +37,10 @@ PRELUDE = "__scenic__"
 EGOLESS: Final = frozenset({"convert", "spread"})
 """What functions call of the prelude without reading the ego or the workspace."""
 
-EGOLESS_OPERATORS: Final = frozenset({"deg", "@", "at", "relative to", "offset by", "offset along"})
-"""Operators of the prelude that never mean the ego."""
+EGOLESS_OPERATORS: Final = frozenset(
+    name for name, each in OPERATORS.items() if not (each.may_read_ego or each.reads_scene)
+)
+"""Operators of the prelude that depend on their operands alone, and never mean the ego."""
 
 SAMPLE = "__sample__"
 """The global name by which functions over sampled names find their sample, weakly referenced."""
