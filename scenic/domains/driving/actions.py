@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from scenic.runtime.values.values import Vector, to_orientation
+from scenic.runtime.values.values import Vector, to_orientation, to_vector
 from scenic.simulators.actions import Action
 
 __all__ = [
@@ -76,7 +76,7 @@ class SetPositionAction(Action):
     """Teleport to a position."""
 
     def __init__(self, pos: Any) -> None:
-        self.pos = pos
+        self.pos = to_vector(pos, "the position")
 
     def applyTo(self, agent: Any, simulation: Any) -> None:
         """Move the agent."""

@@ -5,7 +5,7 @@ velocity. Objects pass through each other.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from scenic.domains.driving.controllers import PIDLateralController, PIDLongitudinalController
@@ -15,7 +15,7 @@ from scenic.runtime.values.values import Orientation, Vector
 from scenic.simulators.cameras import Cameras
 from scenic.simulators.newtonian.controls import Walking
 
-__all__ = ["NewtonianSimulation", "NewtonianSimulator"]
+__all__ = ["NewtonianSimulation", "NewtonianSimulator", "State"]
 
 _ACCELERATION: Final = 5.6
 """Of full throttle, in m/s^2."""
@@ -24,8 +24,8 @@ _BRAKING: Final = 6.8
 _UPRIGHT: Final = Orientation()
 
 
-class _State:
-    """An object of the simulation on plain numbers."""
+class State:
+    """An object of the simulation on plain numbers: metres, m/s, radians, and radians a second."""
 
     __slots__ = ("heading", "is_car", "length", "position", "rate", "speed", "velocity")
 
@@ -39,18 +39,22 @@ class _State:
         x, y, _ = self.velocity
         self.speed = y * math.cos(self.heading) - x * math.sin(self.heading)
 
+    def rest(self) -> None:
+        """Stop where the object is."""
+        self.velocity, self.speed, self.rate = (0.0, 0.0, 0.0), 0.0, 0.0
+
 
 class NewtonianSimulation(DrivingSimulation):
     """One run; see `NewtonianSimulator`."""
 
     def __init__(self, scene: Scene, *, timestep: float | None = None, **options: Any) -> None:
-        self._states: dict[int, _State] = {}
+        self._states: dict[int, State] = {}
         self._cameras = Cameras()
         super().__init__(scene, timestep=0.1 if timestep is None else timestep, **options)
 
     def createObjectInSimulator(self, obj: Any) -> None:
         """Take the object's pose and velocity over."""
-        self._states[id(obj)] = _State(obj)
+        self._states[id(obj)] = State(obj)
         if getattr(obj, "isCar", False):
             obj.resetControls()
         if isinstance(obj, Walking):
@@ -76,10 +80,18 @@ class NewtonianSimulation(DrivingSimulation):
         state.velocity = (x, y, z)
         state.speed = y * math.cos(state.heading) - x * math.sin(state.heading)
 
+    def steered(self) -> Sequence[Any]:
+        """The objects that `step` moves."""
+        return self.objects
+
+    def state_of(self, obj: Any) -> State:
+        """The state of an object."""
+        return self._states[id(obj)]
+
     def step(self) -> None:
-        """Advance all objects."""
+        """Advance all objects that are steered."""
         dt = float(self.timestep)
-        for obj in self.objects:
+        for obj in self.steered():
             state = self._states[id(obj)]
             if state.is_car:
                 self._drive(obj.controls, state, dt)
@@ -89,7 +101,7 @@ class NewtonianSimulation(DrivingSimulation):
             if state.rate:
                 state.heading = math.pi - (math.pi - state.heading - state.rate * dt) % (2 * math.pi)
 
-    def _drive(self, controls: Any, state: _State, dt: float) -> None:
+    def _drive(self, controls: Any, state: State, dt: float) -> None:
         speed = state.speed
         brake = max(controls.brake, controls.handbrake)
         if brake > 0:

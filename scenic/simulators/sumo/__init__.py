@@ -1,0 +1,1 @@
+"""Traffic simulated by SUMO: ``from scenic.simulators.sumo.simulator import SumoSimulator``."""
