@@ -6,7 +6,11 @@ from dataclasses import dataclass, field
 
 __all__ = ["RoadText", "cross", "map_text", "straight"]
 
-LANES = '<laneSection s="0"><left>{left}</left><center><lane id="0" type="none"/></center><right>{right}</right></laneSection>'
+
+def lanes(left: str, right: str) -> str:
+    """A lane section with these lanes on its sides."""
+    left, right = left and f"<left>{left}</left>", right and f"<right>{right}</right>"
+    return f'<laneSection s="0">{left}<center><lane id="0" type="none"/></center>{right}</laneSection>'
 
 
 def lane(
@@ -28,7 +32,7 @@ def two_way(before: bool = True, after: bool = True, *, sidewalk: bool = True) -
     ends = {side: {"before": side if before else None, "after": side if after else None} for side in (1, -1)}
     left = (lane(2, "sidewalk", walk) if sidewalk else "") + lane(1, **ends[1])
     right = lane(-1, **ends[-1]) + (lane(-2, "sidewalk", walk) if sidewalk else "")
-    return LANES.format(left=left, right=right)
+    return lanes(left, right)
 
 
 @dataclass
@@ -105,7 +109,7 @@ def cross(arm: float = 60.0, half: float = 10.0, *, signal: str = "") -> str:
             radius = half
             length, shape = abs(turn) * radius, f'<arc curvature="{math.copysign(1 / radius, turn)!r}"/>'
         name = str(100 + number)
-        one_way = LANES.format(left="", right=lane(-1, before=-1, after=1))
+        one_way = lanes("", lane(-1, before=-1, after=1))
         link = (
             f'<predecessor elementType="road" elementId="{i + 1}" contactPoint="end"/>'
             f'<successor elementType="road" elementId="{j + 1}" contactPoint="end"/>'

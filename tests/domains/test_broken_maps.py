@@ -1,19 +1,61 @@
-"""Broken maps: whatever is wrong, a network or one error comes out."""
+"""Broken maps: whatever is wrong, a network or one error comes out, and what breaks the standard is told once, in its place."""
+
+from xml.etree import ElementTree
 
 import pytest
 
-from benchmarks.broken_maps import judged, variants
+from benchmarks.broken_maps import faults_beside, judged, variants
 from tests.maps import cross, straight
 
 
 @pytest.mark.parametrize("text", [cross(), straight(100)], ids=["cross", "straight"])
 def test_a_broken_map_gives_a_network_or_an_error(text):
-    for broken, done in variants(text, 12, seed=7):
-        outcome, _ = judged(broken)
-        assert outcome in ("error", "network"), done
+    for variant in variants(text, 25, seed=7):
+        outcome, lines = judged(variant.text)
+        assert outcome in ("error", "network"), variant.done
+        if faults_beside(ElementTree.fromstring(variant.text)):
+            assert len(lines) == 1, variant.done
+            assert set(lines) <= variant.lines, variant.done
 
 
-def test_a_connection_to_a_lane_that_is_not_there_is_reported():
-    text = cross()
-    assert judged(text) == ("network", 0)
-    assert judged(text.replace('<laneLink from="-1"', '<laneLink from="-7"', 1)) == ("network", 1)
+STRAIGHT = straight(100)
+CROSS = cross()
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new", "message"),
+    [
+        (STRAIGHT, '<header revMajor="1" revMinor="4"/>', "", "the map has no <header>"),
+        (STRAIGHT, 'revMajor="1"', 'revMajor="nan"', "'revMajor' of <header> of the map is 'nan', not a version number"),
+        (STRAIGHT, ' length="100" id', " id", "<road> of road 1 has no 'length'"),
+        (STRAIGHT, '<lane id="0" type="none"/>', "", "<center> of road 1 has no <lane>"),
+        (STRAIGHT, '<lane id="0" ', '<lane id="7" ', "the middle lane of road 1 has the id 7, not 0"),
+        (STRAIGHT, 'type="sidewalk"', 'type="west"', "'type' of <lane> of lane 2 of road 1 is 'west', not one of those"),
+        (STRAIGHT, '<laneSection s="0">', '<laneSection s="9">', "begins at s = 9, not 0"),
+        (STRAIGHT, '<lane id="2"', '<lane id="5"', "with the ids 1, 5 leave numbers out"),
+        (STRAIGHT, 'sOffset="0" a="2" b="0"', 'sOffset="0" a="2" b="nan"', "lane of road 1 is left out: 'b' of <width>"),
+        (CROSS, 'junction="9"', 'junction="8"', "junction 8, which a link names, is not there"),
+        (CROSS, '<junction id="9"', '<junction id="8"', "junction 9, which 16 links name, is not there"),
+        (CROSS, '<connection id="1"', '<connection id="0"', "<connection> 0 of junction 9 has the id of another one"),
+        (CROSS, '<successor id="1"/>', '<successor id="west"/>', "is 'west', not a number: dropped"),
+        (CROSS, '<successor id="1"/>', "", "lane -1 of connecting road 100 leads nowhere"),
+        (CROSS, '<laneLink from="-1"', '<laneLink from="-7"', "lane -7 at the end of road 1, which a link names"),
+    ],
+)  # fmt: skip
+def test_a_fault_is_told_once(text, old, new, message):
+    from scenic.domains.driving.loading import MapOptions, network_of
+
+    assert judged(text) == ("network", ())
+    options = MapOptions(useCache=False, writeCache=False)
+    (problem,) = network_of.__wrapped__(text.replace(old, new, 1).encode(), "map.xodr", options).problems
+    assert message in problem.message
+
+
+def test_a_reference_line_that_is_torn_is_told_once():
+    text = straight(100).replace(
+        "<line/></geometry>",
+        '<line/></geometry><geometry s="100" x="105" y="0" hdg="0" length="20"><line/></geometry>',
+    )
+    text = text.replace('length="100" id', 'length="120" id')
+    assert judged(text)[0] == "network"
+    assert len(judged(text)[1]) == 1

@@ -16,7 +16,7 @@ from scenic.domains.driving.roads import ManeuverType, Network, VehicleType
 from scenic.formats.opendrive.xml_tree import MapError
 from scenic.language.errors import RejectionException
 from scenic.runtime.values.values import Vector
-from tests.maps import LANES, RoadText, cross, lane, line, map_text, piece, straight, two_way
+from tests.maps import RoadText, cross, lane, lanes, line, map_text, piece, straight, two_way
 
 MAPS = os.environ.get("SCENIC_TEST_MAPS")
 
@@ -29,7 +29,7 @@ def network(tmp_path: Path, text: str, **options: object) -> Network:
 
 @pytest.fixture(scope="module")
 def crossing(tmp_path_factory: pytest.TempPathFactory) -> Network:
-    light = '<signal id="5" s="50" t="-4" type="1000001" country="OpenDRIVE"/>'
+    light = '<signal id="5" s="50" t="-4" type="1000001" country="OpenDRIVE" orientation="+"/>'
     return network(tmp_path_factory.mktemp("cross"), cross(signal=light))
 
 
@@ -192,8 +192,8 @@ def test_every_point_of_the_road_has_a_lane(crossing: Network) -> None:
 
 def test_lanes_follow_links_through_sections(tmp_path: Path) -> None:
     """A lane that ends by merging leads into the lane that takes it up."""
-    first = LANES.format(left="", right=lane(-1, after=-1) + lane(-2, after=-1))
-    second = LANES.format(left="", right=lane(-1, before=-1)).replace('s="0"', 's="50"')
+    first = lanes(left="", right=lane(-1, after=-1) + lane(-2, after=-1))
+    second = lanes(left="", right=lane(-1, before=-1)).replace('s="0"', 's="50"')
     found = network(tmp_path, map_text([RoadText("a-b", 100.0, line(0, 0, 0, 100), first + second)]))
     [road] = found.roads
     assert road.id == "a-b"
@@ -242,7 +242,7 @@ def test_every_kind_of_curve_makes_a_road(
 
 def test_signals_count_where_they_are_valid(tmp_path: Path) -> None:
     """A light that is valid for no lane of its own road counts where other roads refer to it, as exporters write it."""
-    light = '<signal id="5" s="1" t="4" type="1000001" country="OpenDRIVE"><validity fromLane="0" toLane="0"/></signal>'
+    light = '<signal id="5" s="1" t="4" type="1000001" country="OpenDRIVE" orientation="+"><validity fromLane="0" toLane="0"/></signal>'
     reference = '<signals><signalReference id="5" s="9" t="0" orientation="+"/></signals>'
     far = RoadText("8", 20.0, line(500, 0, 0, 20), rest=f"<signals>{light}</signals>")
     text = (
@@ -314,10 +314,11 @@ def test_numbers_out_of_all_measure_cost_their_road(tmp_path: Path) -> None:
 
 def test_linked_lanes_that_lie_apart_are_reported(tmp_path: Path) -> None:
     after = '<successor elementType="road" elementId="2" contactPoint="start"/>'
-    for gap, count, area in ((0.0, 0, 1400), (0.5, 0, 1403.5), (9.0, 2, 1400)):
+    before = '<predecessor elementType="road" elementId="1" contactPoint="end"/>'
+    for gap, count, area in ((0.0, 0, 1400), (0.5, 0, 1403.5), (9.0, 1, 1400)):
         roads = [
             RoadText("1", 100.0, line(0, 0, 0, 100), link=after),
-            RoadText("2", 100.0, line(100 + gap, 0, 0, 100)),
+            RoadText("2", 100.0, line(100 + gap, 0, 0, 100), link=before),
         ]
         found = network(tmp_path, map_text(roads))
         assert len(found.problems) == count, found.problems

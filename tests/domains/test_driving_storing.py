@@ -12,11 +12,11 @@ from scenic.domains.driving.elements import Maneuver, NetworkElement, Signal
 from scenic.domains.driving.loading import MapOptions, network_of
 from scenic.domains.driving.network import RoadNetwork
 from scenic.domains.driving.storing import restored, stored
-from tests.maps import LANES, RoadText, cross, lane, line, map_text, straight
+from tests.maps import RoadText, cross, lane, lanes, line, map_text, straight
 
 PROFILE = '<elevationProfile><elevation s="0" a="2" b="0.1" c="0" d="0"/></elevationProfile>'
-LIGHT = '<signal id="5" s="50" t="-4" type="1000001" country="OpenDRIVE"/>'
-SECTIONS = LANES.format(left=lane(1, "biking"), right=lane(-1, after=-1) + lane(-2, after=-1)) + LANES.format(
+LIGHT = '<signal id="5" s="50" t="-4" type="1000001" country="OpenDRIVE" orientation="+"/>'
+SECTIONS = lanes(left=lane(1, "biking"), right=lane(-1, after=-1) + lane(-2, after=-1)) + lanes(
     left="", right=lane(-1, before=-1) + lane(-2, "shoulder")
 ).replace('s="0"', 's="50"')
 MAPS = {

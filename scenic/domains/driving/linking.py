@@ -1,7 +1,7 @@
 """Links between roads: successors, intersections, maneuvers (sections 2.5 and 2.6 of the driving specification)."""
 
-from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -45,6 +45,7 @@ def link_roads(
     linker.maneuvers()
     linker.signals()
     fillings = tuple(linker.gaps())
+    linker.tell_of_links()
     if fill_gaps:
         network._fillings = fillings
 
@@ -58,10 +59,17 @@ class _Linker:
         self._built = built
         self._tell = tell
         self._names = {road.id for road in map.roads}
+        self._junctions = {junction.id for junction in map.junctions}
+        self._one_sided: set[str] = set()
+        """Roads that lack links which others return."""
+        self._missing: dict[str, list[int]] = defaultdict(list)
+        """Roads, junctions and lanes that links name and the file lacks, and the lines of these links."""
         self._inside: dict[str | None, list[BuiltRoad]] = defaultdict(list)
         """The roads within each junction."""
         for road in built.values():
             self._inside[road.record.junction].append(road)
+            if road.record.junction is not None:
+                self._look_up_junction(road.record.junction, road.record.line)
         self._intersections: dict[str, Intersection] = {}
         self._maneuvers: dict[int, list[Maneuver]] = defaultdict(list)
         self._joints: list[tuple[Lane, Lane]] = []
@@ -77,14 +85,54 @@ class _Linker:
                     continue
                 other = self._built.get(link.id)
                 if other is None:
-                    if link.id not in self._names:
-                        message = (
-                            f"road {road.record.id} is linked to road {link.id}, which is not there: dropped"
-                        )
-                        self._tell(Problem("SC623", message, link.line, "link"))
+                    self._look_up_road(link.id, link.line)
                     continue
                 contact = link.contact or self._contact(other, road.record.id)
+                self._mutual(road, other, contact, link)
                 self._lanes(road, end, other, contact)
+
+    def _mutual(self, road: BuiltRoad, other: BuiltRoad, contact: str, link: Link) -> None:
+        """Report a road that another one follows, or is followed by, and that does not say so itself."""
+        which = "predecessor" if contact == "start" else "successor"
+        back = other.record.predecessor if contact == "start" else other.record.successor
+        if which in other.record.lost:
+            return
+        if back is None and road.record.junction is None and other.record.junction is None:
+            message = (
+                f"road {other.record.id} has no {which}, but road {road.record.id} is linked to it: completed"
+            )
+            if other.record.id not in self._one_sided:
+                self._tell(Problem("SC623", message, other.record.line, "one-sided"))
+            self._one_sided.add(other.record.id)
+
+    def _look_up_road(self, id: str, line: int) -> None:
+        """Note a link to a road that is not there, unless it is left out for something that has been told."""
+        if id not in self._names and not {f"road {id}", "road ?"} & self._map.left_out:
+            self._missing[f"road {id}"].append(line)
+
+    def _look_up_junction(self, id: str, line: int) -> None:
+        """Note a link to a junction that is not there, as for roads."""
+        if id not in self._junctions and not {f"junction {id}", "junction ?"} & self._map.left_out:
+            self._missing[f"junction {id}"].append(line)
+
+    def _look_up_lane(self, road: BuiltRoad, end: str, id: int, line: int) -> None:
+        """Note a link to a lane that is not there; one that is not for traffic, or left out, is no mistake."""
+        section = road.record.sections[0 if end == "start" else -1]
+        if section.is_whole and all(lane.id != id for lane in section.lanes):
+            self._missing[f"lane {id} at the {end} of road {road.record.id}"].append(line)
+
+    def tell_of_links(self) -> None:
+        """Report what links name and the file lacks, once for each road that it concerns."""
+        roads: dict[str, list[str]] = defaultdict(list)
+        for what in self._missing:
+            lane, _, road = what.partition(" of ")
+            roads[road or lane].append(what)
+        for found in roads.values():
+            lines = sorted(line for what in found for line in self._missing[what])
+            names = f"{len(lines)} links name" if len(lines) > 1 else "a link names"
+            are = "are" if len(found) > 1 else "is"
+            message = f"{', '.join(found)}, which {names}, {are} not there: dropped"
+            self._tell(Problem("SC623", message, lines[0], "dangling"))
 
     def _contact(self, other: BuiltRoad, id: str) -> str:
         """The end of a road that is linked to another one."""
@@ -103,10 +151,7 @@ class _Linker:
                 continue
             beyond = other.lane_at(contact, target)
             if beyond is None:
-                if self._is_declared(other, contact, target):
-                    continue
-                message = f"lane {key} of road {road.record.id} is linked to lane {target} of road {other.record.id}, which is not there: dropped"
-                self._tell(Problem("SC623", message, record.line, "lane link"))
+                self._look_up_lane(other, contact, target, record.line)
                 continue
             forward = road.lane_at(end, key).sections[0].isForward  # type: ignore[union-attr] # it is there
             leaves = forward == (end == "end")
@@ -120,9 +165,6 @@ class _Linker:
             if (item.predecessor if contact == "start" else item.successor) == id:
                 return item.id
         return None
-
-    def _is_declared(self, road: BuiltRoad, end: str, id: int) -> bool:
-        return any(lane.id == id for lane in road.record.sections[0 if end == "start" else -1].lanes)
 
     def _join(self, before: Lane, after: Lane) -> None:
         before._successor, after._predecessor = after, before
@@ -146,11 +188,8 @@ class _Linker:
                 self._built.get(connection.connecting),
             )
             if incoming is None or connecting is None:
-                missing = connection.incoming if incoming is None else connection.connecting
-                if missing in self._names:
-                    continue  # a road without lanes for traffic
-                message = f"a connection of junction {junction.id} names road {missing}, which is not there: dropped"
-                self._tell(Problem("SC624", message, connection.line, "connection"))
+                for name in (connection.incoming, connection.connecting):
+                    self._look_up_road(name, connection.line)
                 continue
             ways.append(
                 (
@@ -184,25 +223,26 @@ class _Linker:
         incoming_lanes: list[Lane] = []
         outgoing: list[Lane] = []
         maneuvers: list[Maneuver] = []
+        nowhere: dict[int, tuple[BuiltRoad, str, int]] = {}
         for incoming, end, connecting, connection in ways:
             ends.setdefault(incoming.record.id, (incoming, end))
-            links = connection.links or tuple(
-                records.LaneLinks(key, key) for key, _ in incoming.contact_lanes(end)
-            )
+            links = connection.links
+            if links is None:
+                links = tuple(records.LaneLinks(key, key) for key, _ in incoming.contact_lanes(end))
             for link in links:
                 start = incoming.lane_at(end, link.source)
                 lane = connecting.lane_at(connection.contact, link.target)
                 if start is None or lane is None:
-                    self._tell_of_missing(link.source, incoming, end, connection)
-                    self._tell_of_missing(link.target, connecting, connection.contact, connection)
+                    if connection.links is not None:
+                        self._look_up_lane(incoming, end, link.source, link.line)
+                        self._look_up_lane(connecting, connection.contact, link.target, link.line)
                     continue
                 if (start.sections[0].isForward) != (end == "end"):
                     continue  # traffic comes out of the junction there
                 beyond, where = self._beyond(connecting, _OPPOSITE[connection.contact], link.target)
                 self._join(start, lane)
                 if beyond is None or where is None:
-                    message = f"lane {link.target} of connecting road {connecting.record.id} leads nowhere: no maneuver"
-                    self._tell(Problem("SC624", message, connection.line, "leads nowhere"))
+                    nowhere.setdefault(id(connecting), (connecting, connection.contact, link.target))
                     continue
                 ends.setdefault(where[0].record.id, where)
                 maneuver = Maneuver(start, beyond, lane, intersection)
@@ -210,6 +250,8 @@ class _Linker:
                 maneuvers.append(maneuver)
                 incoming_lanes.append(start)
                 outgoing.append(beyond)
+        for connecting, contact, lane_id in nowhere.values():
+            self._tell_of_end(connecting, _OPPOSITE[contact], lane_id)
         center = polygon.centroid
         middle = (center.x, center.y)
 
@@ -234,14 +276,21 @@ class _Linker:
         for road in inside:
             self._network.connectingRoads += (road.road,)
 
-    def _tell_of_missing(self, id: int, road: BuiltRoad, end: str, connection: records.Connection) -> None:
-        """Report a lane that a connection names and the file lacks; one that is not for traffic is no mistake."""
-        section = road.record.sections[0 if end == "start" else -1]
-        if all(lane.id != id for lane in section.lanes):
-            message = (
-                f"a connection names lane {id} of road {road.record.id}, which is not there: no maneuver"
-            )
-            self._tell(Problem("SC623", message, connection.line, "lane of connection"))
+    def _tell_of_end(self, connecting: BuiltRoad, end: str, lane_id: int) -> None:
+        """Report a connecting road of which a lane leads nowhere, unless the cause has been told."""
+        record = connecting.record
+        link = record.predecessor if end == "start" else record.successor
+        section = record.sections[0 if end == "start" else -1]
+        lane = next((lane for lane in section.lanes if lane.id == lane_id), None)
+        which = "predecessor" if end == "start" else "successor"
+        if which in record.lost or (lane is not None and which in lane.lost):
+            return
+        if link is None or (
+            lane is not None and (lane.predecessor if end == "start" else lane.successor) is None
+        ):
+            message = f"lane {lane_id} of connecting road {record.id} leads nowhere: no maneuver"
+            line = record.line if link is None or lane is None else lane.line
+            self._tell(Problem("SC624", message, line, "leads nowhere"))
 
     def _touching(
         self, incoming: BuiltRoad, junction: str, connecting: BuiltRoad, connection: records.Connection
@@ -310,9 +359,7 @@ class _Linker:
         if link is None:
             return None
         if link.element == "junction":
-            if link.id not in self._intersections and not any(j.id == link.id for j in self._map.junctions):
-                message = f"a road is linked to junction {link.id}, which is not there: dropped"
-                self._tell(Problem("SC623", message, link.line, "link"))
+            self._look_up_junction(link.id, link.line)
             return self._intersections.get(link.id)
         other = self._built.get(link.id)
         return None if other is None else other.road
@@ -373,21 +420,35 @@ class _Linker:
         import shapely
 
         limit = _GAP + self._network.tolerance
-        for before, after in self._joints:
+        apart: list[tuple[Lane, Lane, float]] = []
+        for before, after in dict.fromkeys(self._joints):
             corners = np.stack([before.left[-1], before.right[-1], after.right[0], after.left[0]])
             gap = max(np.hypot(*(corners[0] - corners[3])), np.hypot(*(corners[1] - corners[2])))
             away = np.hypot(*(corners[0] + corners[1] - corners[2] - corners[3])) / 2
             if away > limit:
-                message = (
-                    f"{before.uid} ends {away:.1f} m from where {after.uid} begins, though it leads into it: "
-                    "a link, a place or a width is wrong"
-                )
-                record = self._built_of(after).record
-                self._tell(Problem("SC623", message, record.line, "apart"))
+                apart.append((before, after, away))
             elif gap > 1e-3:
                 hull = area_of(shapely.MultiPoint(corners).convex_hull)
                 if hull is not None:
                     yield hull
+        self._tell_of_distances(apart)
+
+    def _tell_of_distances(self, apart: Sequence[tuple[Lane, Lane, float]]) -> None:
+        """Report linked lanes that lie apart, once for each road that is at the wrong place: those with most of such links."""
+        left = list(apart)
+        while left:
+            roads = Counter(lane.road for before, after, _ in left for lane in {before, after})
+            wrong = max(roads, key=lambda road: roads[road])
+            mine = [joint for joint in left if wrong in (joint[0].road, joint[1].road)]
+            left = [joint for joint in left if joint not in mine]
+            before, after, away = mine[0]
+            others = f" (and {len(mine) - 1} more links of {wrong.uid})" if len(mine) > 1 else ""
+            message = (
+                f"{before.uid} ends {away:.1f} m from where {after.uid} begins, though it leads into it{others}: "
+                "a link, a place or a width is wrong"
+            )
+            record = self._built_of(before if before.road is wrong else after).record
+            self._tell(Problem("SC623", message, record.line, "apart"))
 
     def _built_of(self, lane: Lane) -> BuiltRoad:
         return self._built[lane.road.uid.removeprefix("road")]

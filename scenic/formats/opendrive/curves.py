@@ -58,6 +58,15 @@ class Curve:
                 points[part], headings[part] = self._piece_at(index, piece, s[part] - piece.s)
         return points, headings
 
+    def tears(self) -> Floats:
+        """Metres between the end of each piece but the last and where the next one begins, ``(pieces - 1,)``."""
+        ends = [
+            self._piece_at(index, piece, np.array([piece.length]))[0][0]
+            for index, piece in enumerate(self._pieces[:-1])
+        ]
+        starts = np.array([(piece.x, piece.y) for piece in self._pieces[1:]])
+        return np.hypot(*(starts - np.array(ends)).T) if ends else np.empty(0)
+
     def _piece_at(self, index: int, piece: Geometry, ds: Floats) -> tuple[Floats, Floats]:
         if piece.shape == "line":
             u, v, turn = ds, np.zeros_like(ds), np.zeros_like(ds)

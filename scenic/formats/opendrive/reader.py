@@ -5,9 +5,10 @@ Anything that is wrong with a part of the file costs at most that part, and is t
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, zip_longest
+from types import MappingProxyType
 from typing import Final, Literal
 
 from scenic.formats.opendrive.records import (
@@ -27,6 +28,7 @@ from scenic.formats.opendrive.records import (
     Signal,
     SignalReference,
 )
+from scenic.formats.opendrive.schema import LARGEST, faults_of
 from scenic.formats.opendrive.xml_tree import Element, MapError, read_tree
 from scenic.language.spans import Span
 
@@ -39,16 +41,31 @@ _SHARPEST: Final = 50.0
 """Change of curvature in 1/m^2 from which on a spiral is an artefact."""
 _AGREEMENT: Final = 1e-3
 """Metres by which the length of a piece may differ from the distance to the next one without a word."""
+_BEHIND: Final = 0.1
+"""Metres by which something may lie behind the end of its road without a word."""
+_CODES: Final = MappingProxyType({"road": "SC621", "lane": "SC622", "link": "SC623", "junction": "SC624"})
 _ALIKE: Final = 5
 """Problems of one kind that are told one by one."""
 
 
 class _Wrong(Exception):
-    """A part of the file that cannot be used, and why."""
+    """A part of the file that cannot be used, and why.
 
-    def __init__(self, message: str, line: int) -> None:
+    Args:
+        message: what is wrong.
+        element: the element in which it is.
+        part: the attribute or child that is concerned.
+
+    """
+
+    def __init__(self, message: str, element: Element, part: str = "") -> None:
         super().__init__(message)
-        self.line = line
+        self.line = element.line
+        self.about = (element, part)
+
+
+class _NoLanes(Exception):
+    """A road that has no lanes because of faults that are told by themselves."""
 
 
 def read_map(content: bytes, filename: str) -> MapRecords:
@@ -64,16 +81,27 @@ def read_map(content: bytes, filename: str) -> MapRecords:
             span=Span(root.line, 0, root.line, 1),
             help="scenic reads road maps in the format OpenDRIVE (.xodr)",
         )
-    return _Reader(filename).map(root, reference)
+    return _Reader(filename, root).map(root, reference)
 
 
 class _Reader:
-    def __init__(self, filename: str) -> None:
+    """Reads one file; what violates the standard is told once, with what follows from it where that is known."""
+
+    def __init__(self, filename: str, root: Element) -> None:
         self._filename = filename
         self._problems: list[Problem] = []
+        self._faults = dict(faults_of(root))
+        self._left_out: set[str] = set()
+        self._lost: set[str] = set()
+        """Which links of the road that is being read cannot be used."""
 
     def _tell(self, code: str, message: str, line: int, kind: str) -> None:
         self._problems.append(Problem(code, message, line, kind))
+
+    def _tell_of(self, about: tuple[Element, str], code: str, message: str, kind: str) -> None:
+        """Report what follows from a fault, instead of the fault itself."""
+        self._faults.pop(about, None)
+        self._tell(code, message, about[0].line, kind)
 
     def map(self, root: Element, reference: str) -> MapRecords:
         header = root.first("header") or Element("header", {}, root.line)
@@ -82,11 +110,16 @@ class _Reader:
         for element in root.all("road"):
             try:
                 road = self._road(element)
+            except _NoLanes:
+                self._left_out.add(f"road {element.attributes['id']}")
+                continue
             except _Wrong as wrong:
-                name = element.attributes.get("id", "?")
-                self._tell("SC621", f"road {name} is left out: {wrong}", wrong.line, "road")
+                name = element.attributes.get("id") or "?"
+                self._left_out.add(f"road {name}")
+                self._tell_of(wrong.about, "SC621", f"road {name} is left out: {wrong}", "road")
                 continue
             if road.id in roads:
+                self._forget(element)
                 self._tell(
                     "SC621", f"road {road.id} is there twice: the second is left out", road.line, "twice"
                 )
@@ -97,20 +130,26 @@ class _Reader:
             try:
                 junction = self._junction(element)
             except _Wrong as wrong:
-                name = element.attributes.get("id", "?")
-                self._tell("SC624", f"junction {name} is left out: {wrong}", wrong.line, "junction")
+                name = element.attributes.get("id") or "?"
+                self._left_out.add(f"junction {name}")
+                self._tell_of(wrong.about, "SC624", f"junction {name} is left out: {wrong}", "junction")
                 continue
             if junction.id in junctions:
+                self._forget(element)
                 message = f"junction {junction.id} is there twice: the second is left out"
                 self._tell("SC624", message, junction.line, "twice")
             else:
                 junctions[junction.id] = junction
         if not roads:
+            # Whatever is wrong with the first road says more than that there is none.
+            told = [problem for problem in self._problems if problem.kind == "road"] or self._told()
+            first = next(iter(told), None)
+            line = root.line if first is None else first.line
             raise MapError(
-                "the map has no road that can be used",
+                "the map has no road that can be used" + (f": {first.message}" if first else ""),
                 filename=self._filename,
-                span=Span(root.line, 0, root.line, 1),
-                help="check the file with `scenic check`" if self._problems else "is the file complete?",
+                span=Span(line, 0, line, 1),
+                help="is the file complete?" if first is None else "mend the road, or save the map again",
             )
         return MapRecords(
             self._filename,
@@ -119,22 +158,41 @@ class _Reader:
             reference,
             tuple(roads.values()),
             tuple(junctions.values()),
-            tuple(self._problems),
+            tuple(self._told()),
+            frozenset(self._left_out),
         )
+
+    def _told(self) -> list[Problem]:
+        """All problems: what was left out or changed, then faults without further effect."""
+        faults = [
+            Problem(_CODES[fault.where], fault.message, fault.line, f"{element.tag} {part}")
+            for (element, part), fault in self._faults.items()
+        ]
+        return [*self._problems, *faults]
+
+    def _forget(self, element: Element) -> None:
+        """Say nothing of ids that are there twice in an element that is itself there twice."""
+        for inner in element.children:
+            self._faults.pop((inner, "twice"), None)
+            self._forget(inner)
 
     # Roads
 
     def _road(self, element: Element) -> Road:
         name = _text(element, "id")
+        self._lost.clear()
         plan = element.first("planView")
         if plan is None:
-            raise _Wrong("it has no planView", element.line)
-        length = _number(element, "length", math.nan)
-        geometry = self._plan(name, plan, length)
+            self._faults.pop((element, "lanes"), None)
+            raise _Wrong("it has no planView", element, "planView")
+        # Without a usable length only the reference line counts.
+        declared = math.nan if (element, "length") in self._faults else _number(element, "length")
+        geometry = self._plan(name, plan, declared)
         ends = geometry[-1].s + geometry[-1].length
         lanes = element.first("lanes")
         if lanes is None:
-            raise _Wrong("it has no lanes", element.line)
+            raise _Wrong("it has no lanes", element, "lanes")
+        self._within(name, element.all("type"), ends)
         type_ = element.first("type")
         speed = None if type_ is None else _speed(type_.first("speed"))
         junction = element.attributes.get("junction", "-1")
@@ -153,66 +211,78 @@ class _Reader:
             _profile(element.first("lateralProfile"), "superelevation"),
             tuple(_cubics(lanes, "laneOffset", "s")),
             self._sections(name, lanes, ends),
-            tuple(self._signals(element.first("signals"))),
+            tuple(self._signals(name, element.first("signals"), ends)),
             tuple(self._crosswalks(element.first("objects"))),
             element.line,
+            frozenset(self._lost),
         )
 
-    def _once(self, where: str, elements: Sequence[Element]) -> None:
-        """Report elements of which there may be only one."""
-        if len(elements) > 1:
-            message = f"{where} has {len(elements)} elements <{elements[1].tag}>: the first counts"
-            self._tell("SC621", message, elements[1].line, "repeated")
+    def _within(self, road: str, elements: Iterable[Element], end: float) -> None:
+        """Report elements that are placed behind the end of a road."""
+        for element in elements:
+            start = element.attributes.get("s", "")
+            if (element, "s") not in self._faults and start and float(start) > end + _BEHIND:
+                message = f"<{element.tag}> of road {road} is at s = {start}, behind the end at {end:.3f}"
+                self._tell("SC621", message, element.line, "behind")
 
     def _link(self, road: Element, which: str) -> Link | None:
         link = road.first("link")
         if link is None:
             return None
-        ends = list(link.all(which))
-        name = road.attributes.get("id", "?")
-        self._once(f"the link of road {name}", ends)
-        end = ends[0] if ends else None
+        end = link.first(which)
         if end is None:
             return None
-        if "elementId" not in end.attributes:
-            self._tell("SC623", f"the {which} of road {name} has no 'elementId': dropped", end.line, "link")
+        name = road.attributes.get("id", "?")
+        if not end.attributes.get("elementId", "").strip():
+            message = f"the {which} of road {name} has no 'elementId': dropped"
+            self._tell_of((end, "elementId"), "SC623", message, "link")
+            self._lost.add(which)
             return None
         kind = end.attributes.get("elementType", "road")
         contact = end.attributes.get("contactPoint")
         if kind not in ("road", "junction"):
-            self._tell("SC623", f"a link to an element of the type {kind!r} is dropped", end.line, "link")
+            message = f"a link to an element of the type {kind!r} is dropped"
+            self._tell_of((end, "elementType"), "SC623", message, "link")
+            self._lost.add(which)
             return None
         element: Literal["road", "junction"] = "junction" if kind == "junction" else "road"
         if element == "road" and contact not in ("start", "end"):
             message = f"the {which} of road {name} has no 'contactPoint': the links of the other road decide"
-            self._tell("SC623", message, end.line, "contact")
+            self._tell_of((end, "contactPoint"), "SC623", message, "contact")
         return Link(element, end.attributes["elementId"], _contact(contact), end.line)
 
     def _plan(self, road: str, plan: Element, declared: float) -> tuple[Geometry, ...]:
         pieces: list[Geometry] = []
         short: list[Geometry] = []
-        for element in plan.all("geometry"):
+        elements = list(plan.all("geometry"))
+        for element, following in zip_longest(elements, elements[1:]):
             piece = _geometry(element)
-            self._once(f"a piece of road {road}", [part for part in element.children if part.tag in _NUMBERS])
+            shapes = [part for part in element.children if part.tag in _NUMBERS]
+            if len(shapes) > 1:
+                message = f"a piece of road {road} has {len(shapes)} shapes: the first counts"
+                self._tell("SC621", message, shapes[1].line, "repeated")
             is_sharp = (
                 piece.shape == "spiral"
                 and piece.length > 0
                 and abs(piece.numbers[1] - piece.numbers[0]) / piece.length > _SHARPEST
             )
-            if piece.length < _SHORTEST or is_sharp:
+            if following is not None and _number(following, "s") - piece.s > _AGREEMENT > piece.length:
+                self._faults.pop((element, "length"), None)  # the next piece says how long it is
+            elif piece.length < _SHORTEST or is_sharp:
                 what = "bends too sharply" if is_sharp else "has no length"
-                self._tell("SC621", f"a piece of road {road} that {what} is skipped", piece.line, "piece")
+                message = f"a piece of road {road} that {what} is skipped"
+                self._tell_of((element, "length"), "SC621", message, "piece")
                 short.append(piece)
                 continue
             if pieces and piece.s <= pieces[-1].s:
-                raise _Wrong("the pieces of its reference line are out of order", piece.line)
+                raise _Wrong("the pieces of its reference line are out of order", element, "s")
             pieces.append(piece)
         if not pieces:
             if not short:
-                raise _Wrong("its planView has no geometry", plan.line)
+                raise _Wrong("its planView has no geometry", plan, "geometry")
             longest = max(short, key=lambda piece: piece.length)
             if longest.length <= 0:
-                raise _Wrong("its reference line has no length", plan.line)
+                raise _Wrong("its reference line has no length", plan)
             pieces = [longest]
         for index, (piece, after) in enumerate(pairwise(list(pieces))):
             real = after.s - piece.s
@@ -222,7 +292,7 @@ class _Reader:
                     f"but the next one begins {real:.4f} m on: that counts"
                 )
                 self._tell("SC621", message, piece.line, "length")
-            pieces[index] = replace(piece, length=real)
+            pieces[index] = replace(piece, length=real, corrected=abs(real - piece.length) > _AGREEMENT)
         first = pieces[0].s
         if first:
             # Everything else counts from the start of the road.
@@ -243,30 +313,58 @@ class _Reader:
         sections: list[LaneSection] = []
         for element in lanes.all("laneSection"):
             start = _number(element, "s", 0.0)
-            if sections and start <= sections[-1].s:
-                self._tell(
-                    "SC622",
-                    f"a lane section of road {road} is out of order: left out",
-                    element.line,
-                    "section",
+            if not sections and abs(start) > _BEHIND:
+                message = (
+                    f"the first lane section of road {road} begins at s = {start:g}, not 0: it counts from 0"
                 )
+                self._tell_of((element, "s"), "SC622", message, "section")
+            if sections and start <= sections[-1].s:
+                message = f"a lane section of road {road} is out of order: left out"
+                self._tell("SC622", message, element.line, "section")
                 continue
             if start >= end - _SHORTEST and sections:
                 message = f"a lane section of road {road} begins behind its end: left out"
                 self._tell("SC622", message, element.line, "section")
                 continue
+            before = len(self._problems)
+            is_empty = not element.children or any(
+                (side, "lane") in self._faults for side in element.children
+            )
             left = self._lanes(road, element.first("left"))
             right = self._lanes(road, element.first("right"))
+            self._middle(road, element.first("center"))
             wrong = [lane for lane in left if lane.id < 0] + [lane for lane in right if lane.id > 0]
             for lane in wrong:
                 message = f"lane {lane.id} of road {road} is on the wrong side: left out"
                 self._tell("SC622", message, lane.line, "side")
             both = {lane.id: lane for lane in (*left, *right) if lane not in wrong}
             ordered = sorted(both.values(), key=lambda lane: -lane.id)
-            sections.append(LaneSection(0.0 if not sections else start, tuple(ordered), element.line))
+            if len(self._problems) == before:
+                self._numbered(road, element, list(both))
+            is_whole = len(self._problems) == before and not is_empty
+            sections.append(
+                LaneSection(0.0 if not sections else start, tuple(ordered), element.line, is_whole)
+            )
+        if sections and not any(section.lanes or section.is_whole for section in sections):
+            raise _NoLanes
         if not sections or not any(section.lanes for section in sections):
-            raise _Wrong("it has no lanes", lanes.line)
+            raise _Wrong("it has no lanes", lanes, "laneSection")
         return tuple(sections)
+
+    def _middle(self, road: str, center: Element | None) -> None:
+        """Report a middle lane that has another number than 0."""
+        lane = None if center is None else center.first("lane")
+        if lane is None or (lane, "id") in self._faults or lane.attributes["id"].strip() in ("0", "-0", "+0"):
+            return
+        message = f"the middle lane of road {road} has the id {lane.attributes['id']}, not 0"
+        self._tell("SC622", message, lane.line, "middle")
+
+    def _numbered(self, road: str, section: Element, ids: Sequence[int]) -> None:
+        """Report ids of lanes that leave numbers out."""
+        for side in ([lane for lane in ids if lane > 0], [-lane for lane in ids if lane < 0]):
+            if side and max(side) > len(side):
+                message = f"the lanes of road {road} with the ids {', '.join(map(str, sorted(side)))} leave numbers out"
+                self._tell("SC622", message, section.line, "numbers")
 
     def _lanes(self, road: str, side: Element | None) -> list[Lane]:
         found: dict[int, Lane] = {}
@@ -274,7 +372,7 @@ class _Reader:
             try:
                 lane = _lane(element)
             except _Wrong as wrong:
-                self._tell("SC622", f"a lane of road {road} is left out: {wrong}", wrong.line, "lane")
+                self._tell_of(wrong.about, "SC622", f"a lane of road {road} is left out: {wrong}", "lane")
                 continue
             if lane.id == 0:
                 continue
@@ -291,38 +389,32 @@ class _Reader:
         return list(found.values())
 
     def _lane_faults(self, name: str, element: Element, lane: Lane) -> None:
-        """Report attributes that a lane lacks, and what it has twice."""
+        """Report attributes that a lane lacks, and widths that do not begin with it."""
         if not element.attributes.get("type"):
-            self._tell("SC622", f"{name} has no type: it is for nobody", element.line, "no type")
-        starts: set[str] = set()
-        for child in element.children:
-            if child.tag == "link":
-                for which in ("predecessor", "successor"):
-                    ends = list(child.all(which))
-                    self._once(f"the link of {name}", ends)
-                    if ends and "id" not in ends[0].attributes:
-                        self._tell(
-                            "SC623", f"the {which} of {name} has no id: dropped", ends[0].line, "lane link"
-                        )
-            elif child.tag == "width":
-                start = child.attributes.get("sOffset", "0")
-                if not starts and lane.widths[0].start > _SHORTEST:
-                    message = (
-                        f"the widths of {name} begin at sOffset = {start}, not 0: the first counts before"
-                    )
-                    self._tell("SC622", message, child.line, "width late")
-                if start in starts:
-                    message = f"{name} has two widths at sOffset = {start}: the last counts"
-                    self._tell("SC622", message, child.line, "width twice")
-                starts.add(start)
-                missing = [letter for letter in "abcd" if letter not in child.attributes]
-                if missing:
-                    message = f"a width of {name} has no {', '.join(missing)}: 0 counts"
-                    self._tell("SC622", message, child.line, "coefficients")
+            message = f"{name} has no type: it is for nobody"
+            self._tell_of((element, "type"), "SC622", message, "no type")
+        for which in lane.lost:
+            end = next(end for link in element.all("link") for end in link.all(which))
+            fault = self._faults.get((end, "id"))
+            message = f"the {which} of {name} has no id" if fault is None else fault.message
+            self._tell_of((end, "id"), "SC623", f"{message}: dropped", "lane link")
+        widths = list(element.all("width"))
+        if widths and lane.widths[0].start > _SHORTEST:
+            start = widths[0].attributes["sOffset"]
+            message = f"the widths of {name} begin at sOffset = {start}, not 0: the first counts before"
+            self._tell("SC622", message, widths[0].line, "width late")
+        for width in widths:
+            missing = [letter for letter in "abcd" if (width, letter) in self._faults]
+            if missing:
+                message = f"a width of {name} has no {', '.join(missing)}: 0 counts"
+                for letter in missing:
+                    self._faults.pop((width, letter))
+                self._tell("SC622", message, width.line, "coefficients")
 
     # Beside the road
 
-    def _signals(self, signals: Element | None) -> Iterator[Signal | SignalReference]:
+    def _signals(self, road: str, signals: Element | None, end: float) -> Iterator[Signal | SignalReference]:
+        self._within(road, () if signals is None else signals.all("signal"), end)
         for element in () if signals is None else signals.children:
             if element.tag not in ("signal", "signalReference") or "id" not in element.attributes:
                 continue
@@ -339,7 +431,7 @@ class _Reader:
             try:
                 place = _number(element, "s", 0.0), _number(element, "t", 0.0)
             except _Wrong as wrong:
-                self._tell("SC621", f"a signal is left out: {wrong}", wrong.line, "signal")
+                self._tell_of(wrong.about, "SC621", f"a signal of road {road} is left out: {wrong}", "signal")
                 continue
             yield Signal(
                 given["id"],
@@ -359,7 +451,7 @@ class _Reader:
             try:
                 found = _crosswalk(element)
             except _Wrong as wrong:
-                self._tell("SC621", f"a crosswalk is left out: {wrong}", wrong.line, "crosswalk")
+                self._tell_of(wrong.about, "SC621", f"a crosswalk is left out: {wrong}", "crosswalk")
                 continue
             if found is not None:
                 yield found
@@ -370,34 +462,42 @@ class _Reader:
         name = _text(element, "id")
         kind = element.attributes.get("type", "default")
         if kind not in ("default", "direct", "virtual", "common"):
-            self._tell("SC624", f"junction {name} is of the unknown type {kind!r}", element.line, "type")
+            message = f"junction {name} is of the unknown type {kind!r}"
+            self._tell_of((element, "type"), "SC624", message, "type")
         connections = []
         for item in element.all("connection"):
             given = item.attributes
             if "incomingRoad" not in given or not ("connectingRoad" in given or "linkedRoad" in given):
                 message = f"a connection of junction {name} without roads is left out"
-                self._tell("SC624", message, item.line, "connection")
+                self._tell_of((item, "incomingRoad"), "SC624", message, "connection")
+                self._left_out.add(f"connections of {name}")
                 continue
-            links = []
+            links: list[LaneLinks] = []
             for link in item.all("laneLink"):
                 try:
-                    links.append(LaneLinks(_integer(link, "from"), _integer(link, "to")))
+                    made = LaneLinks(_integer(link, "from"), _integer(link, "to"), link.line)
                 except _Wrong as wrong:
-                    self._tell(
-                        "SC624", f"a lane link of junction {name} is left out: {wrong}", wrong.line, "link"
-                    )
-            if len(set(links)) < len(links):
-                message = f"a connection of junction {name} has a lane link twice: once counts"
-                self._tell("SC624", message, item.line, "link twice")
-                links = list(dict.fromkeys(links))
+                    message = f"a lane link of junction {name} is left out: {wrong}"
+                    self._tell_of(wrong.about, "SC624", message, "link")
+                    continue
+                if made in links:
+                    message = f"a connection of junction {name} has a lane link twice: once counts"
+                    self._tell("SC624", message, link.line, "link twice")
+                else:
+                    links.append(made)
             if given.get("contactPoint") not in ("start", "end"):
                 message = f"a connection of junction {name} has no 'contactPoint': start counts"
-                self._tell("SC624", message, item.line, "contact of connection")
+                self._tell_of((item, "contactPoint"), "SC624", message, "contact of connection")
             connecting = given.get("connectingRoad", given.get("linkedRoad", ""))
             contact = _contact(given.get("contactPoint")) or "start"
             connections.append(
                 Connection(
-                    given.get("id", ""), given["incomingRoad"], connecting, contact, tuple(links), item.line
+                    given.get("id", ""),
+                    given["incomingRoad"],
+                    connecting,
+                    contact,
+                    tuple(links) if item.first("laneLink") else None,
+                    item.line,
                 )
             )
         return Junction(name, element.attributes.get("name", ""), kind, tuple(connections), element.line)
@@ -425,7 +525,7 @@ def told(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
 def _text(element: Element, name: str) -> str:
     value = element.attributes.get(name, "").strip()
     if not value:
-        raise _Wrong(f"<{element.tag}> has no {name!r}", element.line)
+        raise _Wrong(f"<{element.tag}> has no {name!r}", element, name)
     return value
 
 
@@ -433,21 +533,21 @@ def _number(element: Element, name: str, default: float | None = None) -> float:
     text = element.attributes.get(name)
     if text is None:
         if default is None:
-            raise _Wrong(f"<{element.tag}> has no {name!r}", element.line)
+            raise _Wrong(f"<{element.tag}> has no {name!r}", element, name)
         return default
     try:
         value = float(text)
     except ValueError:
-        raise _Wrong(f"{name!r} of <{element.tag}> is {text!r}, not a number", element.line) from None
-    if not math.isfinite(value) or abs(value) > 1e12:
-        raise _Wrong(f"{name!r} of <{element.tag}> is {text}, not a finite number", element.line)
+        raise _Wrong(f"{name!r} of <{element.tag}> is {text!r}, not a number", element, name) from None
+    if not math.isfinite(value) or abs(value) > LARGEST:
+        raise _Wrong(f"{name!r} of <{element.tag}> is {text}, not a finite number", element, name)
     return value
 
 
 def _integer(element: Element, name: str) -> int:
     value = _number(element, name)
     if value != int(value):
-        raise _Wrong(f"{name!r} of <{element.tag}> is not an integer", element.line)
+        raise _Wrong(f"{name!r} of <{element.tag}> is not an integer", element, name)
     return int(value)
 
 
@@ -481,7 +581,7 @@ def _profile(element: Element | None, tag: str) -> tuple[Cubic, ...]:
 def _geometry(element: Element) -> Geometry:
     shapes = [child for child in element.children if child.tag in _NUMBERS]
     if not shapes:
-        raise _Wrong("a piece of its reference line has no shape", element.line)
+        raise _Wrong("a piece of its reference line has no shape", element)
     shape = shapes[0]
     numbers = tuple(_number(shape, name) for name in _NUMBERS[shape.tag])
     normalized = shape.tag == "paramPoly3" and shape.attributes.get("pRange", "normalized") != "arcLength"
@@ -501,10 +601,17 @@ _NUMBERS: Final[dict[str, tuple[str, ...]]] = {
 
 def _lane(element: Element) -> Lane:
     link = element.first("link")
+    lost = set()
 
     def neighbour(which: str) -> int | None:
         end = None if link is None else link.first(which)
-        return None if end is None or "id" not in end.attributes else _integer(end, "id")
+        if end is None:
+            return None
+        try:
+            return _integer(end, "id")
+        except _Wrong:
+            lost.add(which)
+            return None
 
     access = frozenset(
         f"{item.attributes.get('rule', 'allow')} {item.attributes.get('restriction', '')}"
@@ -521,6 +628,7 @@ def _lane(element: Element) -> Lane:
         speeds[0] if speeds else None,
         access,
         element.line,
+        frozenset(lost),
     )
 
 

@@ -79,6 +79,8 @@ class Geometry:
     numbers: tuple[float, ...]
     normalized: bool
     line: int
+    corrected: bool = False
+    """Whether the length is not that of the file, which contradicts where the next piece begins."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +98,8 @@ class Lane:
     access: frozenset[str]
     """Kinds of road users that the file allows or denies, as ``allow bicycle``."""
     line: int
+    lost: frozenset[str] = frozenset()
+    """Which of ``predecessor`` and ``successor`` the file has, but not so that they can be used."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +109,8 @@ class LaneSection:
     s: float
     lanes: tuple[Lane, ...]
     line: int
+    is_whole: bool = True
+    """Whether no lane of the file is missing here because something is wrong with it, which has been told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,6 +183,8 @@ class Road:
     signals: tuple[Signal | SignalReference, ...]
     crosswalks: tuple[Crosswalk, ...]
     line: int
+    lost: frozenset[str] = frozenset()
+    """As for lanes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,6 +193,7 @@ class LaneLinks:
 
     source: int
     target: int
+    line: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,7 +204,8 @@ class Connection:
     incoming: str
     connecting: str
     contact: Literal["start", "end"]
-    links: tuple[LaneLinks, ...]
+    links: tuple[LaneLinks, ...] | None
+    """``None`` where the file has none: lanes of the same ids are linked."""
     line: int
 
 
@@ -221,3 +231,5 @@ class MapRecords:
     roads: tuple[Road, ...]
     junctions: tuple[Junction, ...]
     problems: tuple[Problem, ...] = field(default=())
+    left_out: frozenset[str] = frozenset()
+    """Roads and junctions that are not here because something is wrong with them, as ``road 5``."""

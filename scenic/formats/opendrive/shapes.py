@@ -21,6 +21,9 @@ MAX_ERROR: Final = 0.01
 _NEGATIVE: Final = -1e-3
 """Metres; wider negative widths are reported."""
 
+_TORN: Final = 0.1
+"""Metres between the pieces of a reference line that are reported, once for a road."""
+
 _SAME: Final = 1e-9
 
 _MOST: Final = 50_000
@@ -80,6 +83,11 @@ def road_shape(
 
     """
     curve = Curve(road.geometry)
+    tears = curve.tears()
+    torn = [index for index in np.flatnonzero(tears > _TORN).tolist() if not road.geometry[index].corrected]
+    if torn:
+        message = f"a piece of road {road.id} begins {tears[torn[0]]:.2f} m from where the one before it ends"
+        tell(Problem("SC621", message, road.geometry[torn[0] + 1].line, "torn"))
     ends = [*(section.s for section in road.sections[1:]), road.length]
     shapes = []
     for section, end in zip(road.sections, ends, strict=True):
