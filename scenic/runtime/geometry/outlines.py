@@ -3,7 +3,7 @@
 Every function is elementwise: the geometry of a lane depends on that lane alone.
 """
 
-from typing import Final
+from typing import Final, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -32,21 +32,76 @@ def shadows(body: Body, lanes: Indices) -> Geometries:
     part = body.take(lanes) if len(body) > 1 else body
     for mesh, chosen in part.by_mesh(len(lanes)):
         if mesh.is_convex:
-            corners = mesh.hull.vertices
-            for some in rows(len(chosen), len(corners), _CHUNK):
-                world = _placed(part.poses, chosen[some], corners)
-                result[chosen[some]] = hulls(world[..., :2])
+            result[chosen] = _hulls_of(mesh, part.poses, chosen)
         else:
             standing = np.broadcast_to(upright(part.poses.take(chosen)), len(chosen))
             result[chosen[standing]] = _standing(mesh, part.poses, chosen[standing])
             chosen = chosen[~standing]
             for some in rows(len(chosen), 3 * len(mesh.faces), _CHUNK):
-                world = _placed(part.poses, chosen[some], mesh.vertices)[..., :2]
-                flat = world[:, mesh.faces]
-                first, second = flat[:, :, 1] - flat[:, :, 0], flat[:, :, 2] - flat[:, :, 0]
-                proper = first[..., 0] * second[..., 1] != first[..., 1] * second[..., 0]
-                triangles = np.where(proper, shapely.polygons(flat), None)
+                triangles = _triangles(mesh, part.poses, chosen[some])
                 result[chosen[some]] = shapely.union_all(triangles, axis=1)
+    return result
+
+
+class Area(Protocol):
+    """An area of the plane in each of some lanes."""
+
+    def meets_geometries(self, geometries: Geometries, rows: Indices) -> Booleans:
+        """Whether shapely geometries ``(k,)`` meet the areas of the lanes with the numbers ``rows``, ``(k,)``."""
+
+    def meets_points(self, points: Floats, rows: Indices) -> Booleans:
+        """Whether some of the points ``(k, m, 2)`` lie in the areas of the lanes with the numbers ``rows``, ``(k,)``."""
+
+
+def shadows_meet(body: Body, lanes: Indices, area: Area) -> Booleans:
+    """Whether the outlines of a body seen from above meet an area, in some lanes, ``(n,)``.
+
+    Triangles are compared one by one, and only where neither the convex hull nor a vertex of the body decides.
+    """
+    result: Booleans = np.zeros(len(lanes), dtype=np.bool_)
+    part = body.take(lanes) if len(body) > 1 else body
+    for mesh, chosen in part.by_mesh(len(lanes)):
+        if mesh.is_convex:
+            result[chosen] = area.meets_geometries(_hulls_of(mesh, part.poses, chosen), chosen)
+            continue
+        standing = np.broadcast_to(upright(part.poses.take(chosen)), len(chosen))
+        upright_ones, left = chosen[standing], chosen[~standing]
+        if len(upright_ones):
+            outlines = _standing(mesh, part.poses, upright_ones)
+            result[upright_ones] = area.meets_geometries(outlines, upright_ones)
+        if len(left):
+            left = left[area.meets_geometries(_hulls_of(mesh, part.poses, left), left)]
+        used = mesh.vertices[distinct(mesh.faces)]
+        for some in rows(len(left), len(used), _CHUNK):
+            places = _placed(part.poses, left[some], used)[..., :2]
+            result[left[some]] = area.meets_points(places, left[some])
+        left = left[~result[left]]
+        for some in rows(len(left), 3 * len(mesh.faces), _CHUNK):
+            triangles = _triangles(mesh, part.poses, left[some])
+            row, face = np.nonzero(triangles != None)  # noqa: E711 - elementwise
+            met = area.meets_geometries(triangles[row, face], left[some][row])
+            result[left[some][row[met]]] = True
+    return result
+
+
+def _hulls_of(mesh: Mesh, poses: Poses, lanes: Indices) -> Geometries:
+    """The convex hulls ``(n,)`` of a mesh seen from above."""
+    corners = mesh.hull.vertices
+    result: Geometries = np.empty(len(lanes), dtype=np.object_)
+    for some in rows(len(lanes), len(corners), _CHUNK):
+        result[some] = hulls(_placed(poses, lanes[some], corners)[..., :2])
+    return result
+
+
+def _triangles(mesh: Mesh, poses: Poses, lanes: Indices) -> Geometries:
+    """The faces of a mesh seen from above, ``(n, faces)``; ``None`` for those that stand upright."""
+    import shapely
+
+    flat = _placed(poses, lanes, mesh.vertices)[..., :2][:, mesh.faces]
+    first, second = flat[:, :, 1] - flat[:, :, 0], flat[:, :, 2] - flat[:, :, 0]
+    proper = first[..., 0] * second[..., 1] != first[..., 1] * second[..., 0]
+    result: Geometries = np.full(proper.shape, None, dtype=np.object_)
+    result[proper] = shapely.polygons(flat[proper])
     return result
 
 
@@ -120,10 +175,8 @@ def hulls(points: Floats) -> Geometries:
     """The convex hulls of points ``(n, k, 2)``."""
     import shapely
 
-    count, size = points.shape[:2]
-    owner = np.repeat(np.arange(count), size)
-    gathered = shapely.multipoints(points.reshape(-1, 2), indices=owner)
-    return np.asarray(shapely.convex_hull(gathered), dtype=np.object_)
+    # A line through all points has the same hull, and is made at once where many points are made one by one.
+    return np.asarray(shapely.convex_hull(shapely.linestrings(points)), dtype=np.object_)
 
 
 def upright(poses: Poses) -> Booleans:
@@ -137,4 +190,4 @@ def _placed(poses: Poses, lanes: Indices, points: Floats) -> Floats:
     return np.broadcast_to(world, (len(lanes), *world.shape[1:]))
 
 
-__all__ = ["Geometries", "cuts", "hulls", "shadows", "upright"]
+__all__ = ["Area", "Geometries", "cuts", "hulls", "shadows", "shadows_meet", "upright"]

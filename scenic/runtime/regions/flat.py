@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from scenic.graph.kinds import Column
 from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.outlines import Geometries, cuts, shadows, upright
+from scenic.runtime.geometry.outlines import Geometries, cuts, shadows, shadows_meet, upright
 from scenic.runtime.geometry.polygons import TOLERANCE
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.rectangles import Rectangles
@@ -66,7 +66,19 @@ class Flat:
         """In which of some lanes, of which these are the geometries, a body shares a point with them."""
         import shapely
 
-        return np.asarray(shapely.intersects(self.geometries, outlines(body, lanes, self.heights)))
+        if self.heights is None:
+            return shadows_meet(body, lanes, self)
+        return np.asarray(shapely.intersects(self.geometries, cuts(body, lanes, self.heights)))
+
+    def meets_geometries(self, geometries: Geometries, rows: NDArray[np.intp]) -> Mask:
+        """Whether shapely geometries ``(k,)`` meet those of the lanes with the numbers ``rows``, ``(k,)``."""
+        import shapely
+
+        return np.asarray(shapely.intersects(rows_of([self.geometries], rows)[0], geometries))
+
+    def meets_points(self, points: NDArray[np.float64], rows: NDArray[np.intp]) -> Mask:
+        """Whether some of the points ``(k, m, 2)`` lie in the geometries of the lanes with the numbers ``rows``, ``(k,)``."""
+        return some_inside(rows_of([self.geometries], rows)[0], points)
 
     def holds(self, body: Body, lanes: NDArray[np.intp]) -> Mask:
         """In which of some lanes, of which these are the geometries, the column over them holds the body."""
@@ -89,9 +101,12 @@ def load_library() -> None:
     import shapely  # noqa: F401 - for the functions here
 
 
-def outlines(body: Body, lanes: NDArray[np.intp], heights: Column | None) -> Geometries:
-    """Cuts through a body at heights ``(n | 1,)``, or its outlines from above where there are no heights."""
-    return shadows(body, lanes) if heights is None else cuts(body, lanes, heights)
+def some_inside(geometries: Geometries, points: NDArray[np.float64]) -> Mask:
+    """Whether some of the points ``(k, m, 2)`` lie in shapely geometries ``(k | 1,)`` or on their edges, ``(k,)``."""
+    import shapely
+
+    held = shapely.intersects_xy(geometries[:, np.newaxis], points[..., 0], points[..., 1])
+    return np.asarray(np.logical_or.reduce(held, axis=1))
 
 
 class MeetingFlat(Protocol):
@@ -105,6 +120,23 @@ class MeetingFlat(Protocol):
 
     def meets_outlines(self, outlines: Geometries, *columns: Column) -> Mask:
         """Which geometries ``(n,)`` meet the region."""
+
+    def meets_places(self, points: Column, *columns: Column) -> Mask:
+        """Of which rows of points ``(n, m, 2)`` some lie in the region."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Placed:
+    """A region of the plane in some lanes, as an area."""
+
+    region: MeetingFlat
+    columns: Sequence[Column]
+
+    def meets_geometries(self, geometries: Geometries, rows: NDArray[np.intp]) -> Mask:
+        return self.region.meets_outlines(geometries, *rows_of(self.columns, rows))
+
+    def meets_points(self, points: NDArray[np.float64], rows: NDArray[np.intp]) -> Mask:
+        return self.region.meets_places(points, *rows_of(self.columns, rows))
 
 
 def rows_of(columns: Sequence[Column], lanes: NDArray[np.intp]) -> list[Column]:
@@ -135,9 +167,13 @@ def meets_flat(
         met, is_open = region.meets_rectangles(rectangles.take(boxes), *rows_of(columns, mine))
         result[mine] = met
         left = np.concatenate([left[~boxes], mine[np.broadcast_to(is_open & ~met, len(mine))]])
-    if len(left):
-        level = None if heights is None else rows_of([heights], left)[0]
-        result[left] = region.meets_outlines(outlines(body, left, level), *rows_of(columns, left))
+    if not len(left):
+        return result
+    if heights is None:
+        result[left] = shadows_meet(body, left, _Placed(region, rows_of(columns, left)))
+    else:
+        cut = cuts(body, left, rows_of([heights], left)[0])
+        result[left] = region.meets_outlines(cut, *rows_of(columns, left))
     return result
 
 
@@ -177,8 +213,8 @@ __all__ = [
     "Flat",
     "load_library",
     "meets_flat",
-    "outlines",
     "ragged_polygons",
     "rows_of",
+    "some_inside",
     "upright_boxes",
 ]

@@ -23,7 +23,7 @@ from scenic.runtime.geometry.polygons import Polygons
 from scenic.runtime.geometry.rectangles import Rectangles
 from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Mask, Points, Region, unsupported
-from scenic.runtime.regions.flat import Flat, meets_flat, rows_of
+from scenic.runtime.regions.flat import Flat, meets_flat, rows_of, some_inside
 from scenic.runtime.regions.scalar_regions import Disc, Polygon, Rectangle, Single
 from scenic.runtime.regions.spaces import Nowhere
 from scenic.runtime.values.values import (
@@ -159,6 +159,10 @@ class PlanarRegion(Region):
         import shapely
 
         return np.asarray(shapely.intersects(self.geometries(*columns), outlines))
+
+    def meets_places(self, points: Points, *columns: Column) -> Mask:
+        """Of which rows of points ``(n, m, 2)`` some lie in the region, seen from above."""
+        return some_inside(self.geometries(*columns), points)
 
     def gaps(self, points: Points, *columns: Column) -> Column:
         return self.beside(points, *columns)
@@ -361,6 +365,11 @@ class CircularRegion(PlanarRegion):
 
         center, radius = columns
         return np.asarray(shapely.distance(outlines, shapely.points(center[:, :2])) <= radius)
+
+    def meets_places(self, points: Points, *columns: Column) -> Mask:
+        center, radius = columns
+        away = np.hypot(points[..., 0] - center[:, [0]], points[..., 1] - center[:, [1]])
+        return np.asarray(np.logical_or.reduce(away <= radius[:, np.newaxis], axis=1))
 
     def geometries(self, *columns: Column) -> Geometries:
         import shapely
