@@ -4,7 +4,6 @@ import inspect
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from importlib.util import find_spec
 from pathlib import Path
 from types import CodeType, FrameType, ModuleType, TracebackType
 from typing import TYPE_CHECKING, Any, Final
@@ -15,16 +14,13 @@ from scenic.compiler import loader
 from scenic.compiler.compile import compile_text
 from scenic.compiler.parser import bare_text
 from scenic.compiler.tracebacks import SOURCE_NAME, Locator
-from scenic.failures import diagnose, placed
+from scenic.failures import placed
 from scenic.graph.domain import Domain
-from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.errors import (
     InvalidScenarioError,
     ScenarioChoiceError,
-    ScenicSyntaxError,
     compile_error,
 )
-from scenic.language.extras import installation
 from scenic.language.garbage import promote_young
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
@@ -158,48 +154,6 @@ def analyze(
     if not isinstance(program, Scenario):
         program = load(program, params=params, model=model, scenario=scenario, mode2D=mode2D)
     return assess(program, candidates=CANDIDATES if candidates is None else candidates)
-
-
-def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
-    """What is wrong with a program, found by running and analysing it (no scene is sampled)."""
-    if find_spec("z3") is None:
-        from scenic.formats.png import MissingLibraryError
-
-        missing = MissingLibraryError(
-            "the deep check needs the library z3, which is not installed",
-            help=f"install it: {installation('deep')}",
-        )
-        return (missing.diagnostic(),)
-    from scenic.analysis.report import prove, prove_dead, prove_in_time
-
-    filename = str(path)
-    try:
-        scenario = load(path, prune=False)
-    except ScenicSyntaxError as error:
-        return error.diagnostics
-    except Exception as error:
-        found = diagnose(error)
-        if found is None:
-            raise
-        return (found,)
-    graph, facts = scenario.outline.graph, conditions(scenario.outline)
-    proven = prove(graph, facts)
-    temporal = [item.formula for item in scenario.requirements if item.formula and item.probability == 1]
-    proven += prove_in_time(temporal, {item.span for item in proven if item.severity is Severity.ERROR})
-    if all(item.severity is not Severity.ERROR for item in proven):
-        proven += prove_dead(graph, contract(graph, facts).domain)
-    return tuple(
-        Diagnostic(
-            item.code,
-            item.message,
-            item.span,
-            item.severity,
-            item.filename or filename,
-            item.help,
-            item.labels,
-        )
-        for item in proven
-    )
 
 
 def conditions(outlined: Outline) -> list[Fact]:
@@ -512,7 +466,6 @@ def _regions(module: ModuleType) -> dict[str, Region]:
 
 __all__ = [
     "conditions",
-    "deep_check",
     "load",
     "scenarioFromFile",
     "scenarioFromString",

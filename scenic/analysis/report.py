@@ -8,6 +8,7 @@ from scenic.analysis.facts import Fact
 from scenic.analysis.smt import Contradiction, Support, Verdict, judge
 from scenic.analysis.supports import supports
 from scenic.analysis.traces import contradictions
+from scenic.graph.bounding import overall
 from scenic.graph.domain import Domain
 from scenic.graph.node import Graph, Node
 from scenic.graph.operations import TABLE
@@ -36,7 +37,7 @@ def prove(graph: Graph, conditions: Sequence[Fact]) -> tuple[Diagnostic, ...]:
         core = _by_intervals(graph, ordered)
         if core:
             found = [_contradiction(Contradiction(core, ()), verdict)]
-    found += [_tautology(condition) for condition in verdict.tautologies]
+    found += [_tautology(item) for item in ordered if item in verdict.tautologies or _always_holds(item)]
     return tuple(found)
 
 
@@ -91,6 +92,12 @@ def _place(condition: Fact) -> tuple[bool, Span]:
     if condition.span is None:
         return True, Span(1, 0, 1, 0)
     return False, condition.span
+
+
+def _always_holds(condition: Fact) -> bool:
+    """Whether intervals show that a requirement of the program holds in every scene."""
+    bounds = None if condition.built_in else overall(condition.node)
+    return bounds is not None and bounds.lower.shape == (1,) and bool(bounds.lower[0] >= 1)
 
 
 def _by_intervals(graph: Graph, conditions: Sequence[Fact]) -> tuple[Fact, ...]:

@@ -196,6 +196,7 @@ CODES: Final = MappingProxyType(
         "SC700": "requirements contradict each other",
         "SC701": "requirement always holds",
         "SC702": "option never occurs",
+        "SC703": "branch never taken",
         # The tools themselves.
         "SC900": "not supported yet",
         "SC999": "internal error",

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from scenic.pipeline import deep_check
+from scenic.deep import deep_check
 
 ROOT = Path(__file__).parents[2]
 

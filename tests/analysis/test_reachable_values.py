@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from scenic.pipeline import deep_check, load
+from scenic.deep import deep_check, load
 
 SETTING = """
 x, y, z = Range(-4, 4), Range(-4, 4), Range(-4, 4)

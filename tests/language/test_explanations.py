@@ -8,11 +8,12 @@ import pytest
 
 from scenic.compiler.check import check_text
 from scenic.compiler.fixes import apply_fixes
+from scenic.deep import deep_check
 from scenic.failures import diagnose
 from scenic.language.diagnostics import CODES, Diagnostic, Severity
 from scenic.language.errors import ScenicWarning
 from scenic.language.explanations import Explanation, explanation
-from scenic.pipeline import deep_check, scenarioFromString
+from scenic.pipeline import scenarioFromString
 from scenic.project.index import Project
 from scenic.project.surroundings import surroundings_in
 from scenic.simulators.kinematic import KinematicSimulator

@@ -219,6 +219,11 @@ class Scenario:
         )
 
     @property
+    def program(self) -> Program:
+        """What running the program has produced."""
+        return self._program
+
+    @property
     def requirements(self) -> tuple[Any, ...]:
         """The ``require`` statements, in program order."""
         return tuple(self._program.requirements)
