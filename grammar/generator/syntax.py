@@ -1,7 +1,7 @@
 """Emits the grammar itself as data: what editors, highlighters, diagrams and messages derive from it.
 
-Actions, lookaheads and cuts are left out, groups stand where they are used, and of each action only the class of the
-node that it makes is kept. `scenic.compiler.syntax` says what the rows mean.
+Lookaheads and cuts are left out, and groups stand where they are used. Of each action only the class of the node that it
+makes is kept, with its fields if they are plain values of items and constants. `scenic.compiler.syntax` says what the rows mean.
 """
 
 import ast
@@ -41,7 +41,9 @@ def emit_syntax(analysis: Analysis, header: str) -> str:
     for rule in grammar.rules.values():
         if not rule.lifted:
             alternatives = tuple(
-                (tuple(_row(grammar, each)), _node(each)) for each in rule.alternatives if each.items
+                (tuple(_row(grammar, each)), _node(each), _fields(grammar, each))
+                for each in rule.alternatives
+                if each.items
             )
             lines.append(f"        {rule.name!r}: ({rule.label!r}, {alternatives!r}),")
     lines += [
@@ -65,6 +67,38 @@ def nodes_made(alternative: Alternative) -> Iterator[str]:
 
 def _node(alternative: Alternative) -> str | None:
     return next(nodes_made(alternative), None)
+
+
+def _fields(grammar: Grammar, alternative: Alternative) -> tuple[tuple[str, str, object], ...] | None:
+    """The fields of the node, each from an item of the row (by its index) or a constant; ``None`` if an action computes more."""
+    if alternative.action is None:
+        return None
+    made = ast.parse(alternative.action.strip(), mode="eval").body
+    if isinstance(made, ast.BoolOp) and isinstance(made.op, ast.And):
+        # Before the node stand conditions, which refuse texts.
+        made = made.values[-1]
+    if not (
+        isinstance(made, ast.Call) and isinstance(made.func, ast.Name) and made.func.id in node_classes()
+    ):
+        return None
+    places, index = {}, 0
+    for named in alternative.items:
+        count = len(tuple(_item(grammar, named.item)))
+        if named.name is not None and count == 1:
+            places[named.name] = index
+        index += count
+    fields: list[tuple[str, str, object]] = []
+    for keyword in made.keywords:
+        match keyword:
+            case ast.keyword(arg=str(field), value=ast.Name(id=name)) if name in places:
+                fields.append((field, "item", places[name]))
+            case ast.keyword(arg=str(field), value=ast.Constant(value=value)):
+                fields.append((field, "constant", value))
+            case ast.keyword(arg=str(field), value=ast.List(elts=[])):
+                fields.append((field, "constant", ()))
+            case _:
+                return None
+    return tuple(fields)
 
 
 def _row(grammar: Grammar, alternative: Alternative) -> Iterator[Row]:

@@ -1,6 +1,6 @@
 """The rules of the grammar as data, and what follows from them: which words begin statements, blocks and operands.
 
-Lookaheads and actions are left out, so a row says what a text consists of, not which of several readings wins.
+Lookaheads and most of the actions are left out, so a row says what a text consists of, not which of several readings wins.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -20,6 +20,7 @@ __all__ = [
     "STATEMENT_WORDS",
     "Alternative",
     "Choice",
+    "Constant",
     "Item",
     "Kind",
     "ListOf",
@@ -93,10 +94,22 @@ Row: TypeAlias = tuple[Item, ...]
 
 @dataclass(frozen=True, slots=True)
 class Alternative:
-    """One way to write what a rule matches; ``node`` is the class of the node that it makes, if it makes one."""
+    """One way to write what a rule matches.
+
+    ``node`` is the class of the node that it makes, if it makes one. ``fields`` tells of each field of that node which item of the
+    row gives its value, by index, or which constant it is; ``None`` if some field is computed otherwise.
+    """
 
     row: Row
     node: str | None
+    fields: Mapping[str, "int | Constant"] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """A value that a field of a node has whatever the text."""
+
+    value: object
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,9 +164,21 @@ def _row(raw: Iterable[tuple[Any, ...]]) -> Row:
     return tuple(_item(each) for each in raw)
 
 
+def _fields(raw: Iterable[tuple[str, str, Any]] | None) -> Mapping[str, int | Constant] | None:
+    if raw is None:
+        return None
+    return MappingProxyType(
+        {field: value if source == "item" else Constant(value) for field, source, value in raw}
+    )
+
+
 RULES: Final[Mapping[str, Rule]] = MappingProxyType(
     {
-        name: Rule(name, label, tuple(Alternative(_row(row), node) for row, node in alternatives))
+        name: Rule(
+            name,
+            label,
+            tuple(Alternative(_row(row), node, _fields(made)) for row, node, made in alternatives),
+        )
         for name, (label, alternatives) in syntax_rules().items()
     }
 )

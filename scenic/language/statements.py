@@ -1,12 +1,13 @@
 """The statements that Scenic adds, as data: what they are, and where they may stand (section 2 of the spec)."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
 from typing import Final
 
-__all__ = ["STATEMENTS", "Place", "Statement"]
+__all__ = ["STATEMENTS", "Effect", "Place", "Statement"]
 
 
 class Place(StrEnum):
@@ -23,6 +24,17 @@ class Place(StrEnum):
     CLASS = "in the body of a class"
 
 
+class Effect(StrEnum):
+    """How a method of the prelude carries out a statement."""
+
+    CALL = "call"
+    """The call is all."""
+    YIELD = "yield"
+    """The running behavior, monitor or scenario yields the result to the simulation."""
+    DELEGATE = "delegate"
+    """The running behavior, monitor or scenario delegates to the result, a generator."""
+
+
 _TOP_AND_SETUP: Final = frozenset({Place.TOP, Place.SETUP})
 _DYNAMIC: Final = frozenset({Place.COMPOSE, Place.BEHAVIOR, Place.MONITOR})
 _BLOCKS: Final = _TOP_AND_SETUP | _DYNAMIC
@@ -35,6 +47,12 @@ class Statement:
     ``node`` is the name of its class in `scenic.compiler.tree`. ``available`` tells whether this version builds it
     outside behaviors; the bodies of behaviors are carried as data, so nothing in them is refused. ``suspends`` tells
     whether it acts on the running behavior, scenario or monitor itself, so that no function called by it can have it.
+
+    ``effect`` and ``method`` say how generated code carries it out: by a method of the prelude
+    (`scenic.runtime.program.prelude`), by default of the same name. The running instance comes first if the statement suspends;
+    then the fields of the node: expressions as their values, those in ``later`` as functions without parameters, a list one after
+    the other, a duration as number and unit; all others by name. A statement that needs more has a rule in
+    `scenic.compiler.lowering`.
     """
 
     node: str
@@ -44,6 +62,14 @@ class Statement:
     documentation: str
     available: bool = True
     suspends: bool = False
+    effect: Effect = Effect.CALL
+    method: str = ""
+    later: frozenset[str] = frozenset()
+
+    @property
+    def function(self) -> str:
+        """The name of the method that carries it out."""
+        return self.method or re.sub(r"(?<=[a-z])(?=[A-Z])", "_", self.node).lower()
 
 
 _ALL = (
@@ -68,6 +94,7 @@ _ALL = (
         ("simulator value",),
         _TOP_AND_SETUP,
         "Says which simulator runs the scenes; evaluated only when a simulation is asked for.",
+        later=frozenset({"value"}),
     ),
     Statement(
         "Require",
@@ -89,6 +116,7 @@ _ALL = (
         ("record value as name", "record initial value", "record final value"),
         _TOP_AND_SETUP,
         "Saves a value during simulations: at every step, at the start or at the end.",
+        later=frozenset({"value"}),
     ),
     Statement(
         "Mutate",
@@ -103,6 +131,7 @@ _ALL = (
         ("terminate when condition", "terminate simulation when condition"),
         _TOP_AND_SETUP,
         "Ends the scenario, or the whole simulation, as soon as the condition holds.",
+        later=frozenset({"condition"}),
     ),
     Statement(
         "TerminateAfter",
@@ -118,6 +147,7 @@ _ALL = (
         _DYNAMIC,
         "Ends the current scenario, or the whole simulation, now.",
         suspends=True,
+        effect=Effect.YIELD,
     ),
     Statement(
         "Take",
@@ -126,6 +156,7 @@ _ALL = (
         frozenset({Place.BEHAVIOR}),
         "Takes actions in this step of the simulation and waits for the next.",
         suspends=True,
+        effect=Effect.YIELD,
     ),
     Statement(
         "Wait",
@@ -134,6 +165,8 @@ _ALL = (
         _DYNAMIC,
         "Takes no action in this step of the simulation.",
         suspends=True,
+        effect=Effect.YIELD,
+        method="take",
     ),
     Statement(
         "WaitFor",
@@ -142,6 +175,8 @@ _ALL = (
         _DYNAMIC,
         "Takes no action for so many seconds or steps.",
         suspends=True,
+        effect=Effect.DELEGATE,
+        method="wait",
     ),
     Statement(
         "WaitUntil",
@@ -173,6 +208,7 @@ _ALL = (
         _DYNAMIC,
         "Runs one of several behaviors or scenarios, drawn at random among those whose guards allow it.",
         suspends=True,
+        effect=Effect.DELEGATE,
     ),
     Statement(
         "DoShuffle",
@@ -181,6 +217,7 @@ _ALL = (
         _DYNAMIC,
         "Runs several behaviors or scenarios one after the other in random order.",
         suspends=True,
+        effect=Effect.DELEGATE,
     ),
     Statement(
         "TryInterrupt",

@@ -16,13 +16,12 @@ from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.operators import OPERATORS
 from scenic.language.specifiers import SPECIFIERS
+from scenic.language.statements import STATEMENTS
 
 __all__ = ["check_order"]
 
 _DEFERRED: Final[tuple[type[ast.AST], ...]] = (
-    scenic.Record,
-    scenic.Simulator,
-    scenic.TerminateWhen,
+    *(getattr(scenic, name) for name, each in STATEMENTS.items() if each.later),
     *(getattr(ast, name) for name in ("TypeAlias",) if hasattr(ast, name)),
 )
 """Statements whose expressions are evaluated later."""

@@ -31,8 +31,9 @@ from scenic.compiler.lowering.build import (
     tuple_,
 )
 from scenic.compiler.lowering.conditions import Conditions
+from scenic.language.statements import STATEMENTS, Effect
 
-__all__ = ["RULES", "Blocks", "Lowerer", "definition"]
+__all__ = ["RULES", "Blocks", "Lowerer", "definition", "plain"]
 
 
 class Lowerer(Protocol):
@@ -173,21 +174,32 @@ def _instance(lowerer: Lowerer, node: ast.AST) -> ast.expr:
     return start_of(ast.Name(lowerer.blocks.instance, ast.Load()), node)
 
 
-def _take(lowerer: Lowerer, node: scenic.Take) -> ast.stmt:
-    actions = [lowerer.expression(action) for action in node.actions]
-    call = prelude_call("take", [_instance(lowerer, node), *actions], node)
-    return statement(at(ast.Yield(call), node), node)
-
-
-def _wait(lowerer: Lowerer, node: scenic.Wait) -> ast.stmt:
-    return statement(at(ast.Yield(prelude_call("take", [_instance(lowerer, node)], node)), node), node)
-
-
-def _terminate(lowerer: Lowerer, node: scenic.Terminate) -> ast.stmt:
-    call = prelude_call(
-        "terminate", [_instance(lowerer, node)], node, options={"simulation": node.simulation}
-    )
-    return statement(at(ast.Yield(call), node), node)
+def plain(lowerer: Lowerer, node: scenic.ScenicStatement) -> ast.stmt:
+    """A statement without a rule of its own: the call of a method, as `scenic.language.statements` declares it."""
+    declared = STATEMENTS[type(node).__name__]
+    args = [_instance(lowerer, node)] if declared.suspends else []
+    options: dict[str, object] = {}
+    for field in node._fields:
+        value = getattr(node, field)
+        match value:
+            case scenic.Duration():
+                args += _limit(lowerer, value, None)
+            case ast.expr():
+                lowered = lowerer.expression(value)
+                args.append(lambda_([], lowered, value) if field in declared.later else lowered)
+            case list():
+                args += [
+                    lowerer.specifier(item)
+                    if isinstance(item, scenic.SpecifierPhrase)
+                    else lowerer.expression(item)
+                    for item in value
+                ]
+            case _:
+                options[field] = value
+    call: ast.expr = prelude_call(declared.function, args, node, options=options)
+    if declared.effect is not Effect.CALL:
+        call = at((ast.Yield if declared.effect is Effect.YIELD else ast.YieldFrom)(call), node)
+    return statement(call, node)
 
 
 def _delegate(function: str, args: Sequence[ast.expr], lowerer: Lowerer, node: ast.AST) -> ast.stmt:
@@ -209,43 +221,14 @@ def _do(lowerer: Lowerer, node: scenic.Do) -> ast.stmt:
     return _delegate("do", [targets, *_limit(lowerer, node.duration, node.until)], lowerer, node)
 
 
-def _wait_for(lowerer: Lowerer, node: scenic.WaitFor) -> ast.stmt:
-    return _delegate("wait", _limit(lowerer, node.duration, None), lowerer, node)
-
-
 def _wait_until(lowerer: Lowerer, node: scenic.WaitUntil) -> ast.stmt:
     return _delegate("wait", _limit(lowerer, None, node.condition), lowerer, node)
-
-
-def _choose(lowerer: Lowerer, node: scenic.DoChoose) -> ast.stmt:
-    return _delegate("do_choose", [lowerer.expression(target) for target in node.targets], lowerer, node)
-
-
-def _shuffle(lowerer: Lowerer, node: scenic.DoShuffle) -> ast.stmt:
-    return _delegate("do_shuffle", [lowerer.expression(target) for target in node.targets], lowerer, node)
-
-
-def _override(lowerer: Lowerer, node: scenic.Override) -> ast.stmt:
-    specifiers = [lowerer.specifier(part) for part in node.specifiers]
-    return statement(prelude_call("override", [lowerer.expression(node.target), *specifiers], node), node)
-
-
-def _require_monitor(lowerer: Lowerer, node: scenic.RequireMonitor) -> ast.stmt:
-    call = prelude_call(
-        "require_monitor", [lowerer.expression(node.monitor)], node, options={"name": node.name}
-    )
-    return statement(call, node)
 
 
 def _terminate_when(lowerer: Lowerer, node: scenic.TerminateWhen) -> ast.stmt:
     kept = lowerer.conditions().kept(node.condition)
     options = {"simulation": node.simulation, "name": node.name}
     return statement(prelude_call("terminate_when", kept, node, options=options), node)
-
-
-def _terminate_after(lowerer: Lowerer, node: scenic.TerminateAfter) -> ast.stmt:
-    limit = _limit(lowerer, node.duration, None)
-    return statement(prelude_call("terminate_after", limit, node), node)
 
 
 def _record(lowerer: Lowerer, node: scenic.Record) -> ast.stmt:
@@ -358,19 +341,10 @@ def _loop(lowerer: Lowerer, node: Any) -> ast.stmt:
 
 RULES: Final[Mapping[type[ast.AST], Callable[[Any, Any], Any]]] = MappingProxyType(
     {
-        scenic.Take: _take,
-        scenic.Wait: _wait,
-        scenic.WaitFor: _wait_for,
         scenic.WaitUntil: _wait_until,
         scenic.Do: _do,
-        scenic.DoChoose: _choose,
-        scenic.DoShuffle: _shuffle,
-        scenic.Terminate: _terminate,
         scenic.TerminateWhen: _terminate_when,
-        scenic.TerminateAfter: _terminate_after,
-        scenic.Override: _override,
         scenic.Record: _record,
-        scenic.RequireMonitor: _require_monitor,
         scenic.TryInterrupt: _try_interrupt,
         scenic.Abort: _abort,
         ast.Break: _exit,
@@ -380,4 +354,4 @@ RULES: Final[Mapping[type[ast.AST], Callable[[Any, Any], Any]]] = MappingProxyTy
         ast.While: _loop,
     }
 )
-"""How each statement is lowered, by the class of its node."""
+"""Functions that lower statements, by the classes of their nodes, where `plain` does not do."""

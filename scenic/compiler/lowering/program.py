@@ -26,6 +26,7 @@ from scenic.compiler.lowering.dynamics import Blocks
 from scenic.compiler.scopes import Binding, BindingKind, Resolution, Scope, ScopeKind
 from scenic.language.errors import InternalError
 from scenic.language.names import CONVERSIONS, TRACKED
+from scenic.language.statements import STATEMENTS
 
 __all__ = ["lower"]
 
@@ -214,10 +215,6 @@ class _Program:
         names = start_of(ast.Name("globals", ast.Load()), node)
         call = at(ast.Call(names, [], []), node)
         return statement(prelude_call("model", [constant(node.name, node), call], node), node)
-
-    def simulator(self, node: scenic.Simulator) -> ast.stmt:
-        value = lambda_([], self.expression(node.value), node.value)
-        return statement(prelude_call("simulator", [value], node), node)
 
     def mutate(self, node: scenic.Mutate) -> ast.stmt:
         targets: ast.expr = constant(None, node)
@@ -427,6 +424,7 @@ _RUNNING: Final = frozenset({ScopeKind.SCENARIO, ScopeKind.BEHAVIOR, ScopeKind.M
 
 def _rules() -> Mapping[type[ast.AST], Callable[[_Program, Any], Any]]:
     table: dict[type[ast.AST], Callable[[_Program, Any], Any]] = {
+        **{getattr(scenic, name): dynamics.plain for name in STATEMENTS},
         ast.Name: _Program.name,
         ast.NamedExpr: _Program.walrus,
         ast.Call: _Program.call,
@@ -444,7 +442,6 @@ def _rules() -> Mapping[type[ast.AST], Callable[[_Program, Any], Any]]:
         scenic.New: _Program.new,
         scenic.Param: _Program.param,
         scenic.Model: _Program.model,
-        scenic.Simulator: _Program.simulator,
         scenic.Mutate: _Program.mutate,
         scenic.Require: _Program.require,
         scenic.BehaviorDef: _Program.behavior,

@@ -64,6 +64,11 @@ PRIMARY: Final = _ORDINARY["primary"]
 LOOSEST_CONDITION: Final = LADDERS[Ladder.TEMPORAL]["temporal_expression"]
 
 
+def level_of(rule: str) -> int | None:
+    """The level of a rule of the grammar, if that is a step of the ladder of ordinary expressions."""
+    return _ORDINARY.get(rule)
+
+
 @dataclass(frozen=True, slots=True)
 class Operand:
     """The place of one operand of a form; ``None`` stands for what the place of the whole has.

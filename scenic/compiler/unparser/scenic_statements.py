@@ -4,7 +4,7 @@ import ast
 import keyword
 import unicodedata
 from collections.abc import Sequence
-from typing import ClassVar, Final
+from typing import Any, ClassVar, Final
 
 from scenic.compiler import tree
 from scenic.compiler.generated import HARD_KEYWORDS
@@ -13,17 +13,15 @@ from scenic.compiler.unparser.errors import UnparseError
 from scenic.compiler.unparser.expressions import WRITERS
 from scenic.compiler.unparser.places import (
     CONDITION,
-    DISJUNCTION,
-    DO,
     EXPRESSION,
     LOOSEST_CONDITION,
     PREFIX,
-    PRIMARY,
     RECORD,
     REQUIRE,
     TEMPORAL,
     After,
 )
+from scenic.compiler.unparser.statement_forms import FORMS, TextPart, form_of
 from scenic.compiler.unparser.statements import (
     INDENTATION,
     PYTHON_STATEMENTS,
@@ -43,9 +41,6 @@ class ProgramWriter(StatementWriter):
 
     # Simple statements.
 
-    def model(self, node: tree.Model, indent: str) -> None:
-        self.lines.append(f"{indent}model {node.name}")
-
     def param(self, node: tree.Param, indent: str) -> None:
         texts = []
         items = node.items
@@ -54,17 +49,6 @@ class ProgramWriter(StatementWriter):
             texts.append(f"{_name(item.name)} = {self.expression(item.value, follower)}")
         self.lines.append(f"{indent}param {', '.join(texts)}")
 
-    def simulator(self, node: tree.Simulator, indent: str) -> None:
-        self.lines.append(f"{indent}simulator {self.expression(node.value, _END)}")
-
-    def mutate(self, node: tree.Mutate, indent: str) -> None:
-        text = f"{indent}mutate"
-        if node.targets:
-            text += f" {', '.join([each.id for each in node.targets])}"
-        if node.scale is not None:
-            text += f" by {self.expression(node.scale, _END)}"
-        self.lines.append(text)
-
     def require(self, node: tree.Require, indent: str) -> None:
         word = "require" if node.probability is None else f"require[{node.probability!r}]"
         lead = PREFIX | CONDITION | TEMPORAL | (REQUIRE if node.probability is None else 0)
@@ -72,10 +56,6 @@ class ProgramWriter(StatementWriter):
         condition = node.condition
         text = WRITERS[condition.__class__](self, condition, LOOSEST_CONDITION, after, "", lead)
         self.lines.append(f"{indent}{word} {text}{_as(node.name)}")
-
-    def require_monitor(self, node: tree.RequireMonitor, indent: str) -> None:
-        monitor = self.expression(node.monitor, _END if node.name is None else "as")
-        self.lines.append(f"{indent}require monitor {monitor}{_as(node.name)}")
 
     def record(self, node: tree.Record, indent: str) -> None:
         name = _as(node.name)
@@ -102,61 +82,45 @@ class ProgramWriter(StatementWriter):
     def duration(self, node: tree.Duration) -> str:
         return f"{self.expression(node.value, node.unit)} {node.unit}"
 
-    def terminate_when(self, node: tree.TerminateWhen, indent: str) -> None:
-        words = "terminate simulation when" if node.simulation else "terminate when"
-        condition = self.expression(node.condition, _END if node.name is None else "as")
-        self.lines.append(f"{indent}{words} {condition}{_as(node.name)}")
+    def plain(self, node: ast.stmt, indent: str) -> None:
+        """A statement that has a form in `statement_forms`."""
+        form = form_of(node)
+        if form is None:
+            raise UnparseError("a statement of such fields has no text", node)
+        text, after = "", _END
+        for part in reversed(form.parts):
+            if isinstance(part, str):
+                text, after = f"{part} {text}", part
+                continue
+            value = getattr(node, part.field)
+            if value is None:
+                continue
+            operand = self._operand(part, value, after)
+            text = f"{part.word} {operand} {text}" if part.word else f"{operand} {text}"
+            after = part.first_word
+        self.lines.append(f"{indent}{text.rstrip()}")
 
-    def terminate_after(self, node: tree.TerminateAfter, indent: str) -> None:
-        self.lines.append(f"{indent}terminate after {self.duration(node.duration)}")
-
-    def terminate(self, node: tree.Terminate, indent: str) -> None:
-        self.lines.append(f"{indent}terminate simulation" if node.simulation else f"{indent}terminate")
-
-    def take(self, node: tree.Take, indent: str) -> None:
-        self.lines.append(f"{indent}take {self.expressions(node.actions, EXPRESSION, _END, PREFIX)}")
-
-    def expressions(self, nodes: Sequence[ast.expr], level: int, after: str, lead: int) -> str:
-        """Expressions with commas in between, at the end of which ``after`` follows."""
+    def _operand(self, part: TextPart, value: Any, after: str) -> str:
+        """One operand of a statement, at the end of which ``after`` follows."""
+        values: Sequence[Any] = value if part.is_list else (value,)
+        match part.rule:
+            case "specifier":
+                return self.specifiers(values, after, "")
+            case "duration":
+                return self.duration(value)
+            case "requirement_name":
+                return _as(value).lstrip()
+            case "dotted_name":
+                return str(value)
+            case "name_load":
+                return ", ".join([each.id for each in values])
         texts = []
-        for place, node in enumerate(nodes, start=1):
-            follower: After = nodes[place] if place < len(nodes) else after
-            texts.append(WRITERS[node.__class__](self, node, level, follower, "", lead))
-            lead = PREFIX
+        lead = part.lead
+        for place, each in enumerate(values, start=1):
+            follower: After = values[place] if place < len(values) else after
+            texts.append(WRITERS[each.__class__](self, each, part.level, follower, "", lead))
+            lead = part.lead & PREFIX
         return ", ".join(texts)
-
-    def wait(self, node: tree.Wait, indent: str) -> None:
-        self.lines.append(f"{indent}wait")
-
-    def wait_for(self, node: tree.WaitFor, indent: str) -> None:
-        self.lines.append(f"{indent}wait for {self.duration(node.duration)}")
-
-    def wait_until(self, node: tree.WaitUntil, indent: str) -> None:
-        self.lines.append(f"{indent}wait until {self.expression(node.condition, _END)}")
-
-    def do(self, node: tree.Do, indent: str) -> None:
-        lead = PREFIX | DO
-        if node.duration is not None:
-            targets = self.expressions(node.targets, EXPRESSION, "for", lead)
-            self.lines.append(f"{indent}do {targets} for {self.duration(node.duration)}")
-        elif node.until is not None:
-            targets = self.expressions(node.targets, DISJUNCTION, "until", lead)
-            self.lines.append(f"{indent}do {targets} until {self.expression(node.until, _END)}")
-        else:
-            self.lines.append(f"{indent}do {self.expressions(node.targets, EXPRESSION, _END, lead)}")
-
-    def do_choose(self, node: tree.DoChoose, indent: str) -> None:
-        self.lines.append(f"{indent}do choose {self.expressions(node.targets, EXPRESSION, _END, PREFIX)}")
-
-    def do_shuffle(self, node: tree.DoShuffle, indent: str) -> None:
-        self.lines.append(f"{indent}do shuffle {self.expressions(node.targets, EXPRESSION, _END, PREFIX)}")
-
-    def abort(self, node: tree.Abort, indent: str) -> None:
-        self.lines.append(f"{indent}abort")
-
-    def override(self, node: tree.Override, indent: str) -> None:
-        target = WRITERS[node.target.__class__](self, node.target, PRIMARY, "", "", 0)
-        self.lines.append(f"{indent}override {target} {self.specifiers(node.specifiers, _END, '')}")
 
     # Definitions.
 
@@ -242,28 +206,13 @@ def _as(name: str | None) -> str:
 ProgramWriter.table = Statements(
     {
         **PYTHON_STATEMENTS,
-        tree.Abort: ProgramWriter.abort,
+        **{getattr(tree, name): ProgramWriter.plain for name in FORMS},
         tree.BehaviorDef: ProgramWriter.behavior,
-        tree.Do: ProgramWriter.do,
-        tree.DoChoose: ProgramWriter.do_choose,
-        tree.DoShuffle: ProgramWriter.do_shuffle,
-        tree.Model: ProgramWriter.model,
         tree.MonitorDef: ProgramWriter.monitor,
-        tree.Mutate: ProgramWriter.mutate,
-        tree.Override: ProgramWriter.override,
         tree.Param: ProgramWriter.param,
         tree.Record: ProgramWriter.record,
         tree.Require: ProgramWriter.require,
-        tree.RequireMonitor: ProgramWriter.require_monitor,
         tree.ScenarioDef: ProgramWriter.scenario,
-        tree.Simulator: ProgramWriter.simulator,
-        tree.Take: ProgramWriter.take,
-        tree.Terminate: ProgramWriter.terminate,
-        tree.TerminateAfter: ProgramWriter.terminate_after,
-        tree.TerminateWhen: ProgramWriter.terminate_when,
         tree.TryInterrupt: StatementWriter.try_statement,
-        tree.Wait: ProgramWriter.wait,
-        tree.WaitFor: ProgramWriter.wait_for,
-        tree.WaitUntil: ProgramWriter.wait_until,
     }
 )
