@@ -23,6 +23,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from scenic.language.garbage import import_lasting
+from scenic.language.names import SENSORS
 
 if TYPE_CHECKING:
     from scenic.compiler.parser import ParseResult, parse
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
         SpecifierError,
     )
     from scenic.pipeline import analyze, load, scenarioFromFile, scenarioFromString
-    from scenic.runtime.elements.sensors import DepthSensor, RGBSensor, SSSensor
+    from scenic.runtime.elements.sensors import *  # noqa: F403  (declared in `scenic.language.names`)
     from scenic.runtime.elements.specifiers import specifier
     from scenic.runtime.python.bounded import bounded
     from scenic.runtime.scenes.established_api import setDebuggingOptions, setSeed
@@ -64,9 +65,6 @@ _HOMES = MappingProxyType(
         "ScenicSyntaxError": "scenic.language.errors",
         "ScenicWarning": "scenic.language.errors",
         "SpecifierError": "scenic.language.errors",
-        "DepthSensor": "scenic.runtime.elements.sensors",
-        "RGBSensor": "scenic.runtime.elements.sensors",
-        "SSSensor": "scenic.runtime.elements.sensors",
         "analyze": "scenic.pipeline",
         "bounded": "scenic.runtime.python.bounded",
         "falsify": "scenic.falsification.search",
@@ -81,6 +79,7 @@ _HOMES = MappingProxyType(
         "setDebuggingOptions": "scenic.runtime.scenes.established_api",
         "setSeed": "scenic.runtime.scenes.established_api",
         "specifier": "scenic.runtime.elements.specifiers",
+        **{name: each.home.partition(":")[0] for name, each in SENSORS.items() if each.home is not None},
     }
 )
 
@@ -89,15 +88,12 @@ _PACKAGES = frozenset({"core", "domains", "simulators", "syntax"})
 
 __all__ = [
     "Conditioned",
-    "DepthSensor",
     "GivenPoints",
     "InvalidScenarioError",
     "ParseCompileError",
     "ParseResult",
-    "RGBSensor",
     "RandomControlFlowError",
     "RejectionException",
-    "SSSensor",
     "Scenario",
     "Scene",
     "ScenicError",
@@ -117,6 +113,7 @@ __all__ = [
     "setDebuggingOptions",
     "setSeed",
     "specifier",
+    *SENSORS,
 ]
 
 

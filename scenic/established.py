@@ -10,7 +10,7 @@ from importlib import import_module
 from types import MappingProxyType, ModuleType
 from typing import Any, Final, NoReturn
 
-from scenic.language.names import NAMES, NameKind
+from scenic.language.names import NAMES, SENSORS, NameKind
 from scenic.language.operators import OPERATORS
 from scenic.language.specifiers import SPECIFIERS
 
@@ -223,7 +223,8 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             ("scenic.runtime.elements.shapes", "Shape"),
         ),
         "scenic.core.sensors": _homes(
-            (_SENSORS, "Sensor RGBSensor SSSensor CallbackSensor GroundTruthSensor"),
+            (_SENSORS, "Sensor"),
+            *((each.home.partition(":")[0], name) for name, each in SENSORS.items() if each.home is not None),
             (_RECORDERS, "Recorder File Files"),
             (
                 _INSIDE,

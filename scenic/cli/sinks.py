@@ -30,9 +30,6 @@ _OTHER_FORMATS = {
 }
 
 
-_SOLID = frozenset({".glb", ".obj", ".wbt"})
-"""Endings of 3D files."""
-
 _PAGES = frozenset({".html", ".htm", ""})
 """Endings of pages."""
 
@@ -67,14 +64,14 @@ def is_lines(path: Path) -> bool:
     suffix = path.suffix.lower()
     if path != STANDARD_OUTPUT and suffix in _OTHER_FORMATS:
         raise OutputChoiceError(f"scenes are not written as '{suffix}' files", help=_OTHER_FORMATS[suffix])
-    return suffix not in _SOLID
+    return suffix not in _FILES
 
 
 def check_lines(path: Path) -> None:
     """Raises ``OutputChoiceError`` if a file of JSON Lines has a name that tells of something else."""
     suffix = path.suffix.lower()
     if path != STANDARD_OUTPUT and suffix not in {"", ".jsonl"} and not is_special(path):
-        known = ", ".join(sorted({".jsonl", ".parquet", *_SOLID}))
+        known = ", ".join(sorted({".jsonl", ".parquet", *_FILES}))
         raise OutputChoiceError(
             f"'{suffix}' tells of no format that scenes are written as", help=f"known endings are {known}"
         )
@@ -119,7 +116,7 @@ def labelled(folder: Path, camera: str, size: tuple[int, int] | None) -> Sink:
     from scenic.formats.png import require_pillow
 
     require_pillow()
-    if folder == STANDARD_OUTPUT or folder.suffix.lower() in {*_OTHER_FORMATS, *_SOLID, ".jsonl"}:
+    if folder == STANDARD_OUTPUT or folder.suffix.lower() in {*_OTHER_FORMATS, *_FILES, ".jsonl"}:
         raise OutputChoiceError(
             f"labelled images cannot be written to '{folder}'", help="give a folder: --camera front -o images"
         )

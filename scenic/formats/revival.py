@@ -1,21 +1,14 @@
 """Scenes that were read back, with their meshes, so that pages, images and 3D files can be made of them."""
 
 import json
-from collections.abc import Callable, Mapping
-from typing import Any, Final
+from collections.abc import Mapping
+from typing import Any
 
 from scenic.formats.reading import ReadObject, ReadScene
 from scenic.formats.scenes import Shape
 from scenic.language.errors import Located, MeshError
-from scenic.runtime.elements.shapes import BoxShape, ConeShape, CylinderShape, MeshShape, SpheroidShape
+from scenic.runtime.elements.shapes import BoxShape, MeshShape, primitive_of
 from scenic.runtime.values.values import Orientation, Vector
-
-_SIMPLE: Final[Mapping[str, Callable[..., Shape]]] = {
-    "box": BoxShape,
-    "cylinder": CylinderShape,
-    "cone": ConeShape,
-    "spheroid": SpheroidShape,
-}
 
 
 class RevivedObject:
@@ -111,8 +104,9 @@ def _shape_of(told: Mapping[str, Any]) -> Shape:
     kind = given.pop("kind", None)
     if "initial_rotation" in given:
         given["initial_rotation"] = tuple(given["initial_rotation"])
-    if kind in _SIMPLE:
-        return _SIMPLE[kind](**given)
+    primitive = primitive_of(str(kind))
+    if primitive is not None:
+        return primitive(**given)
     if kind != "mesh":
         raise ValueError(f"no kind of form is called {kind!r}")
     path = given.pop("path", None)

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from scenic.language.keywords import HARD_KEYWORDS, PYTHON_KEYWORDS, SOFT_KEYWORDS, TEMPORAL_OPERATORS
-from scenic.language.names import NAMES
+from scenic.language.names import NAMES, SENSORS
 from scenic.language.operators import OPERATORS, Operand, Operator
 from scenic.language.properties import CLASSES, BuiltinProperty, attributes_of, properties_of
 from scenic.language.specifiers import SPECIFIERS, SpecifierDeclaration
@@ -59,8 +59,8 @@ def of_temporal(name: str) -> str | None:
 
 
 def of_name(name: str) -> str | None:
-    """A name that is always in scope: a class, a function, a distribution."""
-    known = NAMES.get(name)
+    """A name of the language: a class, a function, a distribution, a sensor."""
+    known = NAMES.get(name) or SENSORS.get(name)
     if known is not None:
         points = [f"{known.kind.value}, also of random values" if known.lifted else known.kind.value]
         if name in CLASSES:

@@ -17,6 +17,7 @@ __all__ = [
     "LIFTED_METHODS",
     "NAMES",
     "RESERVED",
+    "SENSORS",
     "TRACKED",
     "Name",
     "NameKind",
@@ -31,6 +32,7 @@ class NameKind(StrEnum):
     EXCEPTION = "exception"
     FUNCTION = "function"
     REGION = "region"
+    SENSOR = "sensor"
     SHAPE = "shape"
     VALUE = "value"
 
@@ -110,6 +112,10 @@ def _region(signature: str, documentation: str, home: str, **rest: Any) -> Name:
 
 def _shape(signature: str, documentation: str, home: str = "scenic.runtime.elements.shapes") -> Name:
     return _name(NameKind.SHAPE, signature, documentation, home, result=SHAPE)
+
+
+def _sensor(signature: str, documentation: str, home: str = "scenic.runtime.elements.sensors") -> Name:
+    return _name(NameKind.SENSOR, signature, documentation, home)
 
 
 def _class(signature: str, documentation: str, home: str, **rest: Any) -> Name:
@@ -468,11 +474,39 @@ LIFTED_METHODS: Final = frozenset(
 )
 """Methods of vectors, orientations, objects and regions whose calls in a condition may become part of the graph."""
 
+_CAMERA: Final = "(*, offset=None, rotation=(0, 0, 0), width=640, height=480, attributes=None)"
+
+SENSORS: Final[Mapping[str, Name]] = MappingProxyType(
+    {
+        sensor.name: sensor
+        for sensor in (
+            _sensor(f"RGBSensor{_CAMERA}", "A camera that gives colour images."),
+            _sensor(
+                f"DepthSensor{_CAMERA}",
+                "A camera that gives the distance of each pixel along its axis, in metres.",
+            ),
+            _sensor(
+                f"SSSensor{_CAMERA}",
+                "A camera that gives the class and the object of each pixel: semantic and instance segmentation.",
+            ),
+            _sensor(
+                "CallbackSensor(defaultValue=None)",
+                "A sensor whose data a simulator delivers when it has them.",
+            ),
+            _sensor(
+                "GroundTruthSensor(value)",
+                "Observes a value, or the result of a function, as it is at each step.",
+            ),
+        )
+    }
+)
+"""Sensors that the language provides. They are not in scope: programs import them from `scenic`."""
+
 _MOTION: Final = ("Fly", "SetAcceleration", "SetSteering", "SetThrottle", "SetVelocity", "SetWheelSpeeds")
 
 IMPORTABLE: Final[Mapping[str, str]] = MappingProxyType(
     {
-        **dict.fromkeys(("DepthSensor", "RGBSensor", "SSSensor"), "scenic"),
+        **dict.fromkeys(SENSORS, "scenic"),
         **dict.fromkeys((*_MOTION, "KinematicSimulator"), "scenic.simulators.kinematic"),
         **dict.fromkeys(("ApplyForce", "Grasp", "MujocoSimulator", "Release"), "scenic.simulators.mujoco"),
         "Action": "scenic.simulators.actions",

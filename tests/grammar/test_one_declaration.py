@@ -85,8 +85,14 @@ ADDED: Mapping[str, tuple[tuple[str, str], ...]] = {
     ),
     "scenic/language/names.py": (
         (
+            '            _sensor(\n                "CallbackSensor',
+            """            _sensor("Thermometer(unit)", "Measures how warm it is.", "scenic.runtime.elements.warmth"),
+""",
+        ),
+        (
             "    # Exceptions\n",
             """    _region("CubeRegion(center, size)", "The cube about a point.", "cubes"),
+    _shape("SlabShape(thickness)", "A flat square.", "scenic.runtime.elements.slabs"),
     _distribution(
         "Exponential(rate)",
         "A positive real number, the time until something happens.",
@@ -107,6 +113,15 @@ ADDED: Mapping[str, tuple[tuple[str, str], ...]] = {
 """,
         ),
     ),
+    "scenic/runtime/program/prelude.py": (
+        (
+            "    def require(\n        self, condition",
+            """    def announce(self, value: Any) -> None:
+        self._program.parameters["announced"] = value
+
+""",
+        ),
+    ),
     "scenic/language/statements.py": (
         (
             '    Statement(\n        "Abort",',
@@ -116,7 +131,6 @@ ADDED: Mapping[str, tuple[tuple[str, str], ...]] = {
         ("announce value",),
         frozenset({Place.TOP}),
         "Says something when the scene is made.",
-        available=False,
     ),
 """,
         ),
@@ -146,6 +160,24 @@ _DRAW = Operation(
 def Exponential(rate):
     return primitive(_DRAW, rate)
 """,
+    "scenic/runtime/elements/slabs.py": """
+from scenic.runtime.elements.shapes import PrimitiveShape
+from scenic.runtime.geometry import primitives
+
+class SlabShape(PrimitiveShape):
+    kind = "slab"
+    make = staticmethod(primitives.box)
+
+    def __init__(self, thickness=1, **options):
+        super().__init__(**{"dimensions": (1, 1, thickness), **options})
+""",
+    "scenic/runtime/elements/warmth.py": """
+from scenic.runtime.elements.sensors import Sensor
+
+class Thermometer(Sensor):
+    def __init__(self, unit):
+        self.deliver(f"20 {unit}")
+""",
     "scenic/runtime/elements/clamping.py": """
 from scenic.runtime.elements.functions import max, min
 
@@ -161,6 +193,7 @@ from pathlib import Path
 from hypothesis import HealthCheck, given, settings
 from scenic.compiler.check import check_text
 from scenic.compiler.parser import parse
+from scenic.compiler.unparser import unparse
 from scenic.ide.continuations import continuations
 from scenic.ide.hover import hover
 from scenic.ide.pygments_lexer import ScenicLexer
@@ -204,34 +237,46 @@ import scenic
 from scenic.analysis.report import _NOUNS
 from scenic.ide.completion import completions
 from scenic.project.index import Project
+from scenic.runtime.elements.shapes import primitive_of
+from scenic.runtime.scenes.dumping import literal
 from scenic.runtime.values.source_text import spelled
 
 scenario = scenic.scenarioFromString(
+    "from scenic import Thermometer\n"
     "x = Exponential(2)\nassert isinstance(x, Exponential)\nroom = CubeRegion((0, 0, 9), 4)\nrequire clamp(x, 0, 1) < 0.9\n"
     "ego = new Object in room, with tag clamp(x, 0, 0.1), with drawn x\nother = new Object beside ego by 3\n"
+    "announce x\nslab = new Object at (9, 9, 9), with shape SlabShape(0.3), with sensors {'warmth': Thermometer('C')}\n"
 )
-ego, other = scenario.sample(1, seed=1)[0].objects
+[scene] = scenario.sample(1, seed=1)
+ego, other, slab = scene.objects
 
 def messages(text):
-    return [item.code + " " + item.message for item in check_text(text, filename="x")]
+    return [" ".join(filter(None, (item.code, item.message, item.help))) for item in check_text(text, filename="x")]
 
 def imported(module, name):
     return getattr(importlib.import_module(module), name).__name__
 
 typed = Path("typed.scenic").resolve()
 typed.write_text("x = ")
-NAMED = "a = CubeRegion((0, 0, 0), 1)\nb = Exponential(2)\nc = clamp(1, 2, 3)\n"
+NAMED = ("a = CubeRegion((0, 0, 0), 1)\nb = Exponential(2)\nc = clamp(1, 2, 3)\nd = SlabShape(1)\n"
+         "from scenic import Thermometer\ne = Thermometer('K')\n")
+project = Project(["."])
 files = texts()
 print(json.dumps({
     "spelled": spelled(scenario.objects[0].drawn.node),
     "scene": [max(abs(part - 9 * (axis == 2)) for axis, part in enumerate(ego.position)), ego.drawn, ego.tag,
               list(other.position - ego.position)],
+    "announced": scene.params["announced"],
+    "slab": [slab.height, slab.sensors["warmth"].getObservation(), literal(slab.shape),
+             primitive_of("slab").__name__],
+    "written": unparse(parse(TEXT).tree),
     "noun": _NOUNS["exponential"],
-    "wrong": messages("x = Exponential()\ny = clamp(1, 2)\nnew Object at Exponential(1)\nnew Object in CubeRegion"),
+    "wrong": messages("x = Exponential()\ny = clamp(1, 2)\nnew Object at Exponential(1)\nnew Object in CubeRegion\nnew SlabShape\nThermometer(3)"),
     "imported": [imported("scenic.core.regions", "CubeRegion"), imported("scenic.core.distributions", "Exponential"),
-                 imported("scenic.syntax.veneer", "Beside"), imported("scenic.syntax.veneer", "clamp")],
-    "named": [hover(Snapshot(NAMED, "x"), line, 5).markdown for line in (1, 2, 3)],
-    "completed": [item.label for item in completions(Project(["."]), Snapshot("x = ", str(typed)), 1, 4).items],
+                 imported("scenic.syntax.veneer", "Beside"), imported("scenic.syntax.veneer", "clamp"),
+                 imported("scenic.core.shapes", "SlabShape"), imported("scenic.core.sensors", "Thermometer")],
+    "named": [hover(Snapshot(NAMED, str(typed)), line, 5, lambda: project).markdown for line in (1, 2, 3, 4, 6)],
+    "completed": [item.label for item in completions(project, Snapshot("x = ", str(typed)), 1, 4).items],
     "nodes": nodes(TEXT),
     "codes": sorted({item.code for item in check_text(TEXT, filename="x")}),
     "fuzzed": words,
@@ -325,26 +370,43 @@ def test_programs_find_what_is_implemented(found: Any) -> None:
     assert 0 < drawn < 0.9
     assert tag == min(drawn, 0.1)
     assert way == [3, 0, 0]
+    assert found["announced"] == drawn
+    assert found["slab"] == [0.3, "20 C", "SlabShape(dimensions=(1.0, 1.0, 0.3))", "SlabShape"]
+
+
+def test_statements_are_written_as_the_grammar_has_them(found: Any) -> None:
+    assert "announce x" in found["written"].splitlines()
 
 
 def test_python_finds_it_under_the_established_names(found: Any) -> None:
-    assert found["imported"] == ["CubeRegion", "Exponential", "Beside", "clamp"]
+    assert found["imported"] == [
+        "CubeRegion",
+        "Exponential",
+        "Beside",
+        "clamp",
+        "SlabShape",
+        "Thermometer",
+    ]
 
 
 def test_names_are_explained_and_offered(found: Any) -> None:
-    region, distribution, function = found["named"]
+    region, distribution, function, shape, sensor = found["named"]
     assert "The cube about a point" in region
     assert "time until something happens" in distribution
     assert "nearest number between two" in function
-    assert {"CubeRegion", "Exponential", "clamp"} <= set(found["completed"])
+    assert "flat square" in shape
+    assert "how warm" in sensor
+    assert {"CubeRegion", "Exponential", "SlabShape", "clamp"} <= set(found["completed"])
 
 
 def test_messages_know_its_parameters_its_type_and_its_noun(found: Any) -> None:
     arity, other_arity, kind = (message for message in found["wrong"][:3])
+    assert any("`SlabShape` is a shape of the language" in message for message in found["wrong"])
+    assert any("import it: `from scenic import Thermometer`" in message for message in found["wrong"])
     assert arity.startswith("SC211")
     assert "`Exponential`" in arity
     assert other_arity.startswith("SC211")
     assert "`clamp`" in other_arity
-    assert kind == "SC404 `at`: expected a vector, not a number"
+    assert kind.startswith("SC404 `at`: expected a vector, not a number")
     assert found["noun"] == "waiting time"
     assert found["spelled"] == "Exponential(2)"

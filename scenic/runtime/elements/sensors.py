@@ -7,6 +7,8 @@ from typing import Any, ClassVar
 from scenic.language.errors import InvalidScenarioError, Located
 from scenic.runtime.python.value_holders import Carrier
 
+__all__ = ["CallbackSensor", "DepthSensor", "GroundTruthSensor", "RGBSensor", "SSSensor"]
+
 DEFAULT_FIELD_OF_VIEW = 90.0
 """Horizontal opening angle of cameras that say nothing else, degrees."""
 

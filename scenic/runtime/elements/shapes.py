@@ -2,17 +2,19 @@
 
 import math
 import numbers
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
+from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Final, TypeAlias, cast
+from typing import Any, ClassVar, Final, TypeAlias
 
 import numpy as np
 
 from scenic.graph import quaternions
 from scenic.language.errors import Located, ScenicTypeError, ScenicValueError
+from scenic.language.names import NAMES, NameKind
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.containment import contains_points
@@ -101,28 +103,39 @@ class Shape:
         return f"{type(self).__name__}(dimensions=({width:g}, {length:g}, {height:g}))"
 
 
-class _Primitive(Shape):
+class PrimitiveShape(Shape):
+    """A shape with a mesh that follows from a few numbers.
+
+    Each class gives its ``kind``, which stands for it in files, and ``make``, the function that makes its mesh.
+    """
+
+    kind: ClassVar[str]
+    make: ClassVar[Callable[..., Mesh]]
+
     def __init__(
-        self, kind: str, dimensions: Any, scale: Any, initial_rotation: Any, **parameters: int
+        self, dimensions: Any = (1, 1, 1), scale: Any = 1, initial_rotation: Any = None, **parameters: int
     ) -> None:
         name = type(self).__name__
         rotation = _rotation(initial_rotation, name)
         super().__init__(
-            _primitive(kind, rotation, **parameters),
+            _primitive(self.make, rotation, **parameters),
             _scaled(_triple(dimensions, "dimensions", name), scale, name),
-            ShapeSource(kind, parameters=MappingProxyType(parameters), initial_rotation=rotation),
+            ShapeSource(self.kind, parameters=MappingProxyType(parameters), initial_rotation=rotation),
         )
 
 
-class BoxShape(_Primitive):
+class BoxShape(PrimitiveShape):
     """A cuboid."""
 
-    def __init__(self, dimensions: Any = (1, 1, 1), scale: Any = 1, initial_rotation: Any = None) -> None:
-        super().__init__("box", dimensions, scale, initial_rotation)
+    kind = "box"
+    make = staticmethod(primitives.box)
 
 
-class CylinderShape(_Primitive):
+class CylinderShape(PrimitiveShape):
     """A prism along Z over a regular polygon of ``sections`` corners."""
+
+    kind = "cylinder"
+    make = staticmethod(primitives.cylinder)
 
     def __init__(
         self,
@@ -137,21 +150,32 @@ class CylinderShape(_Primitive):
             )
         if sections < 3:
             raise ScenicValueError(f"CylinderShape needs at least 3 sections, not {sections}")
-        super().__init__("cylinder", dimensions, scale, initial_rotation, sections=int(sections))
+        super().__init__(dimensions, scale, initial_rotation, sections=int(sections))
 
 
-class ConeShape(_Primitive):
+class ConeShape(PrimitiveShape):
     """A cone along Z, its apex up."""
 
-    def __init__(self, dimensions: Any = (1, 1, 1), scale: Any = 1, initial_rotation: Any = None) -> None:
-        super().__init__("cone", dimensions, scale, initial_rotation)
+    kind = "cone"
+    make = staticmethod(primitives.cone)
 
 
-class SpheroidShape(_Primitive):
+class SpheroidShape(PrimitiveShape):
     """An ellipsoid, as a subdivided icosahedron."""
 
-    def __init__(self, dimensions: Any = (1, 1, 1), scale: Any = 1, initial_rotation: Any = None) -> None:
-        super().__init__("spheroid", dimensions, scale, initial_rotation)
+    kind = "spheroid"
+    make = staticmethod(primitives.spheroid)
+
+
+def primitive_of(kind: str) -> type[PrimitiveShape] | None:
+    """The class of the primitive shapes of a kind; ``None`` if the language declares no such shape."""
+    for declared in NAMES.values():
+        if declared.kind is NameKind.SHAPE and declared.home is not None:
+            module, _, name = declared.home.partition(":")
+            cls = getattr(import_module(module), name)
+            if isinstance(cls, type) and issubclass(cls, PrimitiveShape) and cls.kind == kind:
+                return cls
+    return None
 
 
 class MeshShape(Shape):
@@ -209,9 +233,8 @@ class MeshShape(Shape):
 
 
 @cache
-def _primitive(kind: str, rotation: Triple | None, **parameters: int) -> Mesh:
-    mesh = cast(Mesh, getattr(primitives, kind)(**parameters))
-    return _measured(mesh, rotation)[0]
+def _primitive(make: Callable[..., Mesh], rotation: Triple | None, **parameters: int) -> Mesh:
+    return _measured(make(**parameters), rotation)[0]
 
 
 @lru_cache(maxsize=64)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from scenic.language.keywords import HARD_KEYWORDS
-from scenic.runtime.elements.shapes import BoxShape, ConeShape, CylinderShape, Shape, SpheroidShape
+from scenic.runtime.elements.shapes import PrimitiveShape, Shape
 from scenic.runtime.instances.objects import Object, OrientedPoint, Point
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Everywhere
@@ -31,8 +31,6 @@ _LEFT_OUT = frozenset(
     }
 )
 """Properties that the placement gives, that follow from others, or that would make requirements anew: those of the scene were judged when it was sampled."""
-
-_PRIMITIVES = (BoxShape, ConeShape, CylinderShape, SpheroidShape)
 
 
 class NoLiteralError(Exception):
@@ -130,7 +128,7 @@ def _shape(shape: Shape) -> str:
     options += [f"{name}={literal(value)}" for name, value in source.parameters.items()]
     if source.initial_rotation is not None:
         options.append(f"initial_rotation={literal(tuple(source.initial_rotation))}")
-    if isinstance(shape, _PRIMITIVES):
+    if isinstance(shape, PrimitiveShape):
         return f"{type(shape).__name__}({', '.join(options)})"
     if source.path is not None:
         return f"MeshShape.fromFile({source.path!r}, {', '.join(options)})"
