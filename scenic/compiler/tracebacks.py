@@ -7,6 +7,7 @@ there, as for programs that are no files, and else from the file.
 
 import linecache
 import os
+import re
 import sys
 import sysconfig
 import traceback
@@ -61,7 +62,7 @@ class Locator:
     def name(self, where: FrameType) -> tuple[str, int] | None:
         """What tells a place from others, and stays the same when lines are added elsewhere.
 
-        The text of the line, and the column in it.
+        The text of the line without its comment, and the column in it.
         """
         found = _innermost(where)
         if found is None:
@@ -73,7 +74,7 @@ class Locator:
             place = self.place(frame)
             line = "" if place is None else _line(frame, place.span.line)
             column = 0 if place is None else place.span.column - (len(line) - len(line.lstrip()))
-            name = self._names[key] = (line.strip(), column)
+            name = self._names[key] = (_without_comment(line).strip(), column)
         return name
 
     def _position(self, code: CodeType, instruction: int) -> _Positions | None:
@@ -82,6 +83,15 @@ class Locator:
         if kept is None:
             kept = self._positions[id(code)] = (code, list(code.co_positions()))
         return kept[1][instruction // 2] if 0 <= instruction // 2 < len(kept[1]) else None
+
+
+_CODE: Final = re.compile(r"""(?:[^#'"]|"(?:[^"\\]|\\.)*"?|'(?:[^'\\]|\\.)*'?)*""", re.DOTALL)
+"""What precedes a comment on a line: anything but a number sign, which counts only outside of texts."""
+
+
+def _without_comment(line: str) -> str:
+    """A line up to its comment. Of one that begins inside a text less may be left, by which places are told apart as well."""
+    return line if "#" not in line else line[: _CODE.match(line).end()]  # type: ignore[union-attr]  # matches anything
 
 
 def locate(where: TracebackType | FrameType) -> Place | None:

@@ -113,3 +113,14 @@ def test_what_is_added_changes_no_other_draw(text: str) -> None:
         assert [repr(item.position) for item in one.objects] == [
             repr(item.position) for item in other.objects
         ]
+
+
+def test_remarks_change_neither_draws_nor_digest() -> None:
+    plain = scenario("x = Range(0, 1)\ny = Uniform('#1', \"it's #2\") if True else 0\nparam x = x, y = y\n")
+    told = scenario(
+        "# first\nx = Range(0, 1)  # a number\ny = Uniform('#1', \"it's #2\") if True else 0 # 'one'\nparam x = x, y = y#\n"
+    )
+    (one,) = plain.sample(1, seed=5)
+    assert told.sample(1, seed=5)[0].params == one.params
+    assert told.digest == plain.digest
+    assert told.sceneFromBytes(plain.sceneToBytes(one)).params == one.params

@@ -1,5 +1,6 @@
 """Rules of regions, specifiers and operators that show only in corners."""
 
+import io
 import math
 from typing import Any
 
@@ -10,11 +11,17 @@ import trimesh
 from scenic.core.distributions import Distribution, distributionFunction, needsSampling
 from scenic.core.lazy_eval import DelayedArgument
 from scenic.core.object_types import Mutator
+from scenic.core.simulators import DummySimulator
 from scipy import stats
 
 from scenic.graph.bounds import Bounds
 from scenic.graph.operations import TABLE
-from scenic.language.errors import RandomControlFlowError, ScenicTypeError
+from scenic.language.errors import (
+    InvalidScenarioError,
+    PreconditionViolation,
+    RandomControlFlowError,
+    ScenicTypeError,
+)
 from scenic.runtime.python.purity import is_pure
 from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.fields import VectorField
@@ -536,3 +543,65 @@ ego = new Object with tail numbers[int((0 relative to field).yaw):],
     found = scenario(text).sample(1, seed=0)[0].egoObject
     assert found.tail in ([2, 3], [5, 6])
     assert found.kept == [1, 3]
+
+
+def test_slices_of_fixed_sequences_between_random_and_lazy_bounds() -> None:
+    found = scene(
+        """
+n = DiscreteRange(0, 2)
+class Case:
+    k: DiscreteRange(1, 2)
+    some: [1, 2, 3][self.k:]
+    head: "abc"[:self.k]
+ego = new Case
+field = VectorField("f", lambda place: 1)
+other = new Object at (5, 5), with rest [1, 2, 3][int((1 relative to field).yaw):]
+param n = n, tail = [1, 2, 3][n:], step = (1, 2, 3)[::n - 3], things = [ego, other][n:], named = [n, 4, 5][:n]
+require len([1, 2, 3][n:]) == 2
+"""
+    )
+    params = found.params
+    assert params["n"] == 1
+    assert (params["tail"], params["step"], params["named"]) == ([2, 3], (3, 1), [1])
+    assert params["things"] == [found.objects[1]]
+    assert found.objects[1].rest == [3]
+    k = found.egoObject.k
+    assert (found.egoObject.some, found.egoObject.head) == ([1, 2, 3][k:], "abc"[:k])
+
+
+def test_slices_in_behaviors_stay_pythons() -> None:
+    program = """
+behavior Cut(n):
+    items = [1, 2, 3]
+    items[:n] = [7, 7]
+    del items[n:]
+    take tuple(items[n - 1:n + 1])
+ego = new Object with behavior Cut(2)
+"""
+    simulation = DummySimulator().simulate(scene(program), maxSteps=1)
+    assert list(simulation.result.actions[0].values()) == [(7,)]
+
+
+def test_a_place_off_a_surface_rejects_what_is_being_sampled() -> None:
+    program = """
+skin = BoxRegion().getSurfaceRegion()
+behavior Look():
+    precondition: skin.orientation[(0, 0, 0)].yaw > -100
+    take 1
+ego = new Object with behavior Look
+"""
+    simulated = scene(program)
+    assert DummySimulator().simulate(simulated, maxSteps=1) is None
+    with pytest.raises(PreconditionViolation):
+        DummySimulator().simulate(simulated, maxSteps=1, raiseGuardViolations=True)
+    with pytest.raises(InvalidScenarioError):
+        scenario("skin = BoxRegion().getSurfaceRegion()\nparam x = skin.orientation[(0, 0, 0)].yaw")
+
+
+def test_vectors_are_dumped_as_vectors() -> None:
+    stream = io.StringIO()
+    scene("ego = new Object with foo Vector(1, 2, 3), with bar [Vector(1, 1, 1)]").dumpAsScenicCode(stream)
+    assert "with foo Vector(1.0, 2.0, 3.0)" in stream.getvalue()
+    read = thing(stream.getvalue())
+    assert type(read.foo) is Vector
+    assert read.bar == [Vector(1, 1, 1)]

@@ -42,7 +42,7 @@ def render_missing(missing: Sequence[Exhausted], console: Console) -> None:
     console.print(table)
     for row in report.rows:
         if row.rejected >= 1:
-            console.print(Text(f"{row.label} rejected every candidate"), soft_wrap=True)
+            console.print(Text(row.blame()), soft_wrap=True)
 
 
 def _why(missing: Exhausted) -> str:

@@ -17,6 +17,7 @@ __all__ = [
     "prelude",
     "prelude_call",
     "rebuilt",
+    "sliceable",
     "start_of",
     "statement",
     "store_on_instance",
@@ -38,6 +39,21 @@ def at(node: _Node, origin: ast.AST) -> _Node:
     target.end_lineno = place.end_lineno
     target.end_col_offset = place.end_col_offset
     return node
+
+
+def sliceable(node: ast.Subscript) -> ast.expr:
+    """The container of a subscript whose value is read; of a slice one that takes bounds which are random or lazy."""
+    bounds = node.slice
+    if not isinstance(bounds, ast.Slice) or not isinstance(node.ctx, ast.Load):
+        return node.value
+    if all(part is None or _is_plain(part) for part in (bounds.lower, bounds.upper, bounds.step)):
+        return node.value
+    return prelude_call("sliceable", [node.value], node.value)
+
+
+def _is_plain(node: ast.expr) -> bool:
+    """Whether an expression is a constant, perhaps with a sign."""
+    return isinstance(node.operand if isinstance(node, ast.UnaryOp) else node, ast.Constant)
 
 
 def start_of(node: _Node, origin: ast.AST) -> _Node:

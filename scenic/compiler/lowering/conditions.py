@@ -21,6 +21,7 @@ from scenic.compiler.lowering.build import (
     name,
     prelude_call,
     rebuilt,
+    sliceable,
     start_of,
     tuple_,
 )
@@ -244,7 +245,8 @@ class _Symbolic:
                 options = [lambda_([], self.expression(option), option) for option in (body, orelse)]
                 return prelude_call("choose", [self._condition(test), *options], node)
             case ast.Subscript(value=value, slice=index):
-                return rebuilt(node, value=self.expression(value), slice=self._index(index))
+                lowered = rebuilt(node, value=self.expression(value), slice=self._index(index))
+                return rebuilt(lowered, value=sliceable(lowered))
             case ast.Tuple(elts=elements) | ast.List(elts=elements):
                 return rebuilt(node, elts=self._all(elements))
             case ast.Call():

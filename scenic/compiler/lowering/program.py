@@ -16,6 +16,7 @@ from scenic.compiler.lowering.build import (
     prelude,
     prelude_call,
     rebuilt,
+    sliceable,
     start_of,
     statement,
     store_on_instance,
@@ -146,6 +147,11 @@ class _Program:
         )
         pair = tuple_([value, stored], node)
         return at(ast.Subscript(pair, constant(0, node), ast.Load()), node)
+
+    def subscript(self, node: ast.Subscript) -> ast.expr:
+        lowered: ast.Subscript = self.copy(node)
+        container = sliceable(lowered)
+        return lowered if container is lowered.value else rebuilt(lowered, value=container)
 
     # Scenic's expressions
 
@@ -428,6 +434,7 @@ def _rules() -> Mapping[type[ast.AST], Callable[[_Program, Any], Any]]:
         ast.Name: _Program.name,
         ast.NamedExpr: _Program.walrus,
         ast.Call: _Program.call,
+        ast.Subscript: _Program.subscript,
         ast.ClassDef: _Program.class_definition,
         ast.FunctionDef: _Program.function_definition,
         ast.AsyncFunctionDef: _Program.function_definition,

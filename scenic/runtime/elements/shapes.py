@@ -18,7 +18,7 @@ from scenic.language.names import NAMES, NameKind
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.containment import contains_points
-from scenic.runtime.geometry.loading import load_mesh
+from scenic.runtime.geometry.loading import factor_of, load_mesh
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Floats, Poses
 from scenic.runtime.geometry.solids import proper_volume
@@ -212,23 +212,35 @@ class MeshShape(Shape):
         dimensions: Any = None,
         scale: Any = 1,
         initial_rotation: Any = None,
+        unit: str = "m",
     ) -> "MeshShape":
         """The shape in a mesh file; see `load_mesh`. Relative paths start from the current directory.
 
         A file read before and unchanged since is not read again.
 
+        Args:
+            path: the file.
+            unify: whether bodies that overlap are united.
+            dimensions: default (width, length, height) in metres; by default the extents of the mesh.
+            scale: factor of the dimensions.
+            initial_rotation: (yaw, pitch, roll) applied before the extents are measured.
+            unit: the file's unit of length: ``m``, ``cm``, ``mm``, ``km``, ``in`` or ``ft``.
+
         Raises:
             MeshError: the file cannot be read, or its mesh is not a proper volume.
+            ScenicValueError: the unit is unknown, or a dimension is not positive.
 
         """
         if not isinstance(path, str | Path):
             raise ScenicTypeError(f"MeshShape.fromFile needs a fixed path, not {_described(path)}")
         rotation = _rotation(initial_rotation, "MeshShape")
-        unit, extents = _from_file(str(path), _stamp(Path(path)), bool(unify), rotation)
+        metres = factor_of(unit, 1, "MeshShape.fromFile")
+        mesh, (width, length, height) = _from_file(str(path), _stamp(Path(path)), bool(unify), rotation)
+        extents = width * metres, length * metres, height * metres
         shape = cls.__new__(cls)
         parameters = MappingProxyType({} if unify else {"unify": False})
         source = ShapeSource("mesh", str(Path(path).absolute()), parameters, rotation)
-        shape._finish(unit, extents, dimensions, scale, source)
+        shape._finish(mesh, extents, dimensions, scale, source)
         return shape
 
 

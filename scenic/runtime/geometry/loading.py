@@ -3,6 +3,8 @@
 import bz2
 import gzip
 import io
+import math
+import numbers
 import warnings
 import zlib
 from collections.abc import Callable, Mapping
@@ -12,7 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from scenic.language.errors import MeshError
+from scenic.language.errors import MeshError, ScenicTypeError, ScenicValueError
 from scenic.language.garbage import no_garbage_collection
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.reading.gltf import Neighbour, read_glb, read_gltf
@@ -43,6 +45,37 @@ _READERS: Final[Mapping[str, Callable[[bytes, Neighbour], Soup]]] = MappingProxy
 )
 _NO_MESHES: Final = frozenset({"bz2", "tar.bz2", "tar.gz", "zip", "dxf", "xyz"})
 """Archives, drawings and point clouds among the formats of trimesh."""
+
+
+METRES: Final[Mapping[str, float]] = MappingProxyType(
+    {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "in": 0.0254, "ft": 0.3048}
+)
+"""Metres in each unit of length that a mesh file may be in."""
+
+
+def factor_of(unit: Any, scale: Any, what: str) -> float:
+    """What turns the numbers of a mesh file into metres.
+
+    Args:
+        unit: the unit of length of the file, one of `METRES`.
+        scale: a further factor.
+        what: what is made of the mesh, for messages.
+
+    Raises:
+        ScenicValueError: for an unknown unit, or a factor that is not positive.
+        ScenicTypeError: for a factor that is not a fixed number.
+
+    """
+    if not isinstance(unit, str) or unit not in METRES:
+        raise ScenicValueError(
+            f"{what} knows no unit of length {unit!r}", help=f"give one of {', '.join(map(repr, METRES))}"
+        )
+    if not isinstance(scale, numbers.Real):
+        raise ScenicTypeError(f"{what} needs a fixed number as `scale`, not {scale!r}")
+    factor = float(scale)
+    if not (factor > 0 and math.isfinite(factor)):
+        raise ScenicValueError(f"{what} needs a positive number as `scale`, not {factor:g}")
+    return METRES[unit] * factor
 
 
 def load_mesh(path: str | Path, *, unify: bool = True, volume: bool = True) -> Mesh:

@@ -167,10 +167,17 @@ def here() -> Span | None:
     return None if context is None else context.place()
 
 
-def warn(message: str, *, code: str | None = None, span: Span | None = None, help: str | None = None) -> None:
+def warn(
+    message: str,
+    *,
+    code: str | None = None,
+    span: Span | None = None,
+    filename: str | None = None,
+    help: str | None = None,
+) -> None:
     """Issue a `ScenicWarning` of a place in the program, by default that of whoever called the runtime."""
     context = current.get()
-    file = None if context is None else context.file()
+    file = filename or (None if context is None else context.file())
     place = span or here()
     if file is None or place is None:
         # No program runs: Python's own code called.

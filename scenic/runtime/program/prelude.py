@@ -59,6 +59,7 @@ from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import as_region
 from scenic.runtime.regions.spaces import Workspace, everywhere
 from scenic.runtime.temporal.formulas import is_temporal
+from scenic.runtime.values.access import sliceable
 from scenic.runtime.values.choices import per_option
 from scenic.runtime.values.frozen import Frozen
 from scenic.runtime.values.lazy import definite
@@ -305,6 +306,8 @@ class Prelude(Dynamics):
     def spread(self, function: Any, parts: Sequence[tuple[bool, Any]], keywords: Mapping[str, Any]) -> Any:
         """``function(a, *b, k=c)``, where ``parts`` tells of each argument whether it is starred."""
         return spread(function, parts, keywords)
+
+    sliceable = staticmethod(sliceable)
 
     # Statements
 

@@ -9,7 +9,7 @@ from scenic.graph.kinds import Column
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
 from scenic.runtime.elements.shapes import Shape, ShapeSource
 from scenic.runtime.geometry import body_points, distance
-from scenic.runtime.geometry.loading import load_mesh
+from scenic.runtime.geometry.loading import factor_of, load_mesh
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.solids import proper_volume
 from scenic.runtime.geometry.surface import side_contains
@@ -78,6 +78,16 @@ def _mesh(mesh: Any, what: str) -> Mesh:
         ) from None
     # What no face uses must not count for the extents.
     return Mesh(*without_unused(whole.vertices, whole.faces))
+
+
+def _loaded(cls: type[Region], path: Any, unit: str, scale: float, **how: bool) -> Mesh:
+    """The mesh of a file, in metres."""
+    what = f"{cls.__name__}.fromFile"
+    if not isinstance(path, str | Path):
+        raise ScenicTypeError(f"{what} needs a fixed path, not {path!r}", span=here())
+    factor = factor_of(unit, scale, what)
+    mesh = load_mesh(path, **how)
+    return mesh if factor == 1 else Mesh(mesh.vertices * factor, mesh.faces)
 
 
 class MeshRegion(Region):
@@ -149,11 +159,11 @@ class MeshVolumeRegion(OccupiedSpace):
         return inside
 
     @classmethod
-    def fromFile(cls, path: Any, unify: bool = True, **options: Any) -> Self:
-        """The region of a mesh file; further arguments are those of the class."""
-        if not isinstance(path, str | Path):
-            raise ScenicTypeError(f"{cls.__name__}.fromFile needs a fixed path, not {path!r}", span=here())
-        return cls(load_mesh(path, unify=unify), **options)
+    def fromFile(
+        cls, path: Any, unify: bool = True, unit: str = "m", scale: float = 1, **options: Any
+    ) -> Self:
+        """The region of a mesh file in a unit of length, times ``scale``; further arguments are those of the class."""
+        return cls(_loaded(cls, path, unit, scale, unify=unify), **options)
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
         return super().project(point, self.onDirection if direction is None else direction)
@@ -204,9 +214,11 @@ class MeshSurfaceRegion(SideSurface):
         self.has_orientation = self.orientation is not None
 
     @classmethod
-    def fromFile(cls, path: Any, unify: bool = True, **options: Any) -> Self:
-        """The region of a mesh file; further arguments are those of the class."""
-        return cls(load_mesh(path, unify=unify, volume=False), **options)
+    def fromFile(
+        cls, path: Any, unify: bool = True, unit: str = "m", scale: float = 1, **options: Any
+    ) -> Self:
+        """The region of a mesh file in a unit of length, times ``scale``; further arguments are those of the class."""
+        return cls(_loaded(cls, path, unit, scale, unify=unify, volume=False), **options)
 
     def uniform_placement(self) -> tuple[Any, Any]:
         point, normal = super().uniform_placement()

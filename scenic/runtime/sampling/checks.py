@@ -15,6 +15,7 @@ from scenic.language.spans import Span
 from scenic.runtime.geometry.collision import Body, Collider, collide
 from scenic.runtime.geometry.crowd import Crowd
 from scenic.runtime.regions.stacked import body_of
+from scenic.runtime.sampling.sizes import size_in_words
 
 Mask = NDArray[np.bool_]
 
@@ -78,12 +79,14 @@ class Part:
     label: str
     span: Span | None
     holds: Mask
+    note: str = ""
+    """What helps to understand that it never holds."""
 
 
-def _only_part(check: Check, batch: Batch) -> Sequence[Part]:
+def _only_part(check: Check, batch: Batch, note: str = "") -> Sequence[Part]:
     verdict = check.test(batch)
     holds = verdict.holds if verdict.failed is None else verdict.holds & ~verdict.failed
-    return [Part(check.label, check.span, holds)]
+    return [Part(check.label, check.span, holds, note)]
 
 
 @dataclass(slots=True)
@@ -98,6 +101,8 @@ class NodeCheck:
     cost: float = 1.0
     separate: bool = False
     filename: str | None = None
+    note: str = ""
+    """For reports in which it rejects everything; see `Part`."""
 
     @property
     def nodes(self) -> Sequence[Node]:
@@ -113,7 +118,7 @@ class NodeCheck:
         return Verdict(holds, failed if failed.any() else None)
 
     def parts(self, batch: Batch) -> Sequence[Part]:
-        return _only_part(self, batch)
+        return _only_part(self, batch, self.note)
 
 
 @dataclass(slots=True)
@@ -258,11 +263,16 @@ class CollisionCheck:
         bodies = [item.body(batch) for item in self.objects]
         found = collide(bodies, self.pairs, lanes=len(batch), exhaustive=True).pairs
         assert found is not None
+        sizes = [size_in_words(item.size) for item in self.objects]
+        notes = [
+            f"{item.label} is {size}" if size else "" for item, size in zip(self.objects, sizes, strict=True)
+        ]
         return [
             Part(
                 f"collision of {self.objects[first].label} and {self.objects[second].label}",
                 self.objects[second].span,
                 ~found[:, pair],
+                ", ".join(filter(None, (notes[first], notes[second]))),
             )
             for pair, (first, second) in enumerate(self.pairs.tolist())
         ]

@@ -592,7 +592,7 @@ class Engine:
         )
         alone = rejected & (rejected.sum(axis=0) == 1) if len(rejected) else rejected
         rows = [
-            RejectionRow(part.label, part.span, float(mine.mean()), float(only.mean()))
+            RejectionRow(part.label, part.span, float(mine.mean()), float(only.mean()), part.note)
             for part, mine, only in zip(batches[0], rejected, alone, strict=True)
         ]
         return RejectionReport(count, tuple(row for row in rows if row.rejected > 0))

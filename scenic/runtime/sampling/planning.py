@@ -21,6 +21,7 @@ from scenic.runtime.geometry.narrowphase import recall
 from scenic.runtime.geometry.ragged import distinct
 from scenic.runtime.instances.objects import Object
 from scenic.runtime.program.conditions import connect, truth
+from scenic.runtime.program.context import warn
 from scenic.runtime.program.outcome import Program, Requirement
 from scenic.runtime.python.samples import dependencies
 from scenic.runtime.regions.base import Region
@@ -36,6 +37,7 @@ from scenic.runtime.sampling.checks import (
     ObjectNodes,
 )
 from scenic.runtime.sampling.engine import Plan
+from scenic.runtime.sampling.sizes import outgrows, size_in_words
 from scenic.runtime.values.values import CODEC, Random, as_node, fixed_batch, is_random, operate
 from scenic.runtime.visibility.flat import sees_in_mode
 from scenic.runtime.visibility.seeing import looks
@@ -223,33 +225,55 @@ def _containment(program: Program, workspace: Workspace) -> list[NodeCheck]:
         if isinstance(region, Nowhere):
             span, filename = _place(program, item)
             raise InvalidScenarioError(
-                f"this {_name(item)} cannot be inside its container, which is empty",
+                f"{_subject(program, item)} cannot be inside its container, which is empty",
                 span=span,
                 filename=filename,
                 help="give it another `regionContainedIn`, or another place if that follows from `contained in`",
             )
         if region not in footprints:
             footprints[region] = region.footprint
-        checks += _required(
-            truth(footprints[region].containsObject(item)),
-            f"{_name(item)} inside its container",
+        held = truth(footprints[region].containsObject(item))
+        node = as_node(body_operands(item)[2])
+        size = size_in_words(node)
+        found = _required(
+            held,
+            f"{_called(program, item)} inside its container",
             _place(program, item),
-            f"this {_name(item)} is not inside its container, {region!r}",
+            f"{_subject(program, item)}{f', {size},' if size else ''} is not inside its container, {region!r}",
             "move or shrink it, or enlarge the workspace or its `regionContainedIn`",
+            f"{_called(program, item)} is {size}" if size else "",
         )
+        if found and outgrows(node, footprints[region]):
+            _warn_of_size(program, item, size, "the workspace" if container is None else "its container")
+        checks += found
     return checks
 
 
 def _required(
-    node: Node, label: str, place: tuple[Span | None, str | None], never: str, help: str
+    node: Node,
+    label: str,
+    place: tuple[Span | None, str | None],
+    never: str,
+    help: str,
+    note: str = "",
 ) -> list[NodeCheck]:
     """The check of a built-in requirement: none where it always holds; an error, ``never``, where it never does."""
     span, filename = place
     if not node.is_constant:
-        return [NodeCheck(node, label, span, BUILT_IN, cost=20, filename=filename)]
+        return [NodeCheck(node, label, span, BUILT_IN, cost=20, filename=filename, note=note)]
     if not node.value:
         raise InvalidScenarioError(never, span=span, filename=filename, help=help)
     return []
+
+
+def _warn_of_size(program: Program, item: Object, size: str, container: str) -> None:
+    span, filename = _place(program, item)
+    warn(
+        f"{_called(program, item)} is {size}, larger than {container}",
+        span=span,
+        filename=filename,
+        help="the unit of length is the metre; `MeshShape.fromFile(path, unit='cm')` reads a mesh in centimetres",
+    )
 
 
 def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[NodeCheck]:
@@ -261,14 +285,12 @@ def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[
     checks: list[NodeCheck] = []
     for item, sighting in program.sightings:
         node = seen(sighting.observer, item)
-        name, whom = _name(item), _name(sighting.observer)
+        name, subject = _called(program, item), _subject(program, item)
+        whom = _called(program, sighting.observer, article="the ")
         if sighting.wanted:
-            label, never = f"{name} visible from the {whom}", f"this {name} cannot be seen from the {whom}"
+            label, never = f"{name} visible from {whom}", f"{subject} cannot be seen from {whom}"
         else:
-            label, never = (
-                f"{name} not visible from the {whom}",
-                f"this {name} is always seen from the {whom}",
-            )
+            label, never = f"{name} not visible from {whom}", f"{subject} is always seen from {whom}"
             node = as_node(not node.value) if node.is_constant else connect("not", [node])
         advice = "move one of the two, or what stands between them"
         checks += _required(node, label, _place(program, item), never, advice)
@@ -279,7 +301,8 @@ def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[
         span, filename = _place(program, item)
         if ego is None and is_random(wanted):
             node = connect("not", [truth(wanted)])
-            checks.append(NodeCheck(node, f"{_name(item)} visible from the ego", span, BUILT_IN))
+            label = f"{_called(program, item)} visible from the ego"
+            checks.append(NodeCheck(node, label, span, BUILT_IN))
             continue
         if ego is None:
             raise InvalidScenarioError(
@@ -293,9 +316,9 @@ def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[
             node = connect("or", [connect("not", [truth(wanted)]), node])
         checks += _required(
             node,
-            f"{_name(item)} visible from the ego",
+            f"{_called(program, item)} visible from the ego",
             (span, filename),
-            f"this {_name(item)} cannot be seen from the ego",
+            f"{_subject(program, item)} cannot be seen from the ego",
             "move it into view, or write `with requireVisible False`",
         )
     return checks
@@ -353,7 +376,7 @@ def _check_fixed(program: Program, nodes: Sequence[ObjectNodes], pairs: NDArray[
     place, _ = _place(program, one)
     where = f" on line {place.line}" if place is not None else ""
     raise InvalidScenarioError(
-        f"this {_name(other)} always collides with the {_name(one)}{where}",
+        f"{_subject(program, other)} always collides with {_called(program, one, article='the ')}{where}",
         span=span,
         filename=filename,
         help="move one of the two, or write `with allowCollisions True`",
@@ -382,11 +405,14 @@ def _requirements(program: Program) -> list[Check]:
     return checks
 
 
-def _called(program: Program, item: Object) -> str:
-    """The property `name` of an object, else the variable that holds it, else its class."""
-    given = getattr(item, "name", None)
-    return given if isinstance(given, str) and given else program.variables.get(id(item), _name(item))
+def _called(program: Program, item: Any, *, article: str = "") -> str:
+    """The property `name` of an instance, else the variable that holds it, else its class after ``article``."""
+    given = None if is_random(item) else getattr(item, "name", None)
+    if not (isinstance(given, str) and given):
+        given = program.variables.get(id(item))
+    return given or article + type(item).__name__
 
 
-def _name(item: Any) -> str:
-    return type(item).__name__
+def _subject(program: Program, item: Any) -> str:
+    """An instance as the subject of a message at its own place."""
+    return _called(program, item, article="this ")

@@ -9,13 +9,20 @@ from scenic.language.spans import Span
 class RejectionRow:
     """One requirement on a fixed sample of candidates.
 
-    ``rejected`` is the fraction that it rejects, ``alone`` the fraction that it alone rejects, both from 0 to 1.
+    ``rejected`` is the fraction that it rejects, ``alone`` the fraction that it alone rejects, both from 0 to 1. ``note``
+    tells what helps to understand that it rejects every candidate: the sizes of the objects it is about.
     """
 
     label: str
     span: Span | None
     rejected: float
     alone: float
+    note: str = ""
+
+    def blame(self) -> str:
+        """A sentence to say where it rejected every candidate."""
+        note = f" ({self.note})" if self.note else ""
+        return f"{self.label} rejected every candidate{note}"
 
 
 @dataclass(frozen=True, slots=True)

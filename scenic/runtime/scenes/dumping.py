@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from scenic.language.keywords import HARD_KEYWORDS
+from scenic.language.properties import CLASSES
 from scenic.runtime.elements.shapes import PrimitiveShape, Shape
 from scenic.runtime.instances.objects import Object, OrientedPoint, Point
 from scenic.runtime.regions.base import Region
@@ -32,6 +33,9 @@ _LEFT_OUT = frozenset(
 )
 """Properties that the placement gives, that follow from others, or that would make requirements anew: those of the scene were judged when it was sampled."""
 
+_DECLARED = frozenset(item.name for cls in CLASSES.values() for item in cls.properties)
+"""The properties that the language declares."""
+
 
 class NoLiteralError(Exception):
     """A value that cannot be written as an expression."""
@@ -50,9 +54,7 @@ def program_of(
         is_word = name.isidentifier() and not iskeyword(name) and name not in HARD_KEYWORDS
         key = name if is_word else repr(name)
         try:
-            # Of a parameter nothing else tells that its three numbers are a vector.
-            kind = "Vector" if isinstance(value, Vector) else ""
-            lines.append(f"param {key} = {kind}{literal(value)}")
+            lines.append(f"param {key} = {literal(value)}")
         except NoLiteralError:
             lines.append(f"# param {key}: {_described(value)}")
     classes = {type(item).__name__: type(item) for item in objects if type(item) is not Object}
@@ -69,13 +71,15 @@ def program_of(
 
 
 def _instance(name: str, item: Any) -> Iterator[str]:
-    parts = [f"at {literal(item.position)}"]
+    parts = [f"at {_triple(item.position)}"]
     comments = []
     for key, value in item.properties.items():
         if key in _LEFT_OUT:
             continue
         try:
-            parts.append(f"with {key} {literal(value)}")
+            # Properties of the language make vectors of triples themselves.
+            shown = _triple if isinstance(value, Vector) and key in _DECLARED else literal
+            parts.append(f"with {key} {shown(value)}")
         except NoLiteralError:
             comments.append(f"    # {key}: {_described(value)}")
     parts += ["with allowCollisions True", "with regionContainedIn everywhere"]
@@ -101,7 +105,7 @@ def literal(value: Any) -> str:
         text = float.__repr__(value)
         return text if math.isfinite(value) else f"float({text!r})"
     if isinstance(value, Vector):
-        return f"({value.x!r}, {value.y!r}, {value.z!r})"
+        return f"Vector{_triple(value)}"
     if isinstance(value, Orientation):
         return f"Orientation.fromQuaternion(({value.x!r}, {value.y!r}, {value.z!r}, {value.w!r}))"
     if isinstance(value, tuple):
@@ -116,10 +120,14 @@ def literal(value: Any) -> str:
     if isinstance(value, Everywhere):
         return "everywhere"
     if isinstance(value, OrientedPoint) and not isinstance(value, Object):
-        return f"(new OrientedPoint at {literal(value.position)}, with parentOrientation {literal(value.orientation)})"
+        return f"(new OrientedPoint at {_triple(value.position)}, with parentOrientation {literal(value.orientation)})"
     if type(value) is Point:
-        return f"(new Point at {literal(value.position)})"
+        return f"(new Point at {_triple(value.position)})"
     raise NoLiteralError
+
+
+def _triple(value: Vector) -> str:
+    return f"({value.x!r}, {value.y!r}, {value.z!r})"
 
 
 def _shape(shape: Shape) -> str:

@@ -809,5 +809,5 @@ def exhaustion_message(exhausted: Exhausted) -> str:
         "impossible": "no scene exists: the requirements cannot hold together",
     }[exhausted.reason]
     culprits = exhausted.report.culprits()
-    blame = "".join(f"\n{row.label} rejected every candidate" for row in culprits)
+    blame = "".join(f"\n{row.blame()}" for row in culprits)
     return f"{head}{blame}\n{exhausted.report}"

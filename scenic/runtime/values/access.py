@@ -90,6 +90,26 @@ def element(value: Random, index: Any) -> Any:
     return operate("getitem", value, index) if found is None else found
 
 
+def sliceable(container: Any) -> Any:
+    """A container to take a slice of; one that takes random and lazy bounds, if it is a sequence of Python's own."""
+    return _Sliceable(container) if isinstance(container, list | tuple | str) else container
+
+
+class _Sliceable:
+    """A sequence of Python's own whose slices may have random or lazy bounds."""
+
+    __slots__ = ("_container",)
+
+    def __init__(self, container: Any) -> None:
+        self._container = container
+
+    def __getitem__(self, bounds: slice) -> Any:
+        parts = bounds.start, bounds.stop, bounds.step
+        if is_random(parts) or is_lazy(bounds):
+            return element(Random(as_node(self._container)), bounds)
+        return self._container[bounds]
+
+
 _PARAMETERS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
     {
         "range": ("low", "high"),

@@ -14,8 +14,8 @@ from scenic.graph.node import Graph, Node, axis, constant, key
 from scenic.graph.operation import Call, Operation
 from scenic.graph.operations import TABLE
 from scenic.graph.schedule import Scheduler
-from scenic.language.errors import InvalidScenarioError
-from scenic.runtime.program.context import here, next_address, uniform_draw
+from scenic.language.errors import InvalidScenarioError, RejectionException
+from scenic.runtime.program.context import current, here, next_address, uniform_draw
 from scenic.runtime.values.choices import is_answered_by_code, over_options
 from scenic.runtime.values.definite import Orientation, Vector, scalar_of
 from scenic.runtime.values.lazy import Lazy, defer
@@ -133,10 +133,18 @@ def folded(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:
     if call.error is not None:
         raise call.error
     if call.status is not None:
+        if _is_sampling():
+            raise RejectionException(operation.missing)
         raise InvalidScenarioError(
             f"there is no {operation.missing}", span=here(), help="every sample would be rejected"
         )
     return CODEC.decode(kind, column[:1])[0]
+
+
+def _is_sampling() -> bool:
+    """Whether a sample is computed, or a simulation runs, rather than the program that describes them."""
+    context = current.get()
+    return context is not None and (not context.is_symbolic or context.sample is not None)
 
 
 def fixed_batch(nodes: Iterable[Node]) -> Batch:

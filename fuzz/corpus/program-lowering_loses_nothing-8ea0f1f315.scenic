@@ -1,0 +1,1 @@
+(Range right of Range offset along Range by Range[: Range])
