@@ -7,17 +7,18 @@ a run that goes on evaluates these candidates and looks for the rest.
 
 import contextlib
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scenic.batch.engines import Engine
+from scenic.batch.image_parts import ImageRows, ImageSink, join_indices
 from scenic.batch.manifest import DatasetError, Manifest, Part, digest_of
-from scenic.batch.scenes import Job, Made, encoded_here, in_processes, method_of
+from scenic.batch.scenes import LONGEST, Job, Made, encoded_here, in_processes, method_of
 from scenic.formats.files import Waiting, make_folder, refusing, writing
 from scenic.formats.json_lines import SceneLines
 from scenic.formats.trajectory_tables import parquet_support
@@ -32,6 +33,9 @@ GROUP: Final = 4096
 
 _BLOCK: Final = 512
 """Scenes evaluated together from a journal."""
+
+_IMAGES: Final = 16
+"""Scenes whose images are kept in memory together, and lost together where a run ends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,17 +66,41 @@ class Encoder:
     """Encodes blocks of scenes for a part: numbers and attempts, then the rows.
 
     Args:
-        form: ``parquet`` or ``jsonl``.
+        form: ``parquet`` or ``jsonl``, or of `IMAGE_FORMS`.
         changed: whether JSON Lines tell only the properties that the program gives.
         points: see `Manifest`.
+        images: see `Manifest`.
 
     """
 
-    def __init__(self, form: str, *, changed: bool = True, points: str | None = None) -> None:
+    def __init__(
+        self,
+        form: str,
+        *,
+        changed: bool = True,
+        points: str | None = None,
+        images: Mapping[str, Any] | None = None,
+    ) -> None:
         self._form = form
+        self._images = images
         self._changed = changed
         self._points = points
         self._writer: Any = None
+
+    @classmethod
+    def of(cls, manifest: Manifest) -> Self:
+        """The encoder of a data set."""
+        return cls(
+            manifest.form,
+            changed=manifest.properties == "changed",
+            points=manifest.points,
+            images=manifest.images,
+        )
+
+    @property
+    def most(self) -> int:
+        """How many scenes are encoded together, at most."""
+        return LONGEST if self._images is None else _IMAGES
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_writer": None}  # belongs to one process
@@ -84,7 +112,11 @@ class Encoder:
         return np.array(head, dtype=np.int64).tobytes() + rows
 
     def rows(self, scenario: Scenario, scenes: Sequence[Scene]) -> bytes:
-        """Their rows: text, or the stream of an Arrow record batch."""
+        """Their rows: text, the stream of an Arrow record batch, or those of `ImageRows`."""
+        if self._images is not None:
+            if self._writer is None:
+                self._writer = ImageRows(scenario, self._form, self._images)
+            return bytes(self._writer.rows(scenes))
         if self._form == "jsonl":
             if self._writer is None:
                 name = Path(scenario.filename).name
@@ -142,11 +174,25 @@ def make_dataset(
     run = run or Run()
     make_folder(folder)
     kept = _kept(folder, manifest, resume=resume).beside(folder, scenario.filename)
-    missing: list[Exhausted] = []
     for part in kept.parts:
         run.advance(part.last - part.first, 0)
-    done = {part.first for part in kept.parts}
     kept.save(folder)
+    missing: list[Exhausted] = []
+    try:
+        for further in _progress(scenario, folder, kept, run, missing):
+            kept = further
+            kept.save(folder)
+    finally:
+        if manifest.form == "images":
+            join_indices(folder, kept)
+    return Finished(kept, tuple(missing))
+
+
+def _progress(
+    scenario: Scenario, folder: Path, kept: Manifest, run: Run, missing: list[Exhausted]
+) -> Iterator[Manifest]:
+    """Make the parts that are not there; yields the manifest after each, and adds to ``missing`` what is not found."""
+    done = {part.first for part in kept.parts}
     for first, last in kept.ranges():
         if first in done:
             continue
@@ -167,11 +213,10 @@ def make_dataset(
                 missing.extend(made.missing)
                 run.advance(made.job.last - made.job.first, made.attempts)
             if any(item.reason == "time" for item in missing):
-                return Finished(kept, tuple(missing))
+                return
             kept = kept.with_part(progress.finish(last), time.monotonic() - begun)
-        kept.save(folder)
+        yield kept
         progress.forget()
-    return Finished(kept, tuple(missing))
 
 
 def write_table(
@@ -204,7 +249,7 @@ def write_table(
 
 def _made(scenario: Scenario, encoder: Encoder, job: Job, engine: Engine | None) -> Iterator[Made]:
     if engine is None or job.last - job.first < 2:
-        return encoded_here(scenario, encoder, job)
+        return encoded_here(scenario, encoder, job, most=encoder.most)
     return in_processes(scenario, encoder, job, engine)
 
 
@@ -216,6 +261,8 @@ def _kept(folder: Path, manifest: Manifest, *, resume: bool) -> Manifest:
         return manifest
     earlier = Manifest.load(folder)
     if not resume:
+        if not earlier.parts and not any(path.stat().st_size for path in folder.glob("part-*.journal")):
+            return manifest  # nothing has come of it
         raise DatasetError(
             f"'{folder}' holds a data set of {earlier.rows} scenes already",
             help="go on with it by --resume, or choose another folder",
@@ -243,17 +290,13 @@ class _PartInProgress:
         self._first = first
         self.upcoming = first
         """The number of the first scene that is neither found nor given up."""
-        self.encoder = Encoder(
-            manifest.form, changed=manifest.properties == "changed", points=manifest.points
-        )
+        self.encoder = Encoder.of(manifest)
         self._path = folder / manifest.file_of(first)
         self._journal_path = self._path.with_suffix(".journal")
         self._rows = 0
         self._attempts = 0
         self._missing: list[int] = []
-        self._sink: _Lines | _Table = (
-            _Lines(self._path) if manifest.form == "jsonl" else _Table(self._path, scenario)
-        )
+        self._sink = _sink(self._path, scenario, manifest)
         self._journal: Any = None
 
     def recalled(self) -> Iterator[int]:
@@ -261,8 +304,9 @@ class _PartInProgress:
         entries = self._entries()
         with refusing(self._journal_path):
             self._journal = self._journal_path.open("wb")
-        for start in range(0, len(entries), _BLOCK):
-            block = entries[start : start + _BLOCK]
+        most = min(_BLOCK, self.encoder.most)
+        for start in range(0, len(entries), most):
+            block = entries[start : start + most]
             found = block[block[:, 1] > 0]
             if len(found):
                 source = method_of(self._manifest.points).get("source")
@@ -317,6 +361,7 @@ class _PartInProgress:
     def finish(self, last: int) -> Part:
         """Complete the file."""
         self._sink.finish()
+        index = digest_of(self._path.with_suffix(".json")) if self._manifest.form == "tar" else ""
         return Part(
             self._path.name,
             self._first,
@@ -325,6 +370,7 @@ class _PartInProgress:
             self._attempts,
             tuple(self._missing),
             digest_of(self._path),
+            index,
         )
 
     def close(self) -> None:
@@ -336,6 +382,22 @@ class _PartInProgress:
     def forget(self) -> None:
         """Remove the journal of a part that is complete and in the manifest."""
         self._journal_path.unlink(missing_ok=True)
+
+
+class _Sink(Protocol):
+    """Takes the rows of a part; its file is complete or absent."""
+
+    def add(self, rows: memoryview) -> None: ...
+
+    def finish(self) -> None: ...
+
+    def close(self) -> None: ...
+
+
+def _sink(path: Path, scenario: Scenario, manifest: Manifest) -> _Sink:
+    if manifest.images is not None:
+        return ImageSink(path, scenario, manifest)
+    return _Lines(path) if manifest.form == "jsonl" else _Table(path, scenario)
 
 
 class _Lines:

@@ -46,6 +46,7 @@ class Part:
         attempts: candidates tried for them, and for those that were not found.
         missing: the numbers of the scenes that were not found.
         sha256: digest of its bytes.
+        index: digest of the index beside a shard of images.
 
     """
 
@@ -56,6 +57,7 @@ class Part:
     attempts: int
     missing: tuple[int, ...]
     sha256: str
+    index: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +73,12 @@ class Manifest:
         seed: the seed of all scenes.
         first: the number of the first scene.
         count: how many scenes were wanted.
-        form: format of the parts, ``parquet`` or ``jsonl``.
+        form: format of the parts, ``parquet`` or ``jsonl``; ``images`` or ``tar`` for labelled images.
         part_size: scenes of a part.
         points: ``sobol`` where scenes are rows of Sobol's sequence, ``approximate N`` where N were made together, of nearly the program's law.
         max_attempts: candidates tried for one scene, at most.
         properties: which properties of objects are told, ``all`` or ``changed``.
+        images: of labelled images, the ``camera``, their ``size`` (its own if ``None``), and whether there is an ``overlay``.
         meshes: digests of the mesh files that the program names.
         versions: versions of Python and of libraries that may change a scene.
         command: the command line or call, for people.
@@ -95,6 +98,7 @@ class Manifest:
     points: str | None = None
     max_attempts: int | None = None
     properties: str = "changed"
+    images: Mapping[str, Any] | None = None
     meshes: Mapping[str, str] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=versions)
     options: Mapping[str, Any] = field(default_factory=dict)
@@ -137,7 +141,11 @@ class Manifest:
 
     def file_of(self, first: int) -> str:
         """The name of the part that begins with a scene."""
-        return f"part-{(first - self.first) // self.part_size:05d}.{self.form}"
+        return self.file_name((first - self.first) // self.part_size)
+
+    def file_name(self, number: int) -> str:
+        """The name of a part; that of images in the folder is the index of its scenes."""
+        return f"part-{number:05d}.{'json' if self.form == 'images' else self.form}"
 
     def difference(self, other: "Manifest") -> str | None:
         """The first setting in which data sets differ that cannot be continued by each other; their counts may differ."""
@@ -190,7 +198,7 @@ class Manifest:
 
 _SETTINGS: Final = (
     "program", "digest", "fingerprint", "seed", "first", "form", "part_size", "points", "max_attempts", "properties",
-    "meshes", "versions",
+    "images", "meshes", "versions",
 )  # fmt: skip
 
 

@@ -42,8 +42,8 @@ _TRIES: Final = 3
 Encode = Callable[[Scenario, Sequence[Scene]], bytes]
 """Turns some scenes of a scenario into bytes; it must be picklable where processes are not forked."""
 
-_BLOCK: Final = 1024
-"""Scenes encoded together."""
+LONGEST: Final = 1024
+"""Scenes encoded together, at most."""
 
 
 class WorkerDiedError(Located):
@@ -103,8 +103,8 @@ def results_of(scenario: Scenario, job: Job) -> Iterator[Scene | Exhausted]:
     )
 
 
-def encoded_here(scenario: Scenario, encode: Encode, job: Job) -> Iterator[Made]:
-    """The results of a job, in order, in pieces that this process makes; raises whatever sampling raises."""
+def encoded_here(scenario: Scenario, encode: Encode, job: Job, *, most: int = LONGEST) -> Iterator[Made]:
+    """The results of a job, in order, in pieces of ``most`` scenes that this process makes; raises whatever sampling raises."""
     block: list[Scene] = []
     first, due = job.first, time.monotonic() + _SECONDS
 
@@ -118,7 +118,7 @@ def encoded_here(scenario: Scenario, encode: Encode, job: Job) -> Iterator[Made]
             yield made((result,), result.k + 1)
         else:
             block.append(result)
-            if len(block) < _BLOCK and time.monotonic() < due:
+            if len(block) < most and time.monotonic() < due:
                 continue
             yield made((), result.k + 1)
         block.clear()
@@ -147,7 +147,7 @@ def _make(scenario: Scenario, encode: Encode, job: Job) -> Made:
                 missing.append(result)
                 continue
             block.append(result)
-            if len(block) == _BLOCK:
+            if len(block) == LONGEST:
                 text += encode(scenario, block)
                 block.clear()
         if block:

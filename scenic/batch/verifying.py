@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from scenic.batch.datasets import Encoder
+from scenic.batch.image_parts import IMAGE_FORMS, copy_images, damaged_files, image_rows, join_indices
 from scenic.batch.manifest import DatasetError, Manifest, Part, digest_of
 from scenic.batch.scenes import Job, method_of, results_of
 from scenic.formats.files import make_folder, write
@@ -64,6 +65,11 @@ def verify(
         if digest_of(path) != part.sha256:
             yield Damage(part.file, "the content has changed since it was written")
             continue
+        if manifest.images is not None:
+            damages = [Damage(*item) for item in damaged_files(folder, part, manifest.form)]
+            yield from damages
+            if damages:
+                continue
         if scenario is not None and share > 0:
             yield from _compared(scenario, manifest, part, path, share, advance)
 
@@ -80,7 +86,7 @@ def _compared(
         range(part.first, part.last), min(part.last - part.first, math.ceil(share * (part.last - part.first)))
     )
     kept = {row["k"]: row for row in part_rows(path, manifest.form)}
-    encoder = Encoder(manifest.form, changed=manifest.properties == "changed", points=manifest.points)
+    encoder = Encoder.of(manifest)
     method = method_of(manifest.points)
     for k in sorted(chosen):
         job = Job(manifest.seed, k, k + 1, manifest.max_attempts, None, **method)
@@ -99,6 +105,9 @@ def _compared(
 
 def part_rows(path: Path, form: str) -> Iterator[dict[str, Any]]:
     """The rows of a part, as plain data."""
+    if form in IMAGE_FORMS:
+        yield from image_rows(path, form)
+        return
     if form == "jsonl":
         with path.open("rb") as stream:
             for line in stream:
@@ -111,6 +120,8 @@ def part_rows(path: Path, form: str) -> Iterator[dict[str, Any]]:
 
 
 def _rows(encoded: bytes, form: str) -> list[dict[str, Any]]:
+    if form in IMAGE_FORMS:
+        return list(image_rows(encoded, form))
     if form == "jsonl":
         return [json.loads(line) for line in encoded.splitlines()]
     arrow, _ = parquet_support()
@@ -142,11 +153,15 @@ def merge(folders: Sequence[Path], target: Path) -> Manifest:
     make_folder(target)
     parts = []
     for index, (path, part) in enumerate(pieces):
+        if not path.is_file():
+            raise DatasetError(f"'{path}' is missing", help="make this part again")
         content = path.read_bytes()
         if digest_of(path) != part.sha256:
             raise DatasetError(f"'{path}' has changed since it was written", help="make this part again")
-        name = f"part-{index:05d}.{head.form}"
+        name = head.file_name(index)
         write(target / name, content)
+        if head.images is not None:
+            copy_images(path.parent, part, head.form, target / name)
         parts.append(replace(part, file=name))
     first, last = (parts[0].first, parts[-1].last) if parts else (head.first, head.first)
     merged = replace(
@@ -157,4 +172,6 @@ def merge(folders: Sequence[Path], target: Path) -> Manifest:
         seconds=sum(item.seconds for _, item in manifests),
     ).beside(target, str((folders[0] / head.source).resolve()))
     merged.save(target)
+    if merged.form == "images":
+        join_indices(target, merged)
     return merged

@@ -89,16 +89,14 @@ __all__ = ["sample"]
 @click.option(
     "--format",
     "form",
-    type=click.Choice(["parquet", "jsonl"]),
-    help="Format of the files of a data set.  [default: parquet]",
+    type=click.Choice(["parquet", "jsonl", "images", "tar"]),
+    help="Format of the files of a data set: parquet or jsonl; with --camera images, or tar for shards.  [default: the first]",
 )
 @click.option(
     "--part-size",
     metavar="N",
     type=click.IntRange(min=1),
-    default=65536,
-    show_default=True,
-    help="Scenes in each file of a data set.",
+    help="Scenes in each part of a data set.  [default: 65536, with --camera 512]",
 )
 @dask_option("Sample")
 @click.option(
@@ -121,7 +119,10 @@ __all__ = ["sample"]
 @click.option(
     "--camera",
     metavar="NAME",
-    help="Make labelled images in the folder OUT: what the sensor of this name sees, or the object of a variable.",
+    help="Make a data set of labelled images: what the sensor of this name sees, or the object of a variable.",
+)
+@click.option(
+    "--overlay", is_flag=True, help="With --camera: make images with the labels drawn into them, too."
 )
 @click.option(
     "--image-size",
@@ -167,13 +168,14 @@ def sample(
     time_limit: float | None,
     output: str | None,
     form: str | None,
-    part_size: int,
+    part_size: int | None,
     dask: str | None,
     sampler: str | None,
     minimized: str | None,
     view: str | None,
     png: str | None,
     camera: str | None,
+    overlay: bool,
     image_size: tuple[int, int] | None,
     outlook: Mapping[str, float],
     frame: str,
@@ -208,7 +210,8 @@ def sample(
     if camera is not None:
         if output is None:
             raise click.UsageError("--camera needs a folder for its images: -o FOLDER")
-        chosen.append(sinks.labelled(Path(output), camera, image_size))
+        dataset = Path(output)
+        sinks.check_labelled(dataset)
     elif output is not None or (view is None and png is None):
         named = Path(output or "-")
         if sinks.is_dataset(output):
@@ -235,12 +238,20 @@ def sample(
         )
     if chosen and (jobs > 1 or resume or dask is not None or dataset is not None or table is not None):
         raise click.UsageError(
-            "-j, --dask, --resume, data sets and Parquet go without images, pages and 3D files"
+            "-j, --dask, --resume, --camera, data sets and Parquet go without --view, --png and 3D files"
         )
     if resume and (target == sinks.STANDARD_OUTPUT or (target is None and dataset is None)):
         raise click.UsageError("--resume needs a file or a data set to go on with: -o OUT.jsonl, -o FOLDER/")
     if form is not None and dataset is None:
         raise click.UsageError("--format is for data sets: -o FOLDER/")
+    if form is not None and (camera is None) != (form in ("parquet", "jsonl")):
+        raise click.UsageError("--format images and tar go with --camera, parquet and jsonl without it")
+    if overlay and camera is None:
+        raise click.UsageError("--overlay draws into the images of a camera: --camera NAME")
+    if form is None:
+        form = "parquet" if camera is None else "images"
+    if part_size is None:
+        part_size = 65536 if camera is None else 512
     if minimized is not None and sampler is None:
         raise click.UsageError("--minimize needs a sampler that learns: --sampler cma")
     if sampler is not None and (
@@ -312,11 +323,14 @@ def sample(
                 seed=seed,
                 first=first,
                 count=count,
-                form=form or "parquet",
+                form=form,
                 part_size=part_size,
                 points=points,
                 max_attempts=max_attempts,
                 properties=properties,
+                images=None
+                if camera is None
+                else {"camera": camera, "size": image_size and list(image_size), "overlay": overlay},
                 command=shlex.join(["scenic", *sys.argv[1:]]),
             )
             if dataset is not None:

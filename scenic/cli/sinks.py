@@ -108,11 +108,8 @@ def page(path: Path, title: str) -> Sink:
     return _page(path, title)
 
 
-def labelled(folder: Path, camera: str, size: tuple[int, int] | None) -> Sink:
-    """Images that a camera of the scenes sees, with labels, in a folder.
-
-    Raises ``OutputError``, ``OutputChoiceError`` or ``MissingLibraryError`` at once if that cannot be.
-    """
+def check_labelled(folder: Path) -> None:
+    """Raises ``OutputError``, ``OutputChoiceError`` or ``MissingLibraryError`` if no labelled images can be in a folder."""
     from scenic.formats.png import require_pillow
 
     require_pillow()
@@ -121,22 +118,6 @@ def labelled(folder: Path, camera: str, size: tuple[int, int] | None) -> Sink:
             f"labelled images cannot be written to '{folder}'", help="give a folder: --camera front -o images"
         )
     check_folder(folder if folder.exists() else folder.resolve().parent)
-    return _labelled(folder, camera, size)
-
-
-@contextmanager
-def _labelled(folder: Path, camera: str, size: tuple[int, int] | None) -> Iterator[Take]:
-    from scenic.formats.coco import LabelledImages
-
-    made = LabelledImages(folder, camera, size)
-
-    def take(scene: Scene) -> None:
-        folder.mkdir(exist_ok=True)
-        made.add(scene)
-
-    yield take
-    if folder.exists():
-        made.finish()
 
 
 def images(

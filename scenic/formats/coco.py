@@ -1,11 +1,13 @@
-"""Labelled images of many scenes in one folder, with an index in the form of the COCO data sets.
+"""Labelled images of scenes, with an index in the form of the COCO data sets.
 
-For scene k there are images named after what they hold, and ``NAME-k.json`` with everything known of the objects.
-``annotations.json`` lists all images with a box, a mask and a class for each object that has pixels; masks are run
-lengths down the columns, which COCO's tools read.
+For a scene there are images named after what they hold, and a JSON file with everything known of the objects. The index lists
+images with a box, a mask and a class for each object that has pixels; masks are run lengths down the columns, which COCO's tools
+read.
 """
 
 import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -13,11 +15,14 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.formats.files import write
-from scenic.formats.instances import Gallery
+from scenic.formats.instances import Gallery, Surfaces
 from scenic.formats.labels import Observation, document, observe
+from scenic.formats.overlay import overlay
 from scenic.formats.png import encoded
 from scenic.formats.scenes import Scene
 from scenic.formats.sensors import viewpoint
+
+__all__ = ["INDEX", "LabelledImages", "Photographer", "Shot", "index_of", "millimetres", "run_lengths"]
 
 INDEX: Final = "annotations.json"
 
@@ -25,44 +30,81 @@ _MILLIMETRES: Final = 1000.0
 _MOST: Final = 65535
 
 
-class LabelledImages:
-    """A folder of labelled images in the making."""
+@dataclass(frozen=True, slots=True)
+class Shot:
+    """What a camera gives of one scene.
 
-    def __init__(self, folder: Path, camera: str, size: tuple[int, int] | None) -> None:
-        self._folder = folder
+    Attributes:
+        files: contents by names: the images, then the labels.
+        image: the entry of the index, without its ``id``.
+        annotations: those of the index, without ``id`` and ``image_id``.
+
+    """
+
+    files: Mapping[str, bytes]
+    image: dict[str, Any]
+    annotations: Sequence[dict[str, Any]]
+
+
+class Photographer:
+    """Takes labelled images of scenes; if it is told all classes, each of them depends on its scene alone.
+
+    Args:
+        camera: a sensor of some object, or the variable of an object.
+        size: columns and rows, in place of the camera's own.
+        classes: those of the objects, in order; classes that are not among them are added when they are met.
+        joint: what stands between the name of a scene and that of an output.
+        previewed: whether to draw the labels into an image of their own, too.
+
+    Attributes:
+        categories: the numbers of the classes that have been told or seen, from 1.
+
+    """
+
+    def __init__(
+        self,
+        camera: str,
+        size: tuple[int, int] | None,
+        *,
+        classes: Iterable[str] = (),
+        joint: str = "-",
+        previewed: bool = False,
+    ) -> None:
         self._camera = camera
         self._size = size
-        self._gallery = Gallery()
-        self._categories: dict[str, int] = {}
-        self._images: list[dict[str, Any]] = []
-        self._annotations: list[dict[str, Any]] = []
+        self._classes = tuple(dict.fromkeys(classes))
+        self.categories = {name: number for number, name in enumerate(self._classes, 1)}
+        self._joint = joint
+        self._previewed = previewed
+        self._surfaces = Surfaces()
 
-    def add(self, scene: Scene) -> None:
-        """Write the images and labels of a scene."""
+    def shoot(self, scene: Scene) -> Shot:
+        """The images and labels of a scene."""
         point = viewpoint(scene, self._camera, self._size)
-        found = observe(scene, point, gallery=self._gallery)
+        gallery = Gallery(self._classes, self._surfaces)
+        found = observe(scene, point, gallery=gallery, painted=self._previewed)
+        self._classes = gallery.classes
         for label in found.labels:
-            self._categories.setdefault(label.instance.class_name, len(self._categories) + 1)
+            self.categories.setdefault(label.instance.class_name, len(self.categories) + 1)
         stem = f"{self._camera}-{scene.k:06d}"
-        files = {}
-        for output in point.outputs:
-            files[output] = f"{stem}-{output}.png"
-            write(self._folder / files[output], self._picture(found, output))
+        names = {output: f"{stem}{self._joint}{output}.png" for output in point.outputs}
+        files = {names[output]: self._picture(found, output) for output in point.outputs}
+        if self._previewed:
+            names["overlay"] = f"{stem}{self._joint}overlay.png"
+            files[names["overlay"]] = encoded(overlay(found))
         labels = document(found, scene)
-        labels["images"] = files
-        labels["categories"] = dict(self._categories)
-        write(self._folder / f"{stem}.json", (json.dumps(labels, allow_nan=False) + "\n").encode())
-        self._index(found, scene, files)
-
-    def finish(self) -> None:
-        """Write the index."""
-        index = {
-            "info": {"description": f"scenes seen by {self._camera}", "version": "1"},
-            "images": self._images,
-            "categories": [{"id": number, "name": name} for name, number in self._categories.items()],
-            "annotations": self._annotations,
+        labels["images"] = names
+        labels["categories"] = dict(self.categories)
+        files[f"{stem}.json"] = (json.dumps(labels, allow_nan=False) + "\n").encode()
+        width, height = found.viewpoint.size
+        image = {
+            "file_name": names.get("rgb") or next(iter(names.values())),
+            "width": width,
+            "height": height,
+            "seed": str(scene.seed),
+            "k": scene.k,
         }
-        write(self._folder / INDEX, (json.dumps(index, allow_nan=False) + "\n").encode())
+        return Shot(files, image, list(self._annotations(found)))
 
     def _picture(self, found: Observation, output: str) -> bytes:
         match output:
@@ -77,31 +119,16 @@ class LabelledImages:
                 numbers = np.zeros(int(found.objects.max(initial=0)) + 2, np.uint16)
                 for label in found.labels:
                     if label.pixels:
-                        numbers[label.index + 1] = self._categories[label.instance.class_name]
+                        numbers[label.index + 1] = self.categories[label.instance.class_name]
                 return encoded(numbers[found.objects + 1])
 
-    def _index(self, found: Observation, scene: Scene, files: dict[str, str]) -> None:
+    def _annotations(self, found: Observation) -> Iterable[dict[str, Any]]:
         width, height = found.viewpoint.size
-        number = len(self._images) + 1
-        self._images.append(
-            {
-                "id": number,
-                "file_name": files.get("rgb") or next(iter(files.values())),
-                "width": width,
-                "height": height,
-                "seed": str(scene.seed),
-                "k": scene.k,
-            }
-        )
         for label in found.labels:
-            if label.box is None:
-                continue
-            mask = found.mask(label)
-            self._annotations.append(
-                {
-                    "id": len(self._annotations) + 1,
-                    "image_id": number,
-                    "category_id": self._categories[label.instance.class_name],
+            if label.box is not None:
+                mask = found.mask(label)
+                yield {
+                    "category_id": self.categories[label.instance.class_name],
                     "bbox": label.box.as_list(),
                     "area": label.pixels,
                     "segmentation": {"size": [height, width], "counts": run_lengths(mask)},
@@ -110,7 +137,49 @@ class LabelledImages:
                     "visible": label.visible,
                     "occluded": label.occluded,
                 }
-            )
+
+
+def index_of(
+    camera: str,
+    categories: Mapping[str, int],
+    images: Sequence[Mapping[str, Any]],
+    annotations: Sequence[Mapping[str, Any]],
+) -> bytes:
+    """The index of images and their annotations, as JSON."""
+    index = {
+        "info": {"description": f"scenes seen by {camera}", "version": "1"},
+        "images": images,
+        "categories": [{"id": number, "name": name} for name, number in categories.items()],
+        "annotations": annotations,
+    }
+    return (json.dumps(index, allow_nan=False) + "\n").encode()
+
+
+class LabelledImages:
+    """A folder of labelled images in the making."""
+
+    def __init__(self, folder: Path, camera: str, size: tuple[int, int] | None) -> None:
+        self._folder = folder
+        self._camera = camera
+        self._photographer = Photographer(camera, size)
+        self._images: list[dict[str, Any]] = []
+        self._annotations: list[dict[str, Any]] = []
+
+    def add(self, scene: Scene) -> None:
+        """Write the images and labels of a scene."""
+        shot = self._photographer.shoot(scene)
+        for name, content in shot.files.items():
+            write(self._folder / name, content)
+        number = len(self._images) + 1
+        self._images.append({"id": number, **shot.image})
+        for annotation in shot.annotations:
+            place = len(self._annotations) + 1
+            self._annotations.append({"id": place, "image_id": number, **annotation})
+
+    def finish(self) -> None:
+        """Write the index."""
+        categories = self._photographer.categories
+        write(self._folder / INDEX, index_of(self._camera, categories, self._images, self._annotations))
 
 
 def millimetres(depth: npt.NDArray[np.float32]) -> npt.NDArray[np.uint16]:

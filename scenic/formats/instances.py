@@ -7,6 +7,7 @@ look round and edges stay sharp.
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -32,6 +33,9 @@ PALETTE: tuple[Triple, ...] = (
 
 _SHADES = (1.0, 0.72, 1.12, 0.86, 0.6)
 """How bright those of one class are in turn, so that neighbours can be told apart."""
+
+_PLAIN: Final = "Object"
+"""The class of objects that have no class of their own."""
 
 CREASE = np.cos(np.radians(35))
 """Faces that meet at a smaller angle are shaded as one smooth surface."""
@@ -84,14 +88,47 @@ class Picture:
     scenes: tuple[tuple[Instance, ...], ...]
 
 
-class Gallery:
-    """Collects scenes to be drawn, one by one; it keeps what is drawn of them and not the scenes."""
+class Surfaces:
+    """The surfaces of meshes at sizes, of which those used last are kept."""
+
+    _MOST: Final = 256
 
     def __init__(self) -> None:
+        # The mesh is kept beside its surface: its identity stays taken while the entry lives.
+        self._known: dict[tuple[int, Triple], tuple[UnitMesh, Surface]] = {}
+
+    def of(self, mesh: UnitMesh, size: Triple) -> Surface:
+        """The surface of a mesh that is used at a size."""
+        found = self._known.pop((id(mesh), size), None) or (mesh, surface_of(mesh, size))
+        self._known[id(mesh), size] = found
+        if len(self._known) > self._MOST:
+            del self._known[next(iter(self._known))]
+        return found[1]
+
+
+class Gallery:
+    """Collects scenes to be drawn, one by one; it keeps what is drawn of them and not the scenes.
+
+    Args:
+        classes: the classes whose colours come first, in this order.
+        surfaces: what is known of meshes already.
+
+    """
+
+    def __init__(self, classes: Iterable[str] = (), surfaces: Surfaces | None = None) -> None:
+        self._made = Surfaces() if surfaces is None else surfaces
         self._surfaces: list[Surface] = []
         # The mesh is kept beside its number: its identity stays taken while the table lives.
         self._known: dict[int, tuple[UnitMesh, int]] = {}
         self._colors: dict[str, Triple] = {}
+        for name in classes:
+            if name != _PLAIN:
+                self._class_color(name)
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """The classes that have colours, in order."""
+        return tuple(self._colors)
 
     @property
     def surfaces(self) -> tuple[Surface, ...]:
@@ -131,19 +168,22 @@ class Gallery:
 
         A class has one colour in several shades; of plain objects, which have no class of their own, each has another colour.
         """
-        if class_name == "Object":
+        if class_name == _PLAIN:
             # From the end, since classes take theirs from the beginning.
             base, shade = PALETTE[-1 - number % len(PALETTE)], number // len(PALETTE)
         else:
-            base = self._colors.setdefault(class_name, PALETTE[len(self._colors) % len(PALETTE)])
+            base = self._class_color(class_name)
             shade = number
         bright = _SHADES[shade % len(_SHADES)]
         return base[0] * bright, base[1] * bright, base[2] * bright
 
+    def _class_color(self, class_name: str) -> Triple:
+        return self._colors.setdefault(class_name, PALETTE[len(self._colors) % len(PALETTE)])
+
     def _number(self, mesh: UnitMesh, size: Triple) -> int:
         if id(mesh) not in self._known:
             self._known[id(mesh)] = (mesh, len(self._surfaces))
-            self._surfaces.append(surface_of(mesh, size))
+            self._surfaces.append(self._made.of(mesh, size))
         return self._known[id(mesh)][1]
 
 

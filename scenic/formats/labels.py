@@ -106,11 +106,22 @@ class Observation:
 
 
 def observe(
-    scene: Scene, viewpoint: Viewpoint, *, gallery: Gallery | None = None, labelled: bool = True
+    scene: Scene,
+    viewpoint: Viewpoint,
+    *,
+    gallery: Gallery | None = None,
+    labelled: bool = True,
+    painted: bool = False,
 ) -> Observation:
-    """What a camera sees of a scene; a gallery shares what is known of meshes between scenes.
+    """What a camera sees of a scene.
 
-    Labels cost more than the images, and may be left out.
+    Args:
+        scene: the scene.
+        viewpoint: the camera.
+        gallery: shares what is known of meshes between scenes.
+        labelled: whether to find labels, which cost more than the images.
+        painted: whether to find colours also where the camera gives none.
+
     """
     gallery = Gallery() if gallery is None else gallery
     index = {id(thing): number for number, thing in enumerate(scene.objects)}
@@ -123,7 +134,7 @@ def observe(
     objects = numbers[owner[buffer.triangle]]
     with np.errstate(divide="ignore"):
         depth = (np.float32(1) / buffer.nearness).astype(np.float32)
-    rgb = paint(stage, lens, buffer) if "rgb" in viewpoint.outputs else None
+    rgb = paint(stage, lens, buffer) if painted or "rgb" in viewpoint.outputs else None
     labels = _labels(scene, viewpoint, instances, index, objects, depth) if labelled else ()
     return Observation(viewpoint, rgb, depth, objects, labels)
 

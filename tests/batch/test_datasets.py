@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import scenic
-from scenic.batch import scenes
+from scenic.batch import datasets
 from scenic.batch.datasets import Run, make_dataset, write_table
 from scenic.batch.engines import OverExecutor, Processes
 from scenic.batch.manifest import NAME, DatasetError, Manifest
@@ -84,6 +84,29 @@ def test_rows_say_what_scenes_say(scenario: scenic.Scenario, tmp_path: Path) -> 
         assert other["place"] == list(scene.objects[1].place)
 
 
+def test_other_libraries_read_the_parts(scenario: scenic.Scenario, tmp_path: Path) -> None:
+    """As ``docs/howto/datasets.md`` says."""
+    make_dataset(scenario, tmp_path, manifest(scenario))
+    arrow_dataset = pytest.importorskip("pyarrow.dataset")
+    table = arrow_dataset.dataset(tmp_path, format="parquet", exclude_invalid_files=True).to_table()
+    rows = table.to_pylist()
+    assert sorted(row["k"] for row in rows) == list(range(50))
+    try:
+        import pandas
+        import polars
+        from datasets import load_dataset
+    except ImportError as error:
+        pytest.skip(f"{error.name} is not installed")
+    part = tmp_path / "part-00000.parquet"
+    assert pandas.read_parquet(part)["k"].tolist() == list(range(20))
+    frame = polars.read_parquet(tmp_path / "part-*.parquet")
+    assert frame["k"].to_list() == list(range(50))
+    assert frame["objects"][0][0]["position"] == rows[0]["objects"][0]["position"]
+    files = str(tmp_path / "part-*.parquet")
+    streamed = load_dataset("parquet", data_files=files, split="train", streaming=True)
+    assert [row["k"] for row in streamed] == list(range(50))
+
+
 def test_a_column_is_typed_by_all_objects_that_have_it() -> None:
     from scenic.formats.scene_tables import SceneTable
 
@@ -122,7 +145,7 @@ def test_a_journal_saves_looking_again(
         if seen > 10:
             raise Ended
 
-    monkeypatch.setattr(scenes, "_BLOCK", 4)
+    monkeypatch.setattr(datasets, "LONGEST", 4)
     with pytest.raises(Ended):
         make_dataset(scenario, tmp_path / "ended", wanted, Run(advance=advance))
     names = sorted(path.name for path in (tmp_path / "ended").iterdir())

@@ -91,7 +91,7 @@ def test_all_calls_of_an_exception_are_shown_where_that_is_wanted(tmp_path: Path
         (["--resume"], "--resume needs a file or a data set to go on with"),
         (["--resume", "-o", "-"], "--resume needs a file or a data set to go on with"),
         *(
-            ([*given, *sink], "go without images, pages and 3D files")
+            ([*given, *sink], "go without --view, --png and 3D files")
             for given in (
                 ["--resume"],
                 ["-j", 2],
@@ -100,8 +100,8 @@ def test_all_calls_of_an_exception_are_shown_where_that_is_wanted(tmp_path: Path
             )
             for sink in (["--view", "page.html"], ["--png", "images"])
         ),
-        (["--resume", "-o", "out.glb"], "go without images, pages and 3D files"),
-        (["-j", 2, "-o", "out.glb"], "go without images, pages and 3D files"),
+        (["--resume", "-o", "out.glb"], "go without --view, --png and 3D files"),
+        (["-j", 2, "-o", "out.glb"], "go without --view, --png and 3D files"),
         (["--camera", "ego"], "--camera needs a folder"),
     ],
 )

@@ -1,0 +1,226 @@
+"""Labelled images as parts of data sets: encoded where their scenes are made, then in files of their own or in shards.
+
+A part of the form ``images`` is an index ``part-N.json`` in the form of the COCO data sets, which names the files of its scenes
+beside it; one of the form ``tar`` is a shard ``part-N.tar`` with such an index beside it. Every image of the index has the digest
+of its scene's files.
+"""
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.batch.manifest import DatasetError, Manifest, Part, digest_of
+from scenic.formats.coco import INDEX, Photographer, index_of
+from scenic.formats.files import Waiting, write, writing
+from scenic.formats.shards import END, member, members
+from scenic.runtime.scenes.scenario import Scenario
+from scenic.runtime.scenes.scene import Scene
+
+__all__ = [
+    "IMAGE_FORMS",
+    "ImageRows",
+    "ImageSink",
+    "copy_images",
+    "damaged_files",
+    "image_rows",
+    "join_indices",
+]
+
+IMAGE_FORMS: Final = ("images", "tar")
+"""Images in files of their own in the folder, or in shards."""
+
+
+class ImageRows:
+    """Turns scenes into rows: for each scene two lengths, the members of a tar file, and its part of the index as JSON.
+
+    Args:
+        scenario: the program.
+        form: of `IMAGE_FORMS`.
+        settings: see `Manifest.images`.
+
+    """
+
+    def __init__(self, scenario: Scenario, form: str, settings: Mapping[str, Any]) -> None:
+        size = settings["size"]
+        self._photographer = Photographer(
+            settings["camera"],
+            None if size is None else (size[0], size[1]),
+            classes=classes_of(scenario),
+            # Readers of shards take what stands behind the first dot for the kind of content.
+            joint="." if form == "tar" else "-",
+            previewed=settings["overlay"],
+        )
+        self._most = len(scenario.objects)
+
+    def rows(self, scenes: Sequence[Scene]) -> bytes:
+        """The rows of some scenes."""
+        return b"".join(self._row(scene) for scene in scenes)
+
+    def _row(self, scene: Scene) -> bytes:
+        shot = self._photographer.shoot(scene)
+        content = b"".join(member(name, data) for name, data in shot.files.items())
+        number = scene.k + 1
+        image = {"id": number, **shot.image, "files": list(shot.files), "sha256": _digest(content)}
+        annotations = [
+            {"id": scene.k * self._most + item["object"] + 1, "image_id": number, **item}
+            for item in shot.annotations
+        ]
+        record = json.dumps([image, annotations], allow_nan=False).encode()
+        return np.array([len(content), len(record)], dtype=np.int64).tobytes() + content + record
+
+
+def classes_of(scenario: Scenario) -> list[str]:
+    """The names of the classes of a program's objects, in order."""
+    return list(dict.fromkeys(type(thing).__name__ for thing in scenario.objects))
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """A row taken apart: the members of its scene, its image in the index and the annotations."""
+
+    content: bytes
+    image: dict[str, Any]
+    annotations: list[dict[str, Any]]
+
+
+def _rows_of(encoded: memoryview) -> Iterator[_Row]:
+    place = 0
+    while place < len(encoded):
+        size, length = (int(word) for word in np.frombuffer(encoded[place : place + 16], dtype=np.int64))
+        place += 16
+        content = bytes(encoded[place : place + size])
+        place += size
+        yield _Row(content, *json.loads(bytes(encoded[place : place + length])))
+        place += length
+
+
+class ImageSink:
+    """The part that is being made: images are written at once, the shard and the index when it is complete."""
+
+    def __init__(self, path: Path, scenario: Scenario, manifest: Manifest) -> None:
+        assert manifest.images is not None
+        self._path = path
+        self._camera = manifest.images["camera"]
+        self._categories = {name: number for number, name in enumerate(classes_of(scenario), 1)}
+        self._shard = Waiting(path) if manifest.form == "tar" else None
+        self._images: list[dict[str, Any]] = []
+        self._annotations: list[dict[str, Any]] = []
+
+    def add(self, rows: memoryview) -> None:
+        """The next rows."""
+        for row in _rows_of(rows):
+            if self._shard is not None:
+                self._shard.write(row.content)
+            else:
+                for name, content in members(row.content):
+                    write(self._path.parent / name, content)
+            self._images.append(row.image)
+            self._annotations += row.annotations
+
+    def finish(self) -> None:
+        """Write the index, and the shard."""
+        index = index_of(self._camera, self._categories, self._images, self._annotations)
+        write(self._path.with_suffix(".json"), index)
+        if self._shard is not None:
+            self._shard.write(END)
+            with writing(self._path) as stream:
+                self._shard.copy(stream)
+
+    def close(self) -> None:
+        """Give the shard up."""
+        if self._shard is not None:
+            self._shard.close()
+
+
+def image_rows(source: Path | bytes, form: str) -> Iterator[dict[str, Any]]:
+    """The scenes of a part, or of encoded rows: ``k``, ``image`` and ``annotations`` of the index, and ``content``."""
+    if isinstance(source, bytes):
+        for row in _rows_of(memoryview(source)):
+            yield _plain(row.image, row.annotations, row.content)
+        return
+    index = _index(source.with_suffix(".json"))
+    archive = dict(members(source.read_bytes())) if form == "tar" else {}
+    found = {
+        number: list(items) for number, items in groupby(index["annotations"], lambda item: item["image_id"])
+    }
+    for image in index["images"]:
+        content = b""
+        for name in image["files"]:
+            data = archive.get(name) if form == "tar" else _read(source.parent / name)
+            content += b"" if data is None else member(name, data)
+        yield _plain(image, found.get(image["id"], []), content)
+
+
+def _plain(image: dict[str, Any], annotations: list[dict[str, Any]], content: bytes) -> dict[str, Any]:
+    return {"k": image["k"], "image": image, "annotations": annotations, "content": content}
+
+
+def _read(path: Path) -> bytes | None:
+    return path.read_bytes() if path.is_file() else None
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _index(path: Path) -> dict[str, Any]:
+    try:
+        found: dict[str, Any] = json.loads(path.read_bytes())
+    except (OSError, ValueError) as error:
+        raise DatasetError(f"'{path}' cannot be read: {error}") from error
+    return found
+
+
+def damaged_files(folder: Path, part: Part, form: str) -> Iterator[tuple[str, str]]:
+    """Files of a part, whose own file is whole, that are missing or changed, and what is wrong with them."""
+    if form == "tar":
+        index = (folder / part.file).with_suffix(".json")
+        if not index.is_file():
+            yield index.name, "the file is missing"
+        elif digest_of(index) != part.index:
+            yield index.name, "the content has changed since it was written"
+        return
+    for row in image_rows(folder / part.file, form):
+        names = row["image"]["files"]
+        missing = [name for name in names if not (folder / name).is_file()]
+        for name in missing:
+            yield name, "the file is missing"
+        if not missing and _digest(row["content"]) != row["image"]["sha256"]:
+            yield (
+                names[0],
+                "the content of this file, or of another of its scene, has changed since it was written",
+            )
+
+
+def copy_images(source: Path, part: Part, form: str, target: Path) -> None:
+    """Copy what belongs to a part to where ``target`` is to be, which is its own file.
+
+    Raises:
+        DatasetError: something of it is damaged.
+
+    """
+    for name, what in damaged_files(source, part, form):
+        raise DatasetError(f"'{source / name}': {what}", help="make this part again")
+    if form == "tar":
+        write(target.with_suffix(".json"), (source / part.file).with_suffix(".json").read_bytes())
+        return
+    for image in _index(source / part.file)["images"]:
+        for name in image["files"]:
+            write(target.parent / name, (source / name).read_bytes())
+
+
+def join_indices(folder: Path, manifest: Manifest) -> None:
+    """Write one index of all images in a folder that belong to complete parts."""
+    if manifest.images is None or not manifest.parts:
+        return
+    indices = [_index(folder / part.file) for part in manifest.parts]
+    categories = {item["name"]: item["id"] for item in indices[0]["categories"]}
+    images = [image for index in indices for image in index["images"]]
+    annotations = [item for index in indices for item in index["annotations"]]
+    write(folder / INDEX, index_of(manifest.images["camera"], categories, images, annotations))
