@@ -59,6 +59,7 @@ def load(
     scenario: str | None = None,
     mode2D: bool = False,
     prune: bool = True,
+    extra_params: bool = False,
 ) -> Scenario:
     """The scenario of a file.
 
@@ -69,6 +70,7 @@ def load(
         scenario: which scenario of the file, where it defines several.
         mode2D: compile in the 2D compatibility mode.
         prune: narrow the distributions to what the requirements allow, which changes nothing but speed.
+        extra_params: accept values of parameters that the program does not have; its scenes have them, too.
 
     Raises:
         ScenicSyntaxError: if the program cannot be compiled.
@@ -78,7 +80,7 @@ def load(
     """
     file = Path(path)
     source = Source(sys.stdin.read(), "<stdin>") if str(path) == "-" else read_source(file)
-    options = _Options(dict(params or {}), model, scenario, mode2D, prune, strict_params=True)
+    options = _Options(dict(params or {}), model, scenario, mode2D, prune, strict_params=not extra_params)
     return _scenario(source.text, source.filename, options)
 
 
@@ -212,6 +214,8 @@ class _Options:
         given: dict[str, Any] = {}
         if self.params:
             given["params"] = dict(self.params)
+            if not self.strict_params:
+                given["extra_params"] = True
         if self.model is not None:
             given["model"] = self.model
         if self.scenario is not None:

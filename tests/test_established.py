@@ -517,7 +517,7 @@ def test_small_helpers_of_the_established_modules() -> None:
         scenicToJSON(3)
     stream = io.StringIO()
     dumpAsScenicCode([1, "b", Vector(1, 2, 3)], stream)
-    assert stream.getvalue() == "[1, 'b', (1.0, 2.0, 3.0)]"
+    assert stream.getvalue() == "[1, 'b', Vector(1.0, 2.0, 3.0)]"
     stream = io.StringIO()
     dumpAsScenicCode(fractions.Fraction(1, 2), stream)  # has no literal
     assert stream.getvalue() == "Fraction(1, 2)"

@@ -3,6 +3,7 @@
 It names no command: whoever has a habit of it, or a script, gets what was meant, and one line that says how it is written here.
 """
 
+import json
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Final
@@ -13,8 +14,8 @@ _FLAGS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
     {
         "--2d": ("--2d",),
         "--no-pruning": ("--no-prune",),
-        "--show-params": (),
-        "--show-records": (),
+        "--show-params": ("--show-params",),
+        "--show-records": ("--show-records",),
         "--axes": (),
         "--pdb-on-reject": (),
     }
@@ -64,6 +65,7 @@ def translated(arguments: Sequence[str], commands: Sequence[str]) -> list[str] |
     options: list[str] = []
     command = "sample"
     simulate, steps = False, None
+    more: list[str] = []
     while rest:
         item = rest.pop(0)
         name, joined, value = item.partition("=")
@@ -75,7 +77,8 @@ def translated(arguments: Sequence[str], commands: Sequence[str]) -> list[str] |
         elif item == "--time" and rest:
             steps = rest.pop(0)
         elif item in ("-p", "--param") and len(rest) > 1:
-            options += ["-p", f"{rest.pop(0)}={rest.pop(0)}"]
+            options += ["-p", f"{rest.pop(0)}={_whole(rest.pop(0))}"]
+            more = ["--extra-params"]  # the other command line takes any parameter
         elif item in _FLAGS:
             options += _FLAGS[item]
         elif item in _SHOWS:
@@ -100,8 +103,14 @@ def translated(arguments: Sequence[str], commands: Sequence[str]) -> list[str] |
         if "simulate" not in commands:
             return None
         options = [item for item in options if item != "--no-prune"]  # simulations know no such option
-        return ["simulate", *files, *options, *(() if steps is None else ("--time", steps))]
-    return ["sample", *files, *options]
+        return ["simulate", *files, *options, *more, *(() if steps is None else ("--time", steps))]
+    options = [item for item in options if item != "--show-records"]  # scenes have none
+    return ["sample", *files, *options, *more]
+
+
+def _whole(value: str) -> str:
+    """A parameter's value as it is written here: text in which a comma or quotation mark has no meaning is quoted."""
+    return json.dumps(value) if "," in value or value[:1] == '"' else value
 
 
 __all__ = ["GLOBAL", "translated"]

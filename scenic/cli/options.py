@@ -14,6 +14,7 @@ import click
 __all__ = [
     "count_option",
     "dask_option",
+    "extra_params_option",
     "first_option",
     "image_size_option",
     "jobs_option",
@@ -232,6 +233,13 @@ timestep_option = click.option(
     type=float,
     callback=seconds,
     help="Seconds in a step.  [default: the simulator's]",
+)
+
+
+extra_params_option = click.option(
+    "--extra-params",
+    is_flag=True,
+    help="Accept values for parameters that the program does not have; its scenes have them, too.",
 )
 
 

@@ -17,6 +17,7 @@ from scenic.cli import sinks
 from scenic.cli.options import (
     count_option,
     dask_option,
+    extra_params_option,
     first_option,
     image_size_option,
     jobs_option,
@@ -69,6 +70,7 @@ __all__ = ["sample"]
     help="For requirements that are hardly ever met: make N scenes together, whose law comes the closer to the program's the larger N is.",
 )
 @program_options
+@extra_params_option
 @click.option(
     "--no-prune", is_flag=True, help="Do not narrow the distributions first. The same scenes are as likely."
 )
@@ -145,6 +147,11 @@ __all__ = ["sample"]
     show_default=True,
 )
 @click.option(
+    "--show-params",
+    is_flag=True,
+    help="Print the parameters of each scene; on the error stream where the scenes are on the standard output.",
+)
+@click.option(
     "--profile",
     is_flag=True,
     help="Show where the time of sampling goes, by operation, line and requirement, in place of the scenes.",
@@ -163,6 +170,7 @@ def sample(
     scenario: str | None,
     model: str | None,
     mode_2d: bool,
+    extra_params: bool,
     no_prune: bool,
     max_attempts: int | None,
     time_limit: float | None,
@@ -179,6 +187,7 @@ def sample(
     image_size: tuple[int, int] | None,
     outlook: Mapping[str, float],
     frame: str,
+    show_params: bool,
     profile: bool,
 ) -> int:
     """Sample scenes from a program.
@@ -242,6 +251,8 @@ def sample(
         )
     if resume and (target == sinks.STANDARD_OUTPUT or (target is None and dataset is None)):
         raise click.UsageError("--resume needs a file or a data set to go on with: -o OUT.jsonl, -o FOLDER/")
+    if show_params and (jobs > 1 or dask is not None or dataset is not None or table is not None or profile):
+        raise click.UsageError("--show-params goes without -j, --dask, --profile, data sets and Parquet")
     if form is not None and dataset is None:
         raise click.UsageError("--format is for data sets: -o FOLDER/")
     if form is not None and (camera is None) != (form in ("parquet", "jsonl")):
@@ -278,7 +289,13 @@ def sample(
         "give it more time, or look for a loop without end at the top of the program",
     ):
         loaded = load(
-            path, params=parameters, model=model, scenario=scenario, mode2D=mode_2d, prune=not no_prune
+            path,
+            params=parameters,
+            model=model,
+            scenario=scenario,
+            mode2D=mode_2d,
+            prune=not no_prune,
+            extra_params=extra_params,
         )
     if profile:
         return _profiled(loaded, first, count, seed or 0, sobol, max_attempts, deadline)
@@ -351,6 +368,10 @@ def sample(
                 else:
                     for take in takers:
                         take(result)
+                    if show_params and shown is None:
+                        told = sys.stderr if target == sinks.STANDARD_OUTPUT else sys.stdout
+                        told.write(f"scene {result.k}:\n")
+                        told.writelines(f"  {name} = {value}\n" for name, value in result.params.items())
                     if shown is not None:
                         shown.show(result)
                     elif target is not None:

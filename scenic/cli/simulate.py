@@ -1,6 +1,7 @@
 """``scenic simulate``: simulations of a program, their trajectories, and what became of its requirements."""
 
 import faulthandler
+import json
 import secrets
 import sys
 from collections.abc import Mapping, Sequence
@@ -15,6 +16,7 @@ import click
 from scenic.cli.options import (
     count_option,
     dask_option,
+    extra_params_option,
     first_option,
     jobs_option,
     program_argument,
@@ -84,6 +86,9 @@ __all__ = ["simulate"]
     help="Seconds that the program may run within one step.  [default: 10]",
 )
 @swept_program_options
+@extra_params_option
+@click.option("--show-params", is_flag=True, help="Print the parameters of each simulation's scene.")
+@click.option("--show-records", is_flag=True, help="Print what each simulation records.")
 @jobs_option("Processes.")
 @dask_option("Simulate")
 @click.option(
@@ -125,6 +130,9 @@ def simulate(
     scenario: str | None,
     model: str | None,
     mode_2d: bool,
+    extra_params: bool,
+    show_params: bool,
+    show_records: bool,
     jobs: int,
     dask: str | None,
     output: Path | None,
@@ -169,7 +177,14 @@ def simulate(
     batches: list[tuple[Setting, Simulations]] = []
     for parameters, different in settings_of(swept):
         setting = Setting({}, different)
-        loaded = load(Path(file), params=parameters, model=model, scenario=scenario, mode2D=mode_2d)
+        loaded = load(
+            Path(file),
+            params=parameters,
+            model=model,
+            scenario=scenario,
+            mode2D=mode_2d,
+            extra_params=extra_params,
+        )
         place = output if output is None or not different else output / setting.label.replace("/", "_")
         if place is not None:
             make_folder(place)
@@ -206,6 +221,10 @@ def simulate(
                     # Simulations are told in order, each as soon as those before it are.
                     while due is not None and due in setting.rows:
                         code = max(code, _show(setting.rows[due]))
+                        if show_params:
+                            _show_params(setting.rows[due])
+                        if show_records:
+                            _show_records(setting.rows[due])
                         due = next(waiting, None)
                     sys.stdout.flush()
     settings = [setting for setting, _ in batches]
@@ -273,3 +292,26 @@ def _show(row: "SimulationRow") -> int:
         by = f", robustness {margin:.4g}" if isinstance(margin, float) else ""
         print(f"  {item['label']}: {verdict}{by}")
     return CLEAN
+
+
+def _show_params(row: "SimulationRow") -> None:
+    """Print the parameters of a simulation's scene."""
+    for name, value in ({} if row.about is None else row.about.get("params", {})).items():
+        print(f"  parameter {name} = {json.dumps(value)}")
+
+
+def _show_records(row: "SimulationRow") -> None:
+    """Print what a simulation has recorded, series step by step."""
+    for name, value in ({} if row.about is None else row.about["records"]).items():
+        if not _is_series(value):
+            print(f"  record {name} = {json.dumps(value)}")
+            continue
+        print(f"  record {name}:")
+        for step, item in value:
+            print(f"    {step}: {json.dumps(item)}")
+
+
+def _is_series(value: Any) -> bool:
+    """Whether a recorded value is a list of steps with what was recorded then."""
+    pairs = isinstance(value, list) and all(isinstance(item, list) and len(item) == 2 for item in value)
+    return pairs and all(isinstance(step, int) for step, _ in value)

@@ -54,6 +54,7 @@ def course_document(course: Course, *, k: int, tries: int) -> dict[str, Any]:
         "steps": course.currentTime,
         "ended": result.terminationType.name,
         "reason": result.terminationReason,
+        "params": {str(name): plain(value, numbers) for name, value in course.scene.params.items()},
         "objects": [
             {
                 "class": type(thing).__name__,

@@ -36,7 +36,7 @@ from scenic.simulators.results import (
     TerminationType,
     kept,
 )
-from scenic.simulators.watching import Watch
+from scenic.simulators.watching import Watch, patience
 
 __all__ = ["OnState", "Poses", "Simulation"]
 
@@ -69,7 +69,8 @@ class Simulation(ABC):
         source: what random numbers come from, given the source that hashes with the key; that one if ``None``.
         robustness: whether to compute by how much requirements hold.
         keep_violations: let a simulation in which a requirement is violated run to its end, rather than reject it.
-        stuck_after: seconds that the program's code may run in one step before `StuckBehaviorWarning` names its line.
+        stuck_after: seconds that the program's code may run in one step before `StuckBehaviorWarning` names its line; 0 for ever,
+            `patience` by default.
         stuck_is_error: raise `StuckBehaviorError` then.
         keep_course: keep all states and actions, and what is recorded to files; if not, memory does not grow with the steps but
             by other records, and the result holds the last state and the last actions.
@@ -106,7 +107,7 @@ class Simulation(ABC):
         source: Sourcing | None = None,
         robustness: bool = False,
         keep_violations: bool = False,
-        stuck_after: float = 10.0,
+        stuck_after: float | None = None,
         stuck_is_error: bool = False,
         keep_course: bool = True,
         keep_poses: bool = False,
@@ -165,7 +166,9 @@ class Simulation(ABC):
         )
         self._tape.draws = self._run.draws
         self._isolated = _Isolated(self._run)
-        self._watch = Watch(stuck_after, self._where_now, is_error=stuck_is_error)
+        self._watch = Watch(
+            patience() if stuck_after is None else stuck_after, self._where_now, is_error=stuck_is_error
+        )
         self._loop = self._whole()
         if not deferred:
             self.runToEnd()

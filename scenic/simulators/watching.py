@@ -6,11 +6,19 @@ import threading
 import warnings
 from collections.abc import Callable
 from types import FrameType
-from typing import Any
+from typing import Any, Final
 
 from scenic.language.errors import StuckBehaviorError, StuckBehaviorWarning
 
-__all__ = ["Watch"]
+__all__ = ["STUCK_AFTER", "Watch", "patience"]
+
+STUCK_AFTER: Final = 10.0
+"""Seconds that code of a program may run in one step before that is worth a warning."""
+
+
+def patience() -> float:
+    """The seconds in force: those that a script has set as ``scenic.core.dynamics.stuckBehaviorWarningTimeout``, else `STUCK_AFTER`."""
+    return float(getattr(sys.modules.get("scenic.core.dynamics"), "stuckBehaviorWarningTimeout", STUCK_AFTER))
 
 
 class Watch:

@@ -1050,6 +1050,15 @@ def test_code_that_spins_is_named() -> None:
         simulate(SPINNING.replace("4_000_000", "10**12"), 2, stuck_after=0.05, stuck_is_error=True)
 
 
+def test_scripts_set_how_long_code_may_spin(monkeypatch: pytest.MonkeyPatch) -> None:
+    import scenic.core.dynamics
+
+    assert scenic.core.dynamics.stuckBehaviorWarningTimeout == 10
+    monkeypatch.setattr(scenic.core.dynamics, "stuckBehaviorWarningTimeout", 0.05)
+    with pytest.warns(StuckBehaviorWarning, match=r"has run for 0.05 s"):
+        simulate(SPINNING, 2)
+
+
 def test_code_that_spins_while_robustness_is_measured_is_no_margin() -> None:
     """A condition is computed once for its verdict, and again for its margin."""
     text = (
