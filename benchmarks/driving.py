@@ -33,9 +33,18 @@ REPLACED: Final[Mapping[str, tuple[tuple[str, str], ...]]] = MappingProxyType(
     {
         # The other one reads newest blueprint catalogues that have neither bicycles nor motorcycles.
         "carla_bicycle": (("new Bicycle", "new Car"),),
-        "queue": (("hasTrafficLights", "isSignalized"),),
-        # In its filters no random value is drawn, so that two lanes are never one.
-        "right_turn": (("filter(lambda m: m.endLane is turn.endLane, turn.conflictingManeuvers)", "turn.conflictingManeuvers"),),
+        # It finds no signals in this map.
+        "queue": (("require crossing.hasTrafficLights", ""),),
+        # In its filters no random value is drawn, so that two lanes are never one; and ways that meet in their ends do not conflict.
+        "right_turn": (
+            (
+                "other_turn = Uniform(*filter(lambda m: m.endLane is turn.endLane, turn.conflictingManeuvers))",
+                (
+                    "other_turn = Uniform(*filter(lambda m: m.type is ManeuverType.STRAIGHT, crossing.maneuvers))\n"
+                    "require other_turn.endLane is turn.endLane"
+                ),
+            ),
+        ),
         "trajectory": (
             ("way = Trajectory([(0, -8.75), (60, -8.75), (110, -5.25), (380, -5.25)], speeds=[12, 12, 15, 15])", ""),
             ("    with lateralController PurePursuitLateralController(lookahead=6),\n", ""),

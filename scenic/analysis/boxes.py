@@ -1,5 +1,6 @@
 """Boxes of the unit cube, many at a time."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -22,7 +23,22 @@ class Boxes:
 
     def volume(self, axes: NDArray[Any]) -> float:
         """The volume of all of them together, along some axes only."""
-        return float((self.upper - self.lower)[:, axes].prod(axis=1).sum())
+        return float(self.volumes(axes).sum())
+
+    def taken(self, rows: NDArray[np.intp]) -> "Boxes":
+        """Some of the boxes."""
+        return Boxes(self.lower[rows], self.upper[rows])
+
+    def volumes(self, axes: NDArray[Any]) -> Floats:
+        """The volume of each, along some axes only, ``(m,)``."""
+        return np.asarray((self.upper - self.lower)[:, axes].prod(axis=1))
+
+    @staticmethod
+    def joined(parts: Sequence["Boxes"]) -> "Boxes":
+        """All boxes of several sets."""
+        return Boxes(
+            np.concatenate([part.lower for part in parts]), np.concatenate([part.upper for part in parts])
+        )
 
     def divided(self, axes: NDArray[np.intp], parts: int = 2) -> "Boxes":
         """Each box cut into equal parts along an axis of its own, ``axes`` ``(m,)``; all first parts come first."""

@@ -215,10 +215,15 @@ class _Network:
         for node in self.inner:
             cuts = None if node.operation.cuts is None else node.operation.cuts(node.payload, node.operands)
             if cuts is not None:
-                self._cuts[self.axes[node.operands[0]]] = cuts
+                axis = next(operand for operand in node.operands if operand.is_axis)
+                self._cuts[self.axes[axis]] = cuts
 
     def contract(self, boxes: Boxes, first: int = FIRST_ROUNDS) -> Boxes:
         """The boxes narrowed, in more than ``first`` passes at least; those that hold no solution are left out."""
+        return self._narrow(boxes, first)[0]
+
+    def _narrow(self, boxes: Boxes, first: int = 0) -> tuple[Boxes, NDArray[np.intp]]:
+        """The boxes narrowed as `contract` does, and which of them are left."""
         rounds = max(FIRST_ROUNDS, min(ROUNDS, self._visits // max(1, len(self.inner))))
         state = _State(self, boxes)
         for number in range(rounds):
@@ -232,7 +237,8 @@ class _Network:
                 break
             if number >= first and not _moved(before, boxes, state.alive):
                 break
-        return Boxes(boxes.lower[state.alive], boxes.upper[state.alive])
+        alive = np.flatnonzero(state.alive)
+        return boxes.taken(alive), alive
 
     def _once(self, boxes: Boxes) -> Boxes:
         """The boxes narrowed as long as that helps."""
@@ -246,7 +252,7 @@ class _Network:
         are_few = self._combinations() <= LARGEST_ENUMERATION
         share = 1.0 if are_few else share_that_may_hold(self._once, boxes, axes)
         if share < RARE:
-            return pave_by_trial(self._once, boxes, axes, share, self._cuts, lambda: self._visits <= 0)
+            return pave_by_trial(self._narrow, boxes, axes, share, self._cuts, lambda: self._visits <= 0)
         volume = boxes.volume(axes)
         patience, largest = PATIENCE, LARGEST_PAVING
         if are_few:

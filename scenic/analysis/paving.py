@@ -17,6 +17,9 @@ from scenic.graph.bounds import Floats
 Contract = Callable[[Boxes], Boxes]
 """Narrows boxes, and leaves out those that hold no solution."""
 
+Narrow = Callable[[Boxes], tuple[Boxes, NDArray[np.intp]]]
+"""The same, and which of the boxes are left."""
+
 RARE: Final = 0.25
 """Boxes are split by trial where fewer than this share of their points may meet the conditions."""
 
@@ -61,7 +64,7 @@ def share_that_may_hold(contract: Contract, hull: Boxes, axes: NDArray[np.intp])
 
 
 def pave_by_trial(
-    contract: Contract,
+    narrow: Narrow,
     hull: Boxes,
     axes: NDArray[np.intp],
     share: float,
@@ -71,7 +74,7 @@ def pave_by_trial(
     """Boxes that hold all solutions of a box.
 
     Args:
-        contract: narrows boxes.
+        narrow: narrows boxes.
         hull: the box.
         axes: those below the conditions.
         share: how many of its points may meet the conditions.
@@ -79,6 +82,10 @@ def pave_by_trial(
         is_spent: tells when no more work may be done.
 
     """
+
+    def contract(some: Boxes) -> Boxes:
+        return narrow(some)[0]
+
     boxes, vain = hull, 0
     split = axes.tolist()
     for axis, places in cuts.items():
@@ -104,7 +111,7 @@ def pave_by_trial(
                     useful = np.array(sorted({axis for way in losing for axis, _ in way}), dtype=np.intp)
                     break
         if found is None:
-            found = contract(boxes.divided(_widest(boxes, useful)))
+            found = _refined(narrow, boxes, useful, axes)
             vain = vain + 1 if len(boxes) > TRIED and found.volume(axes) > (1 - LOSS) * volume else 0
         boxes = found
     return boxes
@@ -128,6 +135,29 @@ def _cut_along(boxes: Boxes, way: Way) -> Boxes:
     for axis, parts in way:
         boxes = boxes.divided(np.full(len(boxes), axis), parts)
     return boxes
+
+
+def _refined(narrow: Narrow, boxes: Boxes, axes: NDArray[np.intp], every: NDArray[np.intp]) -> Boxes:
+    """Each box in the halves that lose most, along one of some axes; boxes that lose nothing remain as they are.
+
+    Where they hardly lose anything together, all are halved along their widest axes.
+    """
+    volume = boxes.volumes(every)
+    halves = [narrow(boxes.divided(np.full(len(boxes), axis))) for axis in axes]
+    parents = [rows % len(boxes) for _, rows in halves]
+    left = np.stack(
+        [
+            np.bincount(rows, weights=parts.volumes(every), minlength=len(boxes))
+            for (parts, _), rows in zip(halves, parents, strict=True)
+        ]
+    )
+    chosen = np.where(left.min(axis=0) < (1 - LOSS) * volume, left.argmin(axis=0), -1)
+    if np.minimum(left.min(axis=0), volume).sum() > (1 - LOSS) * volume.sum():
+        return narrow(boxes.divided(_widest(boxes, axes)))[0]
+    found = [boxes.taken(np.flatnonzero(chosen < 0))]
+    for number, ((parts, _), rows) in enumerate(zip(halves, parents, strict=True)):
+        found.append(parts.taken(np.flatnonzero(chosen[rows] == number)))
+    return Boxes.joined(found)
 
 
 def _widest(boxes: Boxes, axes: NDArray[np.intp]) -> NDArray[np.intp]:

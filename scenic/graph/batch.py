@@ -393,6 +393,11 @@ class Batch:
         error: Exception | None = None
         blank = _blank(step.kind)
         plain = [decode(kind, column) for kind, column in zip(call.kinds, columns, strict=True)]
+        if bad is None and step.kind.is_boxed and step.operation.together is not None:
+            spread = (items if len(items) == lanes else items * lanes for items in plain)
+            found = step.operation.together(*spread)
+            if found is not None:
+                return boxed(found)
         for lane in range(lanes):
             if bad is not None and bad[lane] != OK:
                 rows.append(blank)

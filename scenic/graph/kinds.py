@@ -76,7 +76,4 @@ class Codec(Protocol):
 
 def boxed(values: list[Any]) -> Column:
     """A column of Python objects, whatever they are (NumPy would look into sequences)."""
-    column = np.empty(len(values), dtype=object)
-    for lane, value in enumerate(values):
-        column[lane] = value
-    return column
+    return np.fromiter(values, dtype=object, count=len(values))

@@ -204,7 +204,8 @@ class Operation:
     undeclared is an internal error. An operation that ``stacks`` evaluates the columns of several alike nodes in one
     call: it is elementwise over all leading dimensions. A ``partial`` one has readings of bounds that take operands of which
     nothing is known, and may look at some operands only: ``looks_at`` says which, from the payload. ``rewrite`` simplifies a node
-    before it is made. ``calls_code`` says that evaluation calls the program's own Python code, lane by lane. ``missing`` says in a user's words what there is none of where a lane has no value.
+    before it is made. ``together`` is ``python`` over the lists of all lanes' values, or ``None`` where it leaves them to
+    ``python``. ``calls_code`` says that evaluation calls the program's own Python code, lane by lane. ``missing`` says in a user's words what there is none of where a lane has no value.
     """
 
     name: str
@@ -212,6 +213,7 @@ class Operation:
     batch: BatchReading
     doc: str
     python: Callable[..., Any] | None = None
+    together: Callable[..., list[Any] | None] | None = None
     scalar: Callable[..., Any] | None = None
     bounds: BoundsReading | None = None
     inverse: InverseReading | None = None

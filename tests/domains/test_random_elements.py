@@ -2,11 +2,15 @@
 
 from collections import Counter
 
+import numpy as np
 import pytest
 
 import scenic
+from scenic.graph.bounds import Bounds
+from scenic.graph.operation import Call
 from scenic.language.errors import RejectionException
 from scenic.runtime.python import opaque
+from scenic.runtime.values.access import _PLACE_IN_ALL
 from tests.maps import cross
 
 ROADS = """
@@ -110,3 +114,28 @@ turn = Uniform(*none)""",
 def test_a_filter_that_leaves_nothing_says_so(program, text, counts):
     with pytest.raises(scenic.InvalidScenarioError, match=counts):
         scenic.scenarioFromString(program.split("inter =")[0] + text + "\nego = new Car\n", mode2D=True)
+
+
+def test_bounds_of_places_in_lists_hold_them():
+    lengths = (3, 0, 1, 7)
+    random = np.random.default_rng(1)
+    index, draw = np.sort(random.integers(0, 4, (2, 500)), axis=0), np.sort(random.random((2, 500)), axis=0)
+    bounds = _PLACE_IN_ALL.bounds(lengths, Bounds(*index.astype(float)), Bounds(*draw))
+    for _ in range(20):
+        shares = random.random((2, 500))
+        mine = np.floor(index[0] + shares[0] * (index[1] - index[0] + 1)).clip(*index).astype(int)
+        number = draw[0] + shares[1] * (draw[1] - draw[0])
+        call = Call((500,), lengths, [None, None])
+        place = _PLACE_IN_ALL.batch(call, mine, number)
+        lists, numbers = _PLACE_IN_ALL.inverse(
+            lengths,
+            Bounds(place.astype(float), place.astype(float)),
+            Bounds(*index.astype(float)),
+            Bounds(*draw),
+        )
+        there = np.array(lengths)[mine] > 0
+        assert ((bounds.lower <= place) & (place <= bounds.upper))[there].all()
+        assert ((lists.lower <= mine) & (mine <= lists.upper))[there].all()
+        assert ((numbers.lower <= number) & (number <= numbers.upper))[there].all()
+    known = (index[0] == 3) & (index[1] == 3)
+    assert (bounds.upper - bounds.lower)[known].min() < 6

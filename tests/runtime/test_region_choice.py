@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from runtime.programs import draws, failure, scenario, thing
+from scenic.graph.bounds import Bounds
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.runtime.elements.shapes import BoxShape, ConeShape, CylinderShape
 from scenic.runtime.geometry import primitives
@@ -14,6 +15,7 @@ from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, exactly_contains
+from scenic.runtime.regions.knowledge import distance_bounds
 from scenic.runtime.regions.lines import PathRegion
 from scenic.runtime.regions.planar import CircularRegion, RectangularRegion
 from scenic.runtime.regions.spaces import Workspace
@@ -405,3 +407,40 @@ def test_points_that_a_choice_of_regions_draws_are_drawn_in_each_sample() -> Non
     assert 15 < sum(point.x < 2 for point in points) < 45
     assert 60 < sum(scene.attempts for scene in scenes) < 140
     assert [tuple(scene.params["x"]) for scene in found.sample(60, seed=4)] == list(map(tuple, points))
+
+
+def test_bounds_of_a_choice_hold_what_its_boxes_draw() -> None:
+    random = np.random.default_rng(5)
+    lines = [PathRegion(np.cumsum(random.normal(size=(6, 3)), axis=0).tolist()) for _ in range(5)]
+    choice = RegionChoice(0, lines)
+    index = np.sort(random.integers(0, 5, (2, 300)), axis=0).astype(float)
+    number = np.sort(random.random((2, 300)), axis=0)
+    bounds = choice.drawn_extent([Bounds(*number)], Bounds(*index))
+    assert bounds is not None
+    for _ in range(30):
+        shares = random.random((2, 300))
+        drawn = np.floor(index[0] + shares[0] * (index[1] - index[0] + 1)).clip(*index).astype(int)
+        ways = number[0] + shares[1] * (number[1] - number[0])
+        points, _ = choice.draw_points(ways[np.newaxis], np.zeros(300, dtype=np.uint64), drawn)
+        assert (bounds.lower - 1e-9 <= points).all()
+        assert (points <= bounds.upper + 1e-9).all()
+    # Where the index is known, the box is that of a part of its line; else that of the lines which it may draw.
+    known = np.flatnonzero(index[0] == index[1])
+    lower, upper = lines[int(index[0, known[0]])].box()
+    assert (bounds.upper - bounds.lower)[known[0]].sum() < (upper - lower).sum()
+    whole = choice.extent(Bounds(np.zeros(1), np.full(1, 4.0)))
+    assert whole is not None
+    assert np.allclose(whole.upper, np.max([line.box()[1] for line in lines], axis=0))
+
+
+def test_distances_are_bounded_where_the_choice_is_known() -> None:
+    lines = [PathRegion([(0, y, 0), (100, y, 0)]) for y in (0, 50)]
+    choice = RegionChoice(0, lines)
+    place = Bounds(np.array([[1.0, 9.0, 0.0]] * 3), np.array([[3.0, 11.0, 0.0]] * 3))
+    found = distance_bounds(choice, place, Bounds(np.array([0.0, 1.0, 0.0]), np.array([0.0, 1.0, 1.0])))
+    assert found is not None
+    assert found.lower[0] > 8
+    assert found.upper[0] < 12
+    assert found.lower[1] > 38
+    assert found.upper[1] < 42
+    assert found.upper[2] == np.inf

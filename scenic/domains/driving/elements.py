@@ -255,8 +255,12 @@ class Segments:
         return np.asarray(self.heading[self.nearest(places)])
 
 
-def _polyline(line: Floats) -> PolylineRegion:
-    return PolylineRegion([(float(x), float(y), 0.0) for x, y in line])
+class ElementLine(Frozen, PolylineRegion):
+    """A line of an element, which never changes."""
+
+
+def _polyline(line: Floats) -> ElementLine:
+    return ElementLine([(float(x), float(y), 0.0) for x, y in line])
 
 
 class LaneSection(LinearElement):

@@ -77,6 +77,21 @@ class Segments:
         part = np.clip((ways - before) / (sums[chosen] - before), 0, 1)[:, np.newaxis]
         return np.asarray(self.starts[chosen] * (1 - part) + self.ends[chosen] * part)
 
+    def boxes_between(self, first: Floats, last: Floats) -> tuple[Floats, Floats]:
+        """The corners ``(m, 3)`` of boxes around the parts of the line between lengths ``(m,)`` along it."""
+        ends = self.at(first), self.at(last)
+        lower, upper = np.minimum(*ends), np.maximum(*ends)
+        runs = np.stack([self.number_at(first), self.number_at(last)], axis=1)
+        several = np.flatnonzero(runs[:, 0] < runs[:, 1])
+        if len(several):
+            # Between a segment and the next one lie the end of the first and the start of the other.
+            after = np.concatenate([self.starts[1:], self.ends[-1:]])
+            places = runs[several].ravel()
+            for corner, extreme in ((lower, np.minimum), (upper, np.maximum)):
+                passed = extreme.reduceat(extreme(self.ends, after), places)[::2]
+                corner[several] = extreme(corner[several], passed)
+        return lower, upper
+
     def nearest(self, points: Floats) -> tuple[Floats, Indices, Floats]:
         """For points ``(n, 3)``: distance ``(n,)``, segment ``(n,)`` and place ``(n, 3)`` of the nearest point of the line.
 

@@ -10,6 +10,8 @@ from graphlib import TopologicalSorter
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
 from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError, ScenicValueError
 from scenic.language.spans import Span
@@ -257,15 +259,22 @@ def _truth(name: str, value: Any) -> Any:
     return operate("truth", value)
 
 
-def _per_drawn(normalise: Callable[[str, Any], Any], kind: Kind = Kind.OTHER) -> Callable[[str, Any], Any]:
-    """Normalises each option of a random choice, and what has no kind of its own when it is drawn."""
+def _per_drawn(
+    normalise: Callable[[str, Any], Any],
+    kind: Kind = Kind.OTHER,
+    together: Callable[[list[Any]], list[Any] | None] | None = None,
+) -> Callable[[str, Any], Any]:
+    """Normalises each option of a random choice, and what has no kind of its own when it is drawn.
+
+    ``together`` normalises a list of drawn values, or gives ``None`` where they have to be looked at one by one.
+    """
 
     def applied(name: str, value: Any) -> Any:
         if not (isinstance(value, Random) and value.node.kind.is_boxed):
             return normalise(name, value)
         if options_of(value):
             return per_option(value, lambda option: applied(name, option))
-        return when_drawn(value, kind, lambda drawn: normalise(name, drawn))
+        return when_drawn(value, kind, lambda drawn: normalise(name, drawn), together)
 
     return applied
 
@@ -342,6 +351,18 @@ def _colour(_name: str, value: Any) -> Any:
     return parts
 
 
+def _colours(values: list[Any]) -> list[Any] | None:
+    """Colours as `_colour` gives them, where all of them are tuples of three or four numbers."""
+    if not all(isinstance(value, tuple) for value in values):
+        return None
+    try:
+        parts = np.array(values)
+    except ValueError:  # of different lengths
+        return None
+    fine = parts.dtype == np.float64 and parts.ndim == 2 and parts.shape[1] in (3, 4)
+    return list(map(tuple, values)) if fine and ((parts >= 0) & (parts <= 1)).all() else None
+
+
 def update(instance: Any, changes: Mapping[str, Any]) -> None:
     """Give properties new values, and those that always follow from others the values that follow now."""
     values = instance.__dict__
@@ -375,7 +396,7 @@ NORMAL: Mapping[str, Callable[[str, Any], Any]] = MappingProxyType(
         "viewAngles": _per_drawn(_view_angles),
         "viewRayDensity": _density,
         "viewRayCount": _per_drawn(_ray_count),
-        "color": _per_drawn(_colour),
+        "color": _per_drawn(_colour, together=_colours),
         "shape": _per_drawn(_shape),
         "regionContainedIn": _container,
     }

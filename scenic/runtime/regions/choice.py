@@ -120,10 +120,56 @@ class RegionChoice(VaryingRegion):
         return reduce(np.minimum, lower), reduce(np.maximum, upper)
 
     def extent(self, *parameters: Bounds | None) -> Bounds | None:
-        return hull_of([option.extent(*mine) for option, mine in self._each(parameters)])
+        return self._hull(parameters, [option.extent(*mine) for option, mine in self._each(parameters)])
 
     def container_extent(self, *parameters: Bounds | None) -> Bounds | None:
-        return hull_of([option.container_extent(*mine) for option, mine in self._each(parameters)])
+        found = [option.container_extent(*mine) for option, mine in self._each(parameters)]
+        return self._hull(parameters, found)
+
+    def drawn_extent(self, numbers: Sequence[Bounds], *parameters: Bounds | None) -> Bounds | None:
+        """As `extent`, but in boxes where the index is known, of the points that these numbers draw from its option."""
+        found = self.extent(*parameters)
+        index = parameters[0]
+        if found is None or index is None:
+            return found
+        lanes = max(len(index.lower), len(found.lower), *(len(part.lower) for part in numbers))
+        first, last = (np.broadcast_to(end, lanes) for end in (index.lower, index.upper))
+        lower, upper = (np.array(np.broadcast_to(end, (lanes, 3))) for end in (found.lower, found.upper))
+        for number, (option, mine) in enumerate(self._each(parameters)):
+            rows = np.flatnonzero((first == number) & (last == number))
+            if len(rows):
+                chosen = [_rows(part, rows) for part in numbers[: option.draws]]
+                box = option.drawn_extent(
+                    chosen, *(None if part is None else _rows(part, rows) for part in mine)
+                )
+                if box is not None:
+                    lower[rows], upper[rows] = box.lower, box.upper
+        return Bounds(lower, upper)
+
+    @staticmethod
+    def _hull(parameters: Sequence[Bounds | None], boxes: Sequence[Bounds | None]) -> Bounds | None:
+        """Bounds ``(m | 1, 3)`` of the options that the index may draw, from those of each; ``None`` where one is not known."""
+        whole, index = hull_of(boxes), parameters[0]
+        known = [box for box in boxes if box is not None and len(box.lower) == 1]
+        if whole is None or index is None or len(known) < len(boxes):
+            return whole
+        last = len(boxes) - 1
+        runs = np.stack([np.clip(end, 0, last) for end in (index.lower, index.upper + 1)], axis=1)
+        runs[:, 1] = np.where(index.upper < last, runs[:, 1], last + 1)
+        lower, upper = (
+            np.concatenate([end, end[-1:]])
+            for end in (
+                np.concatenate([box.lower for box in known]),
+                np.concatenate([box.upper for box in known]),
+            )
+        )
+        places = runs.astype(np.intp).ravel()
+        return Bounds(np.minimum.reduceat(lower, places)[::2], np.maximum.reduceat(upper, places)[::2])
+
+
+def _rows(bounds: Bounds, rows: NDArray[np.intp]) -> Bounds:
+    """Bounds of some boxes."""
+    return bounds if len(bounds.lower) == 1 else Bounds(bounds.lower[rows], bounds.upper[rows])
 
 
 def _landing(option: Region, point: Any, direction: Any) -> tuple[Any, Any]:

@@ -99,15 +99,22 @@ def distance_bounds(region: "Region", point: Bounds | None, *parameters: Bounds 
         return None
     least = np.zeros(1) if extent is None else np.maximum(separation(point, extent), 0.0)
     found = Bounds(least, np.full_like(least, np.inf))
-    columns = fixed(parameters)
+    centre, radius, known = _ball(point)
+    rows, columns = fixed_rows(parameters, len(centre))
     if columns is None:
         return found
-    centre, radius, known = _ball(point)
+    # Asked as often as there are places or regions, and only where both are known.
+    boxes = max(len(centre), len(rows))
+    known, rows = np.broadcast_to(known, boxes), np.broadcast_to(rows, boxes)
+    asked = np.flatnonzero(known & rows)
+    if not len(asked):
+        return found
+    distances = np.zeros(boxes)
     try:
-        distances = region.distances(centre, *columns)
+        distances[asked] = region.distances(_some(centre, asked), *(_some(part, asked) for part in columns))
     except UnsupportedError:
         return found
-    known &= np.isfinite(distances)
+    known = known & rows & np.isfinite(distances)
     margin = np.where(known, radius + SLACK + 1e-9 * np.abs(distances), np.inf)
     return found.meet(
         Bounds(np.where(known, distances, 0.0) - margin, np.where(known, distances, 0.0) + margin)
@@ -215,3 +222,20 @@ def fixed(parameters: Sequence[Bounds | None]) -> list[Floats] | None:
             return None
         columns.append(bounds.lower[:1])
     return columns
+
+
+def fixed_rows(parameters: Sequence[Bounds | None], boxes: int) -> tuple[Mask, list[Floats] | None]:
+    """In which boxes ``(m | 1,)`` the parameters have one value each, and their columns there; no columns if in none of them."""
+    known: Mask = np.ones(1, dtype=np.bool_)
+    columns = []
+    for bounds in parameters:
+        if bounds is None:
+            return np.zeros(boxes, dtype=np.bool_), None
+        one = bounds.lower == bounds.upper
+        known = known & (one if one.ndim == 1 else one.all(axis=1))
+        columns.append(bounds.lower)
+    return known, columns if known.any() else None
+
+
+def _some(column: Floats, boxes: NDArray[np.intp]) -> Floats:
+    return column if len(column) == 1 else column[boxes]

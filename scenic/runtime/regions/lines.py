@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError, ScenicValueError
@@ -17,6 +18,7 @@ from scenic.runtime.instances.objects import OrientedPoint, oriented_point
 from scenic.runtime.program.context import here, warn
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.fields import RegionField, VectorField
+from scenic.runtime.regions.nearness import SLACK
 from scenic.runtime.values.values import Orientation, Vector, apply, is_random, to_vector
 
 TOUCH: Final = 1e-6
@@ -46,6 +48,12 @@ class LineRegion(Region):
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         return self.pieces.at(uniforms[0] * self.pieces.length), None
+
+    def drawn_extent(self, numbers: Sequence[Bounds], *parameters: Bounds | None) -> Bounds | None:
+        ways = numbers[0]
+        length = self.pieces.length
+        first = np.clip(ways.lower * length - SLACK, 0.0, length)
+        return Bounds(*self.pieces.boxes_between(first, np.clip(ways.upper * length + SLACK, 0.0, length)))
 
     def orientation_drawn(self, point: Any, numbers: Sequence[Any]) -> Any:
         if self._follows_segments:

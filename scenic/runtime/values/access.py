@@ -26,6 +26,12 @@ from scenic.runtime.values.random_values import Random, is_random
 
 NOTHING = "there is nothing to choose from"
 
+_ROUNDING: Final = 4e-16
+"""Relative error of a product."""
+
+_MOST_CUT: Final = 64
+"""Lists, and places between their elements, between which analysis cuts, at most."""
+
 
 def element_of(index: Node, lists: Sequence[Sequence[Node]], draw: Random) -> Any:
     """The element at the share ``draw`` of the length of one of several lists, which ``index`` draws.
@@ -281,13 +287,47 @@ def _place_in_all(call: Call, index: Any, draw: Any) -> Any:
     return np.minimum(place, counts.sum() - 1)
 
 
-def _bounds_in_all(payload: tuple[int, ...], index: Bounds, _draw: Bounds) -> Bounds:
-    ends = np.cumsum(payload)
-    last = len(payload) - 1
+def _lists_drawn(lengths: tuple[int, ...], index: Bounds) -> tuple[Any, Any, Any, Any, Any]:
+    """Lengths and starts of lists, the first and last ones that an index may mean, ``(m,)``, and whether that is one, not empty."""
+    counts = np.array(lengths)
+    last = len(lengths) - 1
     first = np.clip(index.lower, 0, last).astype(np.int64)
     final = np.clip(index.upper, 0, last).astype(np.int64)
-    lower = np.minimum((ends - payload)[first], ends[-1] - 1)
-    return Bounds(lower.astype(np.float64), np.maximum(lower, ends[final] - 1).astype(np.float64))
+    return counts, np.cumsum(counts) - counts, first, final, (first == final) & (counts[first] > 0)
+
+
+def _bounds_in_all(lengths: tuple[int, ...], index: Bounds, draw: Bounds) -> Bounds:
+    counts, starts, first, final, one = _lists_drawn(lengths, index)
+    most = counts.sum() - 1
+    lower = np.minimum(starts[first], most)
+    upper = np.maximum(lower, starts[final] + counts[final] - 1)
+    # Boxes that end at a break between places hold the place before it, up to rounding.
+    low = np.floor(draw.lower * counts[first] * (1 + _ROUNDING))
+    high = np.ceil(draw.upper * counts[first] * (1 - _ROUNDING)) - 1
+    low = np.clip(low, 0, np.maximum(counts[first] - 1, 0))
+    return Bounds(
+        np.where(one, starts[first] + low, lower).astype(np.float64),
+        np.where(one, starts[first] + np.clip(high, low, counts[first] - 1), upper).astype(np.float64),
+    )
+
+
+def _inverse_in_all(lengths: tuple[int, ...], result: Bounds, index: Bounds, _draw: Bounds) -> list[Bounds]:
+    """The lists that hold such places; where there is one, the numbers that draw them."""
+    counts, starts, first, _, one = _lists_drawn(lengths, index)
+    ends = np.cumsum(counts)
+    least = np.searchsorted(ends, np.ceil(result.lower), side="right")
+    most = np.searchsorted(starts, np.floor(result.upper), side="right") - 1
+    low = np.where(one, (result.lower - starts[first]) / np.maximum(counts[first], 1), -np.inf)
+    high = np.where(one, (result.upper + 1 - starts[first]) / np.maximum(counts[first], 1), np.inf)
+    slack = 1e-12
+    return [Bounds(least.astype(np.float64), most.astype(np.float64)), Bounds(low - slack, high + slack)]
+
+
+def _cuts_in_all(lengths: tuple[int, ...], operands: Sequence[Any]) -> Any:
+    if not operands[1].is_axis or len(lengths) > _MOST_CUT:
+        return None
+    places = {part / count for count in set(lengths) for part in range(1, count)}
+    return np.array(sorted(places)) if len(places) <= _MOST_CUT else None
 
 
 _PLACE_IN_ALL = Operation(
@@ -297,6 +337,8 @@ _PLACE_IN_ALL = Operation(
     "The place, among the elements of several lists one after the other, of that which a number of the unit interval draws from "
     "the list of an index. Payload the lengths; an empty list rejects the sample.",
     bounds=_bounds_in_all,
+    inverse=_inverse_in_all,
+    cuts=_cuts_in_all,
     rejects=lambda _operands, lengths: 0 in lengths,
 )
 

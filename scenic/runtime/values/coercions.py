@@ -132,14 +132,20 @@ def _coerce_later(value: Random, kind: Kind, function: Callable[..., Any], what:
     return when_drawn(value, kind, lambda sampled: function(sampled, what))
 
 
-def when_drawn(value: Random, kind: Kind, function: Callable[[Any], Any]) -> Any:
-    """What a function makes of the value that is drawn."""
+def when_drawn(
+    value: Random,
+    kind: Kind,
+    function: Callable[[Any], Any],
+    together: Callable[[list[Any]], list[Any] | None] | None = None,
+) -> Any:
+    """The result of a function of the value that is drawn; ``together`` is the function over a list (see `Operation`)."""
     operation = Operation(
         f"to {kind.value}",
         always(kind),
         by_lane,
         "A coercion that has to wait for the sampled value.",
         python=function,
+        together=together,
     )
     return apply(operation, value)
 

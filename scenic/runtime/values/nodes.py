@@ -104,6 +104,7 @@ TUPLE = Operation(
     by_lane,
     "A tuple with random parts.",
     python=lambda *parts: parts,
+    together=lambda *parts: list(zip(*parts, strict=True)),
 )
 
 
@@ -113,6 +114,7 @@ LIST = Operation(
     by_lane,
     "A list with random parts.",
     python=lambda *parts: list(parts),
+    together=lambda *parts: list(map(list, zip(*parts, strict=True))),
 )
 
 

@@ -98,3 +98,17 @@ def test_more_pairs_than_are_looked_at_together(monkeypatch: pytest.MonkeyPatch)
         monkeypatch.setattr(segments, "CHUNK", together)
         for found, known in zip(line.nearest(points), expected, strict=True):
             np.testing.assert_array_equal(found, known)
+
+
+def test_boxes_hold_the_parts_between_two_lengths() -> None:
+    random = np.random.default_rng(3)
+    chains = [random.normal(size=(count, 3)).tolist() for count in (5, 2, 9)]
+    line = Segments.of_chains(chains)
+    ends = np.sort(random.random((2, 400)), axis=0) * line.length
+    lower, upper = line.boxes_between(*ends)
+    for share in random.random(50):
+        points = line.at(ends[0] + share * (ends[1] - ends[0]))
+        assert (lower - 1e-12 <= points).all()
+        assert (points <= upper + 1e-12).all()
+    # Short parts have small boxes: no vertex is counted that a part does not pass.
+    assert (upper - lower).max(axis=1)[ends[1] - ends[0] < 1e-3].max(initial=0) < 1e-2

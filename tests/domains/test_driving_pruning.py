@@ -1,0 +1,58 @@
+"""What analysis narrows in driving programs: fewer candidates, and the same law as without."""
+
+import statistics
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.stats import chi2_contingency, ks_2samp
+
+import scenic
+from scenic.graph.domain import Domain
+from tests.maps import cross
+from tests.runtime.programs import FALSE_ALARM
+
+HEAD = "param map = MAP\nmodel scenic.domains.driving.model\n"
+TURNS = """
+crossing = Uniform(*network.intersections)
+turn = Uniform(*filter(lambda m: m.type is ManeuverType.LEFT_TURN, crossing.maneuvers))
+other = Uniform(*turn.conflictingManeuvers)
+ego = new Car on turn.startLane.centerline, with way turn.connectingLane.uid
+new Car on other.startLane.centerline, with way other.connectingLane.uid
+require 15 <= (distance from ego to crossing) <= 25
+"""
+FAR = """
+lane = Uniform(*filter(lambda l: l.maneuvers, network.lanes))
+ego = new Car on lane.centerline, with way lane.uid
+require (distance from ego to intersection) > 60
+"""
+PROGRAMS = {"turns": (TURNS, 5), "far from crossings": (FAR, 2)}
+"""Programs, and how many times fewer candidates a scene takes at least."""
+
+
+def rows(scenario: scenic.Scenario, count: int) -> tuple[float, np.ndarray[Any, Any], list[list[str]]]:
+    """Candidates a scene; places and headings; the words that objects carry."""
+    scenes = scenario.sample(count, seed=2)
+    numbers = [
+        [value for item in scene.objects for value in (*item.position, item.heading)] for scene in scenes
+    ]
+    words = [[item.way for item in scene.objects] for scene in scenes]
+    return statistics.fmean(scene.attempts for scene in scenes), np.array(numbers), words
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_the_law_is_the_same_with_fewer_candidates(tmp_path: Path, name: str) -> None:
+    text, gain = PROGRAMS[name]
+    (tmp_path / "cross.xodr").write_text(cross(arm=100, half=15))
+    program = HEAD.replace("MAP", repr(str(tmp_path / "cross.xodr"))) + text
+    narrowed = scenic.scenarioFromString(program, mode2D=True)
+    whole = narrowed.within(Domain.whole(narrowed.outline.graph.dimension))
+    (few, numbers, words), (many, others, other_words) = rows(narrowed, 300), rows(whole, 300)
+    assert gain * few < many
+    for mine, theirs in zip(np.round(numbers, 6).T, np.round(others, 6).T, strict=True):
+        assert ks_2samp(mine, theirs).pvalue > FALSE_ALARM
+    for mine, theirs in zip(zip(*words, strict=True), zip(*other_words, strict=True), strict=True):
+        kinds = sorted({*mine, *theirs})
+        counts = [[side.count(kind) for kind in kinds] for side in (mine, theirs)]
+        assert chi2_contingency(counts).pvalue > FALSE_ALARM
