@@ -2,7 +2,7 @@
 
 from typing import Final
 
-__all__ = ["FAMILIES", "LIBRARIES"]
+__all__ = ["FAMILIES", "LIBRARIES", "how_to_get"]
 
 FAMILIES: Final = frozenset(
     {"scenic.contracts", "scenic.core", "scenic.formats", "scenic.gym", "scenic.syntax"}
@@ -62,3 +62,17 @@ LIBRARIES: Final = frozenset(
     }
 )
 """The modules that worlds are commonly taken from."""
+
+
+def how_to_get(model: str) -> str:
+    """Advice on a world model that was not found."""
+    if model in LIBRARIES:
+        folders = model.rpartition(".")[0].replace(".", "/")
+        return (
+            f"this package does not have it: copy its files to `{folders}` beside the program, or take another model "
+            "(`--model scenic.simulators.newtonian.model`)"
+        )
+    package, dot, _ = model.partition(".")
+    if not dot:
+        return "a model is a .scenic file beside the program or on Python's path"
+    return f"install the package that `{package}` belongs to, or copy the model's files beside the program"

@@ -12,7 +12,7 @@ from scenic.compiler.scopes import BindingKind, Resolution, Stretch
 from scenic.compiler.traversal import position, walk
 from scenic.established import MODULES as ESTABLISHED
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
-from scenic.language.libraries import FAMILIES, LIBRARIES
+from scenic.language.libraries import FAMILIES, LIBRARIES, how_to_get
 from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.language.spelling import is_slip, nearest
@@ -179,6 +179,9 @@ class Imports:
             return
         severity, near = _judgement(found, node, level)
         place = self._place(node, name)
+        if isinstance(node, scenic.Model) and severity is not Severity.ERROR:
+            yield self._elsewhere(found, node, place)
+            return
         if severity is None or self._is_guarded(node):
             if self._verbose:
                 yield self._unknown(node, name, "it is not installed here")
@@ -198,6 +201,17 @@ class Imports:
             self._source.filename,
             help_,
             fix=fix,
+        )
+
+    def _elsewhere(self, found: Found, node: scenic.Model, place: Span) -> Diagnostic:
+        """A world model that may be installed where the program runs: its names are unknown, all else can be checked."""
+        return Diagnostic(
+            "SC406",
+            f"the world model `{node.name}` is not here, so that its names are not checked and nothing can be sampled",
+            place,
+            Severity.INFORMATION,
+            self._source.filename,
+            f"{self._searched(found, node, 0)}; {how_to_get(node.name)}",
         )
 
     def _searched(self, found: Found, node: Any, level: int) -> str:

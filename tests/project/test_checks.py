@@ -3,6 +3,7 @@
 Marks are those of `tests.compiler.checks.test_lint`. A folder is a project of its own.
 """
 
+import re
 from pathlib import Path
 
 import pytest
@@ -63,6 +64,50 @@ def test_a_missing_module_is_an_error_only_if_the_project_should_have_it() -> No
     }
     warnings = [message for message, severity in severities.items() if severity is Severity.WARNING]
     assert warnings == ["there is no module `some_library_that_nobody_has`"]
+
+
+ELSEWHERE = """model {}
+ego = new Car
+behavior Drive():
+    do FollowLaneBehavior(target_speed=fast)
+new Truck at 3, with behavior Drive
+"""
+
+
+@pytest.mark.parametrize(
+    ("model", "advice"),
+    [
+        (
+            "scenic.simulators.lgsvl.model",
+            r"; .*copy its files to `scenic/simulators/lgsvl` beside the program",
+        ),
+        (
+            "scenic.simulators.metadrive.model",
+            r"take another model \(`--model scenic\.simulators\.newtonian\.model`\)",
+        ),
+        ("scenic.simulators.airsim.model", r"there is no \.scenic file of that name"),
+        (
+            "world.mine",
+            r"beside the program or on Python's path; install the package that `world` belongs to",
+        ),
+    ],
+)
+def test_a_world_model_that_is_not_here_is_one_piece_of_information(
+    model: str, advice: str, tmp_path: Path
+) -> None:
+    found = findings(tmp_path / "main.scenic", ELSEWHERE.format(model), verbose=True)
+    assert [(item.code, item.severity) for item in found] == [
+        ("SC406", Severity.INFORMATION),
+        ("SC404", Severity.ERROR),
+    ]
+    assert re.search(advice, found[0].help or "")
+
+
+def test_a_world_model_may_lie_beside_the_program_under_its_established_name(tmp_path: Path) -> None:
+    write(tmp_path, {"scenic/simulators/lgsvl/model.scenic": "class Car:\n    wheels: 4\n"})
+    text = "model scenic.simulators.lgsvl.model\nego = new Carr\n"
+    [found] = findings(tmp_path / "main.scenic", text)
+    assert found.help == "did you mean `Car`?"
 
 
 def test_labels_lead_to_other_files() -> None:

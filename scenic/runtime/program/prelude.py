@@ -27,6 +27,7 @@ from scenic.language.errors import (
     ScenicTypeError,
     UnsupportedError,
 )
+from scenic.language.libraries import how_to_get
 from scenic.runtime.dynamics.declarations import Kept, required
 from scenic.runtime.dynamics.definitions import behavior_of
 from scenic.runtime.dynamics.language import Dynamics
@@ -682,10 +683,7 @@ class Loader:
         path = self._modules.find(chosen)
         if path is None:
             raise InvalidScenarioError(
-                f"there is no world model {chosen!r}",
-                code="SC406",
-                span=here(),
-                help="a model is a .scenic file beside the program or on Python's path",
+                f"there is no world model {chosen!r}", code="SC406", span=here(), help=how_to_get(chosen)
             )
         module = self._load(path, chosen, importer, is_model=True)
         public = getattr(module, "__all__", None)
