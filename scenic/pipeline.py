@@ -38,8 +38,9 @@ from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Everywhere, Nowhere, Workspace, everywhere
 from scenic.runtime.sampling.planning import Outline, outline
 from scenic.runtime.scenes.saving import program_digest
-from scenic.runtime.scenes.scenario import Scenario, Services
+from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
+from scenic.runtime.scenes.services import Services
 from scenic.runtime.values.values import is_random
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from scenic.batch.engines import Engine, OverExecutor, Processes
 from scenic.graph.points import PointSet, Sobol
 from scenic.language.errors import Located, RejectionException
 from scenic.runtime.sampling.report import Exhausted
-from scenic.runtime.scenes.scenario import Scenario, exhaustion_message
+from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
 
 if TYPE_CHECKING:
@@ -183,7 +183,7 @@ def sampled_in_processes(
     engine = Processes(processes) if executor is None else OverExecutor(executor, max(2, processes))
     for made in in_processes(scenario, _accepted_attempts, job, engine):
         if made.missing:
-            raise RejectionException(exhaustion_message(made.missing[0]))
+            raise RejectionException(made.missing[0].message())
         numbers = np.arange(made.job.first, made.job.last, dtype=np.int64)
         attempts = np.frombuffer(bytes(made.encoded), dtype=np.int64).reshape(len(numbers), -1)
         attempts = attempts[:, 0] if attempts.shape[1] == 1 else attempts

@@ -56,6 +56,16 @@ class Exhausted:
     reason: str
     report: RejectionReport
 
+    def message(self) -> str:
+        """The reason why the scene was not found, with the share of each requirement."""
+        head = {
+            "attempts": f"no scene was found within {self.attempts} candidates",
+            "time": f"no scene was found in the time given ({self.attempts} candidates)",
+            "impossible": "no scene exists: the requirements cannot hold together",
+        }[self.reason]
+        blame = "".join(f"\n{row.blame()}" for row in self.report.culprits())
+        return f"{head}{blame}\n{self.report}"
+
 
 @dataclass(frozen=True, slots=True)
 class Approximation:

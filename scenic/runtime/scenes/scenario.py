@@ -1,11 +1,10 @@
 """A compiled scenario, from which scenes are sampled."""
 
-import math
 import random
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import chain, repeat
 from pathlib import Path
 from typing import Any, Final
@@ -40,9 +39,11 @@ from scenic.runtime.sampling.planning import Outline
 from scenic.runtime.sampling.profiling import Profile
 from scenic.runtime.sampling.report import Approximation, Exhausted
 from scenic.runtime.scenes.fingerprint import fingerprint
-from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS, Sampler
+from scenic.runtime.scenes.generating import Generating
+from scenic.runtime.scenes.sampler import Sampler
 from scenic.runtime.scenes.saving import SavedScene, draws_of, source_of
 from scenic.runtime.scenes.scene import Family, Scene
+from scenic.runtime.scenes.services import Services
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,38 +54,11 @@ class Axis:
     span: Span | None
 
 
-@dataclass(frozen=True, slots=True)
-class Services:
-    """What a scenario offers that is computed above the runtime."""
-
-    view: Callable[[Scene], Any] | None = None
-    """Shows a scene (`Scene.show`)."""
-    bundle: Callable[[Scene], Mapping[str, str]] | None = None
-    """A scene by type of media, for notebooks."""
-    recipe: tuple[Any, ...] | None = None
-    """Compiles the program once more, as ``__reduce__`` returns it."""
-    options: Mapping[str, Any] = field(default_factory=dict)
-    """The keyword arguments of `scenic.load` with which the program was compiled."""
-    sample: Callable[..., Iterator[Scene]] | None = None
-    """Samples in several processes: ``(scenario, n, processes=, **limits)``."""
-    simulate: Callable[..., Any] | None = None
-    """Simulates scenes: ``(scenario, n, **options)``."""
-    external_sampler: Callable[["Scenario"], Any] | None = None
-    """The sampler of the program's external parameters."""
-    given: Callable[[Mapping[str, Any]], "Scenario"] | None = None
-    """Compiles the program once more with values of global parameters."""
-
-
 _KEPT: Final = frozenset({"_foreseen", "_external_sampler"})
 """Attributes of a scenario that conditions do not replace."""
 
 
-def _check_workers(workers: int, limit: float, feedback: Any) -> None:
-    if workers > 0 and (limit != math.inf or feedback is not None):
-        raise ValueError("several processes go without `maxIterations` and `feedback`")
-
-
-class Scenario:
+class Scenario(Generating):
     """A compiled program, which samples scenes and simulates them.
 
     Made by `scenic.load` and by the established `scenarioFromFile` and `scenarioFromString`.
@@ -384,7 +358,7 @@ class Scenario:
             approximate=approximate,
         ):
             if isinstance(result, Exhausted):
-                raise RejectionException(exhaustion_message(result))
+                raise RejectionException(result.message())
             scenes.append(result)
         return scenes
 
@@ -457,156 +431,6 @@ class Scenario:
             raise TypeError("a scenario that was made by hand cannot be simulated")
         return self._services.simulate(self, n, **options)
 
-    def generate(
-        self, maxIterations: int = 2000, verbosity: int = 0, feedback: Any = None, *, seed: int | None = None
-    ) -> tuple[Scene, int]:
-        """One scene, and the number of candidates tried for it.
-
-        Without ``seed`` one is drawn from Python's ``random``, so that scripts which call ``random.seed`` repeat.
-        ``verbosity`` is accepted for compatibility.
-
-        The external parameters of a program get their values from its sampler, for each candidate anew. ``feedback`` is for that
-        sampler: how good the scene before turned out to be, smaller being better. With ``seed`` they are drawn as all else is.
-
-        Raises:
-            RejectionException: if none of ``maxIterations`` candidates meets the requirements.
-
-        """
-        if seed is None and self.externals and self._services.external_sampler is not None:
-            return self._generate_chosen(maxIterations, feedback)
-        if seed is None:
-            result = self._foreseen.take(random.getrandbits(SEED_BITS), maxIterations)
-            if isinstance(result, Exhausted):
-                raise RejectionException(exhaustion_message(result))
-            return result, result.attempts
-        (scene,) = self.sample(1, seed=seed, max_attempts=maxIterations)
-        return scene, scene.attempts
-
-    def _generate_chosen(self, most: int, feedback: Any) -> tuple[Scene, int]:
-        """One scene whose external parameters their sampler chooses."""
-        assert self._services.external_sampler is not None
-        if self._external_sampler is None:
-            self._external_sampler = self._services.external_sampler(self)
-        sampler = self._external_sampler
-        seed = random.getrandbits(SEED_BITS)
-        for attempt in range(most):
-            sampler.sample(feedback)
-            (result,) = self.chosen(sampler.numbers(), 1, seed=seed, first=attempt)
-            if not isinstance(result, Exhausted):
-                return result, attempt + 1
-            feedback = sampler.rejectionFeedback
-        raise RejectionException(
-            f"no scene was found within {most} candidates whose external parameters the sampler chose"
-        )
-
-    def generateBatch(
-        self,
-        numScenes: int,
-        maxIterations: float = math.inf,
-        verbosity: int = 0,
-        feedback: Any = None,
-        numWorkers: int = 0,
-        mute: bool = True,
-        serialized: bool = False,
-    ) -> tuple[list[Any], int]:
-        """Scenes, and the total number of candidates tried for them, ``maxIterations`` at most.
-
-        Without that limit, a scene for which `DEFAULT_ATTEMPTS` candidates were rejected ends the search, too.
-
-        Args:
-            numScenes: how many.
-            maxIterations: candidates tried for all of them.
-            verbosity: accepted for compatibility.
-            feedback: accepted for compatibility.
-            numWorkers: processes that look for scenes; 0 is this one. The scenes are the same.
-            mute: accepted for compatibility: nothing is printed.
-            serialized: give scenes as bytes (`sceneToBytes`).
-
-        Raises:
-            RejectionException: if the scenes are not found within the limit.
-            ValueError: for several processes with a limit of candidates or feedback.
-
-        """
-        _check_workers(numWorkers, maxIterations, feedback)
-        most = DEFAULT_ATTEMPTS if maxIterations == math.inf else int(maxIterations)
-        scenes = self.sample(numScenes, max_attempts=most, processes=max(1, numWorkers))
-        tried = sum(scene.attempts for scene in scenes)
-        if tried > maxIterations:
-            raise RejectionException(f"failed to generate {numScenes} scenes in {maxIterations} iterations")
-        return (list(map(self.sceneToBytes, scenes)) if serialized else scenes), tried
-
-    def generateStream(
-        self,
-        numScenes: float = math.inf,
-        maxIterations: float = math.inf,
-        verbosity: int = 0,
-        feedback: Any = None,
-        numWorkers: int = 0,
-        bufferSize: int | None = None,
-        mute: bool = True,
-        serialized: bool = False,
-        deterministic: bool = True,
-        iterationCount: bool = False,
-    ) -> Iterator[Any]:
-        """Scenes in order, looked for when they are wanted.
-
-        Args:
-            numScenes: how many; `math.inf` for a stream without an end.
-            maxIterations: candidates tried for one scene.
-            verbosity: accepted for compatibility.
-            feedback: accepted for compatibility.
-            numWorkers: processes that look for scenes; 0 is this one. The scenes are the same.
-            bufferSize: scenes looked for at a time.
-            mute: accepted for compatibility: nothing is printed.
-            serialized: give scenes as bytes (`sceneToBytes`).
-            deterministic: accepted for compatibility: scenes always come in order.
-            iterationCount: yield pairs of a scene and the number of candidates tried for it.
-
-        Raises:
-            RejectionException: if a scene is not found.
-            ValueError: for several processes with a limit of candidates or feedback.
-
-        """
-        _check_workers(numWorkers, maxIterations, feedback)
-        limit = None if maxIterations == math.inf else int(maxIterations)
-        return self._generated(
-            numScenes,
-            random.getrandbits(SEED_BITS),
-            limit,
-            numWorkers,
-            bufferSize or 64 * max(1, numWorkers),
-            serialized=serialized,
-            counted=iterationCount,
-        )
-
-    def _generated(
-        self,
-        count: float,
-        seed: int,
-        limit: int | None,
-        workers: int,
-        block: int,
-        *,
-        serialized: bool,
-        counted: bool,
-    ) -> Iterator[Any]:
-        """See `generateStream`."""
-        first = 0
-        while first < count:
-            size = int(min(block, count - first))
-            if workers > 0 and self._services.sample is not None:
-                found: Iterable[Scene | Exhausted] = self._services.sample(
-                    self, size, seed=seed, first=first, processes=workers
-                )
-            else:
-                found = self.stream(size, seed=seed, first=first, max_attempts=limit)
-            for scene in found:
-                if isinstance(scene, Exhausted):
-                    raise RejectionException(exhaustion_message(scene))
-                value = self.sceneToBytes(scene) if serialized else scene
-                yield (value, scene.attempts) if counted else value
-            first += size
-
     def _sampling_error(self, error: CandidateError) -> Exception:
         cause, check = error.__cause__, error.check
         if isinstance(cause, Located) and not isinstance(cause, SamplingError):
@@ -628,30 +452,11 @@ class Scenario:
         annotate(cause, found.diagnostic(), f"{found} (attempt {error.attempt} at scene {error.k})")
         return cause
 
-    @property
-    def userRequirements(self) -> tuple[Any, ...]:
-        """The same as `requirements`."""
-        return self.requirements
-
-    def containerOfObject(self, obj: Object) -> Region:
-        """The region that must hold an object: its own, else the workspace."""
-        own = obj.regionContainedIn
-        return self.workspace.region if own is None else own
-
     def validate(self) -> None:
         """Nothing to do: whatever is fixed is checked when the program is loaded."""
 
     def setSampleChecker(self, checker: Any) -> None:
         """Nothing to do: in which order requirements are checked follows what they cost and reject."""
-
-    def resetExternalSampler(self) -> None:
-        """Let the sampler of the external parameters begin anew."""
-        self._external_sampler = None
-
-    @property
-    def externalSampler(self) -> Any:
-        """The sampler of the external parameters once a scene has been generated, if there are any."""
-        return self._external_sampler
 
     # Scenes as data
 
@@ -706,26 +511,6 @@ class Scenario:
         if self._program.simulator is None:
             raise RuntimeError("the program has no `simulator` statement, so no simulator is known")
         return self._program.simulator()
-
-    def simulationToBytes(self, simulation: Any, allowPickle: bool = False) -> bytes:
-        """A simulation as data: its scene, and what has been drawn in it. `simulationFromBytes` runs it again."""
-        scene = self.sceneToBytes(simulation.scene)
-        return len(scene).to_bytes(4, "little") + scene + bytes(simulation.getReplay())
-
-    def simulationFromBytes(
-        self, data: bytes, simulator: Any, *, verify: bool = True, allowPickle: bool = False, **options: Any
-    ) -> Any:
-        """Run the simulation in the data of `simulationToBytes` again; ``options`` are those of `Simulator.simulate`.
-
-        Raises:
-            SerializationError: if the data is damaged, or of another program (not checked if ``verify`` is false).
-
-        """
-        end = 4 + int.from_bytes(data[:4], "little")
-        if len(data) < end:
-            raise SerializationError("the saved simulation is damaged", help="save it again")
-        scene = self.sceneFromBytes(data[4:end], verify=verify)
-        return simulator.replay(scene, data[end:], **options)
 
     def conditionOn(
         self,
@@ -799,15 +584,3 @@ class Scenario:
                 f"the scenario has no parameter {name!r}",
                 help=f"its parameters are {', '.join(parameters)}" if parameters else "it has none",
             )
-
-
-def exhaustion_message(exhausted: Exhausted) -> str:
-    """Why a scene was not found, with the share of each requirement."""
-    head = {
-        "attempts": f"no scene was found within {exhausted.attempts} candidates",
-        "time": f"no scene was found in the time given ({exhausted.attempts} candidates)",
-        "impossible": "no scene exists: the requirements cannot hold together",
-    }[exhausted.reason]
-    culprits = exhausted.report.culprits()
-    blame = "".join(f"\n{row.blame()}" for row in culprits)
-    return f"{head}{blame}\n{exhausted.report}"

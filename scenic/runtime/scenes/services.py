@@ -1,0 +1,31 @@
+"""What a scenario offers that layers above the runtime compute, handed to it when it is made."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from scenic.runtime.scenes.scene import Scene
+
+__all__ = ["Services"]
+
+
+@dataclass(frozen=True, slots=True)
+class Services:
+    """What a scenario offers that is computed above the runtime."""
+
+    view: Callable[[Scene], Any] | None = None
+    """Shows a scene (`Scene.show`)."""
+    bundle: Callable[[Scene], Mapping[str, str]] | None = None
+    """A scene by type of media, for notebooks."""
+    recipe: tuple[Any, ...] | None = None
+    """Compiles the program once more, as ``__reduce__`` returns it."""
+    options: Mapping[str, Any] = field(default_factory=dict)
+    """The keyword arguments of `scenic.load` with which the program was compiled."""
+    sample: Callable[..., Iterator[Scene]] | None = None
+    """Samples in several processes: ``(scenario, n, processes=, **limits)``."""
+    simulate: Callable[..., Any] | None = None
+    """Simulates scenes: ``(scenario, n, **options)``."""
+    external_sampler: Callable[[Any], Any] | None = None
+    """The sampler of the program's external parameters."""
+    given: Callable[[Mapping[str, Any]], Any] | None = None
+    """Compiles the program once more with values of global parameters."""
