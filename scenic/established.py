@@ -188,7 +188,7 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             ),
             ("scenic.runtime.regions.base", "Region"),
             ("scenic.runtime.regions.spaces", "AllRegion=Everywhere EmptyRegion=Nowhere"),
-            ("scenic.runtime.regions.composite", "IntersectionRegion UnionRegion DifferenceRegion"),
+            ("scenic.runtime.regions.combinations", "IntersectionRegion UnionRegion DifferenceRegion"),
             ("scenic.runtime.regions.voxels", "VoxelRegion"),
             ("scenic.runtime.regions.views", "ViewRegion"),
             ("scenic.runtime.regions.meshes", "MeshRegion"),

@@ -182,7 +182,6 @@ TIED = {
     "scenic.runtime.values.values": {"Operand", "Random"},
     "scenic.runtime.values.drawing": {"Random"},
     "scenic.runtime.python.opaque": {"Random"},
-    "scenic.runtime.regions.algebra": {"Region"},
 }
 """Modules that give classes of lower ones what only they know, when they are imported; to become fewer, never more."""
 

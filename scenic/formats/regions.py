@@ -12,16 +12,13 @@ from scenic.formats.poses import rotation_matrix
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.body_regions import OccupiedSpace, SideSurface
-from scenic.runtime.regions.composite import (
-    Composite,
-    DifferenceRegion,
-    IntersectionRegion,
-    UnionRegion,
-    exactly_contains,
-)
+from scenic.runtime.regions.circular import CircularRegion
+from scenic.runtime.regions.combinations import DifferenceRegion, IntersectionRegion, UnionRegion
+from scenic.runtime.regions.composite import Composite, exactly_contains
 from scenic.runtime.regions.lines import LineRegion
 from scenic.runtime.regions.meshes import solid_in_world
-from scenic.runtime.regions.planar import CircularRegion, Footprint, PlanarRegion, RectangularRegion
+from scenic.runtime.regions.planar import Footprint, PlanarRegion
+from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.regions.views import ViewRegion

@@ -372,7 +372,7 @@ _ALL = (
     _region("PathRegion(points)", "A sequence of line segments in space.", "lines"),
     _region("PolygonalRegion(points, z=0)", "A polygon in a horizontal plane.", "planar"),
     _region("PolygonalFootprintRegion(polygon)", "All points above and below a polygon.", "planar"),
-    _region("CircularRegion(center, radius)", "A disc in a horizontal plane.", "planar"),
+    _region("CircularRegion(center, radius)", "A disc in a horizontal plane.", "circular"),
     _region(
         "SectorRegion(center, radius, heading, angle)",
         "A sector of a disc in a horizontal plane.",
@@ -382,7 +382,7 @@ _ALL = (
     _region(
         "RectangularRegion(position, heading, width, length)",
         "A rectangle in a horizontal plane.",
-        "planar",
+        "rectangular",
         angles=("heading",),
     ),
     _region(

@@ -10,7 +10,9 @@ from scipy.spatial.transform import Rotation
 from scenic.formats.html import page
 from scenic.formats.regions import bounds, outlines, view_outline
 from scenic.runtime.geometry.visibility.views import Views
-from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
+from scenic.runtime.regions.circular import CircularRegion
+from scenic.runtime.regions.planar import PolygonalRegion
+from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion

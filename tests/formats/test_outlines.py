@@ -11,9 +11,9 @@ import scenic
 from scenic.formats.html import page
 from scenic.formats.regions import _cell_edges, _longest, _mesh_lines, bounds, outlines
 from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.regions.composite import IntersectionRegion
+from scenic.runtime.regions.circular import CircularRegion
+from scenic.runtime.regions.combinations import IntersectionRegion
 from scenic.runtime.regions.lines import PathRegion
-from scenic.runtime.regions.planar import CircularRegion
 from scenic.runtime.regions.spaces import everywhere, nowhere
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from tests.formats.test_html import data_of

@@ -13,7 +13,7 @@ from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions.base import Region
-from scenic.runtime.regions.composite import UnionRegion
+from scenic.runtime.regions.combinations import UnionRegion
 from scenic.runtime.regions.planar import PlanarRegion
 from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion

@@ -23,7 +23,9 @@ from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Floats, Poses
 from scenic.runtime.geometry.scalar_bodies import Placed, gap, is_near_way, meet, overlap, placed
 from scenic.runtime.regions.base import Region
-from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
+from scenic.runtime.regions.circular import CircularRegion
+from scenic.runtime.regions.planar import PolygonalRegion
+from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.regions.scalar_regions import Single
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from scenic.runtime.values.values import Orientation, Vector

@@ -12,12 +12,14 @@ from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Floats, Poses
 from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.circular import CircularRegion
 from scenic.runtime.regions.knowledge import (
     Containment,
     containment_bounds,
     containment_inverse,
 )
-from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
+from scenic.runtime.regions.planar import PolygonalRegion
+from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from scenic.runtime.values.values import Orientation, Vector
 from tests.runtime.boundaries import flip

@@ -10,8 +10,9 @@ from scenic.language.errors import RejectionException, ScenicTypeError
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.regions.circular import CircularRegion
 from scenic.runtime.regions.drawn import DrawnRegion
-from scenic.runtime.regions.planar import CircularRegion, RectangularRegion
+from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.regions.volumes import BoxRegion
 from tests.runtime.programs import (
     FALSE_ALARM,

@@ -12,7 +12,7 @@ from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.regions import composite
+from scenic.runtime.regions import combinations
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import RegionChoice
 from tests.runtime.geometry.samples import table
@@ -35,20 +35,20 @@ def _moving() -> dict[str, Region]:
     rectangle = named.RectangularRegion((1, 2, 3), 0.6, 5, 4)
     found |= {
         "choice": RegionChoice(1, [box, disc, item.occupiedSpace]),
-        "union": composite.UnionRegion(box, item.occupiedSpace, disc),
-        "intersection": composite.IntersectionRegion(item.occupiedSpace, ball),
-        "difference": composite.DifferenceRegion(rectangle, item.occupiedSpace),
+        "union": combinations.UnionRegion(box, item.occupiedSpace, disc),
+        "intersection": combinations.IntersectionRegion(item.occupiedSpace, ball),
+        "difference": combinations.DifferenceRegion(rectangle, item.occupiedSpace),
         "choice among surfaces": RegionChoice(1, [item.topSurface, item.surface, item.leftSurface]),
-        "union with a choice": composite.UnionRegion(
+        "union with a choice": combinations.UnionRegion(
             disc, RegionChoice(1, [rectangle, disc, item.topSurface])
         ),
-        "intersection with a choice": composite.IntersectionRegion(
+        "intersection with a choice": combinations.IntersectionRegion(
             box, RegionChoice(1, [ball, disc, item.occupiedSpace])
         ),
-        "difference with a choice": composite.DifferenceRegion(
+        "difference with a choice": combinations.DifferenceRegion(
             rectangle, RegionChoice(1, [disc, ball, item.occupiedSpace])
         ),
-        "union of flats": composite.UnionRegion(disc, rectangle),
+        "union of flats": combinations.UnionRegion(disc, rectangle),
         "footprint of a rectangle": rectangle.footprint,
     }
     return found

@@ -6,9 +6,11 @@ import pytest
 import shapely
 
 from scenic.language.errors import ScenicValueError
+from scenic.runtime.regions.circular import CircularRegion
 from scenic.runtime.regions.fields import VectorField
 from scenic.runtime.regions.lines import PathRegion, PolylineRegion
-from scenic.runtime.regions.planar import CircularRegion, PolygonalRegion, RectangularRegion
+from scenic.runtime.regions.planar import PolygonalRegion
+from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from scenic.runtime.values.values import Vector, to_vector

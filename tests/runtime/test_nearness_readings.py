@@ -23,14 +23,15 @@ from scenic.runtime.regions import base
 from scenic.runtime.regions import body_regions as bodies
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import RegionChoice
-from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, UnionRegion
+from scenic.runtime.regions.circular import DISC_POINT, CircularRegion
+from scenic.runtime.regions.combinations import DifferenceRegion, IntersectionRegion, UnionRegion
 from scenic.runtime.regions.fixed_sides import _POINT as POINT
 from scenic.runtime.regions.fixed_sides import FixedSide
 from scenic.runtime.regions.knowledge import fixed
 from scenic.runtime.regions.lines import PathRegion
 from scenic.runtime.regions.meshes import MeshSurfaceRegion, MeshVolumeRegion
 from scenic.runtime.regions.nearness import SLACK, body_reach, grown, separation
-from scenic.runtime.regions.planar import DISC_POINT, CircularRegion, RectangularRegion
+from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.sectors import SectorRegion
 from scenic.runtime.regions.spaces import Workspace

@@ -4,10 +4,12 @@ import pytest
 
 import scenic
 from scenic.language.errors import UnknownPairError
+from scenic.runtime.regions.circular import CircularRegion
 from scenic.runtime.regions.lines import PathRegion
 from scenic.runtime.regions.meeting import MEETING
 from scenic.runtime.regions.pairs import Cell, PairTable
-from scenic.runtime.regions.planar import CircularRegion, PlanarRegion, RectangularRegion
+from scenic.runtime.regions.planar import PlanarRegion
+from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.regions.volumes import BoxRegion
 
 DISC, RECTANGLE, BOX = CircularRegion((0, 0), 1), RectangularRegion((0, 0), 0, 1, 1), BoxRegion((1, 1, 1))

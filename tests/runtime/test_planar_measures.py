@@ -15,8 +15,8 @@ from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Floats, Poses
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import RegionChoice
-from scenic.runtime.regions.composite import IntersectionRegion
-from scenic.runtime.regions.planar import DISC_POINT
+from scenic.runtime.regions.circular import DISC_POINT
+from scenic.runtime.regions.combinations import IntersectionRegion
 from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.values.values import Vector
 from tests.runtime.programs import draws, params, thing

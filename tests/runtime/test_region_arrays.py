@@ -16,8 +16,10 @@ from scenic.runtime.geometry.outlines import cuts, shadows
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.prisms import prism, shadow, slice_at
 from scenic.runtime.regions.base import Region
-from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, UnionRegion
-from scenic.runtime.regions.planar import CircularRegion, Footprint, PolygonalRegion, RectangularRegion
+from scenic.runtime.regions.circular import CircularRegion
+from scenic.runtime.regions.combinations import DifferenceRegion, IntersectionRegion, UnionRegion
+from scenic.runtime.regions.planar import Footprint, PolygonalRegion
+from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.regions.sectors import SectorRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 

@@ -14,10 +14,12 @@ from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import RegionChoice
-from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, exactly_contains
+from scenic.runtime.regions.circular import CircularRegion
+from scenic.runtime.regions.combinations import DifferenceRegion, IntersectionRegion
+from scenic.runtime.regions.composite import exactly_contains
 from scenic.runtime.regions.knowledge import distance_bounds
 from scenic.runtime.regions.lines import PathRegion
-from scenic.runtime.regions.planar import CircularRegion, RectangularRegion
+from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.regions.stacked import body_of
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion

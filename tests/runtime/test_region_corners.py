@@ -22,12 +22,8 @@ from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions.choice import RegionChoice
-from scenic.runtime.regions.composite import (
-    DifferenceRegion,
-    IntersectionRegion,
-    UnionRegion,
-    exactly_contains,
-)
+from scenic.runtime.regions.combinations import DifferenceRegion, IntersectionRegion, UnionRegion
+from scenic.runtime.regions.composite import exactly_contains
 from scenic.runtime.regions.fields import (
     PiecewiseVectorField,
     PolygonalVectorField,

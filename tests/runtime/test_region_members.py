@@ -21,7 +21,7 @@ from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.scalar_bodies import placed
 from scenic.runtime.geometry.segments import Segments
-from scenic.runtime.regions.composite import IntersectionRegion, UnionRegion
+from scenic.runtime.regions.combinations import IntersectionRegion, UnionRegion
 from scenic.runtime.regions.fields import VectorField
 from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.values.values import Orientation, Vector

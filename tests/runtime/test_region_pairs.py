@@ -20,7 +20,8 @@ from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.poses import Floats
 from scenic.runtime.regions.base import Region
-from scenic.runtime.regions.composite import Composite, DifferenceRegion, IntersectionRegion, UnionRegion
+from scenic.runtime.regions.combinations import DifferenceRegion, IntersectionRegion, UnionRegion
+from scenic.runtime.regions.composite import Composite
 from scenic.runtime.regions.fields import VectorField
 from scenic.runtime.regions.lines import LineRegion
 from scenic.runtime.regions.planar import Footprint, PlanarRegion

@@ -18,7 +18,7 @@ from scipy import stats
 from scenic.graph.bounds import Bounds
 from scenic.language.errors import UndefinedSamplingException, UnsupportedError
 from scenic.runtime.regions import body_regions as bodies
-from scenic.runtime.regions import choice, composite, lines, planar, views, volumes
+from scenic.runtime.regions import choice, combinations, composite, lines, planar, views, volumes
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.drawn import DrawnRegion
 from scenic.runtime.regions.fields import VectorField
@@ -86,9 +86,9 @@ def _regions() -> dict[str, Region]:
         "solids' union": box.union(ball),
         "discs' difference": disc.difference(named.CircularRegion(Vector(3, 1, 0), 1.5)),
         "prism": box.intersect(column),
-        "union of kinds": composite.UnionRegion(box, ball),
-        "intersection of kinds": composite.IntersectionRegion(ball, pillar),
-        "difference of kinds": composite.DifferenceRegion(ball, pillar),
+        "union of kinds": combinations.UnionRegion(box, ball),
+        "intersection of kinds": combinations.IntersectionRegion(ball, pillar),
+        "difference of kinds": combinations.DifferenceRegion(ball, pillar),
     }
 
 
@@ -303,9 +303,9 @@ def test_identities_of_sets(name: str) -> None:
             distances(region, points) < 1e-2
         ) & ~exact  # shapes in the plane are polygons with many corners here
     for made, mine, wanted in (
-        (composite.IntersectionRegion(region, other), here, here & there),
-        (composite.UnionRegion(region, other), here, here | there),
-        (composite.DifferenceRegion(region, other), here, here & ~there),
+        (combinations.IntersectionRegion(region, other), here, here & there),
+        (combinations.UnionRegion(region, other), here, here | there),
+        (combinations.DifferenceRegion(region, other), here, here & ~there),
     ):
         found = np.broadcast_to(made.contains_points(points, *columns_of(made)), len(points))
         assert (found == wanted).all(), mine
@@ -415,7 +415,7 @@ ORIENTABLE = {
     "mesh": lambda field: named.MeshVolumeRegion(HORSESHOE, orientation=field),
     "surface": lambda field: named.MeshSurfaceRegion(HORSESHOE, orientation=field),
     "cells": lambda field: named.VoxelRegion(trimesh.voxel.VoxelGrid(np.ones((1, 2, 3), bool)), field),
-    "cut": lambda field: composite.IntersectionRegion(REGIONS["ball"], REGIONS["box"], orientation=field),
+    "cut": lambda field: combinations.IntersectionRegion(REGIONS["ball"], REGIONS["box"], orientation=field),
 }
 
 

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 import scenic
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
-from scenic.runtime.regions.planar import CircularRegion
+from scenic.runtime.regions.circular import CircularRegion
 from scenic.runtime.values.values import Orientation
 from tests.runtime.programs import (
     FALSE_ALARM,

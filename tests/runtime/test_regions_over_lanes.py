@@ -17,8 +17,9 @@ from scenic.runtime.regions import composite
 from scenic.runtime.regions.algebra import meets_bodies
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import RegionChoice
-from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion, UnionRegion
-from scenic.runtime.regions.planar import CircularRegion, RectangularRegion
+from scenic.runtime.regions.circular import CircularRegion
+from scenic.runtime.regions.combinations import DifferenceRegion, IntersectionRegion, UnionRegion
+from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.regions.scattered import GridRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from tests.runtime.programs import (

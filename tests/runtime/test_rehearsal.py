@@ -73,7 +73,7 @@ def test_problems_are_left_to_the_first_scene(monkeypatch: pytest.MonkeyPatch) -
         raise ScenicError("no size is known")
 
     program = "ego = new Object at (Range(0, 1), 0)\nrequire (0, 0) in CircularRegion(ego.position, 5)"
-    monkeypatch.setattr("scenic.runtime.regions.planar.CircularRegion.contains_points", fails)
+    monkeypatch.setattr("scenic.runtime.regions.circular.CircularRegion.contains_points", fails)
     loaded = scenario(program)
     with pytest.raises(ScenicError, match="no size"):
         loaded.sample(1, seed=0)

@@ -12,7 +12,7 @@ from scenic.language.names import NAMES
 from scenic.runtime.dynamics.run import RunContext
 from scenic.runtime.program.context import current, here
 from scenic.runtime.program.outcome import Program
-from scenic.runtime.regions import algebra as algebra  # gives regions their algebra
+from scenic.runtime.regions import algebra as algebra  # registers what regions do together
 
 
 def running_simulation() -> Any:

@@ -14,22 +14,19 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Operation, always
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.runtime.elements.shapes import Shape, ShapeSource
-from scenic.runtime.geometry import booleans, primitives
+from scenic.runtime.geometry import booleans
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.prisms import prism, shadow, slice_at
 from scenic.runtime.program.context import here
 from scenic.runtime.python.opaque import evaluated, later
+from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import MEETS_BODY, Mask, Region
 from scenic.runtime.regions.body_regions import OccupiedSpace, SideSurface
 from scenic.runtime.regions.choice import RegionChoice, as_region
-from scenic.runtime.regions.composite import (
-    Composite,
-    DifferenceRegion,
-    IntersectionRegion,
-    UnionRegion,
-)
-from scenic.runtime.regions.fields import PiecewiseVectorField, RegionField
+from scenic.runtime.regions.combinations import DifferenceRegion, IntersectionRegion, UnionRegion
+from scenic.runtime.regions.composite import Composite
+from scenic.runtime.regions.fields import PiecewiseVectorField, RegionField, field_of_union
 from scenic.runtime.regions.holding import HOLDS
 from scenic.runtime.regions.lines import LineRegion, PathRegion, PolylineRegion
 from scenic.runtime.regions.meeting import MEETING, cells_near
@@ -37,30 +34,23 @@ from scenic.runtime.regions.meshes import (
     MeshSurfaceRegion,
     MeshVolumeRegion,
     surface_in_world,
-    world_mesh,
 )
+from scenic.runtime.regions.one_lane import in_lane
 from scenic.runtime.regions.pairs import Cell, PairTable
-from scenic.runtime.regions.planar import (
-    Footprint,
-    PlanarRegion,
-    PolygonalFootprintRegion,
-    PolygonalRegion,
-)
+from scenic.runtime.regions.planar import Footprint, PlanarRegion, PolygonalFootprintRegion, PolygonalRegion
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.spaces import Everywhere, Nowhere, Workspace, nowhere
 from scenic.runtime.regions.stacked import is_body
 from scenic.runtime.regions.terms import flat_of, holds, pieces_inside, prism_about, solid_of
 from scenic.runtime.regions.views import ViewRegion
-from scenic.runtime.regions.volumes import BoxRegion, PlacedVolume
+from scenic.runtime.regions.volumes import PlacedVolume
 from scenic.runtime.regions.voxels import VoxelRegion
 from scenic.runtime.regions.voxels import voxelized as cells_of
 from scenic.runtime.values.values import (
-    CODEC,
     Orientation,
     Random,
     Vector,
     apply,
-    as_node,
     as_value,
     describe,
     is_open,
@@ -121,20 +111,9 @@ def _field(*regions: Region) -> Any:
     return next((region.orientation for region in regions if region.orientation is not None), None)
 
 
-def field_of_union(members: Sequence[Region]) -> PiecewiseVectorField | None:
-    """The preferred orientation of a union of regions of the plane: that of the first member that holds the point."""
-    oriented = any(member.has_orientation for member in members)
-    return PiecewiseVectorField("union", members) if oriented else None
-
-
 def _field_of_drawn(members: Sequence[tuple[Any, float | None, Any]]) -> PiecewiseVectorField | None:
     """The same for the geometries, heights and fields of regions whose fields are drawn."""
     return field_of_union([region_of(*member) for member in members])
-
-
-def own_field(region: Region) -> RegionField:
-    """The orientations that the points of a region have by themselves, as a field."""
-    return RegionField(region)
 
 
 def _volume(mesh: Mesh | None, orientation: Any = None) -> Region:
@@ -158,6 +137,7 @@ def _by_option(operation: Callable[[Any, Any], Region], a: Region, b: Region) ->
 # The operations
 
 
+@generic.intersection.register(Region)
 def intersection(first: Any, second: Any) -> Region:
     """The points that lie in both regions."""
     a, b = _operand(first, "`intersect`"), _operand(second, "`intersect`")
@@ -230,6 +210,7 @@ def _of_pieces(orientation: Any) -> Any:
     return True if orientation is None or isinstance(orientation, RegionField) else orientation
 
 
+@generic.union.register(Region)
 def union(first: Any, second: Any) -> Region:
     """The points that lie in either region."""
     a, b = _operand(first, "`union`"), _operand(second, "`union`")
@@ -260,6 +241,7 @@ def union(first: Any, second: Any) -> Region:
     return UnionRegion(*members)
 
 
+@generic.difference.register(Region)
 def difference(first: Any, second: Any) -> Region:
     """The points of the first region that do not lie in the second."""
     a, b = _operand(first, "`difference`"), _operand(second, "`difference`")
@@ -285,6 +267,7 @@ def difference(first: Any, second: Any) -> Region:
     return _by_option(difference, a, b) or DifferenceRegion(a, b)
 
 
+@generic.intersects.register(Region)
 def intersects(first: Any, second: Any) -> Any:
     """Whether two regions or objects share a point; random where one of them is."""
     if is_open(second):
@@ -334,8 +317,8 @@ _MEETS: Final = PairTable(
 
 def _shared(one: IntersectionRegion | DifferenceRegion, other: Region) -> Region | None:
     """What a composite region shares with another, where that has a closed form when views are taken as their meshes."""
-    first, *rest = (volume_of(each) if isinstance(each, ViewRegion) else each for each in one.members)
-    shared = intersection(first, volume_of(other) if isinstance(other, ViewRegion) else other)
+    first, *rest = (generic.meshed(each) if isinstance(each, ViewRegion) else each for each in one.members)
+    shared = intersection(first, generic.meshed(other) if isinstance(other, ViewRegion) else other)
     for member in rest:
         if isinstance(one, IntersectionRegion):
             shared = intersection(shared, member)
@@ -347,24 +330,7 @@ def _shared(one: IntersectionRegion | DifferenceRegion, other: Region) -> Region
     return None if isinstance(shared, Composite) else shared
 
 
-class _Lane:
-    """The parameters of a region at their values in one lane, as `Region.sampled` asks for them."""
-
-    def __init__(self, region: Region, lane: int, columns: Sequence[Column]) -> None:
-        self._values = {}
-        for parameter, column in zip(region.parameters, columns, strict=True):
-            row = lane if len(column) > 1 else 0
-            (self._values[id(parameter)],) = CODEC.decode(as_node(parameter).kind, column[row : row + 1])
-
-    def value(self, parameter: Any) -> Any:
-        return self._values.get(id(parameter), parameter)
-
-
-def in_lane(region: Region, lane: int, columns: Sequence[Column]) -> Region:
-    """A region at the values that its parameters have in one lane."""
-    return region.sampled(_Lane(region, lane, columns))
-
-
+@generic.meets_bodies.register(Region)
 def meets_bodies(region: Region, body: Body, lanes: int, columns: Sequence[Column]) -> Mask:
     """In which lanes a region shares a point with a body."""
     result = np.zeros(lanes, dtype=np.bool_)
@@ -393,6 +359,7 @@ _MEET = Operation(
 )
 
 
+@generic.contains_region.register(Region)
 def contains_region(first: Any, second: Any, tolerance: float = 0) -> bool:
     """Whether a fixed region holds another; raises `UnknownPairError` where that is not known."""
     a, b = _operand(first, "`containsRegion`"), _operand(second, "`containsRegion`")
@@ -406,11 +373,40 @@ def contains_region(first: Any, second: Any, tolerance: float = 0) -> bool:
     return bool(HOLDS.ask(a, b, tolerance))
 
 
+@generic.boundary.register(PlanarRegion)
 def boundary(region: PlanarRegion) -> PolylineRegion:
     """The outline of a region of the plane."""
     return PolylineRegion(polyline=region.polygons.boundary)
 
 
+@generic.meshed.register(PlacedVolume)
+def _volume_as_mesh(region: PlacedVolume) -> MeshVolumeRegion:
+    return MeshVolumeRegion(
+        region.unit_mesh(),
+        region.dimensions,
+        region.position,
+        region.rotation,
+        orientation=region.orientation,
+        onDirection=region.onDirection,
+    )
+
+
+@generic.meshed.register(ViewRegion)
+def _view_as_mesh(region: ViewRegion) -> MeshVolumeRegion:
+    return MeshVolumeRegion(region.solid(), centerMesh=False)
+
+
+@generic.joint_field.register(Region)
+def _joint_field(_first: Region, members: Sequence[Region]) -> PiecewiseVectorField | None:
+    return field_of_union(members)
+
+
+@generic.own_field.register(Region)
+def _own_field(region: Region) -> RegionField:
+    return RegionField(region)
+
+
+@generic.outline_from_above.register(Region)
 def outline_from_above(region: Region) -> PolygonalRegion:
     """A volume or surface seen from above, at height 0."""
     solid = surface_in_world(region) if isinstance(region, SideSurface) else solid_of(region)
@@ -420,31 +416,19 @@ def outline_from_above(region: Region) -> PolygonalRegion:
     return PolygonalRegion(polygon=outline)
 
 
+@generic.part_between.register(Footprint)
 def part_between(region: Footprint, low: float, high: float) -> Region:
     """The part of a footprint between two heights, in metres."""
     return _volume(prism(region.polygons, low, high))
 
 
-def volume_of(region: PlacedVolume | ViewRegion) -> MeshVolumeRegion:
-    """A box or ellipsoid as the volume of a mesh, with the same parameters; a view as that of its mesh."""
-    if isinstance(region, ViewRegion):
-        return MeshVolumeRegion(region.solid(), centerMesh=False)
-    unit = primitives.box() if isinstance(region, BoxRegion) else primitives.spheroid()
-    return MeshVolumeRegion(
-        unit,
-        region.dimensions,
-        region.position,
-        region.rotation,
-        orientation=region.orientation,
-        onDirection=region.onDirection,
-    )
-
-
+@generic.surface_of.register(OccupiedSpace)
 def surface_of(region: OccupiedSpace) -> MeshSurfaceRegion:
     """The surface of a solid, with the same parameters."""
     return MeshSurfaceRegion.of_operands(region.parameters)
 
 
+@generic.voxelized.register(Region)
 def voxelized(region: Region, pitch: float) -> VoxelRegion:
     """The cells of a grid that a volume touches."""
     solid = solid_of(region)
@@ -453,38 +437,4 @@ def voxelized(region: Region, pitch: float) -> VoxelRegion:
     return cells_of(region, solid, pitch)
 
 
-class _Algebra:
-    """The operations above, where `Region` finds them."""
-
-    intersection = staticmethod(intersection)
-    union = staticmethod(union)
-    difference = staticmethod(difference)
-    intersects = staticmethod(intersects)
-    contains_region = staticmethod(contains_region)
-    boundary = staticmethod(boundary)
-    volume_of = staticmethod(volume_of)
-    outline_from_above = staticmethod(outline_from_above)
-    in_lane = staticmethod(in_lane)
-    meets_bodies = staticmethod(meets_bodies)
-    region_of = staticmethod(region_of)
-    surface_of = staticmethod(surface_of)
-    part_between = staticmethod(part_between)
-    field_of_union = staticmethod(field_of_union)
-    own_field = staticmethod(own_field)
-    voxelized = staticmethod(voxelized)
-    world_mesh = staticmethod(world_mesh)
-
-
-Region.algebra = _Algebra
-
-
-__all__ = [
-    "boundary",
-    "contains_region",
-    "difference",
-    "intersection",
-    "intersects",
-    "outline_from_above",
-    "union",
-    "volume_of",
-]
+__all__ = ["difference", "intersection", "intersects", "meets_bodies", "region_of", "union"]

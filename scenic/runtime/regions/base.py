@@ -27,6 +27,7 @@ from scenic.language.errors import (
 from scenic.language.types import OBJECT
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.program.context import here
+from scenic.runtime.regions import generic
 from scenic.runtime.regions.flat import Flat
 from scenic.runtime.regions.knowledge import (
     Containment,
@@ -100,8 +101,6 @@ class Region(metaclass=_RegionType):
     """Metres by which a point may lie outside and count as in the region."""
     kindred: ClassVar[tuple[str, ...]] = ()
     """Names of further classes whose instances are, to a program that asks with ``isinstance``, of this class."""
-    algebra: ClassVar[Any] = None
-    """What combines regions: `scenic.runtime.regions.algebra`, which knows all kinds of them, puts itself here."""
 
     def __init__(self, *parameters: Any, name: str | None = None) -> None:
         self.parameters: tuple[Any, ...] = parameters
@@ -145,7 +144,7 @@ class Region(metaclass=_RegionType):
 
     def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         """In which lanes the body shares a point with the region, shape ``(lanes,)``; here one lane after the other."""
-        mask: Mask = self.algebra.meets_bodies(self, body, lanes, columns)
+        mask: Mask = generic.meets_bodies(self, body, lanes, columns)
         return mask
 
     def from_above(self, *columns: Column) -> Flat | None:
@@ -366,25 +365,25 @@ class Region(metaclass=_RegionType):
             met = None if body is None else single.meets_body(body)
             if met is not None:
                 return met
-        return self.algebra.intersects(self, other)
+        return generic.intersects(self, other)
 
     def containsRegion(self, other: Any, tolerance: float = 0) -> Any:
         """Whether the region holds another, up to ``tolerance`` metres; of fixed regions."""
-        return self.algebra.contains_region(self, other, tolerance)
+        return generic.contains_region(self, other, tolerance)
 
     def intersect(self, other: Any) -> "Region":
         """The points that lie in both regions."""
-        result: Region = self.algebra.intersection(self, other)
+        result: Region = generic.intersection(self, other)
         return result
 
     def union(self, other: Any) -> "Region":
         """The points that lie in either region."""
-        result: Region = self.algebra.union(self, other)
+        result: Region = generic.union(self, other)
         return result
 
     def difference(self, other: Any) -> "Region":
         """The points that do not lie in the other region."""
-        result: Region = self.algebra.difference(self, other)
+        result: Region = generic.difference(self, other)
         return result
 
     # What is known of a fixed region

@@ -19,6 +19,7 @@ from scenic.runtime.geometry.polytopes import half_spaces
 from scenic.runtime.geometry.scalar_bodies import gap
 from scenic.runtime.geometry.surface import Side
 from scenic.runtime.program.context import here
+from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Mask, Points, Region, unsupported
 from scenic.runtime.regions.fixed_sides import FixedSide
 from scenic.runtime.regions.nearness import body_box, body_reach, grown, only_within, separation
@@ -112,12 +113,12 @@ class OccupiedSpace(Region):
     @property
     def mesh(self) -> Any:
         """The mesh in the world, trimesh's; of a region without random parameters."""
-        return self.algebra.world_mesh(self)
+        return generic.world_mesh(self)
 
     @property
     def boundingPolygon(self) -> Any:
         """The region seen from above."""
-        return self.algebra.outline_from_above(self)
+        return generic.outline_from_above(self)
 
     @property
     def inradius(self) -> Any:
@@ -137,7 +138,7 @@ class OccupiedSpace(Region):
 
     def getSurfaceRegion(self) -> Region:
         """The surface of the volume."""
-        surface: Region = self.algebra.surface_of(self)
+        surface: Region = generic.surface_of(self)
         return surface
 
     def getVolumeRegion(self) -> Region:
@@ -146,7 +147,7 @@ class OccupiedSpace(Region):
 
     def voxelized(self, pitch: float) -> Region:
         """The cells of this edge length, in metres, that the volume touches."""
-        region: Region = self.algebra.voxelized(self, pitch)
+        region: Region = generic.voxelized(self, pitch)
         return region
 
     def intersects(self, other: Any) -> Any:
@@ -343,7 +344,7 @@ class SideSurface(Region):
         if region is not self:
             region.__dict__.pop("_fixed", None)
             if getattr(region.__dict__.get("orientation"), "region", None) is self:
-                region.orientation = self.algebra.own_field(region)
+                region.orientation = generic.own_field(region)
         return region
 
     @cached_property
@@ -421,12 +422,12 @@ class SideSurface(Region):
     @property
     def mesh(self) -> Any:
         """Its faces in the world as a mesh, trimesh's; of a surface without random parameters."""
-        return self.algebra.world_mesh(self)
+        return generic.world_mesh(self)
 
     @cached_property
     def orientation(self) -> Any:
         """The field of its normals."""
-        return self.algebra.own_field(self)
+        return generic.own_field(self)
 
     @property
     def isConvex(self) -> bool:
@@ -441,7 +442,7 @@ class SideSurface(Region):
     @property
     def boundingPolygon(self) -> Any:
         """The faces seen from above."""
-        return self.algebra.outline_from_above(self)
+        return generic.outline_from_above(self)
 
     def getSurfaceRegion(self) -> Region:
         """The surface itself."""

@@ -1,4 +1,4 @@
-"""Regions made of others: what lies in all of them, in any, or in one and not in another (section 9.4 of the specification).
+"""Regions made of members, whatever joins these; `scenic.runtime.regions.combinations` has the kinds (section 9.4 of the specification).
 
 These are the general forms, for members of any kind with parameters of any kind; what has a closed form is found by
 `scenic.runtime.regions.algebra`. A point is drawn from a member until one lies in the region.
@@ -15,15 +15,16 @@ from numpy.typing import NDArray
 from scenic.graph.bounds import Bounds
 from scenic.graph.draws import mix, open_unit
 from scenic.graph.kinds import Column
-from scenic.language.errors import InvalidScenarioError, ScenicTypeError
+from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.geometry import polytopes
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.geometry.containment import extreme_corners
 from scenic.runtime.program.context import here
+from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.choice import RegionChoice
 from scenic.runtime.regions.flat import Flat, load_library, rows_of, upright_boxes
-from scenic.runtime.regions.nearness import hull_of
+from scenic.runtime.regions.one_lane import in_lane
 from scenic.runtime.regions.planar import Footprint, PlanarRegion
 from scenic.runtime.regions.spaces import Workspace
 
@@ -33,7 +34,7 @@ TRIES: Final = 2_000
 _TOGETHER: Final = 1 << 12
 """Draws that are looked at together, at most."""
 
-_PROBES: Final = 8
+PROBES: Final = 8
 """Vertices of a body that are looked at before the union of its lane is made."""
 
 LEVEL: Final = 1e-6
@@ -60,7 +61,7 @@ class Composite(Region):
         super().__init__(*(value for member in members for value in member.parameters), name=name)
         self.members = members
         self.tolerance = max(member.tolerance for member in members)
-        if self.is_random and _is_flat(self):
+        if self.is_random and is_flat(self):
             load_library()
         self._field = orientation
         self.has_orientation, self.orientation = orientation is not None, orientation
@@ -89,8 +90,7 @@ class Composite(Region):
 
     def in_lane(self, lane: int, columns: Sequence[Column]) -> Region:
         """The region at the values of one lane, in closed form where it has one."""
-        region: Region = self.algebra.in_lane(self, lane, columns)
-        return region
+        return in_lane(self, lane, columns)
 
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         """By members where the nearest point of one decides, elsewhere by what is left of the plane in each lane.
@@ -151,7 +151,7 @@ class Composite(Region):
 
     def _meets_surely(self, body: Body, lanes: NDArray[np.intp], columns: Sequence[Column]) -> Mask:
         """In which of some lanes, whose columns these are, a known point of the body lies in the region."""
-        if not _is_flat(self):
+        if not is_flat(self):
             held: Mask = np.zeros(len(lanes), dtype=np.bool_)
             for points in _known_points(body, lanes):
                 held |= exactly_contains(self, points, columns)
@@ -184,7 +184,7 @@ class Composite(Region):
             met = None if planes is None else self.meets_polytopes(planes, len(chosen), own)
             if met is None:
                 alone = Body((mesh,), None, poses)
-                met = self.algebra.meets_bodies(self, alone, len(chosen), own)
+                met = generic.meets_bodies(self, alone, len(chosen), own)
             result[chosen] = met
         return result
 
@@ -287,7 +287,7 @@ class Composite(Region):
         return None
 
 
-def _levelled(region: Composite, points: Points, columns: Sequence[Column]) -> Points:
+def levelled(region: Composite, points: Points, columns: Sequence[Column]) -> Points:
     """Points at the height of the first member of the plane, where there is one."""
     for leaf, mine in _leaves(region, columns):
         if isinstance(leaf, PlanarRegion):
@@ -297,7 +297,7 @@ def _levelled(region: Composite, points: Points, columns: Sequence[Column]) -> P
     return points
 
 
-def _joined(join: Callable[[Flat, Flat], Flat | None], parts: Sequence[Flat | None]) -> Flat | None:
+def join_flats(join: Callable[[Flat, Flat], Flat | None], parts: Sequence[Flat | None]) -> Flat | None:
     """Geometries of members, joined one after the other; ``None`` where one has none."""
     result = parts[0]
     for part in parts[1:]:
@@ -308,11 +308,11 @@ def _joined(join: Callable[[Flat, Flat], Flat | None], parts: Sequence[Flat | No
 
 
 # Masks and columns of members are combined two by two, as `reduce` does: some may have a single row, and others one for each lane.
-def _all(masks: Sequence[Mask]) -> Mask:
+def all_of(masks: Sequence[Mask]) -> Mask:
     return np.asarray(reduce(np.logical_and, masks), dtype=np.bool_)
 
 
-def _any(masks: Sequence[Mask]) -> Mask:
+def any_of(masks: Sequence[Mask]) -> Mask:
     return np.asarray(reduce(np.logical_or, masks), dtype=np.bool_)
 
 
@@ -342,7 +342,7 @@ def _leaves(region: Region, columns: Sequence[_Part]) -> Iterator[tuple[Region, 
         yield region, columns
 
 
-def _is_flat(region: Region) -> bool:
+def is_flat(region: Region) -> bool:
     """Whether all leaves lie in planes or are columns."""
     return all(isinstance(leaf, PlanarRegion | Footprint) for leaf, _ in _leaves(region, region.parameters))
 
@@ -355,364 +355,10 @@ def _known_points(body: Body, lanes: NDArray[np.intp]) -> Iterator[Points]:
         corners = extreme_corners(mesh)
         first = mesh.vertices.mean(axis=0) if mesh.is_convex else corners[0]
         known.append(np.concatenate([first[np.newaxis], corners]))
-    for number in range(1 + min(_PROBES, max(map(len, known)) - 1)):
+    for number in range(1 + min(PROBES, max(map(len, known)) - 1)):
         points = np.empty((count, 3))
         for mesh, chosen in part.by_mesh(count):
             mine = known[body.meshes.index(mesh)]
             place = mine[min(number, len(mine) - 1)]
             points[chosen] = part.poses.take(chosen).to_world(place[np.newaxis, np.newaxis])[:, 0]
         yield points
-
-
-class IntersectionRegion(Composite):
-    """The points that lie in all members."""
-
-    def __init__(self, *members: Region, orientation: Any = None, name: str | None = None) -> None:
-        super().__init__(*members, orientation=orientation, name=name)
-        self.dimension = min(member.dimension for member in members)
-        oriented = next((member for member in members if member.has_orientation), None)
-        if orientation is None and oriented is not None:
-            self.has_orientation, self.orientation = True, oriented.orientation
-
-    def uniform_placement(self) -> tuple[Any, Any]:
-        if all(isinstance(member, Footprint) for member in self.members):
-            raise InvalidScenarioError(
-                "no point can be drawn from an intersection of unbounded regions",
-                span=here(),
-                help="intersect them with a bounded region, too",
-            )
-        return super().uniform_placement()
-
-    def combined(self, members: Sequence[Region]) -> Region:
-        result = members[0]
-        for member in members[1:]:
-            result = result.intersect(member)
-        return result
-
-    def _sources(self, columns: Sequence[Column]) -> tuple[list[int], NDArray[np.float64]]:
-        bounded = [
-            number
-            for number, (member, mine) in enumerate(self._parts(columns))
-            if member.dimension == self.dimension and np.isfinite(member.box(*mine)[0]).all()
-        ]
-        if not bounded:
-            bounded = [
-                number
-                for number, (member, mine) in enumerate(self._parts(columns))
-                if np.isfinite(member.box(*mine)[0]).all()
-            ][:1]
-        if not bounded:
-            raise ScenicTypeError("no point can be drawn from an intersection of unbounded regions")
-        return bounded[:1], np.ones((1, 1))
-
-    def _accept(self, points: Points, inside: Sequence[Mask], chosen: NDArray[np.intp], dice: Column) -> Mask:
-        return _all(inside)
-
-    def joined(self, inside: Sequence[Mask]) -> Mask:
-        return _all(inside)
-
-    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        return _all([member.contains_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
-
-    def may_meet(self, body: Body, lanes: int, columns: Sequence[Column]) -> Mask:
-        return _all([member.meets_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
-
-    def half_spaces(self, *columns: Column) -> NDArray[np.float64] | None:
-        parts = [member.half_spaces(*mine) for member, mine in self._parts(columns)]
-        known = [part for part in parts if part is not None]
-        return polytopes.joined(*known) if len(known) == len(parts) else None
-
-    def meets_polytopes(self, planes: Column, lanes: int, columns: Sequence[Column]) -> Mask | None:
-        own = self.half_spaces(*columns)
-        if own is None:
-            return None
-        every = polytopes.joined(own, planes)
-        return np.broadcast_to(polytopes.edges(every).valid.any(axis=1), lanes)
-
-    def solid_distances(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64] | None:
-        planes = self.half_spaces(*columns)
-        if planes is None:
-            return None
-        return polytopes.distances(np.broadcast_to(planes, (len(points), *planes.shape[1:])), points)
-
-    def from_above(self, *columns: Column) -> Flat | None:
-        return _joined(Flat.intersection, [member.from_above(*mine) for member, mine in self._parts(columns)])
-
-    def decided(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64]:
-        """The distance to a member whose nearest point lies in all others; infinite where flat members lie at different heights."""
-        result = super().decided(points, columns)
-        levels = [
-            member.heights(*mine) for member, mine in self._parts(columns) if isinstance(member, PlanarRegion)
-        ]
-        for level in levels[1:]:
-            result[np.broadcast_to(level != levels[0], len(points))] = np.inf
-        for member, mine in self._parts(columns):
-            found = member.nearest(points, *mine)
-            if found is None:
-                continue
-            found = _levelled(self, found, columns)
-            held = [
-                exactly_contains(other, found, theirs)
-                for other, theirs in self._parts(columns)
-                if other is not member
-            ]
-            if held:
-                closest = np.isnan(result) & _all(held)
-                result[closest] = np.broadcast_to(member.distances(points, *mine), len(points))[closest]
-        return result
-
-    @property
-    def footprint(self) -> Region:
-        return IntersectionRegion(*(member.footprint for member in self.members))
-
-    def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        return np.asarray(
-            reduce(np.maximum, [member.gaps(points, *mine) for member, mine in self._parts(columns)])
-        )
-
-    def depths(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        return np.asarray(
-            reduce(np.minimum, [member.depths(points, *mine) for member, mine in self._parts(columns)])
-        )
-
-    def box(self, *columns: Column) -> tuple[Points, Points]:
-        boxes = [member.box(*mine) for member, mine in self._parts(columns)]
-        lower = reduce(np.maximum, [low for low, _ in boxes])
-        upper = reduce(np.minimum, [high for _, high in boxes])
-        return np.minimum(lower, upper), upper
-
-    def _box_of(self, boxes: Sequence[Bounds | None]) -> Bounds | None:
-        known = [box for box in boxes if box is not None]
-        if not known:
-            return None
-        met = reduce(Bounds.meet, known)
-        return Bounds(np.minimum(met.lower, met.upper), met.upper)
-
-
-class UnionRegion(Composite):
-    """The points that lie in any member."""
-
-    def __init__(self, *members: Region, orientation: Any = None, name: str | None = None) -> None:
-        super().__init__(*members, orientation=orientation, name=name)
-        self.dimension = max(member.dimension for member in members)
-
-    def uniform_placement(self) -> tuple[Any, Any]:
-        for member in self.members:
-            if member.dimension == self.dimension and type(member).sizes is Region.sizes:
-                raise ScenicTypeError(
-                    f"the size of {member!r} is not known: no point of a union with it can be drawn",
-                    span=here(),
-                    help="choose among the regions, as by `Uniform(a, b)`, or use such whose parameters are fixed",
-                )
-        return super().uniform_placement()
-
-    def combined(self, members: Sequence[Region]) -> Region:
-        result = members[0]
-        for member in members[1:]:
-            result = result.union(member)
-        return result
-
-    def _sources(self, columns: Sequence[Column]) -> tuple[list[int], NDArray[np.float64]]:
-        chosen, weights = [], []
-        for number, (member, mine) in enumerate(self._parts(columns)):
-            if member.dimension == self.dimension:
-                size = member.sizes(*mine)
-                if not np.isfinite(size).all():
-                    raise ScenicTypeError(
-                        f"the size of {member!r} is not known: no point of a union with it can be drawn"
-                    )
-                chosen.append(number)
-                weights.append(size)
-        lanes = max(map(len, weights))
-        return chosen, np.stack([np.broadcast_to(weight, lanes) for weight in weights])
-
-    def _accept(self, points: Points, inside: Sequence[Mask], chosen: NDArray[np.intp], dice: Column) -> Mask:
-        # A point in several members is drawn once for each of them.
-        mine = [
-            mask
-            for mask, member in zip(inside, self.members, strict=True)
-            if member.dimension == self.dimension
-        ]
-        return np.asarray(dice * np.sum(mine, axis=0) <= 1)
-
-    def joined(self, inside: Sequence[Mask]) -> Mask:
-        return _any(inside)
-
-    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        """Where one member holds the whole body, or several together do whose union has a closed form in that lane."""
-        one = _any([member.contains_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
-        inside = np.array(np.broadcast_to(one, lanes))
-        left = np.flatnonzero(~inside)
-        if not len(left):
-            return inside
-        left = left[self._hold_vertices(body, left, columns)]
-        flat = self.from_above(*rows_of(columns, left)) if len(left) else None
-        if flat is not None:
-            inside[left] = flat.holds(body, left)
-            return inside
-        if not self.is_random:
-            return inside
-        for lane in left.tolist():
-            region = self.in_lane(lane, columns)
-            if not isinstance(region, UnionRegion):
-                part = body if len(body) == 1 else body.take(np.array([lane]))
-                inside[lane] = region.contains_bodies(part, 1, *region.fixed_columns("the union"))[0]
-        return inside
-
-    def _hold_vertices(self, body: Body, lanes: NDArray[np.intp], columns: Sequence[Column]) -> Mask:
-        """In which of some lanes the first vertices of the body lie in members."""
-        held = np.ones(len(lanes), dtype=np.bool_)
-        rows = [column if len(column) == 1 else column[lanes] for column in columns]
-        part = body if len(body) == 1 else body.take(lanes)
-        for mesh, chosen in part.by_mesh(len(lanes)):
-            poses = part.poses.take(chosen) if len(part.poses) > 1 else part.poses
-            mine = [row if len(row) == 1 else row[chosen] for row in rows]
-            for vertex in mesh.vertices[:_PROBES]:
-                points = np.broadcast_to(
-                    poses.to_world(vertex[np.newaxis, np.newaxis])[:, 0], (len(chosen), 3)
-                )
-                held[chosen] &= self.contains_points(points, *mine)
-        return held
-
-    def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        return self.may_meet(body, lanes, columns)
-
-    def may_meet(self, body: Body, lanes: int, columns: Sequence[Column]) -> Mask:
-        return _any([member.meets_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
-
-    def from_above(self, *columns: Column) -> Flat | None:
-        return _joined(Flat.union, [member.from_above(*mine) for member, mine in self._parts(columns)])
-
-    def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        return np.asarray(
-            reduce(np.minimum, [member.gaps(points, *mine) for member, mine in self._parts(columns)])
-        )
-
-    @property
-    def footprint(self) -> Region:
-        return UnionRegion(*(member.footprint for member in self.members))
-
-    def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        return np.asarray(
-            reduce(np.minimum, [member.distances(points, *mine) for member, mine in self._parts(columns)])
-        )
-
-    def box(self, *columns: Column) -> tuple[Points, Points]:
-        boxes = [member.box(*mine) for member, mine in self._parts(columns)]
-        return reduce(np.minimum, [low for low, _ in boxes]), reduce(np.maximum, [high for _, high in boxes])
-
-    def _box_of(self, boxes: Sequence[Bounds | None]) -> Bounds | None:
-        return hull_of(boxes)
-
-
-class DifferenceRegion(Composite):
-    """The points of the first member that do not lie in the second."""
-
-    def __init__(
-        self, regionA: Region, regionB: Region, *, orientation: Any = None, name: str | None = None
-    ) -> None:
-        super().__init__(regionA, regionB, orientation=orientation, name=name)
-        self.regionA, self.regionB = regionA, regionB
-        self.dimension = regionA.dimension
-        if orientation is None:
-            self.has_orientation, self.orientation = regionA.has_orientation, regionA.orientation
-
-    def combined(self, members: Sequence[Region]) -> Region:
-        return members[0].difference(members[1])
-
-    def _sources(self, columns: Sequence[Column]) -> tuple[list[int], NDArray[np.float64]]:
-        return [0], np.ones((1, 1))
-
-    def _accept(self, points: Points, inside: Sequence[Mask], chosen: NDArray[np.intp], dice: Column) -> Mask:
-        return np.asarray(~inside[1])
-
-    def joined(self, inside: Sequence[Mask]) -> Mask:
-        first, second = inside
-        return np.asarray(first & ~second)
-
-    def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        """Where the first member holds the whole body, and the second touches it nowhere."""
-        (first, mine), (second, others) = self._parts(columns)
-        inside = np.broadcast_to(first.contains_bodies(body, lanes, *mine), lanes).copy()
-        held = np.flatnonzero(inside)
-        if len(held):
-            # A container of the plane holds what is above it: what is cut out of it is cut out at every height.
-            hole = second.footprint if _is_flat(self) else second
-            inside[held] = ~hole.meets_bodies(body.take(held), len(held), *rows_of(others, held))
-        return inside
-
-    def may_meet(self, body: Body, lanes: int, columns: Sequence[Column]) -> Mask:
-        (first, mine), _ = self._parts(columns)
-        return first.meets_bodies(body, lanes, *mine)
-
-    def meets_polytopes(self, planes: Column, lanes: int, columns: Sequence[Column]) -> Mask | None:
-        """Where a vertex of what the polytope shares with the first member lies outside the second, which is convex."""
-        (first, mine), (second, others) = self._parts(columns)
-        own = first.half_spaces(*mine)
-        if own is None or not second.is_surely_convex():
-            return None
-        found = polytopes.edges(polytopes.joined(own, planes))
-        result = np.zeros(len(found.valid), dtype=np.bool_)
-        for ends in (found.starts, found.ends):
-            lane, edge = np.nonzero(found.valid)
-            outside = ~second.contains_points(ends[lane, edge], *rows_of(others, lane))
-            np.logical_or.at(result, lane, outside)
-        return np.broadcast_to(result, lanes)
-
-    def solid_distances(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64] | None:
-        (first, mine), (second, others) = self._parts(columns)
-        planes = first.half_spaces(*mine)
-        if planes is None:
-            return None
-        planes = np.broadcast_to(planes, (len(points), *planes.shape[1:]))
-        holes = second.half_spaces(*others)
-        if holes is not None:
-            # Outside a polytope is beyond one of its planes.
-            beyond = [
-                polytopes.distances(polytopes.joined(planes, -holes[:, [number]]), points)
-                for number in range(holes.shape[1])
-            ]
-            return np.asarray(reduce(np.minimum, beyond))
-        ball = second.ball(*others)
-        if ball is None:
-            return None
-        centre, radius = (np.broadcast_to(part, (len(points), *part.shape[1:])) for part in ball)
-        return polytopes.distances_without_ball(planes, centre, radius, points)
-
-    def from_above(self, *columns: Column) -> Flat | None:
-        return _joined(Flat.difference, [member.from_above(*mine) for member, mine in self._parts(columns)])
-
-    def decided(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64]:
-        """The distance to the first member, where its nearest point is not in the second."""
-        result = super().decided(points, columns)
-        (first, mine), (second, others) = self._parts(columns)
-        found = first.nearest(points, *mine)
-        if found is not None:
-            outside = ~exactly_contains(second, _levelled(self, found, columns), others)
-            result[outside] = np.broadcast_to(first.distances(points, *mine), len(points))[outside]
-        return result
-
-    @property
-    def footprint(self) -> Region:
-        first, second = (member.footprint for member in self.members)
-        return DifferenceRegion(first, second)
-
-    def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        (first, mine), _ = self._parts(columns)
-        return first.gaps(points, *mine)
-
-    def depths(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        (first, mine), (second, others) = self._parts(columns)
-        depths = first.depths(points, *mine)
-        # What is cut out of a container of the plane is cut out at every height.
-        return np.minimum(depths, second.gaps(points, *others)) if _is_flat(self) else depths
-
-    def box(self, *columns: Column) -> tuple[Points, Points]:
-        (first, mine), _ = self._parts(columns)
-        return first.box(*mine)
-
-    def _box_of(self, boxes: Sequence[Bounds | None]) -> Bounds | None:
-        return boxes[0]
-
-
-__all__ = ["Composite", "DifferenceRegion", "IntersectionRegion", "UnionRegion", "exactly_contains"]

@@ -311,6 +311,12 @@ class PiecewiseVectorField(VectorField):
         return self.defaultHeading
 
 
+def field_of_union(members: Sequence[Any]) -> PiecewiseVectorField | None:
+    """The preferred orientation of a union of regions of the plane: that of the first member that holds the point."""
+    oriented = any(member.has_orientation for member in members)
+    return PiecewiseVectorField("union", members) if oriented else None
+
+
 class PolyhedronVectorField(VectorField):
     """A field that is constant on volumes.
 

@@ -8,10 +8,11 @@ from scenic.runtime.geometry import booleans
 from scenic.runtime.geometry.prisms import shadow
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.body_regions import OccupiedSpace
+from scenic.runtime.regions.circular import CircularRegion
 from scenic.runtime.regions.composite import Composite
 from scenic.runtime.regions.lines import LineRegion, PolylineRegion
 from scenic.runtime.regions.pairs import Cell, PairTable
-from scenic.runtime.regions.planar import CircularRegion, Footprint, PlanarRegion
+from scenic.runtime.regions.planar import Footprint, PlanarRegion
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.terms import flat_of, holds, length_inside, meshed
 from scenic.runtime.regions.views import ViewRegion

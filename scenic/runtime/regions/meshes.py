@@ -15,6 +15,7 @@ from scenic.runtime.geometry.solids import proper_volume
 from scenic.runtime.geometry.surface import side_contains
 from scenic.runtime.geometry.topology import without_unused
 from scenic.runtime.program.context import here
+from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.body_regions import Facing, OccupiedSpace, SideSurface
 from scenic.runtime.regions.fields import RegionField
@@ -259,6 +260,7 @@ def surface_in_world(region: SideSurface) -> Mesh | None:
     return Mesh(*without_unused(mesh.vertices, mine))
 
 
+@generic.world_mesh.register(Region)
 def world_mesh(region: Region) -> Any:
     """The mesh of a region of a body in the world, as a `trimesh.Trimesh`."""
     import trimesh

@@ -15,8 +15,9 @@ from scenic.runtime.geometry.outlines import Geometries
 from scenic.runtime.geometry.polygons import Polygons
 from scenic.runtime.geometry.rectangles import Rectangles
 from scenic.runtime.regions.base import Mask, Points
+from scenic.runtime.regions.circular import disc_extent
 from scenic.runtime.regions.flat import Flat, ragged_polygons, rows_of
-from scenic.runtime.regions.planar import PlanarRegion, disc_extent, positive, rounded_outward
+from scenic.runtime.regions.planar import PlanarRegion, positive, rounded_outward
 from scenic.runtime.values.values import to_heading, to_vector
 
 

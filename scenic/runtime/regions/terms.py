@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.containment import contains_points
 from scenic.runtime.geometry.mesh import Mesh
@@ -19,7 +18,7 @@ from scenic.runtime.regions.lines import LineRegion, PolylineRegion
 from scenic.runtime.regions.meshes import solid_in_world
 from scenic.runtime.regions.planar import Footprint, PlanarRegion
 from scenic.runtime.regions.views import ViewRegion
-from scenic.runtime.regions.volumes import BoxRegion, PlacedVolume
+from scenic.runtime.regions.volumes import PlacedVolume
 
 
 def solid_of(region: Region) -> Mesh | None:
@@ -28,7 +27,7 @@ def solid_of(region: Region) -> Mesh | None:
         return solid_in_world(region.fixed_columns("the solid"))
     if isinstance(region, PlacedVolume):
         dimensions, position, rotation = region.fixed_columns("the solid")
-        unit = primitives.box() if isinstance(region, BoxRegion) else primitives.spheroid()
+        unit = region.unit_mesh()
         return Mesh(Poses(position, rotation, dimensions).to_world(unit.vertices[np.newaxis])[0], unit.faces)
     return None
 

@@ -27,10 +27,12 @@ from scenic.runtime.geometry.visibility.regions import (
 )
 from scenic.runtime.geometry.visibility.views import CORNERS, Views
 from scenic.runtime.program.context import here
+from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Mask, Points, Region
-from scenic.runtime.regions.composite import DifferenceRegion, IntersectionRegion
+from scenic.runtime.regions.circular import CircularRegion
+from scenic.runtime.regions.combinations import DifferenceRegion, IntersectionRegion
 from scenic.runtime.regions.nearness import grown
-from scenic.runtime.regions.planar import CircularRegion, PlanarRegion
+from scenic.runtime.regions.planar import PlanarRegion
 from scenic.runtime.regions.sectors import SectorRegion
 from scenic.runtime.regions.spaces import Everywhere, Workspace
 from scenic.runtime.values.values import (
@@ -129,23 +131,23 @@ class ViewRegion(Region):
 
     def getVolumeRegion(self) -> Region:
         """The volume of its mesh, without random parameters."""
-        volume: Region = self.algebra.volume_of(self)
-        return volume
+        region: Region = generic.meshed(self)
+        return region
 
     def getSurfaceRegion(self) -> Region:
         """The surface of its mesh, without random parameters."""
-        surface: Region = self.algebra.volume_of(self).getSurfaceRegion()
-        return surface
+        region: Region = generic.meshed(self).getSurfaceRegion()
+        return region
 
     @property
     def mesh(self) -> Any:
         """A mesh of it in the world, trimesh's, without random parameters; see `distances`."""
-        return self.algebra.volume_of(self).mesh
+        return generic.meshed(self).mesh
 
     @property
     def boundingPolygon(self) -> Any:
         """Its mesh seen from above."""
-        return self.algebra.volume_of(self).boundingPolygon
+        return generic.meshed(self).boundingPolygon
 
     @property
     def position(self) -> Any:
@@ -160,28 +162,27 @@ class ViewRegion(Region):
     @property
     def isConvex(self) -> bool:
         """Whether its mesh is convex."""
-        return bool(self.algebra.volume_of(self).isConvex)
+        return bool(generic.meshed(self).isConvex)
 
     @property
     def inradius(self) -> float:
         """As of its mesh."""
-        radius: float = self.algebra.volume_of(self).inradius
-        return radius
+        return float(generic.meshed(self).inradius)
 
     @property
     def circumcircle(self) -> tuple[Any, float]:
         """As of its mesh."""
-        circle: tuple[Any, float] = self.algebra.volume_of(self).circumcircle
+        circle: tuple[Any, float] = generic.meshed(self).circumcircle
         return circle
 
     def voxelized(self, pitch: float) -> Region:
         """The cells of this edge length, in metres, that its mesh touches."""
-        cells: Region = self.algebra.volume_of(self).voxelized(pitch)
-        return cells
+        region: Region = generic.meshed(self).voxelized(pitch)
+        return region
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
         """As onto its mesh."""
-        landing: tuple[Any, Any] = self.algebra.volume_of(self).project(point, direction)
+        landing: tuple[Any, Any] = generic.meshed(self).project(point, direction)
         return landing
 
     def box(self, *columns: Column) -> tuple[Points, Points]:

@@ -18,6 +18,7 @@ from scenic.runtime.geometry.polytopes import half_spaces
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.scalar_bodies import Placed, placed
 from scenic.runtime.program.context import here
+from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.nearness import body_box
 from scenic.runtime.regions.scalar_regions import Ball, Box, Single
@@ -72,13 +73,13 @@ class PlacedVolume(Region):
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
         way = self.onDirection if direction is None else direction
-        landed: Any = self.algebra.volume_of(self).project(point, way)[0]
+        landed: Any = generic.meshed(self).project(point, way)[0]
         return landed, self.orientation_at(landed)
 
     def getSurfaceRegion(self) -> Region:
         """The surface of the volume."""
-        surface: Region = self.algebra.volume_of(self).getSurfaceRegion()
-        return surface
+        region: Region = generic.meshed(self).getSurfaceRegion()
+        return region
 
     def getVolumeRegion(self) -> Region:
         """The volume itself."""
@@ -87,17 +88,17 @@ class PlacedVolume(Region):
     @property
     def mesh(self) -> Any:
         """The mesh in the world, trimesh's; of a region without random parameters."""
-        return self.algebra.volume_of(self).mesh
+        return generic.meshed(self).mesh
 
     def voxelized(self, pitch: float) -> Region:
         """The cells of this edge length, in metres, that the volume touches."""
-        region: Region = self.algebra.voxelized(self, pitch)
+        region: Region = generic.voxelized(self, pitch)
         return region
 
     @property
     def boundingPolygon(self) -> Any:
         """The region seen from above."""
-        return self.algebra.outline_from_above(self)
+        return generic.outline_from_above(self)
 
     def _as_body(self) -> Placed:
         """The box about it, where nothing is random."""

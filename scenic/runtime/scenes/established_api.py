@@ -18,6 +18,7 @@ from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.solids import proper_volume
 from scenic.runtime.instances.objects import Point
 from scenic.runtime.program.context import verbosity as verbosity_now
+from scenic.runtime.regions.algebra import region_of
 from scenic.runtime.regions.base import Region
 from scenic.runtime.scenes.dumping import NoLiteralError, literal
 from scenic.runtime.values.lazy import Lazy, defer, is_lazy
@@ -218,8 +219,7 @@ def triangulatePolygon(polygon: Any) -> list[Any]:
 
 def regionFromShapelyObject(obj: Any, orientation: Any = None) -> Region:
     """The region of a shapely geometry: its polygons, else its lines, else its points."""
-    region: Region = Region.algebra.region_of(obj, 0.0, orientation)
-    return region
+    return region_of(obj, 0.0, orientation)
 
 
 def convertToFootprint(region: Region) -> Region:

@@ -7,8 +7,9 @@ from scipy.spatial.transform import Rotation
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.outlines import shadows, shadows_meet
 from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.regions.circular import CircularRegion
 from scenic.runtime.regions.flat import Flat
-from scenic.runtime.regions.planar import CircularRegion, Footprint
+from scenic.runtime.regions.planar import Footprint
 from tests.runtime.geometry.samples import table
 
 LANES = 400

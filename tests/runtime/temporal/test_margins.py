@@ -17,7 +17,7 @@ from scenic.runtime.geometry.depth import convex_depth, convex_gap
 from scenic.runtime.geometry.distance import between as gaps
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.scalar_bodies import Placed, overlap, placed
-from scenic.runtime.regions.planar import CircularRegion
+from scenic.runtime.regions.circular import CircularRegion
 from scenic.runtime.values.values import Orientation, Vector
 from scenic.runtime.visibility.clearance import clearance
 from scenic.simulators.dummy import DummySimulator
