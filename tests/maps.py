@@ -76,10 +76,11 @@ def straight(length: float = 100.0, **given: str) -> str:
     return map_text([RoadText("1", length, line(0, 0, 0, length), two_way(False, False), **given)])
 
 
-def cross(arm: float = 60.0, half: float = 10.0, *, signal: str = "") -> str:
+def cross(arm: float = 60.0, half: float = 10.0, *, signal: str = "", bent: int = 0) -> str:
     """Four roads of two lanes that meet at the origin; each way through the junction is a road of its own.
 
-    Road ``i`` (1 to 4) comes in from the direction ``(i - 1) * 90`` degrees and ends at the junction.
+    Road ``i`` (1 to 4) comes in from the direction ``(i - 1) * 90`` degrees and ends at the junction. Road ``bent`` begins there
+    instead, and bends to the left by 220 degrees, within 40 m.
     """
     roads: list[RoadText] = []
     connections: list[str] = []
@@ -98,7 +99,18 @@ def cross(arm: float = 60.0, half: float = 10.0, *, signal: str = "") -> str:
                 rest=signals,
             )
         )
+    if bent:
+        way = (bent - 1) * math.pi / 2
+        x, y, length = half * math.cos(way), half * math.sin(way), 40 * math.radians(220)
+        shape = piece(x, y, way, length, '<arc curvature="0.025"/>')
+        link = '<predecessor elementType="junction" elementId="9"/>'
+        roads[bent - 1] = RoadText(str(bent), length, shape, two_way(False, False), link=link)
     for number, (i, j) in enumerate(turns):
+        # At its beginning, lanes of a road lead into the crossing whose numbers are positive.
+        (into, begins), (out, ends) = (
+            (side * (1 if k + 1 != bent else -1), "start" if k + 1 == bent else "end")
+            for side, k in ((-1, i), (1, j))
+        )
         start, end = i * math.pi / 2, j * math.pi / 2
         x, y = half * math.cos(start), half * math.sin(start)
         heading = start + math.pi
@@ -109,15 +121,15 @@ def cross(arm: float = 60.0, half: float = 10.0, *, signal: str = "") -> str:
             radius = half
             length, shape = abs(turn) * radius, f'<arc curvature="{math.copysign(1 / radius, turn)!r}"/>'
         name = str(100 + number)
-        one_way = lanes("", lane(-1, before=-1, after=1))
+        one_way = lanes("", lane(-1, before=into, after=out))
         link = (
-            f'<predecessor elementType="road" elementId="{i + 1}" contactPoint="end"/>'
-            f'<successor elementType="road" elementId="{j + 1}" contactPoint="end"/>'
+            f'<predecessor elementType="road" elementId="{i + 1}" contactPoint="{begins}"/>'
+            f'<successor elementType="road" elementId="{j + 1}" contactPoint="{ends}"/>'
         )
         roads.append(RoadText(name, length, piece(x, y, heading, length, shape), one_way, "9", link))
         connections.append(
             f'<connection id="{number}" incomingRoad="{i + 1}" connectingRoad="{name}" contactPoint="start">'
-            '<laneLink from="-1" to="-1"/></connection>'
+            f'<laneLink from="{into}" to="-1"/></connection>'
         )
     junction = f'<junction id="9" name="crossing">{"".join(connections)}</junction>'
     return map_text(roads, junction)

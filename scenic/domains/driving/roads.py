@@ -1,7 +1,10 @@
 """Road networks and their elements: the names that programs import."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
+from zipfile import BadZipFile
+
+import numpy as np
 
 from scenic.domains.driving.drawing import show, svg
 from scenic.domains.driving.elements import (
@@ -22,6 +25,8 @@ from scenic.domains.driving.elements import (
 from scenic.domains.driving.kinds import ManeuverType, VehicleType
 from scenic.domains.driving.loading import load_network
 from scenic.domains.driving.network import RoadNetwork
+from scenic.domains.driving.storing import KIND, restored, stored
+from scenic.runtime.scenes.files import whole
 
 __all__ = [
     "Intersection",
@@ -46,6 +51,12 @@ __all__ = [
 class Network(RoadNetwork):
     """The road network of a map."""
 
+    pickledExt: ClassVar[str] = ".snet"
+    """The established ending of files that `dumpPickle` writes. They hold arrays alone; no such file is read unless it is named."""
+
+    class DigestMismatchError(ValueError):
+        """A kept network is not one of this map."""
+
     @classmethod
     def fromFile(cls, path: Any, useCache: bool = True, writeCache: bool = True, **options: Any) -> "Network":
         """The network of a map file; the same one for equal content and options.
@@ -68,6 +79,40 @@ class Network(RoadNetwork):
     def fromOpenDrive(cls, path: Any, **options: Any) -> "Network":
         """The network of an OpenDRIVE file; see `fromFile`."""
         return cls.fromFile(path, **options)
+
+    def dumpPickle(self, path: Any, digest: bytes = b"") -> None:
+        """Keep the network in a file, as arrays, with a digest of the map that it is made from."""
+        arrays: dict[str, Any] = {**stored(self), "tolerance": np.array(self.tolerance)}
+        with whole(Path(path)) as file:
+            np.savez_compressed(file, form=np.array(KIND), digest=np.frombuffer(digest, np.uint8), **arrays)
+
+    @classmethod
+    def fromPickle(cls, path: Any, originalDigest: bytes | None = None) -> "Network":
+        """The network in a file that `dumpPickle` wrote. Nothing in the file is executed.
+
+        Args:
+            path: the file.
+            originalDigest: the digest that it must have been given, if any.
+
+        Raises:
+            ValueError: if this version wrote no such file.
+            DigestMismatchError: if its digest is another one.
+
+        """
+        try:
+            with np.load(path, allow_pickle=False) as kept:
+                arrays = dict(kept)
+            if str(arrays["form"]) != KIND:
+                raise KeyError("form")
+            if originalDigest is not None and arrays["digest"].tobytes() != originalDigest:
+                raise cls.DigestMismatchError(f"'{path}' is of another map, or of other options")
+            return restored(arrays, str(path), float(arrays["tolerance"]), cls)
+        except cls.DigestMismatchError:
+            raise
+        except (LookupError, TypeError, ValueError, BadZipFile) as error:
+            raise ValueError(
+                f"'{path}' is not a network that this version of scenic wrote: load the map itself"
+            ) from error
 
     def svg(self, width: int = 1200) -> str:
         """A drawing of the network from above, as SVG, ``width`` pixels wide."""

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.formats.opendrive.curves import Curve, cubic_bend, cubic_values
-from scenic.formats.opendrive.records import Lane, LaneSection, Problem, Road
+from scenic.formats.opendrive.records import Cubic, Lane, LaneSection, Problem, Road
 
 __all__ = ["MAX_ERROR", "RoadShape", "SectionShape", "road_shape"]
 
@@ -25,6 +25,9 @@ _TORN: Final = 0.1
 """Metres between the pieces of a reference line that are reported, once for a road."""
 
 _SAME: Final = 1e-9
+
+_JUMP: Final = 1e-4
+"""Metres of road within which widths change that the file changes at once."""
 
 _MOST: Final = 50_000
 """Samples of a section beyond which a number in the file must be wrong; hours would pass otherwise."""
@@ -112,8 +115,10 @@ def _samples(
     """Places along the road that all lanes of a section share: every break, and enough between them."""
     length = end - start
     breaks = [start, end, *curve.breaks, *(cubic.start for cubic in road.lane_offset)]
+    breaks += _jumps(road.lane_offset, max_error)
     for lane in section.lanes:
         breaks += [start + cubic.start for cubic in (*lane.widths, *lane.borders)]
+        breaks += [start + place for place in _jumps(lane.widths or lane.borders, max_error)]
     knots = np.unique([place for place in breaks if start <= place <= end])
     keep = np.concatenate([[True], np.diff(knots) > 1e-7])
     knots = knots[keep]
@@ -140,6 +145,19 @@ def _samples(
         for left, right, count in zip(knots[:-1], knots[1:], counts, strict=True)
     ]
     return np.append(np.concatenate(parts), knots[-1]) if parts else knots
+
+
+def _jumps(cubics: Sequence[Cubic], least: float) -> list[float]:
+    """The places just before those at which values change at once, by more than ``least`` metres."""
+    if len(cubics) < 2:
+        return []
+    starts = np.array([cubic.start for cubic in cubics[1:]])
+    before = np.array(
+        [cubic_values((cubic,), np.array([place]))[0] for cubic, place in zip(cubics, starts, strict=False)]
+    )
+    after = np.array([cubic.a for cubic in cubics[1:]])
+    places: list[float] = (starts[np.abs(after - before) > least] - _JUMP).tolist()
+    return places
 
 
 def _offsets(road: Road, section: LaneSection, s: Floats, tell: Callable[[Problem], None]) -> Floats:
