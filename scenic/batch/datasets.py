@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 
 from scenic.batch.engines import Engine
 from scenic.batch.image_parts import ImageRows, ImageSink, join_indices
-from scenic.batch.manifest import DatasetError, Manifest, Part, digest_of
+from scenic.batch.manifest import DatasetError, Manifest, Part
 from scenic.batch.scenes import LONGEST, Job, Made, encoded_here, in_processes, method_of
 from scenic.formats.files import Waiting, make_folder, refusing, writing
 from scenic.formats.json_lines import SceneLines
+from scenic.formats.mesh_files import digest_of
 from scenic.formats.trajectory_tables import parquet_support
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
@@ -119,8 +120,13 @@ class Encoder:
             return bytes(self._writer.rows(scenes))
         if self._form == "jsonl":
             if self._writer is None:
-                name = Path(scenario.filename).name
-                self._writer = SceneLines((name, scenario.digest), changed=self._changed, points=self._points)
+                program = Path(scenario.filename)
+                self._writer = SceneLines(
+                    (program.name, scenario.digest),
+                    changed=self._changed,
+                    points=self._points,
+                    folder=program.parent,
+                )
             return bytes(self._writer.block(scenario, scenes))
         from scenic.formats.scene_tables import SceneTable
 

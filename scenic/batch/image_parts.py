@@ -15,9 +15,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from scenic.batch.manifest import DatasetError, Manifest, Part, digest_of
+from scenic.batch.manifest import DatasetError, Manifest, Part
 from scenic.formats.coco import INDEX, Photographer, index_of
 from scenic.formats.files import Waiting, write, writing
+from scenic.formats.mesh_files import digest_of
 from scenic.formats.shards import END, member, members
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene

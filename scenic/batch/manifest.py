@@ -1,6 +1,5 @@
 """Manifests: how a data set was made, and what its files must be."""
 
-import hashlib
 import json
 import os
 from collections.abc import Iterable, Mapping
@@ -10,11 +9,12 @@ from typing import Any, Final, Self
 
 from scenic.batch.engines import versions
 from scenic.formats.files import write
+from scenic.formats.mesh_files import digest_of
 from scenic.language.errors import Located
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.values.choices import options_of
 
-__all__ = ["FORMAT", "NAME", "VERSION", "DatasetError", "Manifest", "Part", "digest_of", "mesh_digests"]
+__all__ = ["FORMAT", "NAME", "VERSION", "DatasetError", "Manifest", "Part", "mesh_digests"]
 
 FORMAT: Final = "scenic-dataset"
 VERSION: Final = 1
@@ -200,12 +200,6 @@ _SETTINGS: Final = (
     "program", "digest", "fingerprint", "seed", "first", "form", "part_size", "points", "max_attempts", "properties",
     "images", "meshes", "versions",
 )  # fmt: skip
-
-
-def digest_of(path: Path) -> str:
-    """SHA-256 of a file's bytes, in hexadecimal."""
-    with path.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def mesh_digests(scenario: Scenario) -> dict[str, str]:

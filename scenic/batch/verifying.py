@@ -11,9 +11,10 @@ from typing import Any
 
 from scenic.batch.datasets import Encoder
 from scenic.batch.image_parts import IMAGE_FORMS, copy_images, damaged_files, image_rows, join_indices
-from scenic.batch.manifest import DatasetError, Manifest, Part, digest_of
+from scenic.batch.manifest import DatasetError, Manifest, Part
 from scenic.batch.scenes import Job, method_of, results_of
 from scenic.formats.files import make_folder, write
+from scenic.formats.mesh_files import digest_of
 from scenic.formats.trajectory_tables import parquet_support
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario

@@ -308,7 +308,10 @@ def sample(
     if seed is None:
         seed = secrets.randbits(32)
         sys.stderr.write(f"seed {seed} (the same scenes again: --seed {seed})\n")
-    lines = SceneLines((path.name, loaded.digest), changed=properties == "changed", points=points)
+    place = Path.cwd() if target in (None, sinks.STANDARD_OUTPUT) else target.parent
+    lines = SceneLines(
+        (path.name, loaded.digest), changed=properties == "changed", points=points, folder=place
+    )
     job = batches.Job(seed, first + done, first + count, max_attempts, deadline, **batches.method_of(points))
     if sampler is None:
         results = batches.results_of(loaded, job)

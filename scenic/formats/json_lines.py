@@ -4,10 +4,12 @@ import json
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from scenic.formats.mesh_files import MeshPaths
 from scenic.formats.poses import euler_angles, quaternion_of
 from scenic.formats.scenes import Origin, Scene, SceneObject
 
@@ -41,13 +43,20 @@ class SceneLines:
         program: the name of the program's file and the digest of its text and options; told in every line.
         changed: whether to tell only properties that the program gives, not those at the defaults of the language.
         points: how the scenes are made, if not by rejection of random numbers: ``sobol``, ``approximate N``.
+        folder: the folder that paths of mesh files are relative to; they are absolute if there is none.
 
     """
 
     def __init__(
-        self, program: tuple[str, str] | None = None, *, changed: bool = False, points: str | None = None
+        self,
+        program: tuple[str, str] | None = None,
+        *,
+        changed: bool = False,
+        points: str | None = None,
+        folder: Path | None = None,
     ) -> None:
         self._changed = changed
+        self._meshes = MeshPaths(folder)
         self._head = {"format": FORMAT, "version": VERSION}
         if program is not None:
             self._head["program"], self._head["digest"] = program
@@ -82,10 +91,10 @@ class SceneLines:
         origin = scene.origin(thing)
         template = self._templates.get(id(origin))
         if template is None:
-            template = _Template(origin, thing, name, numbers, changed=self._changed)
+            template = _Template(origin, thing, name, numbers, self._meshes, changed=self._changed)
             self._templates[id(origin)] = template
         quaternion = quaternion_of(thing)
-        shape = template.shape or _text_of(plain(thing.shape.source.as_dict(), numbers))
+        shape = template.shape or _text_of(plain(self._meshes.told(thing.shape.source), numbers))
         place = f'{template.head},"position":{_list_of(thing.position)},"quaternion":{_list_of(quaternion)}'
         size = _list_of((thing.width, thing.length, thing.height))
         turn = _list_of(euler_angles(quaternion))
@@ -114,6 +123,7 @@ class _Template:
         thing: SceneObject,
         name: str | None,
         numbers: Mapping[int, int],
+        meshes: MeshPaths,
         *,
         changed: bool,
     ) -> None:
@@ -121,7 +131,7 @@ class _Template:
         self.head = _text_of({"class": type(thing).__name__, "name": name})[:-1]
         self.shape = ""
         if "shape" in origin.fixed:
-            self.shape = _text_of(plain(thing.shape.source.as_dict(), numbers))
+            self.shape = _text_of(plain(meshes.told(thing.shape.source), numbers))
         self.pieces: list[tuple[str, str]] = []
         text, separator = "", ""
         for key in origin.given if changed else origin.names:

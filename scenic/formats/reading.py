@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from scenic.formats.json_lines import FORMAT, VERSION
+from scenic.formats.mesh_files import resolved
 from scenic.language.errors import Located, MissingFileError
 
 Triple = tuple[float, float, float]
@@ -29,7 +30,7 @@ class ReadObject:
         quaternion: x, y, z, w.
         euler: yaw, pitch, roll in radians.
         size: width, length, height in metres.
-        shape: what its mesh is, as data.
+        shape: what its mesh is, as data; the ``path`` of a mesh file is absolute.
         properties: its other properties; a reference to another object is ``{"$object": number}``.
 
     """
@@ -69,7 +70,7 @@ def read_scenes(path: str | Path) -> Iterator[ReadScene]:
     try:
         with Path(path).open("rb") as file:
             # Line by line, so that the one that is no text is known.
-            yield from scenes_of((line.decode() for line in file), str(path))
+            yield from scenes_of((line.decode() for line in file), str(path), _mesh_folder(Path(path).parent))
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise MissingFileError(
@@ -77,13 +78,25 @@ def read_scenes(path: str | Path) -> Iterator[ReadScene]:
         ) from error
 
 
-def scenes_of(lines: Iterable[str], name: str) -> Iterator[ReadScene]:
-    """The scenes of lines of text; ``name`` is where they come from. Raises ``SceneFileError`` at a line that holds none."""
+def _mesh_folder(folder: Path) -> Path:
+    """The folder that paths of mesh files are relative to: that of the file, in a data set that of the program."""
+    try:
+        manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
+        return Path(folder, manifest["source"]).parent
+    except (OSError, ValueError, KeyError, TypeError):
+        return folder
+
+
+def scenes_of(lines: Iterable[str], name: str, folder: Path = Path()) -> Iterator[ReadScene]:
+    """The scenes of lines of text; ``name`` is where they come from, ``folder`` what paths of meshes are relative to.
+
+    Raises ``SceneFileError`` at a line that holds none.
+    """
     number = 0
     try:
         for number, line in enumerate(lines, start=1):
             try:
-                yield _scene(json.loads(line, object_hook=_number))
+                yield _scene(json.loads(line, object_hook=_number), folder)
             except (ValueError, KeyError, TypeError, IndexError, AttributeError, RecursionError) as error:
                 raise _no_scene(number, name, error) from error
     except UnicodeDecodeError as error:
@@ -102,7 +115,7 @@ def _number(data: dict[str, Any]) -> Any:
     return float(data["$float"]) if data.keys() == {"$float"} else data
 
 
-def _scene(data: Any) -> ReadScene:
+def _scene(data: Any, folder: Path) -> ReadScene:
     if data["format"] != FORMAT or data["version"] != VERSION:
         raise ValueError(f"format {data['format']!r}, version {data['version']!r}")
     objects = tuple(
@@ -113,7 +126,7 @@ def _scene(data: Any) -> ReadScene:
             _numbers(item["quaternion"], 4),
             _numbers(item["euler"], 3),
             _numbers(item["size"], 3),
-            item["shape"],
+            resolved(item["shape"], folder),
             item["properties"],
         )
         for item in data["objects"]

@@ -2,8 +2,10 @@
 
 import json
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
+from scenic.formats.mesh_files import ChangedMeshError, check_unchanged
 from scenic.formats.reading import ReadObject, ReadScene
 from scenic.formats.scenes import Shape
 from scenic.language.errors import Located, MeshError
@@ -75,7 +77,10 @@ class Revival:
         self._classes: dict[str, type[RevivedObject]] = {}
 
     def revive(self, scene: ReadScene) -> RevivedScene:
-        """The scene with its meshes; where one cannot be had, the object's box stands for it (`substituted`)."""
+        """The scene with its meshes; where one cannot be had, the object's box stands for it (`substituted`).
+
+        Raises ``ChangedMeshError`` where a mesh file is not the one that the scene was made with.
+        """
         objects = tuple(self._class(item.kind)(item, self._shape(item.shape)) for item in scene.objects)
         return RevivedScene(scene, objects)
 
@@ -89,6 +94,8 @@ class Revival:
         if key not in self._shapes:
             try:
                 self._shapes[key] = _shape_of(told)
+            except ChangedMeshError:
+                raise
             except MeshError as error:
                 self.substituted[key] = error.message
             except (Located, TypeError, ValueError) as error:
@@ -109,9 +116,11 @@ def _shape_of(told: Mapping[str, Any]) -> Shape:
         return primitive(**given)
     if kind != "mesh":
         raise ValueError(f"no kind of form is called {kind!r}")
-    path = given.pop("path", None)
+    path, sha256 = given.pop("path", None), given.pop("sha256", None)
     if path is None:
         raise MeshError("a mesh that the program itself made is not in the file")
+    if sha256 is not None:
+        check_unchanged(Path(path), sha256)
     return MeshShape.fromFile(path, **given)
 
 

@@ -6,12 +6,14 @@ graph, too, are read scene by scene.
 
 import json
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, BinaryIO, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scenic.formats.json_lines import plain
+from scenic.formats.mesh_files import MeshPaths
 from scenic.formats.trajectory_tables import parquet_support
 from scenic.graph.kinds import Kind
 from scenic.runtime.scenes.columns import ObjectColumns, SceneColumns, ValueColumn
@@ -46,6 +48,7 @@ class SceneTable:
     def __init__(self, scenario: Scenario) -> None:
         arrow, self._parquet = parquet_support()
         self._arrow = arrow
+        self._meshes = MeshPaths(Path(scenario.filename).parent)
         columns = SceneColumns(scenario)
         self._params = {name: _Field(arrow, [column]) for name, column in columns.params.items()}
         self._objects = columns.objects
@@ -146,8 +149,12 @@ class SceneTable:
         arrow = self._arrow
         columns = [thing.properties["shape"] for thing in self._objects]
         if all(column.is_fixed for column in columns):
-            return self._repeated([_json(column.value.source.as_dict()) for column in columns], len(scenes))
-        rows = [[_json(shape.source.as_dict()) for shape in column.values(scenes)] for column in columns]
+            return self._repeated(
+                [_json(self._meshes.told(column.value.source)) for column in columns], len(scenes)
+            )
+        rows = [
+            [_json(self._meshes.told(shape.source)) for shape in column.values(scenes)] for column in columns
+        ]
         return arrow.array([text for row in zip(*rows, strict=True) for text in row], arrow.string())
 
 

@@ -224,7 +224,7 @@ def test_every_damage_is_named(scenario: scenic.Scenario, tmp_path: Path, form: 
 
 def test_a_scene_of_another_program_is_noticed(scenario: scenic.Scenario, tmp_path: Path) -> None:
     """A part whose digest was forged still differs from what the program gives."""
-    from scenic.batch.manifest import digest_of
+    from scenic.formats.mesh_files import digest_of
 
     finished = make_dataset(scenario, tmp_path, manifest(scenario, form="jsonl"))
     path = tmp_path / "part-00000.jsonl"

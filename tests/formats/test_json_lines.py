@@ -48,6 +48,8 @@ def conforms(value: Any, schema: dict[str, Any]) -> bool:
             case "additionalProperties":
                 others = [item for name, item in value.items() if name not in schema.get("properties", {})]
                 fine = all(conforms(item, argument) for item in others) if argument else not others
+            case "pattern":
+                fine = re.search(argument, value) is not None
             case "propertyNames":
                 fine = all(re.search(argument["pattern"], name) for name in value)
             case "items":
