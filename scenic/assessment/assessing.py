@@ -52,7 +52,7 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
         name = scenario.variable(item) or (
             "ego" if item is scenario.egoObject else f"{type(item).__name__} {number}"
         )
-        seen = [list(scene.objects[number].position) for scene in found]
+        seen = [list(scene.cast[number].position) for scene in found]
         places.append(Whereabouts(name, lower, upper, np.array(seen, dtype=np.float64).reshape(-1, 3)))
     values = tuple(
         ValueRow(_text(scenario.text, row), None if row.span is None else row.span.line, row)

@@ -139,8 +139,10 @@ class _Template:
                 continue
             text += f"{separator}{_text_of(key)}:"
             separator = ","
-            if key in origin.fixed:
-                text += _text_of(plain(origin.read(thing, key), numbers))
+            value = origin.read(thing, key) if key in origin.fixed else None
+            # The number of another object may differ between scenes.
+            if key in origin.fixed and plain(value, numbers) == plain(value, {}):
+                text += _text_of(plain(value, numbers))
             else:
                 self.pieces.append((text, key))
                 text = ""

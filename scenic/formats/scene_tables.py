@@ -124,7 +124,12 @@ class SceneTable:
             *([_struct(arrow, kind.field("properties").type, properties)] if properties else []),
         ]
         rows = _struct(arrow, kind, parts)
-        offsets = np.arange(count + 1, dtype=np.int32) * len(things)
+        there = np.ones((count, len(things)), dtype=np.bool_)
+        for place, thing in enumerate(things):
+            there[:, place] = _numbers(thing.present, scenes)
+        if not there.all():
+            rows = rows.filter(arrow.array(there.ravel()))
+        offsets = np.concatenate([[0], np.cumsum(there.sum(axis=1))]).astype(np.int32)
         return arrow.ListArray.from_arrays(arrow.array(offsets), rows, type=arrow.list_(kind))
 
     def _repeated(self, words: Sequence[str | None], count: int) -> Any:

@@ -309,6 +309,12 @@ _OBJECT = BuiltinClass(
             "Extent of the bounding box along the local Z axis.",
             ("shape",),
         ),
+        _P(
+            "present",
+            (BOOLEAN,),
+            "True",
+            "Whether it takes part in the scene at all; random for a random number of objects.",
+        ),
         _P("allowCollisions", (BOOLEAN,), "False", "Whether it may overlap other objects."),
         _P(
             "regionContainedIn",

@@ -236,6 +236,7 @@ OBJECT = {
     "length": (1, set()),
     "height": (1, set()),
     "allowCollisions": (False, set()),
+    "present": (True, set()),
     "baseOffset": ((0, 0, -0.5), set()),
     "contactTolerance": (1e-4, set()),
     "sideComponentThresholds": (((-0.5, 0.5),) * 3, set()),

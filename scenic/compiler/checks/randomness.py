@@ -94,7 +94,12 @@ def _iterates(node: ast.For, scope: Scope, context: Context) -> Iterator[Diagnos
         "SC403",
         "a loop over a random value is not possible while the scenario is being built",
         counted,
-        "its value is known only in a sampled scene; loop over all that it can be, or make each part random by itself",
+        "its value is known only in a sampled scene; "
+        + (
+            "for a random number of objects make the most there can be, each `with present i < count`"
+            if is_range
+            else "loop over all that it can be, or make each part random by itself"
+        ),
     )
 
 
@@ -119,14 +124,21 @@ def _in_condition(node: ast.expr | ast.stmt, context: Context) -> bool:
     """Whether an expression is a part of what is evaluated later, on samples."""
     if not isinstance(node, ast.expr):
         return False
-    return any(
-        _lies_in(node, statement, statement)
-        for cls in _LATER
-        for statement in context.nodes_around(node, cls)
-    )
+    later = (statement for cls in _LATER for statement in context.nodes_around(node, cls))
+    return any(_lies_in(node, each, each) for each in (*later, *_presences(node, context)))
 
 
-def _lies_in(node: ast.expr | ast.stmt, first: ast.stmt, last: ast.stmt) -> bool:
+def _presences(node: ast.expr, context: Context) -> Iterator[ast.expr]:
+    """The values of ``present`` that may stand around an expression: they are read as conditions."""
+    for phrase in context.nodes_around(node, scenic.SpecifierPhrase):
+        if phrase.property == "present":
+            yield from filter(None, phrase.operands)
+    for definition in context.nodes_around(node, scenic.PropertyDef):
+        if definition.name == "present":
+            yield definition.value
+
+
+def _lies_in(node: ast.expr | ast.stmt, first: ast.expr | ast.stmt, last: ast.expr | ast.stmt) -> bool:
     """Whether a node stands between the beginning of a statement and the end of another."""
     begin, end = (first.lineno, first.col_offset), (last.end_lineno or 0, last.end_col_offset or 0)
     return begin <= (node.lineno, node.col_offset) < end

@@ -30,7 +30,7 @@ from scenic.compiler.traversal import walk
 from scenic.language.names import CONVERSIONS, LIFTED_FUNCTIONS, LIFTED_METHODS, TRACKED
 from scenic.language.operators import OPERATORS
 
-__all__ = ["Conditions", "implicit_ego"]
+__all__ = ["Conditions", "assigns", "implicit_ego", "truth_value"]
 
 _Lowering = Callable[[ast.expr], ast.expr]
 
@@ -70,7 +70,7 @@ class Conditions:
         return self._split(node)
 
     def _split(self, node: ast.expr) -> ast.expr:
-        if _assigns(node) and not _is_temporal(node):
+        if assigns(node) and not _is_temporal(node):
             # What one leaf assigns another may read: they stay together, as far as time allows.
             return self._leaf(node)
         match node:
@@ -176,7 +176,7 @@ def _unwritten_ego(node: ast.expr) -> list[ast.Name]:
     return []
 
 
-def _assigns(node: ast.expr) -> bool:
+def assigns(node: ast.expr) -> bool:
     """Whether there is an assignment expression in a condition."""
     return any(isinstance(part, ast.NamedExpr) for part in walk(node))
 
@@ -353,6 +353,26 @@ class _Symbolic:
                 return prelude_call("call", args, node)
             case _:
                 raise _OpaqueError
+
+
+class _TruthValue(_Symbolic):
+    """Lowers comparisons, ``and``, ``or`` and ``not`` of values; what they are made of is lowered as it stands."""
+
+    def __init__(self, resolution: Resolution, ordinary: _Lowering) -> None:
+        super().__init__(resolution, ordinary)
+        self._ordinary = ordinary
+
+    def expression(self, node: ast.expr) -> ast.expr:
+        match node:
+            case ast.Compare() | ast.BoolOp() | ast.UnaryOp(op=ast.Not()):
+                return super().expression(node)
+            case _:
+                return self._ordinary(node)
+
+
+def truth_value(node: ast.expr, resolution: Resolution, ordinary: _Lowering) -> ast.expr:
+    """An expression that gives a truth value, random where its parts are."""
+    return _TruthValue(resolution, ordinary).expression(node)
 
 
 def _over_elements(node: ast.Call) -> tuple[ast.Name, ast.expr] | None:

@@ -22,7 +22,7 @@ from scenic.compiler.lowering.build import (
     store_on_instance,
     tuple_,
 )
-from scenic.compiler.lowering.conditions import Conditions, implicit_ego
+from scenic.compiler.lowering.conditions import Conditions, assigns, implicit_ego, truth_value
 from scenic.compiler.lowering.dynamics import Blocks
 from scenic.compiler.scopes import Binding, BindingKind, Resolution, Scope, ScopeKind
 from scenic.language.errors import InternalError
@@ -176,6 +176,9 @@ class _Program:
     def specifier(self, node: scenic.SpecifierPhrase) -> ast.expr:
         args = [constant(node.specifier, node), *self._operands(node.operands, node)]
         options = {} if node.property is None else {"property": node.property}
+        match node:
+            case scenic.SpecifierPhrase(property="present", operands=[ast.expr() as operand]):
+                args[-1] = self._presence(operand)
         return prelude_call("specifier", args, node, options=options)
 
     def call(self, node: ast.Call) -> ast.expr:
@@ -268,7 +271,8 @@ class _Program:
                     binding = self._resolution.binding(owner)
                     if binding is not None and binding.scope.node is node:
                         read.setdefault(attribute, constant(attribute, part))
-        value = lambda_([("self", node)], self.expression(node.value), node.value)
+        value = self._presence(node.value) if node.name == "present" else self.expression(node.value)
+        value = lambda_([("self", node)], value, node.value)
         start_of(value.args.args[0], node)
         return prelude_call(
             "property",
@@ -279,6 +283,15 @@ class _Program:
                 tuple_(list(read.values()), node.value),
             ],
             node,
+        )
+
+    def _presence(self, node: ast.expr) -> ast.expr:
+        """A value of ``present``: comparisons, ``and``, ``or`` and ``not`` of random values give one here."""
+        if not isinstance(node, ast.Compare | ast.BoolOp | ast.UnaryOp) or assigns(node):
+            return self.expression(node)
+        truth = truth_value(node, self._resolution, self.expression)
+        return prelude_call(
+            "presence", [lambda_([], truth, node), lambda_([], self.expression(node), node)], node
         )
 
     def function_definition(self, node: Any) -> Any:

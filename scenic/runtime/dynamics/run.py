@@ -246,6 +246,8 @@ class Run:
         """A new instance of the running program."""
         instance.__dict__["_sample"] = self.copies  # Members read it where code of a simulator asks for them.
         scenario = self._creating
+        if isinstance(instance, Object) and not instance.present:
+            return
         if isinstance(instance, Object):
             if scenario is None:
                 raise InvalidScenarioError(

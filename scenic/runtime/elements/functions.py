@@ -165,7 +165,8 @@ def range(*bounds: Any) -> Any:
         raise RandomControlFlowError(
             "`range` needs definite bounds",
             span=here(),
-            help="for a random integer write `DiscreteRange(low, high)`",
+            help="for a random number of objects make the most there can be, each `with present i < count`; "
+            "for a random integer write `DiscreteRange(low, high)`",
         )
     return builtins.range(*bounds)
 

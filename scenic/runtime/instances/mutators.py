@@ -84,7 +84,7 @@ class OrientationMutator(_NormalNoise):
 
 BUILT_IN = (PositionMutator, OrientationMutator)
 """Mutators whose noise is part of the value graph."""
-KEPT = frozenset({"shape", "behavior", "sensors", "mutator", "regionContainedIn", "lastActions"})
+KEPT = frozenset({"shape", "behavior", "sensors", "mutator", "regionContainedIn", "lastActions", "present"})
 """Properties that mutation leaves alone: the graph needs to know them."""
 
 

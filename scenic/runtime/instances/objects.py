@@ -332,6 +332,7 @@ class Object(OrientedPoint):
             "width": lambda self: self.shape.width,
             "length": lambda self: self.shape.length,
             "height": lambda self: self.shape.height,
+            "present": lambda _: True,
             "allowCollisions": lambda _: False,
             "regionContainedIn": lambda _: None,
             "baseOffset": lambda self: vector(0, 0, operate("divide", operate("negative", self.height), 2)),

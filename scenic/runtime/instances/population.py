@@ -11,8 +11,10 @@ from typing import Any, Final
 from scenic.graph.batch import Batch
 from scenic.language.garbage import no_garbage_collection
 from scenic.runtime.instances.objects import Object, Point, put
+from scenic.runtime.instances.presence import is_always_present
 from scenic.runtime.python.samples import Globals, Sample, reachable
 from scenic.runtime.sampling.engine import Found
+from scenic.runtime.values.values import as_node
 
 _TOGETHER: Final = 4096
 """Objects made at a time, about: some milliseconds, should nobody look at the other scenes. With 512 reading takes a seventh longer."""
@@ -34,8 +36,18 @@ class Populations:
     def __init__(self, objects: Sequence[Object], others: Iterable[Any], names: Globals) -> None:
         self.objects = tuple(objects)
         self.names = names
+        self.optional = tuple(
+            (place, as_node(item.present))
+            for place, item in enumerate(self.objects)
+            if not is_always_present(item)
+        )
+        """Of the objects that may take no part in a scene their places, and whether they do."""
         self._others = tuple(others)
         self._linked: bool | None = None
+
+    def missing(self, found: Found, lane: int) -> frozenset[int]:
+        """The places of objects that take no part in a scene."""
+        return frozenset(place for place, node in self.optional if not found.batch.value(node, lane))
 
     def of(self, found: Found) -> "Population":
         """The objects of the scenes that a round has found."""

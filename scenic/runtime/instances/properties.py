@@ -182,6 +182,7 @@ _TRUTHS = frozenset(
     {
         "allowCollisions",
         "occluding",
+        "present",
         "requireVisible",
         "showVisibleRegion",
         "render",

@@ -154,6 +154,16 @@ def connect(operation: str, conditions: Sequence[Node]) -> Node:
     return make_node(TABLE[operation], conditions, span=here())
 
 
+def presence(symbolic: Callable[[], Any], now: Callable[[], Any]) -> Any:
+    """The value of ``with present condition``: a truth value, random where its parts are."""
+    context = current.get()
+    if context is None or context.is_symbolic:
+        # What has no random truth value gives what Python says, or its error.
+        with suppress(NotSymbolicError):
+            return symbolic()
+    return now()
+
+
 def _truths(call: Call, *columns: Column) -> Column:
     return np.array([bool(result) for result in evaluated(call, columns)], dtype=np.bool_)
 

@@ -44,6 +44,7 @@ from scenic.runtime.elements.specifiers import (
 from scenic.runtime.instances import mutation
 from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.instances.placeholders import may_mutate, stand_in
+from scenic.runtime.instances.presence import is_always_present
 from scenic.runtime.instances.properties import ATTRIBUTES, PropertyDefinition
 from scenic.runtime.instances.resolution import build
 from scenic.runtime.program import builtins as names
@@ -260,7 +261,7 @@ class Prelude(Dynamics):
         sightings = [specifier.sighting for specifier in specifiers if specifier.sighting is not None]
         if self._run is not None:
             context = self._context
-            for sighting in sightings:
+            for sighting in sightings if is_always_present(instance) else ():
                 seen = sees_in_mode(sighting.observer, instance, context.present, mode_2d=context.mode_2d)
                 if bool(seen) != sighting.wanted:
                     raise RejectionException(f"whether the {cls.__name__} is seen")
@@ -415,6 +416,8 @@ class Prelude(Dynamics):
     def temporal(self, operator: str, *parts: Condition) -> Condition:
         """A temporal operator, or ``implies``."""
         return conditions.in_time(operator, parts)
+
+    presence = staticmethod(conditions.presence)
 
     # Inside the symbolic reading of a condition
 

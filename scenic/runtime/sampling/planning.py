@@ -20,6 +20,7 @@ from scenic.runtime.geometry.collision import collide
 from scenic.runtime.geometry.narrowphase import recall
 from scenic.runtime.geometry.ragged import distinct
 from scenic.runtime.instances.objects import Object
+from scenic.runtime.instances.presence import absent, is_always_present
 from scenic.runtime.program.conditions import connect, truth
 from scenic.runtime.program.context import warn
 from scenic.runtime.program.outcome import Program, Requirement
@@ -72,6 +73,14 @@ def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_
 
     Raises `InvalidScenarioError` where a built-in requirement can be seen to fail in every scene.
     """
+    if ego is not None and not is_always_present(ego):
+        span, filename = _place(program, ego)
+        raise InvalidScenarioError(
+            "the ego takes part in every scene, so that its `present` must be True",
+            span=span,
+            filename=filename,
+            help="leave `present` out, or make another object the ego",
+        )
     reached = dependencies(program.reachable())
     checks: list[Check] = _drawing(reached)
     checks += _finite(program)
@@ -138,7 +147,7 @@ def _finite(program: Program) -> list[Check]:
             if isinstance(value, Random) and _may_be_infinite(value.node, known):
                 size = operate("norm" if value is item.position else "absolute", value)
                 # What is undefined is not less than anything.
-                node = truth(operate("less", size, math.inf))
+                node = _if_present(item, truth(operate("less", size, math.inf)))
                 checks.append(NodeCheck(node, "finite position and angles", span, BUILT_IN))
     return checks
 
@@ -201,10 +210,10 @@ def _sizes(program: Program) -> list[Check]:
                 node = truth(operate("less", 0, size))
                 bounds = overall(node)
                 if bounds is None or bounds.lower[0] != 1:
-                    checks.append(NodeCheck(node, f"positive {name}", span, BUILT_IN))
+                    checks.append(NodeCheck(_if_present(item, node), f"positive {name}", span, BUILT_IN))
                 if not is_finite(as_node(size)):
                     node = truth(operate("less", size, math.inf))
-                    checks.append(NodeCheck(node, f"finite {name}", span, BUILT_IN))
+                    checks.append(NodeCheck(_if_present(item, node), f"finite {name}", span, BUILT_IN))
     return checks
 
 
@@ -232,7 +241,7 @@ def _containment(program: Program, workspace: Workspace) -> list[NodeCheck]:
             )
         if region not in footprints:
             footprints[region] = region.footprint
-        held = truth(footprints[region].containsObject(item))
+        held = _if_present(item, truth(footprints[region].containsObject(item)))
         node = as_node(body_operands(item)[2])
         size = size_in_words(node)
         found = _required(
@@ -289,6 +298,7 @@ def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[
         whom = _called(program, sighting.observer, article="the ")
         if sighting.wanted:
             label, never = f"{name} visible from {whom}", f"{subject} cannot be seen from {whom}"
+            node = _if_present(item, node)
         else:
             label, never = f"{name} not visible from {whom}", f"{subject} is always seen from {whom}"
             node = as_node(not node.value) if node.is_constant else connect("not", [node])
@@ -300,7 +310,7 @@ def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[
             continue
         span, filename = _place(program, item)
         if ego is None and is_random(wanted):
-            node = connect("not", [truth(wanted)])
+            node = _if_present(item, connect("not", [truth(wanted)]))
             label = f"{_called(program, item)} visible from the ego"
             checks.append(NodeCheck(node, label, span, BUILT_IN))
             continue
@@ -314,6 +324,7 @@ def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[
         node = seen(ego, item)
         if is_random(wanted):
             node = connect("or", [connect("not", [truth(wanted)]), node])
+        node = _if_present(item, node)
         checks += _required(
             node,
             f"{_called(program, item)} visible from the ego",
@@ -342,6 +353,11 @@ def _collisions(program: Program) -> list[Check]:
     return [CollisionCheck(nodes, pairs)]
 
 
+def _if_present(item: Any, condition: Node) -> Node:
+    """A condition that is only asked of an object where it takes part."""
+    return condition if is_always_present(item) else connect("or", [as_node(absent(item)), condition])
+
+
 def _is_true(node: Node) -> bool:
     return node.is_constant and bool(node.value)
 
@@ -352,6 +368,8 @@ def _object_nodes(program: Program, item: Object) -> ObjectNodes:
     label = name if span is None else f"{name} (line {span.line})"
     values = (*body_operands(item), item.allowCollisions)
     position, orientation, size, shape, allowed = (as_node(value) for value in values)
+    if not is_always_present(item):
+        allowed = _if_present(item, truth(item.allowCollisions))
     return ObjectNodes(position, orientation, size, shape, allowed, label, span)
 
 

@@ -74,13 +74,15 @@ class ValueColumn:
 class ObjectColumns:
     """An object of the program in many scenes: its class, its variable, and its properties by name.
 
-    ``given`` are the names of the properties that the program gives, without those of `PLACES`, sorted.
+    ``given`` are the names of the properties that the program gives, without those of `PLACES`, sorted; ``present`` tells in which
+    scenes it takes part.
     """
 
     cls: str
     name: str | None
     given: tuple[str, ...]
     properties: dict[str, ValueColumn]
+    present: ValueColumn
 
 
 class SceneColumns:
@@ -100,7 +102,8 @@ def _columns_of(thing: Object, index: int, name: str | None) -> ObjectColumns:
     origin = Origin.of(thing)
     properties = {key: ValueColumn(thing.__dict__.get(key), _Property(index, key)) for key in origin.names}
     given = tuple(key for key in origin.given if key not in PLACES)
-    return ObjectColumns(type(thing).__name__, name, given, properties)
+    present = ValueColumn(thing.present, _Property(index, "present"))
+    return ObjectColumns(type(thing).__name__, name, given, properties, present)
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +120,7 @@ class _Property:
     name: str
 
     def __call__(self, scene: Scene) -> Any:
-        return getattr(scene.objects[self.index], self.name)
+        return getattr(scene.cast[self.index], self.name)
 
 
 def _lanes(scenes: Sequence[Scene]) -> Iterator[tuple[Found, list[int]]]:

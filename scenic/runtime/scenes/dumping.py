@@ -27,6 +27,7 @@ _LEFT_OUT = frozenset(
         "sensors",
         "behavior",
         "lastActions",
+        "present",
         "regionContainedIn",
         "requireVisible",
     }

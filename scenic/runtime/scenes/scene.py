@@ -36,10 +36,12 @@ class Origin:
     def of(cls, instance: Point) -> "Origin":
         """That of an instance of the program."""
         values = instance.__dict__
-        names = tuple(sorted(values.get("_names", instance.scenic_properties)))
+        # What is in a scene is present there.
+        names = tuple(sorted({*values.get("_names", instance.scenic_properties)} - {"present"}))
         mutable = bool(dependencies([values.get("mutationScale")])) or values.get("mutationScale") != 0
         fixed = () if mutable else (name for name in names if not dependencies([values.get(name)]))
-        return cls(names, tuple(sorted(values.get("_given", names))), frozenset(fixed))
+        given = sorted({*values.get("_given", names)} - {"present"})
+        return cls(names, tuple(given), frozenset(fixed))
 
     def read(self, thing: Any, name: str) -> Any:
         """The value of a property in one scene."""
@@ -74,6 +76,7 @@ class Scene:
     """
 
     _sample: Copier | None = None
+    _cast: tuple[Any, ...] | None = None
     _objects: tuple[Any, ...] | None = None
     _params: dict[str, Any] | None = None
 
@@ -134,7 +137,7 @@ class Scene:
 
     @property
     def sources(self) -> tuple[Object, ...]:
-        """The objects of the program of which `objects` are samples."""
+        """The objects of the program of which `cast` are samples."""
         return self._family.populations.objects
 
     @property
@@ -155,29 +158,47 @@ class Scene:
         """The same scene over other copies of its values, as a simulation changes them."""
         scene = self.__copy__()
         scene._sample = copies
-        scene._objects = scene._params = None
+        scene._cast = scene._objects = scene._params = None
         return scene
 
     @property
     def objects(self) -> tuple[Any, ...]:
-        """All objects: the ego first, then the others in order of creation."""
+        """All objects that take part: the ego first, then the others in order of creation."""
         if self._objects is None:
-            sample = self._values()
-            if self._objects is None:
-                self._objects = tuple(map(sample.value, self._family.populations.objects))
+            cast = self.cast
+            missing = self._missing()
+            self._objects = (
+                tuple(item for place, item in enumerate(cast) if place not in missing) if missing else cast
+            )
         return self._objects
+
+    @property
+    def cast(self) -> tuple[Any, ...]:
+        """An object for each of the program's `objects`, also those that take no part in this scene."""
+        if self._cast is None:
+            sample = self._values()
+            if self._cast is None:
+                self._cast = tuple(map(sample.value, self._family.populations.objects))
+        return self._cast
+
+    def _missing(self) -> frozenset[int]:
+        """The places in `cast` of objects that take no part."""
+        populations = self._family.populations
+        return populations.missing(self.found, self.lane) if populations.optional else frozenset()
 
     def _values(self) -> Copier:
         """The values of the program in this scene."""
         if self._sample is None:
             # Scenes of a batch have their objects made together.
             population = self._family.populations.of(self.found)
-            self._sample, self._objects = population.take(self.lane)
+            self._sample, self._cast = population.take(self.lane)
         return self._sample
 
     def place(self, number: int) -> tuple[Span | None, str | None]:
         """Where the program creates the object of that number: span and file, as far as they are known."""
-        return self.program.places.get(id(self._family.populations.objects[number]), (None, None))
+        missing = self._missing()
+        taking_part = [item for place, item in enumerate(self.sources) if place not in missing]
+        return self.program.places.get(id(taking_part[number]), (None, None))
 
     @property
     def egoObject(self) -> Any:
@@ -249,7 +270,7 @@ class Scene:
     def __deepcopy__(self, _memo: Any) -> "Scene":
         """The same scene with objects of its own."""
         scene = self.__copy__()
-        scene._sample = scene._objects = scene._params = None
+        scene._sample = scene._cast = scene._objects = scene._params = None
         return scene
 
     def save(self, path: str | Path) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 from scenic.graph import quaternions
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
+from scenic.runtime.instances.presence import seen_if_present
 from scenic.runtime.regions.stacked import body_operands, is_body
 from scenic.runtime.values.values import apply, is_random, per_option, to_scalar, to_vector
 from scenic.runtime.visibility.bounds import sees_in_plane_bounds, sees_in_plane_inverse
@@ -34,7 +35,9 @@ def sees_in_plane(observer: Any, target: Any, occluders: Iterable[Any] = ()) -> 
         if not is_body(thing):
             return apply(_SEES_POINT, camera, heading, angle, distance, to_vector(thing, "`can see`"))
         position, orientation, size, _ = body_operands(thing)
-        return apply(_SEES, camera, heading, angle, distance, position, orientation, size)
+        return seen_if_present(
+            thing, apply(_SEES, camera, heading, angle, distance, position, orientation, size)
+        )
 
     return per_option(observer, lambda viewer: per_option(target, lambda thing: seen(viewer, thing)))
 

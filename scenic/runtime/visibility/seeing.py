@@ -22,6 +22,7 @@ from scenic.runtime.geometry.visibility.proving import Proof, prove
 from scenic.runtime.geometry.visibility.scalar_views import View, sees_body, sees_point
 from scenic.runtime.geometry.visibility.seen_bodies import sees_bodies
 from scenic.runtime.geometry.visibility.views import Views
+from scenic.runtime.instances.presence import hides, seen_if_present
 from scenic.runtime.program.context import here
 from scenic.runtime.regions.stacked import body_of, body_operands, is_body, placed_of
 from scenic.runtime.values.values import (
@@ -61,7 +62,9 @@ def _sees(observer: Any, target: Any, occluders: Sequence[Any], certain: bool) -
         # Which of the objects it is, if any, only the draw shows.
         return Random.later(sees, observer, target, occluders, certain=certain)
     found = None if certain else _at_once(observer, target, occluders)
-    return _looked(observer, target, occluders, certain) if found is None else found
+    if found is None:
+        found = _looked(observer, target, occluders, certain)
+    return seen_if_present(target, found)
 
 
 def _at_once(observer: Any, target: Any, occluders: Sequence[Any]) -> bool | None:
@@ -83,14 +86,14 @@ def _at_once(observer: Any, target: Any, occluders: Sequence[Any]) -> bool | Non
     for thing in occluders:
         if thing is observer or thing is target:
             continue
-        hides = thing.occluding
-        if hides is True:
+        hiding_it = hides(thing)
+        if hiding_it is True:
             body = _in_the_way(thing, camera.row, place.row, radius)
             if body is None:
                 return None
             if body:
                 hiding.append(body)
-        elif hides is not False:
+        elif hiding_it is not False:
             return None
     return sees_point(view, place.row, hiding) if seen is None else sees_body(view, seen, hiding)
 
@@ -110,9 +113,9 @@ def _looked(observer: Any, target: Any, occluders: Sequence[Any], certain: bool)
     operands += body_operands(target) if is_object else [to_vector(target, "`can see`")]
     for thing in occluders:
         if thing is not observer and thing is not target:
-            hides = thing.occluding
-            if isinstance(hides, Random) or hides:
-                operands += [*body_operands(thing), hides]
+            hiding = hides(thing)
+            if isinstance(hiding, Random) or hiding:
+                operands += [*body_operands(thing), hiding]
     return apply(SEES, *operands, payload=(is_object, certain))
 
 
