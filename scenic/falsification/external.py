@@ -60,12 +60,13 @@ class ExternalSampler:
 
     def _place(self, item: Coordinate) -> float:
         value = self.valueFor(item)
-        if not isinstance(value, int | float | np.number) or not item.low <= value <= item.high:
+        try:
+            return item.coordinate(float(value))
+        except (TypeError, ValueError):
             raise InvalidScenarioError(
                 f"the external sampler gives {value!r} for `{item.label}`",
-                help=f"its values lie between {item.low:g} and {item.high:g}",
-            )
-        return item.coordinate(float(value))
+                help=f"its values lie between {item.low:g} and {item.high:g}, and have no weight of zero",
+            ) from None
 
 
 class VerifaiSampler(ExternalSampler):

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.graph.operations.distributions import FIRST, LAST
+from scenic.graph.operations.normal import conditioned_cumulative, conditioned_quantile
 from scenic.runtime.program.external import Choosable
 
 if TYPE_CHECKING:
@@ -28,7 +29,10 @@ class Coordinate:
         low: the value at 0.
         high: the value at 1.
         count: of a discrete value how many there are; each has an equal share of the coordinate.
-        shares: the prior: probabilities of values, or of buckets of equal width.
+        shares: the prior: probabilities of values, or of buckets, which have equal shares of the coordinate.
+        cells: the ends of these buckets, or each value twice, if they do not divide the values from ``low`` to ``high`` evenly.
+        normal: mean and deviation, if values within buckets are those of a normal law between ``low`` and ``high``.
+        is_stratified: whether buckets come from a prior.
 
     """
 
@@ -38,6 +42,14 @@ class Coordinate:
     high: float = 1.0
     count: int | None = None
     shares: tuple[float, ...] | None = None
+    cells: tuple[tuple[float, float], ...] | None = None
+    normal: tuple[float, float] | None = None
+    is_stratified: bool = False
+
+    @property
+    def is_continuous(self) -> bool:
+        """Whether samplers that do not learn take values from all along the coordinate, and not bucket by bucket."""
+        return self.count is None and not self.is_stratified
 
     def number(self, place: Floats) -> Floats:
         """The numbers of the draw, in the open unit interval, for coordinates ``(n,)``."""
@@ -47,19 +59,48 @@ class Coordinate:
             return np.asarray(np.clip((sums[index] + sums[index + 1]) / 2, FIRST, LAST))
         if self.shares is not None:
             place = np.interp(place, np.linspace(0, 1, len(self.shares) + 1), self._sums(len(self.shares)))
-        return np.asarray(np.clip(place, FIRST, LAST))
+        first = FIRST if self.normal is None else 1 - LAST
+        return np.asarray(np.clip(place, first, LAST))
 
     def value(self, place: float) -> float:
         """The value at a coordinate; of options the place of one."""
+        if self.normal is not None:
+            mean, deviation = self.normal
+            number = self.number(np.array([place]))
+            return mean + deviation * float(conditioned_quantile(*self._window(), number)[0])
+        if self.cells is not None:
+            index = min(int(place * len(self.cells)), len(self.cells) - 1)
+            start, end = self.cells[index]
+            return start + (end - start) * (place * len(self.cells) - index)
         if self.count is not None:
             return self.low + min(int(place * self.count), self.count - 1)
         return self.low + (self.high - self.low) * place
 
     def coordinate(self, value: float) -> float:
-        """The coordinate of a value."""
+        """The coordinate of a value; raises `ValueError` for one that is impossible."""
+        if not self.low <= value <= self.high:
+            raise ValueError(f"{value} is no value of {self.label}")
+        if self.normal is not None:
+            mean, deviation = self.normal
+            below, _ = conditioned_cumulative(*self._window(), np.array([(value - mean) / deviation]))
+            shares = self.shares or (1.0,)
+            return float(np.interp(below[0], self._sums(len(shares)), np.linspace(0, 1, len(shares) + 1)))
+        if self.cells is not None:
+            for index, (start, end) in enumerate(self.cells):
+                if start <= value <= end:
+                    return (index + ((value - start) / (end - start) if end > start else 0.5)) / len(
+                        self.cells
+                    )
+            raise ValueError(f"{value} is no value of {self.label}")
         if self.count is not None:
             return (value - self.low + 0.5) / self.count
         return (value - self.low) / (self.high - self.low) if self.high != self.low else 0.5
+
+    def _window(self) -> tuple[Floats, Floats]:
+        """The ends of a normal law as deviations from its mean."""
+        assert self.normal is not None
+        mean, deviation = self.normal
+        return np.array([(self.low - mean) / deviation]), np.array([(self.high - mean) / deviation])
 
     def _sums(self, count: int) -> Floats:
         shares = (1 / count,) * count if self.shares is None else self.shares
@@ -101,7 +142,17 @@ def space_of(scenario: "Scenario", wanted: str = "auto") -> Space:
 
 def _external(address: int, item: Choosable, scenario: "Scenario") -> Coordinate:
     label = scenario.external_names.get(address) or f"{item.kind} {address:016x}"
-    return Coordinate(address, label, item.low, item.high, item.count, item.shares)
+    return Coordinate(
+        address,
+        label,
+        item.low,
+        item.high,
+        item.count,
+        item.shares,
+        item.cells,
+        item.normal,
+        item.is_stratified,
+    )
 
 
 def _place(span: object) -> str:

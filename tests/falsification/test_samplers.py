@@ -6,11 +6,13 @@ import sys
 
 import numpy as np
 import pytest
+from scipy.special import ndtr
 
+import scenic
 from scenic.falsification.samplers import SAMPLERS, make_sampler
 from scenic.falsification.samplers.buckets import Bandit, CrossEntropy, EpsilonGreedy
 from scenic.falsification.samplers.protocol import Exhausted, SamplerError
-from scenic.falsification.space import Coordinate, Space
+from scenic.falsification.space import Coordinate, Space, space_of
 
 SPACE = Space((Coordinate(1, "x"), Coordinate(2, "d", 1, 4, 4), Coordinate(3, "y", shares=(0.5, 0.0, 0.5))))
 
@@ -137,3 +139,32 @@ def test_bayesian_optimisation_says_what_it_needs(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setitem(sys.modules, "sklearn", None)
     with pytest.raises(SamplerError, match="needs the package `scikit-learn`"):
         make_sampler("bo", SPACE, 0)
+
+
+def test_priors_have_buckets_and_weights_of_zero_take_no_room() -> None:
+    found = scenic.scenarioFromString(
+        "param y = VerifaiRange(0, 4, weights=[1, 0, 3, 0]), d = VerifaiDiscreteRange(1, 4, weights=[1, 1, 0, 2]),"
+        " p = VerifaiParameter.withPrior(Normal(10, 2)),"
+        " t = VerifaiParameter.withPrior(TruncatedNormal(0, 1, -1, 2), buckets=3)\nego = new Object"
+    )
+    y, d, p, t = space_of(found, "external").coordinates
+    assert [y.value(place) for place in (0, 0.25, 0.5, 0.75, 1)] == [0, 0.5, 2, 2.5, 3]
+    assert [d.value(place) for place in (0, 0.5, 0.7, 1)] == [1, 2, 4, 4]
+    assert [p.value(place) for place in (0.2, 0.4, 0.5, 0.8)] == pytest.approx([7, 9, 10, 13])
+    assert [t.value(place) for place in (1 / 3, 2 / 3, 1)] == pytest.approx([0, 1, 2])
+    assert p.shares == pytest.approx(np.diff(ndtr([-np.inf, -1.5, -0.5, 0.5, 1.5, np.inf])))
+    for item in (y, d, p, t):
+        value = item.value(0.3)
+        assert item.value(item.coordinate(value)) == pytest.approx(value)
+    for impossible in (1.5, 3.5, 4.5):
+        with pytest.raises(ValueError, match="no value"):
+            y.coordinate(impossible)
+    # Within a scene the same: what the numbers of the draws become.
+    points = np.array([[0.25, 0.7, 0.8, 1 / 3]])
+    numbers = {item.address: item.number(points[:, k]) for k, item in enumerate((y, d, p, t))}
+    (scene,) = found.chosen(numbers, 1, seed=0, first=0, max_attempts=1)
+    assert [scene.params[name] for name in "ydpt"] == pytest.approx([0.5, 4, 13, 0])
+    # A grid takes the middles of a prior's buckets, Halton's sequence leaves them to chance.
+    assert len(make_sampler("grid", Space((y, p)), 0, {"N": 3}).ask(100)) == 15
+    halton = make_sampler("halton", Space((p, y)), 0).ask(3)
+    assert halton[:, 1].tolist() == [0.5, 0.25, 0.75]

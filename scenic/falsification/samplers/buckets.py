@@ -40,7 +40,7 @@ class _Buckets:
             places = [
                 place
                 for place, item in enumerate(space.coordinates)
-                if (item.count is None) == (kind == "cont")
+                if item.is_continuous == (kind == "cont")
             ]
             if kind == "cont" and len(counts) > 1:
                 _checked(len(counts), len(places), "cont.buckets")
@@ -147,15 +147,18 @@ class Bandit(_Buckets):
 
         Points that were asked for and not told yet count as drawn, so that those of a batch differ.
         """
-        chosen = []
+        chosen = [int(self.generator.choice(np.flatnonzero(bound == bound.max()))) for bound in self.bounds()]
+        for bucket, waiting in zip(chosen, self._waiting, strict=True):
+            waiting[bucket] += 1
+        return chosen
+
+    def bounds(self) -> list[Floats]:
+        """The upper confidence bounds of the buckets of each coordinate."""
+        found = []
         for counts, errors, waiting in zip(self.counts, self.errors, self._waiting, strict=True):
             tried = counts + waiting
-            bound = errors / tried + np.sqrt(2 * math.log(self.time) / tried)
-            best = np.flatnonzero(bound == bound.max())
-            bucket = int(self.generator.choice(best))
-            waiting[bucket] += 1
-            chosen.append(bucket)
-        return chosen
+            found.append(errors / tried + np.sqrt(2 * math.log(self.time) / tried))
+        return found
 
     def tell(self, points: Floats, values: Floats) -> None:
         """See `Sampler.tell`."""

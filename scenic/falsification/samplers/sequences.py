@@ -31,7 +31,7 @@ class Random:
 
 
 class Halton:
-    """Halton's sequence for continuous coordinates; discrete ones are independent."""
+    """Halton's sequence for continuous coordinates; discrete ones, and those with the buckets of a prior, are independent."""
 
     batch = None
 
@@ -39,7 +39,7 @@ class Halton:
         from scipy.stats import qmc
 
         chosen = options(given, {"sample_index": 0, "bases_skipped": 0}, "halton")
-        self._continuous = [place for place, item in enumerate(space.coordinates) if item.count is None]
+        self._continuous = [place for place, item in enumerate(space.coordinates) if item.is_continuous]
         self._dimension = len(space)
         self._skipped = int(chosen["bases_skipped"])
         self._generator = np.random.default_rng(seed)
@@ -89,13 +89,13 @@ _POINTS: Final = 21
 
 
 class Grid:
-    """All points of a grid, the first coordinate changing fastest; its ends are included."""
+    """All points of a grid, the first coordinate changing fastest; its ends are included. Of a prior's buckets it takes the middles."""
 
     batch = None
 
     def __init__(self, space: Space, seed: int, given: Any = None) -> None:
         chosen = options(given, {"N": _POINTS, "repeat": False}, "grid")
-        continuous = [item for item in space.coordinates if item.count is None]
+        continuous = [item for item in space.coordinates if item.is_continuous]
         wanted = chosen["N"]
         counts = list(wanted) if isinstance(wanted, Sequence) else [wanted] * len(continuous)
         if len(counts) != len(continuous) or any(int(count) < 1 for count in counts):
@@ -106,8 +106,8 @@ class Grid:
         sizes = iter(counts)
         self._axes = [
             np.linspace(0, 1, int(next(sizes)))
-            if item.count is None
-            else (np.arange(item.count) + 0.5) / item.count
+            if item.is_continuous
+            else _middles(item.count or len(item.shares or (1.0,)))
             for item in space.coordinates
         ]
         self._repeat = bool(chosen["repeat"])
@@ -132,3 +132,7 @@ class Grid:
 
     def tell(self, points: Floats, values: Floats) -> None:
         """Nothing to learn."""
+
+
+def _middles(count: int) -> Floats:
+    return (np.arange(count) + 0.5) / count

@@ -8,6 +8,7 @@ seed has the law that the program says; a sampler that chooses values gives the 
 import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Final
 
 from scenic.graph.construction import make_node
@@ -38,9 +39,6 @@ __all__ = [
 
 _BUCKETS: Final = 5
 """Buckets that approximate a prior unless it is said otherwise."""
-
-_TAIL: Final = 3.0
-"""Deviations from its mean up to which a normal prior is approximated."""
 
 
 def _make(operation: str, operands: Sequence[Any], payload: Any, choosable: Choosable) -> Any:
@@ -95,9 +93,10 @@ class VerifaiParameter(ExternalParameter):
 
     @staticmethod
     def withPrior(dist: Any, buckets: int | None = None) -> Any:
-        """An external parameter whose prior is a primitive distribution, approximated by buckets (5 unless given).
+        """An external parameter whose prior is a primitive distribution, in buckets (5 unless given).
 
-        A normal law is approximated up to three deviations from its mean.
+        Samplers choose among the buckets and places in them; within a bucket the law is that of the prior. Buckets of a normal law
+        are one deviation wide, the outer two endless; all others divide the values evenly.
         """
         return _with_prior(dist, _BUCKETS if buckets is None else buckets)
 
@@ -107,6 +106,18 @@ class VerifaiRange(VerifaiParameter):
 
     def __new__(
         cls, low: Any, high: Any, buckets: int | None = None, weights: Sequence[float] | None = None
+    ) -> Any:
+        return cls._over(low, high, buckets, weights)
+
+    @classmethod
+    def _over(
+        cls,
+        low: Any,
+        high: Any,
+        buckets: int | None,
+        weights: Sequence[float] | None = None,
+        *,
+        is_stratified: bool = False,
     ) -> Any:
         first, last = _fixed(low, cls.__name__), _fixed(high, cls.__name__)
         if weights is None:
@@ -123,11 +134,14 @@ class VerifaiRange(VerifaiParameter):
             if not any(fixed):
                 raise nothing_to_choose(cls.__name__)
             shares = tuple(weight / sum(fixed) for weight in fixed)
-        chosen = Choosable("VerifaiRange", first, last, None, shares)
         if weights is None:
+            chosen = Choosable("VerifaiRange", first, last, None, shares, is_stratified=is_stratified)
             return _make("range", (first, last), None, chosen)
         assert shares is not None
         edges = tuple(first + (last - first) * place / len(shares) for place in range(len(shares) + 1))
+        chosen = _possible(
+            Choosable("VerifaiRange", first, last, None, shares), tuple(itertools.pairwise(edges))
+        )
         return _make("piecewise", (), ((0.0, *cumulative(shares)), edges), chosen)
 
 
@@ -152,7 +166,8 @@ class VerifaiDiscreteRange(VerifaiParameter):
         if not any(fixed):
             raise nothing_to_choose(cls.__name__)
         shares = tuple(weight / sum(fixed) for weight in fixed)
-        chosen = Choosable("VerifaiDiscreteRange", first, last, count, shares)
+        values = tuple((float(value), float(value)) for value in range(first, last + 1))
+        chosen = _possible(Choosable("VerifaiDiscreteRange", first, last, count, shares), values)
         return _make("weighted integer", (), (first, cumulative(fixed)), chosen)
 
 
@@ -179,6 +194,20 @@ class VerifaiOptions(VerifaiParameter):
         chosen = Choosable("VerifaiOptions", 0, len(shares) - 1, len(shares), shares)
         index = _make("choice", (), cumulative(weights), chosen)
         return choose_among([option for option, _ in possible], weights, cls.__name__, index=index)
+
+
+def _possible(chosen: Choosable, cells: tuple[tuple[float, float], ...]) -> Choosable:
+    """What may be chosen without the cells of weight zero."""
+    assert chosen.shares is not None
+    kept = [place for place, share in enumerate(chosen.shares) if share > 0]
+    if len(kept) == len(cells):
+        return chosen
+    return replace(
+        chosen,
+        count=None if chosen.count is None else len(kept),
+        shares=tuple(chosen.shares[place] for place in kept),
+        cells=tuple(cells[place] for place in kept),
+    )
 
 
 def _fixed(value: Any, name: str) -> float:
@@ -212,14 +241,15 @@ def _with_prior(dist: Any, buckets: int) -> Any:
     match name:
         case "range":
             low, high = numbers
-            return VerifaiRange(low, high, buckets=_count(buckets))
+            return VerifaiRange._over(low, high, _count(buckets), is_stratified=True)
         case "normal":
-            mean, deviation = numbers
-            return _bucketed(mean, deviation, mean - _TAIL * deviation, mean + _TAIL * deviation, buckets)
+            inner = [place - _count(buckets) / 2 for place in range(1, buckets)]
+            return _normal(name, numbers, None, (-math.inf, *inner, math.inf))
         case "truncated normal":
             mean, deviation = numbers
-            low, high = node.payload
-            return _bucketed(mean, deviation, low, high, buckets)
+            low, high = ((end - mean) / deviation for end in node.payload)
+            edges = (low + (high - low) * place / _count(buckets) for place in range(buckets + 1))
+            return _normal(name, numbers, node.payload, tuple(edges))
         case "discrete range":
             low, high = numbers
             return VerifaiDiscreteRange(low, high)
@@ -256,11 +286,15 @@ def _differences(sums: Sequence[float]) -> list[float]:
     return [last - first for first, last in zip((0.0, *sums), sums, strict=False)]
 
 
-def _bucketed(mean: float, deviation: float, low: float, high: float, buckets: int) -> Any:
-    count = _count(buckets)
-    edges = [low + (high - low) * place / count for place in range(count + 1)]
-    below = [0.5 * math.erfc((mean - edge) / (deviation * math.sqrt(2))) for edge in edges]
-    return VerifaiRange(low, high, weights=[b - a for a, b in itertools.pairwise(below)])
+def _normal(operation: str, law: Sequence[float], window: Any, edges: Sequence[float]) -> Any:
+    """A parameter with a normal prior; the edges of its buckets are deviations from the mean."""
+    mean, deviation = law
+    below = [0.5 * math.erfc(-edge / math.sqrt(2)) for edge in edges]
+    whole = below[-1] - below[0]
+    shares = tuple((last - first) / whole for first, last in itertools.pairwise(below))
+    low, high = (-math.inf, math.inf) if window is None else window
+    chosen = Choosable("VerifaiRange", low, high, None, shares, normal=(mean, deviation), is_stratified=True)
+    return _make(operation, law, window, chosen)
 
 
 class Series:
