@@ -143,11 +143,11 @@ class NewtonianSimulation(DrivingSimulation):
         self, agent: Any
     ) -> tuple[PIDLongitudinalController, PIDLateralController]:
         """Controllers tuned for the cars of this simulator."""
-        return self._controllers(agent, (0.1, 0.1, 0.02), (0.2, 0.1, 0))
+        return self._controllers(agent, (0.2, 0.2, 0.02), (0.2, 0.1, 0))
 
     def getTurningControllers(self, agent: Any) -> tuple[PIDLongitudinalController, PIDLateralController]:
         """Controllers tuned for the cars of this simulator."""
-        return self._controllers(agent, (0.2, 0.2, 0.2), (0.4, 0.1, 0))
+        return self._controllers(agent, (0.4, 0.3, 0.1), (0.4, 0.1, 0))
 
     def getLaneChangingControllers(
         self, agent: Any
