@@ -16,6 +16,7 @@ env = ScenicEnv(
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Final, SupportsFloat, TypeAlias
 
@@ -45,12 +46,13 @@ from scenic.simulators.simulator import Simulator
 try:
     import gymnasium
     from gymnasium import spaces
+    from gymnasium.vector import AsyncVectorEnv
 except ImportError as error:
     raise UnsupportedError(
         "environments need the package gymnasium", help=f"install it: {installation('gym')}"
     ) from error
 
-__all__ = ["Choice", "Continuous", "Moment", "ScenicEnv"]
+__all__ = ["Choice", "Continuous", "Moment", "ScenicEnv", "ScenicVectorEnv"]
 
 Observed: TypeAlias = dict[str, Any]
 _Rejected = (RejectSimulationException, RejectionException, GuardViolation)
@@ -142,6 +144,8 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
         bounds: ``(least, greatest)`` of observations by name, where they are known.
         rejection: the reward of a step in which a requirement rejects the simulation.
         tries: so many scenes and simulations are tried for an episode.
+        first: number of the first episode of a seed.
+        stride: by how much the numbers of later episodes grow.
         render_mode: ``rgb_array`` for images, or ``None``.
         image_size: columns and rows of those.
 
@@ -163,6 +167,8 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
         bounds: Mapping[str, tuple[float, float]] | None = None,
         rejection: float = 0.0,
         tries: int = 100,
+        first: int = 0,
+        stride: int = 1,
         render_mode: str | None = None,
         image_size: tuple[int, int] = (480, 360),
     ) -> None:
@@ -181,7 +187,8 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
         self.render_mode = render_mode
         self._image_size = image_size
         self._seed: int | None = None
-        self._k = 0
+        self._first, self._stride = first, stride
+        self._k = first
         self._simulation: Simulation | None = None
         self._objects: dict[str, Any] = {}
         self._present: Present | None = None
@@ -218,7 +225,7 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
         """Begin the next episode.
 
         Args:
-            seed: begin again with episode 0 of this seed.
+            seed: begin again with the first episode of this seed.
             options: ``{"k": number}`` chooses the episode.
 
         """
@@ -226,7 +233,7 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
         self._stop()
         if seed is not None or self._seed is None:
             self._seed = seed if seed is not None else int(self.np_random.integers(2**32))
-            self._k = 0
+            self._k = self._first
         if options and "k" in options:
             self._k = int(options["k"])
         why = ""
@@ -245,7 +252,7 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
         else:
             raise RejectionException(f"simulation {self._k} of seed {self._seed} is always rejected: {why}")
         info = {"seed": self._seed, "k": self._k, "tries": number}
-        self._k += 1
+        self._k += self._stride
         return self._observe(), info
 
     def step(self, action: Any) -> tuple[Observed, float, bool, bool, dict[str, Any]]:
@@ -346,6 +353,37 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
                 f"the program records no {self._reward!r}", help=f"its records are: {known}"
             )
         return float(series[-1][1] if isinstance(series, list) else series)
+
+
+class ScenicVectorEnv(AsyncVectorEnv):
+    """Several environments of a scenario, each in a process of its own.
+
+    The episodes of a seed are dealt out: environment ``i`` of ``n`` plays episodes ``i``, ``i + n``, ``i + 2 n``, ... as a
+    `ScenicEnv` plays them, whatever the others do. So a seed, the number of environments and the actions decide everything.
+
+    Args:
+        scenario: a scenario, or the path of a program.
+        num_envs: how many environments.
+        context: how processes are started (``fork``, ``spawn``, ``forkserver``); the system's default if ``None``.
+        options: for `ScenicEnv`.
+
+    """
+
+    def __init__(
+        self, scenario: Scenario | str | Path, num_envs: int, *, context: str | None = None, **options: Any
+    ) -> None:
+        makers = [
+            partial(ScenicEnv, scenario, first=number, stride=num_envs, **options)
+            for number in range(num_envs)
+        ]
+        super().__init__(makers, context=context)
+
+    def reset(
+        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, dict[str, Any]]:
+        """Begin the next episode in every environment; a seed is that of all of them, of which each has episodes of its own."""
+        seeds: list[int | None] | None = [seed] * self.num_envs if isinstance(seed, int) else seed
+        return super().reset(seed=seeds, options=options)
 
 
 _ANGLES: Final = ("yaw", "pitch", "roll", "heading")

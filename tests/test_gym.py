@@ -16,7 +16,7 @@ if importlib.util.find_spec("gymnasium") is None:
 import gymnasium
 from gymnasium.utils.env_checker import check_env
 
-from scenic.gym import Choice, Continuous, Moment, ScenicEnv
+from scenic.gym import Choice, Continuous, Moment, ScenicEnv, ScenicVectorEnv
 from scenic.simulators.batch import choose_simulator, simulate_number
 from scenic.simulators.kinematic import SetVelocity, SetWheelSpeeds
 
@@ -280,3 +280,35 @@ def test_without_the_library_the_extra_is_named(monkeypatch: pytest.MonkeyPatch)
     with pytest.raises(UnsupportedError, match="need the package gymnasium") as caught:
         importlib.import_module("scenic.gym")
     assert "scenic-lang[gym]" in str(caught.value.help)
+
+
+def test_environments_in_processes_play_the_episodes_of_the_seed() -> None:
+    """Each has episodes of its own, which are those of one environment; and again after it is reset."""
+    options: dict[str, Any] = {
+        "actions": Choice([[], SetVelocity((0, 1, 0))]),
+        "observations": ["position"],
+        "reward": "reward",
+        "simulator": "kinematic",
+        "max_steps": 2,
+    }
+    text = "ego = new Object at (Range(0, 9), 0)\nrecord ego.y as reward\n"
+    scenario = scenic.scenarioFromString(text)
+    alone = ScenicEnv(scenario, **options)
+    starts = []
+    for k in range(4):
+        observation, _ = alone.reset(seed=8, options={"k": k})
+        starts.append(observation["ego.position"][0])
+    vector = ScenicVectorEnv(scenario, 2, **options)
+    try:
+        for _ in range(2):
+            observed, info = vector.reset(seed=8)
+            assert info["k"].tolist() == [0, 1]
+            played = [*observed["ego.position"][:, 0]]
+            for number in range(3):  # the third step begins the next episodes
+                observed, rewards, _, truncated, _ = vector.step(np.array([0, 1]))
+                assert truncated.tolist() == [number == 1] * 2
+            played += [*observed["ego.position"][:, 0]]
+            assert played == starts
+            assert rewards.tolist() == [0, 0]
+    finally:
+        vector.close()

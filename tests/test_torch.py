@@ -1,0 +1,126 @@
+"""Scenes as a data set of PyTorch, over what it documents of data sets and workers; over PyTorch itself where it is there."""
+
+import pickle
+import sys
+from collections.abc import Iterator
+from importlib.util import find_spec
+from itertools import islice, zip_longest
+from types import ModuleType, SimpleNamespace
+from typing import Any
+
+import pytest
+
+import scenic
+from scenic.language.errors import RejectionException, UnsupportedError
+
+SCENARIO = scenic.scenarioFromString("ego = new Object at (Range(0, 1), 0)\nrequire ego.position.x > 0.3")
+KEPT = ("torch", "torch.utils", "torch.utils.data", "scenic.torch")
+
+
+def number(scene: Any) -> int:
+    return int(scene.k)
+
+
+class Workers:
+    """PyTorch's documented interface: an iterable data set asks which worker of how many it is in."""
+
+    def __init__(self) -> None:
+        self.info: SimpleNamespace | None = None
+        data = ModuleType("torch.utils.data")
+        data.IterableDataset = type("IterableDataset", (), {})  # type: ignore[attr-defined]
+        data.get_worker_info = lambda: self.info  # type: ignore[attr-defined]
+        self.modules = {
+            "torch": ModuleType("torch"),
+            "torch.utils": ModuleType("torch.utils"),
+            "torch.utils.data": data,
+        }
+
+    def shares(self, stream: Any, count: int) -> list[list[Any]]:
+        """What each of several workers gives; every one has a copy of its own."""
+        found = []
+        for worker in range(count):
+            self.info = SimpleNamespace(id=worker, num_workers=count)
+            found.append(list(stream))
+        self.info = None
+        return found
+
+
+@pytest.fixture
+def workers(monkeypatch: pytest.MonkeyPatch) -> Iterator[Workers]:
+    made = Workers()
+    for name in KEPT:
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    for name, module in made.modules.items():
+        monkeypatch.setitem(sys.modules, name, module)
+    yield made
+    sys.modules.pop("scenic.torch", None)
+
+
+def test_workers_share_the_scenes_of_the_seed(workers: Workers) -> None:
+    from scenic.torch import SceneStream
+
+    alone = [scene.egoObject.position.x for scene in SCENARIO.sample(23, seed=5)]
+    stream = SceneStream(
+        SCENARIO, seed=5, count=23, transform=lambda scene: scene.egoObject.position.x, block=4
+    )
+    assert list(stream) == alone
+    for count in (1, 2, 3, 7):
+        shares = workers.shares(stream, count)
+        assert sorted(value for share in shares for value in share) == sorted(alone)
+        # A loader takes batches from its workers in turn.
+        batches = [[share[start : start + 4] for start in range(0, len(share), 4)] for share in shares]
+        turns = [batch for turn in zip_longest(*batches, fillvalue=[]) for batch in turn]
+        assert [value for batch in turns for value in batch] == alone
+
+
+def test_processes_epochs_and_endless_streams(workers: Workers) -> None:
+    from scenic.torch import SceneStream
+
+    found = [
+        value
+        for rank in range(3)
+        for share in workers.shares(
+            SceneStream(
+                SCENARIO, seed=5, count=20, first=100, transform=number, block=2, rank=rank, world_size=3
+            ),
+            2,
+        )
+        for value in share
+    ]
+    assert sorted(found) == list(range(100, 120))
+    stream = SceneStream(SCENARIO, seed=5, count=6, transform=number)
+    stream.set_epoch(2)
+    assert list(stream) == list(range(12, 18))
+    endless = SceneStream(SCENARIO, seed=5, transform=number, block=3)
+    assert list(islice(endless, 10)) == list(range(10))
+    with pytest.raises(ValueError, match="without end has no epochs"):
+        endless.set_epoch(1)
+    with pytest.raises(ValueError, match="process 2 of 2"):
+        SceneStream(SCENARIO, seed=5, rank=2, world_size=2)
+    # Workers that are started anew get the stream in a pickle.
+    assert list(pickle.loads(pickle.dumps(stream))) == list(range(12, 18))
+    never = scenic.scenarioFromString(
+        "def never(x): return x > 1\nx = Range(0, 1)\nego = new Object at (x, 0)\nrequire never(x)"
+    )
+    with pytest.raises(RejectionException, match="no scene was found within 50 candidates"):
+        list(SceneStream(never, seed=1, count=2, max_attempts=50))
+
+
+def test_without_pytorch_the_module_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(sys.modules, "scenic.torch", raising=False)
+    monkeypatch.setitem(sys.modules, "torch", None)
+    monkeypatch.setitem(sys.modules, "torch.utils.data", None)
+    with pytest.raises(UnsupportedError, match="need the package torch"):
+        import scenic.torch  # noqa: F401
+
+
+@pytest.mark.skipif(find_spec("torch") is None, reason="PyTorch is not installed")
+def test_pytorch_loads_scenes_in_order() -> None:
+    from torch.utils.data import DataLoader
+
+    from scenic.torch import SceneStream
+
+    stream = SceneStream(SCENARIO, seed=5, count=20, transform=number, block=4)
+    for count in (0, 2):
+        loader = DataLoader(stream, batch_size=4, num_workers=count)
+        assert [int(value) for batch in loader for value in batch] == list(range(20))
