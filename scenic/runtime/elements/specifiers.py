@@ -26,6 +26,7 @@ from scenic.runtime.regions.fields import VectorField, frame_at, is_field
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.spaces import Everywhere, Workspace
 from scenic.runtime.regions.views import place_in_plane, place_near
+from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.lazy import Lazy, defer, reads_of, resolve
 from scenic.runtime.values.values import (
     Orientation,
@@ -255,7 +256,7 @@ def scalar_or_vector(value: Any, what: str, *, axis: int) -> Any:
     if options_of(value) and value.node.kind.is_boxed:
         return to_vector(per_option(value, partial(scalar_or_vector, what=what, axis=axis)), what)
     if is_open(value):
-        return to_vector(Random.later(scalar_or_vector, value, what, axis=axis), what)
+        return to_vector(call_later(scalar_or_vector, value, what, axis=axis), what)
     return to_vector(value, what)
 
 

@@ -32,9 +32,9 @@ from scenic.runtime.regions.body_regions import (
 from scenic.runtime.regions.stacked import placed_of
 from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion
+from scenic.runtime.values.generic import sample_of
 from scenic.runtime.values.values import (
     Orientation,
-    Random,
     operate,
     per_option,
     to_orientation,
@@ -224,7 +224,7 @@ class Point:
 
     def sample(self, subsamples: Any = None) -> Any:
         """The instance with its random properties drawn now, independent of all scenes."""
-        return Random.drawn(self)
+        return sample_of(self)
 
     def canSee(self, other: Any, occludingObjects: Any = (), *, certain: bool = False) -> Any:
         """Whether it sees a vector, a point or an object past some objects.

@@ -64,6 +64,7 @@ from scenic.runtime.temporal.formulas import is_temporal
 from scenic.runtime.values.access import sliceable
 from scenic.runtime.values.choices import per_option
 from scenic.runtime.values.frozen import Frozen
+from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.lazy import definite
 from scenic.runtime.values.methods import OrientationMethods, VectorMethods
 from scenic.runtime.values.values import (
@@ -442,7 +443,7 @@ class Prelude(Dynamics):
     def compare(self, operator: str, left: Any, right: Any) -> Any:
         """``left operator right`` as a truth value, which may be random."""
         if may_return_instances(left) or may_return_instances(right):
-            return Random.later(TABLE[COMPARISONS[operator]].python, left, right)
+            return call_later(TABLE[COMPARISONS[operator]].python, left, right)
         if any(is_answered_by_code(item, _OF_ORDER) for item in (left, right)):
             raise conditions.NotSymbolicError
         if is_random(left) or is_random(right):

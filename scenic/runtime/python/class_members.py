@@ -12,7 +12,7 @@ from typing import Any
 
 from scenic.runtime.program.context import current
 from scenic.runtime.python.ownership import CONTAINERS, SAMPLE, functions_of, leads_back, own_functions
-from scenic.runtime.values.random_values import Random
+from scenic.runtime.values.random_base import RandomBase
 
 __all__ = ["bind", "member", "members", "sample_of"]
 
@@ -87,7 +87,7 @@ def _bind(cls: type, root: type) -> None:
             if name != "__getattribute__":
                 setattr(cls, name, _Property(member) if isinstance(member, property) else _Member(member))
         elif not name.startswith("__") and (
-            isinstance(member, Random | root | tuple) or type(member) in CONTAINERS
+            isinstance(member, RandomBase | root | tuple) or type(member) in CONTAINERS
         ):
             setattr(cls, name, _Value(member))
 

@@ -23,6 +23,7 @@ from scenic.runtime.program.context import Context, current, here, next_address
 from scenic.runtime.python.bounded import bounds_of_call
 from scenic.runtime.python.random_state import is_as, preserved, seed_globals
 from scenic.runtime.python.samples import Globals, Reach, Sample, dependencies, mention, reachable
+from scenic.runtime.values import generic
 from scenic.runtime.values.values import CODEC, Random, as_value
 
 
@@ -110,7 +111,7 @@ Rows = Sequence[tuple[Any, ...]]
 _STATE_READERS = ("getstate", "get_state")
 """What code calls that looks at the state of a generator without drawing."""
 
-Random.later = staticmethod(call_later)
+generic.call_later.register(object, call_later)
 
 
 def is_later(*values: Any) -> bool:

@@ -46,9 +46,9 @@ from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import PlacedVolume
 from scenic.runtime.regions.voxels import VoxelRegion
 from scenic.runtime.regions.voxels import voxelized as cells_of
+from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.values import (
     Orientation,
-    Random,
     Vector,
     apply,
     as_value,
@@ -223,7 +223,7 @@ def union(first: Any, second: Any) -> Region:
         areal = not (isinstance(a, LineRegion) or isinstance(b, LineRegion))
         if areal and flat_a is not None and flat_b is not None and flat_a[1] == flat_b[1]:
             if is_random((a.orientation, b.orientation)):
-                field = Random.later(_field_of_drawn, [(*flat_a, a.orientation), (*flat_b, b.orientation)])
+                field = call_later(_field_of_drawn, [(*flat_a, a.orientation), (*flat_b, b.orientation)])
             else:
                 field = field_of_union([a, b])
             return region_of(flat_a[0].union(flat_b[0]), flat_a[1], field)
@@ -271,7 +271,7 @@ def difference(first: Any, second: Any) -> Region:
 def intersects(first: Any, second: Any) -> Any:
     """Whether two regions or objects share a point; random where one of them is."""
     if is_open(second):
-        return Random.later(intersects, first, second)
+        return call_later(intersects, first, second)
     if options_of(second) and as_region(second) is None and not is_body(second):
         return per_option(second, partial(intersects, first))
     a, b = _operand(first, "`intersects`"), _operand(second, "`intersects`")

@@ -42,11 +42,11 @@ from scenic.runtime.regions.knowledge import (
 from scenic.runtime.regions.nearness import SLACK, at_any_height, body_box, only_within
 from scenic.runtime.regions.scalar_regions import Single
 from scenic.runtime.regions.stacked import Stack, body_operands, is_body, placed_of
+from scenic.runtime.values.generic import call_later, sample_of
 from scenic.runtime.values.lazy import defer, is_lazy
 from scenic.runtime.values.source_text import plain_number
 from scenic.runtime.values.values import (
     OrientedVector,
-    Random,
     Vector,
     apply,
     as_node,
@@ -329,7 +329,7 @@ class Region(metaclass=_RegionType):
         """Whether the region holds the whole of an object."""
         if not is_body(thing):
             if is_open(thing):
-                return Random.later(self.containsObject, thing)
+                return call_later(self.containsObject, thing)
             if options_of(thing):
                 return per_option(thing, self.containsObject)
             raise wrong_type(OBJECT, thing, "`containsObject`")
@@ -418,7 +418,7 @@ class Region(metaclass=_RegionType):
 
     def sample(self, subsamples: Any = None) -> "Region":
         """The region with its random parameters drawn now, independent of all scenes."""
-        region: Region = Random.drawn(self)
+        region: Region = sample_of(self)
         return region
 
     def uniformPointInner(self) -> Any:

@@ -12,6 +12,7 @@ from scenic.language.errors import InvalidScenarioError, RejectionException
 from scenic.language.types import REGION
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.varying import VaryingRegion
+from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.values import Orientation, Random, operate, to_orientation, to_vector, wrong_type
 
 
@@ -34,7 +35,7 @@ class DrawnRegion(VaryingRegion):
     @classmethod
     def made(cls, make: Callable[..., Region], /, *args: Any, **keywords: Any) -> Self:
         """What a function makes of values once they are drawn."""
-        return cls(Random.later(make, *args, **keywords))
+        return cls(call_later(make, *args, **keywords))
 
     @classmethod
     def of(cls, value: Random, what: str) -> Self:
@@ -50,10 +51,10 @@ class DrawnRegion(VaryingRegion):
         return region
 
     def orientation_at(self, point: Any) -> Any:
-        return to_orientation(Random.later(_orientation_at, self.parameters[0], point))
+        return to_orientation(call_later(_orientation_at, self.parameters[0], point))
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
-        landing = Random.later(_landing, self.parameters[0], point, direction)
+        landing = call_later(_landing, self.parameters[0], point, direction)
         place, orientation = operate("getitem", landing, 0), operate("getitem", landing, 1)
         return to_vector(place), to_orientation(orientation)
 

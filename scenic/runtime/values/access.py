@@ -20,9 +20,10 @@ from scenic.runtime.python.class_members import member
 from scenic.runtime.values.applying import apply, operate
 from scenic.runtime.values.choices import MISSING, MOST_OPTIONS, REJECTED, drawn_option, rejection, select
 from scenic.runtime.values.frozen import is_frozen
+from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.lazy import defer, is_lazy
 from scenic.runtime.values.nodes import DICTIONARY, LIST, TUPLE, as_node, as_value, kind_of
-from scenic.runtime.values.random_values import Random, is_random
+from scenic.runtime.values.random_base import RandomBase, is_random, random_value
 
 NOTHING = "there is nothing to choose from"
 
@@ -33,7 +34,7 @@ _MOST_CUT: Final = 64
 """Lists, and places between their elements, between which analysis cuts, at most."""
 
 
-def element_of(index: Node, lists: Sequence[Sequence[Node]], draw: Random) -> Any:
+def element_of(index: Node, lists: Sequence[Sequence[Node]], draw: RandomBase) -> Any:
     """The element at the share ``draw`` of the length of one of several lists, which ``index`` draws.
 
     Samples in which the list is empty are rejected.
@@ -85,13 +86,13 @@ def element_at(node: Node, index: Any) -> Any:
     return select(draw, results)
 
 
-def element(value: Random, index: Any) -> Any:
+def element(value: RandomBase, index: Any) -> Any:
     """What a random container, or a choice among containers, has at an index."""
     if is_lazy(index):
         return defer(element, value, index)
     if holds_instances(value.node):
         # Instances as they are in the sample; that they are instances is not known before (section 8.1).
-        return Random.later(operator.getitem, value, index)
+        return call_later(operator.getitem, value, index)
     found = element_at(value.node, index)
     return operate("getitem", value, index) if found is None else found
 
@@ -112,7 +113,7 @@ class _Sliceable:
     def __getitem__(self, bounds: slice) -> Any:
         parts = bounds.start, bounds.stop, bounds.step
         if is_random(parts) or is_lazy(bounds):
-            return element(Random(as_node(self._container)), bounds)
+            return element(random_value(as_node(self._container)), bounds)
         return self._container[bounds]
 
 
@@ -127,7 +128,7 @@ _PARAMETERS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
 """Parameters of primitive laws that scripts ask for, in the order of their operands."""
 
 
-def attribute(value: Random, name: str) -> Any:
+def attribute(value: RandomBase, name: str) -> Any:
     """An attribute of a random value. A choice gives the choice among the options' attributes."""
     node = value.node
     names = _PARAMETERS.get(node.operation.name, ())
@@ -143,10 +144,10 @@ def attribute(value: Random, name: str) -> Any:
         raise AttributeError(
             f"a random {node.kind.value} has no attribute {name!r}", name=name, obj=type(value)
         )
-    return Random.later(getattr, value, name) if holds_instances(node) else apply(_GETATTR, value, name)
+    return call_later(getattr, value, name) if holds_instances(node) else apply(_GETATTR, value, name)
 
 
-def called(value: Random, args: Sequence[Any], kwargs: dict[str, Any]) -> Any:
+def called(value: RandomBase, args: Sequence[Any], kwargs: dict[str, Any]) -> Any:
     """The result of calling a random value. A choice among functions calls each with the arguments."""
     node = value.node
     if node.operation is TABLE["select"]:
@@ -160,9 +161,9 @@ def called(value: Random, args: Sequence[Any], kwargs: dict[str, Any]) -> Any:
             elif option.is_constant and isinstance(option.value, BuiltinFunctionType):
                 results.append(_call_in_lanes(option, args, kwargs))
             else:
-                results.append(as_node(Random.later(as_value(option), *args, **kwargs)))
+                results.append(as_node(call_later(as_value(option), *args, **kwargs)))
         return select(index, results)
-    return Random.later(value, *args, **kwargs)
+    return call_later(value, *args, **kwargs)
 
 
 _DRAWING: Final = frozenset({"sample", "uniformPointInner"})
@@ -186,7 +187,7 @@ def _traced(function: Any, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
         return as_node(function(*args, **kwargs))
     except Exception as error:  # noqa: BLE001 - whatever the call raises
         if is_random(args) or is_random(kwargs):
-            return as_node(Random.later(function, *args, **kwargs))
+            return as_node(call_later(function, *args, **kwargs))
         return construction.make_node(MISSING, (), error, here())
 
 
@@ -209,7 +210,7 @@ def _attribute_of_option(option: Node, name: str, rejects: bool = False) -> Node
     if value is None and rejects:
         return rejection(RejectionException(f"there is nothing here that could have an attribute {name!r}"))
     if kind_of(value) is Kind.OBJECT and _is_computed(type(value), name):  # type: ignore[arg-type] # classes are hashable
-        return as_node(Random.later(getattr, value, name))
+        return as_node(call_later(getattr, value, name))
     try:
         return as_node(getattr(value, name))
     except RejectionException as error:
@@ -246,7 +247,7 @@ def _with_instances(value: Any) -> bool:
         value = list(value.values())
     if isinstance(value, tuple | list | set | frozenset):
         return any(_with_instances(item) for item in value)
-    return holds_instances(value.node) if isinstance(value, Random) else kind_of(value) is Kind.OBJECT
+    return holds_instances(value.node) if isinstance(value, RandomBase) else kind_of(value) is Kind.OBJECT
 
 
 def _nothing(call: Call) -> Any:

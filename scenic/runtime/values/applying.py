@@ -17,10 +17,18 @@ from scenic.graph.schedule import Scheduler
 from scenic.language.errors import InvalidScenarioError, RejectionException
 from scenic.runtime.program.context import current, here, next_address, uniform_draw
 from scenic.runtime.values.choices import is_answered_by_code, over_options
-from scenic.runtime.values.definite import Orientation, Vector, scalar_of
+from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.lazy import Lazy, defer
 from scenic.runtime.values.nodes import CODEC, as_node, as_value
-from scenic.runtime.values.random_values import Random
+from scenic.runtime.values.random_base import random_value
+from scenic.runtime.values.rows import EXACT, of_row, row_class
+
+
+def scalar_of(name: str) -> Callable[..., Any]:
+    """An operation of the table on plain numbers."""
+    scalar = TABLE[name].scalar
+    assert scalar is not None, name
+    return scalar
 
 
 def operate(name: str, *operands: Any, payload: Any = None) -> Any:
@@ -41,7 +49,7 @@ def apply(operation: Operation, *operands: Any, payload: Any = None) -> Any:
         return folded(operation, nodes, payload)
     if operation.pure and operation.is_python(nodes, Kind.OTHER):
         if any(node.kind.is_boxed for node in nodes) and _is_of_code(operation, operands):
-            return Random.later(operation.python, *operands)
+            return call_later(operation.python, *operands)
         distributed = over_options(nodes, lambda *options: operation.python(*options))  # type: ignore[misc] # it has one
         if distributed is not None:
             return distributed
@@ -67,21 +75,13 @@ def _at_once(scalar: Callable[..., Any], payload: Any, operands: Sequence[Any]) 
     rows = []
     for operand in operands:
         cls = type(operand)
-        if cls is Vector or cls is Orientation:
-            rows.append(operand._row)
-        elif cls is float or cls is int:
+        if cls is float or cls is int:
             rows.append(operand)
+        elif cls in EXACT:
+            rows.append(operand._row)
         else:
             return NotImplemented
-    return _of_row(scalar(payload, *rows))
-
-
-def _of_row(result: Any) -> Any:
-    if type(result) is not tuple:
-        return result
-    value: Any = object.__new__(Vector if len(result) == 3 else Orientation)
-    value._row = result
-    return value
+    return of_row(scalar(payload, *rows))
 
 
 def unary(name: str) -> Callable[[Any], Any]:
@@ -92,25 +92,25 @@ def unary(name: str) -> Callable[[Any], Any]:
         cls = type(operand)
         if cls is float:
             result = scalar(None, operand)
-        elif cls is Vector or cls is Orientation:
+        elif cls in EXACT:
             result = scalar(None, operand._row)
         else:
             return apply(operation, operand)
         if type(result) is float:
             return result
-        return apply(operation, operand) if result is NotImplemented else _of_row(result)
+        return apply(operation, operand) if result is NotImplemented else of_row(result)
 
     return applied
 
 
 def binary(name: str) -> Callable[[Any, Any], Any]:
     """`operate` for one operation of two operands without data, for what simulations do all the time."""
-    operation, scalar = TABLE[name], scalar_of(name)
+    operation, scalar, vectors = TABLE[name], scalar_of(name), row_class(3)
 
     def applied(left: Any, right: Any) -> Any:
         first, second = type(left), type(right)
-        if second is Vector and (first is Vector or first is Orientation):
-            return _of_row(scalar(None, left._row, right._row))
+        if second is vectors and first in EXACT:
+            return of_row(scalar(None, left._row, right._row))
         if first is float and second is float:
             result = scalar(None, left, right)
             return apply(operation, left, right) if result is NotImplemented else result
@@ -155,13 +155,13 @@ def fixed_batch(nodes: Iterable[Node]) -> Batch:
 def uniform() -> Any:
     """One axis of the cube as a value: uniform on (0, 1)."""
     drawn = uniform_draw()
-    return Random(axis(here(), next_address())) if drawn is None else drawn
+    return random_value(axis(here(), next_address())) if drawn is None else drawn
 
 
 def random_key() -> Any:
     """A random word as a value, which keys the further draws of an operation that retries."""
     drawn = uniform_draw()
     if drawn is None:
-        return Random(key(here(), next_address()))
+        return random_value(key(here(), next_address()))
     # As a value it would be a number again, and no word.
-    return Random(constant(drawn, Kind.KEY, int(drawn * 2.0**52)))
+    return random_value(constant(drawn, Kind.KEY, int(drawn * 2.0**52)))

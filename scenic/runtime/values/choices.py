@@ -15,10 +15,11 @@ from scenic.graph.operations import TABLE
 from scenic.language.errors import RejectionException
 from scenic.runtime.program.context import current, here
 from scenic.runtime.python.ownership import is_own_function
-from scenic.runtime.values.definite import Orientation, Vector
 from scenic.runtime.values.frozen import is_frozen
+from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.nodes import CONTAINERS_MADE, as_node, as_value, kind_of
-from scenic.runtime.values.random_values import Random
+from scenic.runtime.values.random_base import RandomBase
+from scenic.runtime.values.rows import EXACT
 
 MOST_OPTIONS = 4096
 """Options of a choice for each of which a call is made at once, at most."""
@@ -79,14 +80,14 @@ def _is_data(value: Any) -> bool:
         return all(map(_is_data, value))
     if cls is dict:
         return all(_is_data(key) and _is_data(item) for key, item in value.items())
-    if value is None or cls in (int, float, bool, str, bytes, slice, Vector, Orientation):
+    if value is None or cls in (int, float, bool, str, bytes, slice) or cls in EXACT:
         return True
     return is_frozen(value)
 
 
 def is_answered_by_code(value: Any, methods: Sequence[str]) -> bool:
     """Whether methods of the program's classes answer for a value: they have to be asked of the sampled one."""
-    if not isinstance(value, Random):
+    if not isinstance(value, RandomBase):
         return _has_own(value, methods)
     stack, seen = [value.node], {value.node}
     while stack:
@@ -182,14 +183,14 @@ def drawn_option(option: Node) -> Any:
 
 def options_of(value: Any) -> tuple[Any, ...]:
     """The options of a random choice; none of any other value."""
-    if isinstance(value, Random) and value.node.operation is TABLE["select"]:
+    if isinstance(value, RandomBase) and value.node.operation is TABLE["select"]:
         return tuple(as_value(option) for option in value.node.operands[1:])
     return ()
 
 
 def is_open(value: Any) -> bool:
     """Whether a random value, or some option of it, can be of any type until it is drawn (section 4.3)."""
-    if not isinstance(value, Random) or not value.node.kind.is_boxed:
+    if not isinstance(value, RandomBase) or not value.node.kind.is_boxed:
         return False
     options = options_of(value)
     return not options or any(map(is_open, options))
@@ -200,7 +201,7 @@ def per_option(value: Any, function: Callable[[Any], Any]) -> Any:
 
     Options that are choices themselves are taken apart likewise.
     """
-    if isinstance(value, Random) and value.node.operation is TABLE["select"]:
+    if isinstance(value, RandomBase) and value.node.operation is TABLE["select"]:
         index, *options = value.node.operands
         return select(index, [as_node(per_option(drawn_option(option), function)) for option in options])
     return function(value)
@@ -211,8 +212,8 @@ def as_drawn(function: Callable[[Any, Any], Any], first: Any, second: Any) -> An
 
     Of a choice it is asked of each option; where only the draw shows what the second is, of what is drawn.
     """
-    if not isinstance(second, Random) or not second.node.kind.is_boxed:
+    if not isinstance(second, RandomBase) or not second.node.kind.is_boxed:
         return function(first, second)
     if is_open(second):
-        return Random.later(function, first, second)
+        return call_later(function, first, second)
     return per_option(second, partial(function, first))

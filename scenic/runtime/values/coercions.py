@@ -1,8 +1,10 @@
 """What operators and specifiers take for a number, a vector, a heading or an orientation (section 4.3 of the specification)."""
 
+import math
 from collections.abc import Callable
 from typing import Any
 
+from scenic.graph import quaternions
 from scenic.graph.kinds import Kind
 from scenic.graph.operation import Operation, always, by_lane
 from scenic.graph.operations import TABLE
@@ -11,11 +13,12 @@ from scenic.language.types import HEADING, ORIENTATION, SCALAR, VECTOR
 from scenic.runtime.program.context import here
 from scenic.runtime.values.applying import apply, operate
 from scenic.runtime.values.choices import drawn_option, select
-from scenic.runtime.values.definite import Orientation, Vector
 from scenic.runtime.values.describing import wrong_type
+from scenic.runtime.values.generic import as_orientation, as_vector
 from scenic.runtime.values.lazy import Lazy, defer
 from scenic.runtime.values.nodes import ROWS, as_node, is_number, is_orientation, is_vector
-from scenic.runtime.values.random_values import Random
+from scenic.runtime.values.random_base import RandomBase
+from scenic.runtime.values.rows import OrientationRow, VectorRow, orientation_of, vector_of
 
 
 def to_scalar(value: Any, what: str = "") -> Any:
@@ -24,7 +27,7 @@ def to_scalar(value: Any, what: str = "") -> Any:
         return value
     if isinstance(value, Lazy):
         return defer(to_scalar, value, what)
-    if isinstance(value, Random):
+    if isinstance(value, RandomBase):
         if value.node.kind is Kind.SCALAR:
             return value
         if value.node.kind.is_number:
@@ -41,11 +44,11 @@ def to_scalar(value: Any, what: str = "") -> Any:
 
 def to_vector(value: Any, what: str = "") -> Any:
     """A vector: also a pair (z = 0), a triple, and anything with a position."""
-    if isinstance(value, Vector):
+    if isinstance(value, VectorRow):
         return value
     if isinstance(value, Lazy):
         return defer(to_vector, value, what)
-    if isinstance(value, Random):
+    if isinstance(value, RandomBase):
         if value.node.kind is Kind.VECTOR:
             return value
         if value.node.kind.is_boxed:
@@ -71,11 +74,11 @@ def to_heading(value: Any, what: str = "") -> Any:
         return value
     if isinstance(value, Lazy):
         return defer(to_heading, value, what)
-    if isinstance(value, Random):
+    if isinstance(value, RandomBase):
         if value.node.kind.is_number:
             return to_scalar(value)
         if value.node.kind is Kind.ORIENTATION:
-            return value.yaw
+            return operate("euler", value, payload=0)
         if value.node.kind.is_boxed:
             return _coerce_boxed(value, Kind.SCALAR, to_heading, what)
     elif is_number(value):
@@ -87,40 +90,52 @@ def to_heading(value: Any, what: str = "") -> Any:
 
 def to_orientation(value: Any, what: str = "") -> Any:
     """An orientation: also a heading, a triple of Euler angles, and anything that has an orientation."""
-    if isinstance(value, Orientation):
+    if isinstance(value, OrientationRow):
         return value
     if type(value) is float:
-        return Orientation.fromEuler(value, 0.0, 0.0)
+        return from_euler(value, 0.0, 0.0)
     if isinstance(value, Lazy):
         return defer(to_orientation, value, what)
-    if isinstance(value, Random):
+    if isinstance(value, RandomBase):
         if value.node.kind is Kind.ORIENTATION:
             return value
         if value.node.kind.is_number:
-            return Orientation.fromEuler(value, 0, 0)
+            return from_euler(value, 0, 0)
         if value.node.kind is Kind.VECTOR:
-            return Orientation.fromEuler(*value)
+            return from_euler(*(operate("component", value, payload=axis) for axis in range(3)))
         if value.node.kind.is_boxed:
             return _coerce_boxed(value, Kind.ORIENTATION, to_orientation, what)
     elif is_number(value):
-        return Orientation.fromEuler(value, 0, 0)
-    elif isinstance(value, Vector) or (isinstance(value, ROWS) and len(value) == 3):
-        return Orientation.fromEuler(*value)
+        return from_euler(value, 0, 0)
+    elif isinstance(value, VectorRow) or (isinstance(value, ROWS) and len(value) == 3):
+        return from_euler(*value)
     elif hasattr(value, "toOrientation") and not isinstance(value, type):
         return value.toOrientation()
     raise wrong_type(ORIENTATION, value, what)
 
 
+def from_euler(yaw: Any, pitch: Any, roll: Any) -> Any:
+    """The orientation of intrinsic rotations about Z, the new X and the new Y (radians)."""
+    if (
+        type(yaw) is float
+        and type(pitch) is float
+        and type(roll) is float
+        and math.isfinite(yaw + pitch + roll)
+    ):
+        return orientation_of(quaternions.of_euler(yaw, pitch, roll))
+    return operate("from euler", *map(to_scalar, (yaw, pitch, roll)))
+
+
 def vector(x: Any, y: Any, z: Any = 0) -> Any:
     """The vector of three numbers."""
     if type(x) is float and type(y) is float and type(z) is float:
-        return Vector.of((x, y, z))
+        return vector_of((x, y, z))
     if is_number(x) and is_number(y) and is_number(z):
-        return Vector.of((float(x), float(y), float(z)))
+        return vector_of((float(x), float(y), float(z)))
     return operate("vector", to_scalar(x), to_scalar(y), to_scalar(z))
 
 
-def _coerce_boxed(value: Random, kind: Kind, function: Callable[..., Any], what: str) -> Any:
+def _coerce_boxed(value: RandomBase, kind: Kind, function: Callable[..., Any], what: str) -> Any:
     """Coerce option by option where ``value`` is a choice, else when it is sampled."""
     if value.node.operation is TABLE["select"]:
         index, *options = value.node.operands
@@ -128,12 +143,12 @@ def _coerce_boxed(value: Random, kind: Kind, function: Callable[..., Any], what:
     return _coerce_later(value, kind, function, what)
 
 
-def _coerce_later(value: Random, kind: Kind, function: Callable[..., Any], what: str) -> Any:
+def _coerce_later(value: RandomBase, kind: Kind, function: Callable[..., Any], what: str) -> Any:
     return when_drawn(value, kind, lambda sampled: function(sampled, what))
 
 
 def when_drawn(
-    value: Random,
+    value: RandomBase,
     kind: Kind,
     function: Callable[[Any], Any],
     together: Callable[[list[Any]], list[Any] | None] | None = None,
@@ -160,7 +175,11 @@ def with_vector(name: str, left: Any, right: Any) -> Any:
 
 def with_number(name: str, left: Any, right: Any) -> Any:
     """An operation on a vector and a number; ``NotImplemented`` where it is none."""
-    is_scalar = is_number(right) or isinstance(right, Random)
+    is_scalar = is_number(right) or isinstance(right, RandomBase)
     if is_scalar and not is_vector(right) and not is_orientation(right):
         return operate(name, left, to_scalar(right))
     return NotImplemented
+
+
+as_vector.register(object, to_vector)
+as_orientation.register(object, to_orientation)

@@ -1,41 +1,34 @@
 """Definite vectors and orientations: plain rows of floats, with the methods that random ones have, too."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, Self
 
 import numpy as np
 
 from scenic.graph import quaternions
-from scenic.graph.operations import TABLE
 from scenic.language.errors import ScenicTypeError
 from scenic.runtime.program.context import here
+from scenic.runtime.values.applying import operate, scalar_of
+from scenic.runtime.values.coercions import from_euler, to_orientation, vector
 from scenic.runtime.values.describing import describe
 from scenic.runtime.values.lazy import defer, is_lazy
-from scenic.runtime.values.methods import Operand, OrientationMethods, VectorMethods
-from scenic.runtime.values.random_values import is_random
+from scenic.runtime.values.methods import OrientationMethods, VectorMethods
+from scenic.runtime.values.random_base import is_random
+from scenic.runtime.values.rows import OrientationRow, VectorRow
 from scenic.runtime.values.source_text import plain_number
-
-
-def scalar_of(name: str) -> Callable[..., Any]:
-    """An operation of the table on plain numbers."""
-    scalar = TABLE[name].scalar
-    assert scalar is not None, name
-    return scalar
-
 
 _ADD, _SUBTRACT, _MULTIPLY, _ROTATE = map(scalar_of, ("add", "subtract", "multiply", "rotate"))
 
 
-class Vector(VectorMethods):
+class Vector(VectorRow, VectorMethods, length=3):
     """A definite vector: three floats, in metres. ``Vector(x, y, z)`` with a random coordinate is a random vector."""
 
-    __slots__ = ("_row",)
-    _row: tuple[float, float, float]
+    __slots__ = ()
 
     def __new__(cls, x: Any, y: Any, z: Any = 0) -> Any:
         if is_random(x) or is_random(y) or is_random(z):
-            return cls._vector(x, y, z)
+            return vector(x, y, z)
         try:
             return cls.of((float(x), float(y), float(z)))
         except (TypeError, ValueError):
@@ -46,18 +39,6 @@ class Vector(VectorMethods):
                 span=here(),
                 help="coordinates are in metres",
             ) from None
-
-    @classmethod
-    def of(cls, row: Iterable[float]) -> Self:
-        """The vector of three floats."""
-        self = object.__new__(cls)
-        self._row = tuple(row)  # type: ignore[assignment] # of three
-        return self
-
-    @property
-    def row(self) -> tuple[float, float, float]:
-        """The three floats."""
-        return self._row
 
     @property
     def x(self) -> float:
@@ -70,9 +51,6 @@ class Vector(VectorMethods):
     @property
     def z(self) -> float:
         return self._row[2]
-
-    def __iter__(self) -> Iterator[float]:
-        return iter(self._row)
 
     # The operations that running simulations do most, without a detour.
 
@@ -95,10 +73,10 @@ class Vector(VectorMethods):
 
     def rotatedBy(self, rotation: Any) -> Any:
         """As of `VectorMethods`, without a detour."""
-        turn = self._to_orientation(rotation)
+        turn = to_orientation(rotation)
         if type(turn) is Orientation:
             return Vector.of(_ROTATE(None, turn._row, self._row))
-        return self._operate("rotate", turn, self)
+        return operate("rotate", turn, self)
 
     def __eq__(self, other: object) -> bool:
         if isinstance(other, Vector):
@@ -162,11 +140,10 @@ class OrientedVector(Vector):
 Sequence.register(Vector)
 
 
-class Orientation(OrientationMethods):
+class Orientation(OrientationRow, OrientationMethods, length=4):
     """A definite orientation: a unit quaternion. Made by `fromEuler` or `fromQuaternion`, or from SciPy's ``Rotation``."""
 
-    __slots__ = ("_row",)
-    _row: tuple[float, float, float, float]
+    __slots__ = ()
 
     def __init__(self, rotation: Any = None) -> None:
         if rotation is not None and not hasattr(rotation, "as_quat"):
@@ -177,24 +154,10 @@ class Orientation(OrientationMethods):
             )
         self._row = (0.0, 0.0, 0.0, 1.0) if rotation is None else tuple(rotation.as_quat().tolist())
 
-    @classmethod
-    def of(cls, row: Iterable[float]) -> Self:
-        """The orientation of a unit quaternion x, y, z, w."""
-        self = object.__new__(cls)
-        self._row = tuple(row)  # type: ignore[assignment]
-        return self
-
     @staticmethod
     def fromEuler(yaw: Any, pitch: Any, roll: Any) -> Any:
         """Intrinsic rotations about Z, the new X and the new Y (radians)."""
-        if (
-            type(yaw) is float
-            and type(pitch) is float
-            and type(roll) is float
-            and math.isfinite(yaw + pitch + roll)
-        ):
-            return Orientation.of(quaternions.of_euler(yaw, pitch, roll))
-        return Operand._operate("from euler", *map(Operand._to_scalar, (yaw, pitch, roll)))
+        return from_euler(yaw, pitch, roll)
 
     @classmethod
     def fromQuaternion(cls, quaternion: Sequence[float]) -> "Orientation":

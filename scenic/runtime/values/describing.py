@@ -7,12 +7,12 @@ from scenic.graph.kinds import Kind
 from scenic.language.errors import ScenicTypeError
 from scenic.language.types import Type, wanted
 from scenic.runtime.program.context import here
-from scenic.runtime.values.random_values import Random
+from scenic.runtime.values.random_base import RandomBase
 
 
 def describe(value: Any) -> str:
     """A value in words for a message."""
-    if isinstance(value, Random):
+    if isinstance(value, RandomBase):
         known = value.node.kind
         return "a random value" if known is Kind.OTHER else f"a random {known.value}"
     if value is None:

@@ -14,6 +14,7 @@ from scenic.graph.operation import FAULT
 from scenic.graph.schedule import Scheduler
 from scenic.language.errors import RejectionException
 from scenic.runtime.python.samples import Sample, dependencies
+from scenic.runtime.values import generic
 from scenic.runtime.values.values import CODEC, Random, as_node, is_number
 
 
@@ -61,7 +62,7 @@ def support_of(value: Any) -> tuple[float | None, float | None]:
     return (None if np.isinf(low) else low, None if np.isinf(high) else high)
 
 
-Random.drawn = staticmethod(sample_of)
-Random.supported = staticmethod(support_of)
+generic.sample_of.register(object, sample_of)
+generic.support_of.register(object, support_of)
 
 __all__ = ["sample_of", "support_of"]

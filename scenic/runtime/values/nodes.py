@@ -11,10 +11,10 @@ from scenic.graph.node import Node, constant
 from scenic.graph.operation import Operation, always, by_lane
 from scenic.language.errors import ScenicTypeError, UnsupportedError
 from scenic.runtime.program.context import here
-from scenic.runtime.values.definite import Orientation, Vector
 from scenic.runtime.values.describing import describe
-from scenic.runtime.values.methods import Operand
-from scenic.runtime.values.random_values import Random, RandomOrientation, RandomVector, is_random
+from scenic.runtime.values.generic import as_orientation, as_vector
+from scenic.runtime.values.random_base import RandomBase, is_random, random_value
+from scenic.runtime.values.rows import OrientationRow, VectorRow, row_class
 
 LARGEST_INTEGER = 2**62
 """Integers beyond this are kept as Python objects."""
@@ -33,18 +33,18 @@ def is_number(value: Any) -> TypeGuard[float]:
 
 def is_vector(value: Any) -> bool:
     """Whether a value is a vector, or a pair or triple that stands for one."""
-    if isinstance(value, Random):
+    if isinstance(value, RandomBase):
         return value.node.kind is Kind.VECTOR
     if isinstance(value, tuple | list):
         return len(value) in (2, 3)
-    return isinstance(value, Vector) or (isinstance(value, np.ndarray) and value.shape in ((2,), (3,)))
+    return isinstance(value, VectorRow) or (isinstance(value, np.ndarray) and value.shape in ((2,), (3,)))
 
 
 def is_orientation(value: Any) -> bool:
     """Whether a value is an orientation."""
-    if isinstance(value, Random):
+    if isinstance(value, RandomBase):
         return value.node.kind is Kind.ORIENTATION
-    return isinstance(value, Orientation)
+    return isinstance(value, OrientationRow)
 
 
 def kind_of(value: Any) -> Kind:
@@ -55,9 +55,9 @@ def kind_of(value: Any) -> Kind:
         return Kind.INTEGER if abs(int(value)) < LARGEST_INTEGER else Kind.OTHER
     if isinstance(value, float | np.floating):
         return Kind.SCALAR
-    if isinstance(value, Vector):
+    if isinstance(value, VectorRow):
         return Kind.VECTOR
-    if isinstance(value, Orientation):
+    if isinstance(value, OrientationRow):
         return Kind.ORIENTATION
     kind: Kind = getattr(value, "scenic_kind", Kind.OTHER)
     return kind if isinstance(kind, Kind) else Kind.OTHER
@@ -70,7 +70,7 @@ class ValueCodec:
         """The values of a column, lane by lane."""
         if not kind.trailing:
             return column.tolist()  # type: ignore[no-any-return]
-        cls = Vector if kind is Kind.VECTOR else Orientation
+        cls = row_class(3 if kind is Kind.VECTOR else 4)
         values: list[Any] = [object.__new__(cls) for _ in column]
         for value, row in zip(values, zip(*column.T.tolist(), strict=True), strict=True):
             value._row = row
@@ -80,15 +80,17 @@ class ValueCodec:
         """The row of a value; raises ``TypeError`` where it is of another kind."""
         if kind.is_boxed:
             return value
-        if isinstance(value, Random):
+        if isinstance(value, RandomBase):
             raise UnsupportedError(
                 "reaching a random value of an instance through a random container is not supported yet",
                 help="choose among the instances themselves: `Uniform(a, b)`",
             )
         if kind is Kind.VECTOR:
-            return tuple(Operand._to_vector(value))
+            return value._row if isinstance(value, VectorRow) else tuple(as_vector(value))
         if kind is Kind.ORIENTATION:
-            orientation = Operand._to_orientation(value)
+            if isinstance(value, OrientationRow):
+                return value._row
+            orientation = as_orientation(value)
             return (orientation.x, orientation.y, orientation.z, orientation.w)
         if not is_number(value):
             raise ScenicTypeError(f"expected a number, not {describe(value)}")
@@ -166,7 +168,7 @@ def _container(value: Any) -> Operation:
 
 def as_node(value: Any) -> Node:
     """The node of a value: its own if random, else a constant."""
-    if isinstance(value, Random):
+    if isinstance(value, RandomBase):
         return value.node
     if isinstance(value, tuple | list) and is_random(value):
         return construction.make_node(_container(value), [as_node(item) for item in value], span=here())
@@ -190,8 +192,4 @@ def as_value(node: Node, again: Callable[[], Any] | None = None) -> Any:
     """The value of a node: definite for a constant, else random."""
     if node.is_constant:
         return node.value
-    if node.kind is Kind.VECTOR:
-        return RandomVector(node, again)
-    if node.kind is Kind.ORIENTATION:
-        return RandomOrientation(node, again)
-    return Random(node, again)
+    return random_value(node, again)

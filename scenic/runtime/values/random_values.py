@@ -1,145 +1,51 @@
-"""Random values: what is drawn when a scene is sampled. Each wraps a node of the value graph."""
+"""The classes of random values, with the methods that programs use."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any, ClassVar
+from typing import Any
 
-from scenic.graph.node import Node
-from scenic.language.errors import RandomControlFlowError, RandomIndexError, ScenicTypeError
-from scenic.runtime.program.context import here, warn
+from scenic.graph.kinds import Kind
+from scenic.runtime.values.access import attribute, called, element
+from scenic.runtime.values.generic import sample_of, support_of
 from scenic.runtime.values.methods import Arithmetic, OrientationMethods, VectorMethods
-from scenic.runtime.values.source_text import spelled
+from scenic.runtime.values.random_base import RandomBase
+
+__all__ = ["Random", "RandomOrientation", "RandomVector"]
 
 
-class Random(Arithmetic):
+class Random(Arithmetic, RandomBase, kinds=[None]):
     """A value that is drawn when a scene is sampled.
 
     Arithmetic, indexing, calling and attribute access give further random values. Anything that needs a definite
     answer now (a truth value, a comparison, iteration) raises `RandomControlFlowError`.
     """
 
-    __slots__ = ("_again", "node")
-    drawn: ClassVar[Callable[[Any], Any]]
-    """Draws one sample of a value; `scenic.runtime.values.drawing`, which knows how, puts itself here."""
-    supported: ClassVar[Callable[[Any], tuple[float | None, float | None]]]
-    __array_priority__ = 1000  # NumPy scalars on the left defer to the methods below.
-
-    _element: ClassVar[Callable[["Random", Any], Any]]
-    _attribute: ClassVar[Callable[["Random", str], Any]]
-    _called: ClassVar[Callable[["Random", Sequence[Any], dict[str, Any]], Any]]
-    """What its parts are: `scenic.runtime.values.access`, which stands on this module; `scenic.runtime.values.values` puts it here."""
-    later: ClassVar[Callable[..., Any]]
-    """A call of Python code that is made on each sample; `scenic.runtime.python.opaque`, which stands on this module, gives it."""
-
-    def __init__(self, node: Node, again: "Callable[[], Any] | None" = None) -> None:
-        self.node = node
-        self._again = again
+    __slots__ = ()
+    __hash__ = object.__hash__
 
     # Parts
 
     def __getitem__(self, index: Any) -> Any:
-        return Random._element(self, index)
+        return element(self, index)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__") and name.endswith("__"):
             raise AttributeError(name)
-        return Random._attribute(self, name)
+        return attribute(self, name)
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
-        return Random._called(self, args, kwargs)
+        return called(self, args, kwargs)
 
     # What scripts ask of a law
 
     def sample(self, subsamples: Any = None) -> Any:
         """One sample, drawn now from Python's generator, independent of all scenes."""
-        return Random.drawn(self)
+        return sample_of(self)
 
     def supportInterval(self) -> tuple[float | None, float | None]:
         """The least and the greatest value, as far as they are known."""
-        return Random.supported(self)
-
-    @property
-    def isPrimitive(self) -> bool:
-        """Whether it is drawn itself, not computed from what is drawn."""
-        return self._again is not None
-
-    def clone(self) -> Any:
-        """An independent draw of the same law."""
-        return self if self._again is None else self._again()
-
-    # What a random value cannot do
-
-    def _definite(self, what: str) -> RandomControlFlowError:
-        return RandomControlFlowError(
-            f"{what} a random value is not possible while the scenario is being built",
-            span=here(),
-            help="its value is known only in a sampled scene; use `require`, or make the choice itself "
-            "random with `Uniform(...)` or `Discrete({...})`",
-        )
-
-    def __bool__(self) -> bool:
-        raise self._definite("branching on the truth of")
-
-    def __eq__(self, other: object) -> bool:
-        raise self._definite("comparing")
-
-    def __ne__(self, other: object) -> bool:
-        raise self._definite("comparing")
-
-    def __lt__(self, other: Any) -> bool:
-        raise self._definite("comparing")
-
-    def __le__(self, other: Any) -> bool:
-        raise self._definite("comparing")
-
-    def __gt__(self, other: Any) -> bool:
-        raise self._definite("comparing")
-
-    def __ge__(self, other: Any) -> bool:
-        raise self._definite("comparing")
-
-    def __contains__(self, item: Any) -> bool:
-        raise self._definite("looking into")
-
-    def __iter__(self) -> Iterator[Any]:
-        raise self._definite("iterating over")
-
-    def __len__(self) -> int:
-        raise self._definite("taking Python's own `len` of")
-
-    def __index__(self) -> int:
-        raise RandomIndexError(
-            "indexing a container of Python's own with a random value is not possible",
-            span=here(),
-            help="make the container itself random: `Uniform(xs)[index]`, or choose an element: `Uniform(*xs)`",
-        )
-
-    def __int__(self) -> int:
-        raise self._definite("converting (outside Scenic code)")
-
-    def __float__(self) -> float:
-        raise self._definite("converting (outside Scenic code)")
-
-    __hash__ = object.__hash__
-
-    def __repr__(self) -> str:
-        return spelled(self.node)
-
-    def __format__(self, spec: str) -> str:
-        warn("a random value formatted as text shows no sample")
-        return repr(self)
-
-    def resampled(self) -> Any:
-        """An independent draw of the same law with the same parameters (``resample``)."""
-        if self._again is None:
-            raise ScenicTypeError(
-                "only primitive distributions can be resampled, not values computed from them",
-                span=here(),
-                help="resample the distribution itself and compute with the result",
-            )
-        return self._again()
+        return support_of(self)
 
 
-class RandomVector(VectorMethods, Random):
+class RandomVector(VectorMethods, Random, kinds=[Kind.VECTOR]):
     """A random vector."""
 
     __slots__ = ()
@@ -149,25 +55,8 @@ class RandomVector(VectorMethods, Random):
         raise self._definite("comparing")
 
 
-class RandomOrientation(OrientationMethods, Random):
+class RandomOrientation(OrientationMethods, Random, kinds=[Kind.ORIENTATION]):
     """A random orientation."""
 
     __slots__ = ()
     __hash__ = object.__hash__
-
-
-def is_random(value: Any, within: tuple[int, ...] = ()) -> bool:
-    """Whether a value is random or a container with random parts; ``within``: the identities of those that hold it."""
-    if isinstance(value, Random):
-        return True
-    parts: Iterable[Any]
-    if isinstance(value, tuple | list | set | frozenset):
-        parts = value
-    elif isinstance(value, slice):
-        parts = (value.start, value.stop, value.step)
-    elif type(value) is dict:
-        parts = (*value, *value.values())
-    else:
-        return False
-    own = id(value)
-    return own not in within and any(is_random(item, (*within, own)) for item in parts)

@@ -25,6 +25,7 @@ from scenic.runtime.geometry.visibility.views import Views
 from scenic.runtime.instances.presence import hides, seen_if_present
 from scenic.runtime.program.context import here
 from scenic.runtime.regions.stacked import body_of, body_operands, is_body, placed_of
+from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.values import (
     Orientation,
     Random,
@@ -60,7 +61,7 @@ def sees(observer: Any, target: Any, occluders: Iterable[Any], *, certain: bool 
 def _sees(observer: Any, target: Any, occluders: Sequence[Any], certain: bool) -> Any:
     if is_open(observer) or is_open(target):
         # Which of the objects it is, if any, only the draw shows.
-        return Random.later(sees, observer, target, occluders, certain=certain)
+        return call_later(sees, observer, target, occluders, certain=certain)
     found = None if certain else _at_once(observer, target, occluders)
     if found is None:
         found = _looked(observer, target, occluders, certain)
