@@ -6,6 +6,7 @@ import keyword
 import sys
 import tokenize
 from collections.abc import Callable, Iterator, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
@@ -125,6 +126,7 @@ def reasons(text: str, tree: ast.Module) -> Iterator[str]:
             yield rule.__name__
 
 
+@cache
 def modules(folder: Path) -> list[Path]:
     """The modules in a folder, those of other packages and of the tests of Python 2's converter left out."""
     return sorted(

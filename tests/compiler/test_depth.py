@@ -12,7 +12,7 @@ from tests.work import calls_while
 
 Text = Callable[[int], str]
 
-DEPTH = 1200
+DEPTH = 1050
 """Of the deep texts: deeper than Python lets functions call each other, unless it is told to."""
 BLOCKS = 0.1
 """Blocks in blocks, by the depth of other texts."""

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-
 import scenic.syntax.translator
+
 from scenic.failures import diagnose
 from scenic.language.errors import InvalidScenarioError, RejectionException
 from scenic.runtime.instances.objects import Point

@@ -16,7 +16,7 @@ from scenic.runtime.regions.lines import LineRegion, PathRegion, PolylineRegion
 from scenic.runtime.regions.meshes import surface_in_world
 from scenic.runtime.regions.pairs import Cell
 from scenic.runtime.regions.planar import Footprint, PlanarRegion
-from scenic.runtime.regions.terms import crossings, flat_of, is_inside, meshed, prism_about
+from scenic.runtime.regions.terms import are_inside, crossings, flat_of, meshed, prism_about
 from scenic.runtime.regions.views import ViewRegion
 from scenic.runtime.regions.volumes import PlacedVolume
 from scenic.runtime.regions.voxels import VoxelRegion
@@ -44,8 +44,10 @@ def _solid_meets_line(one: Region, line: LineRegion) -> bool | None:
     solid = meshed(one)
     if solid is None:
         return None
+    if are_inside(solid, line.pieces.starts).any():
+        return True
     ends = zip(line.pieces.starts, line.pieces.ends, strict=True)
-    return any(is_inside(solid, start) or bool(crossings(start, end, solid)) for start, end in ends)
+    return any(crossings(start, end, solid) for start, end in ends)
 
 
 def _solid_meets_flat(one: Region, two: Region) -> bool | None:
@@ -80,7 +82,7 @@ def _surface_meets_solid(surface: SideSurface, other: Region) -> bool | None:
     shell, solid = surface_in_world(surface), meshed(other)
     if shell is None or solid is None:
         return False
-    return any(is_inside(solid, vertex) for vertex in shell.vertices) or _edges_cross(shell, solid)
+    return bool(are_inside(solid, shell.vertices).any()) or _edges_cross(shell, solid)
 
 
 def _crosses_plane(line: LineRegion, region: PlanarRegion) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.containment import contains_points
 from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.geometry.poses import Booleans, Floats, Poses
 from scenic.runtime.geometry.prisms import prism
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.body_regions import OccupiedSpace
@@ -72,11 +72,11 @@ def crossings(start: Any, end: Any, solid: Mesh) -> list[float]:
     return [float(value) for value in part[hit]]
 
 
-def is_inside(solid: Mesh, point: Any) -> bool:
-    """Whether a solid of the world holds a point."""
+def are_inside(solid: Mesh, points: Floats) -> Booleans:
+    """Whether a solid of the world holds points ``(n, 3)``, one by one, ``(n,)``."""
     unit, centre, extents = solid.normalized()
     body = Body((unit,), None, Poses.fixed(centre, size=extents))
-    return bool(contains_points(body, np.asarray(point, dtype=np.float64).reshape(1, 3))[0])
+    return contains_points(body, points)
 
 
 def holds(region: Region, point: Any) -> bool:
@@ -90,10 +90,15 @@ def pieces_inside(line: LineRegion, solid: Mesh) -> list[list[list[float]]]:
     pieces = []
     for start, end in zip(line.pieces.starts, line.pieces.ends, strict=True):
         cuts = [0.0, *sorted(crossings(start, end, solid)), 1.0]
-        for low, high in itertools.pairwise(cuts):
-            if high - low > 1e-12 and is_inside(solid, start + (low + high) / 2 * (end - start)):
-                pieces.append([(start + part * (end - start)).tolist() for part in (low, high)])
-    return pieces
+        pieces += [
+            [start + part * (end - start) for part in (low, high)]
+            for low, high in itertools.pairwise(cuts)
+            if high - low > 1e-12
+        ]
+    if not pieces:
+        return []
+    inside = are_inside(solid, np.array(pieces).mean(axis=1))
+    return [[end.tolist() for end in piece] for piece, is_in in zip(pieces, inside, strict=True) if is_in]
 
 
 def length_inside(line: LineRegion, solid: Mesh) -> float:
@@ -102,10 +107,10 @@ def length_inside(line: LineRegion, solid: Mesh) -> float:
 
 
 __all__ = [
+    "are_inside",
     "crossings",
     "flat_of",
     "holds",
-    "is_inside",
     "length_inside",
     "meshed",
     "pieces_inside",
