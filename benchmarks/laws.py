@@ -11,6 +11,7 @@ Takes a CPU-hour or two; nothing here is a test.
 
 import argparse
 import time
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from scenic.graph.draws import Counter, attempt_keys, scene_keys, seed_word
 from scenic.runtime.sampling.engine import Engine
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
+from scenic.runtime.scenes.scene import Scene
 
 RAREST = 1e-3
 """Programs that fewer samples meet are left out: without analysis they would take too long."""
@@ -37,10 +39,10 @@ def loaded(program: Program) -> Scenario:
     return scenic.scenarioFromString(program.text, filename=program.filename, mode2D=program.mode_2d)
 
 
-def observed(scenario: Scenario, scenes: int, seed: int) -> NDArray[np.float64]:
+def rows_of(scenes: Iterable[Scene]) -> NDArray[np.float64]:
     """The numbers that scenes show, a row each."""
     rows = []
-    for scene in scenario.sample(scenes, seed=seed):
+    for scene in scenes:
         values: list[Any] = [
             part
             for item in scene.objects
@@ -107,7 +109,9 @@ def main() -> None:
         plain = loaded(everything[name])
         engine = Engine(plain.outline.plan(Domain.whole(plain.outline.graph.dimension)))
         plain._sampler._finder = plain._sampler.engine = engine
-        ours, theirs = observed(pruned, given.scenes, 1), observed(plain, given.scenes, 2)
+        ours, theirs = (
+            rows_of(some.sample(given.scenes, seed=seed)) for seed, some in enumerate((pruned, plain), 1)
+        )
         mixture = np.arange(1, ours.shape[1] + 1)[:, np.newaxis] % 7 - 2.6
         columns = zip((*ours.T, *(ours @ mixture).T), (*theirs.T, *(theirs @ mixture).T), strict=True)
         values = [float(stats.ks_2samp(one, other).pvalue) for one, other in columns]

@@ -8,7 +8,7 @@ program's as one likes. The share of lanes that live at each block gives the pro
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -22,12 +22,11 @@ from scenic.graph.draws import (
     Source,
     Words,
     attempt_keys,
-    box_addresses,
     scene_keys,
     seed_word,
 )
-from scenic.graph.node import Graph, Node
-from scenic.runtime.sampling.checks import Check, CollisionCheck
+from scenic.runtime.sampling.blocks import Reads, blocks, merged, pieces
+from scenic.runtime.sampling.checks import Check
 from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Found
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.report import Approximation, Exhausted
@@ -78,7 +77,7 @@ class _Blocks:
         moves = self._moves.get(last)
         if moves is None:
             found = (
-                (block, tuple(_merged(check for number, check in block.moved if number <= last)))
+                (block, tuple(merged(check for number, check in block.moved if number <= last)))
                 for block in self.blocks[: last + 1]
             )
             moves = self._moves[last] = tuple(move for move in found if move[1])
@@ -144,7 +143,7 @@ class _Sampler:
         self._max_attempts = max_attempts
         plan = engine.plan
         self._soft = [check for check in plan.checks if check.probability < 1]
-        self._reads = _Reads(plan.graph, plan.domain.joined_axes())
+        self._reads = Reads(plan.graph, plan.domain.joined_axes())
         self._plans: dict[frozenset[int], _Blocks] = {}
 
     def group(self, seed: int, group: int, lanes: int) -> Found:
@@ -346,80 +345,28 @@ class _Steps:
         self._reached[step] = accepted * step**2
 
 
-class _Reads:
-    """The draws of a graph by address, and which of them nodes depend on."""
-
-    def __init__(self, graph: Graph, joined: Sequence[NDArray[np.intp]]) -> None:
-        self.numbers = [graph.address(node) for node in graph.axes]
-        self.words = [graph.address(node) for node in graph.nodes if node.is_drawn and not node.is_axis]
-        self.boxes = [
-            (place, frozenset(axes.tolist()))
-            for place, axes in zip(box_addresses(len(joined)).tolist(), joined, strict=True)
-            if len(axes)
-        ]
-        self._graph = graph
-
-    def of(self, nodes: Iterable[Node]) -> frozenset[int]:
-        """The addresses of the draws below nodes, and of the boxes that these are drawn from."""
-        drawn = [node for node in Graph(nodes).nodes if node.is_drawn]
-        axes = {self._graph.axes[node] for node in drawn if node.is_axis}
-        boxes = [place for place, joined in self.boxes if joined & axes]
-        return frozenset([*map(self._graph.address, drawn), *boxes])
-
-
-def _blocks_of(reads: _Reads, checks: Sequence[Check]) -> list[_Block]:
+def _blocks_of(reads: Reads, checks: Sequence[Check]) -> list[_Block]:
     """The draws in blocks: those of one object after the other, then of one check after the other, then the rest."""
-    units: list[frozenset[int]] = []
-    parts: list[tuple[Check, frozenset[int]]] = []
-    for check in checks:
-        if isinstance(check, CollisionCheck):
-            below = [reads.of(item.all) for item in check.objects]
-            units = [*below, *units]
-            owners: dict[frozenset[int], list[int]] = {}
-            for number, (one, other) in enumerate(check.pairs.tolist()):
-                owners.setdefault(below[one] | below[other], []).append(number)
-            parts += [(check.of_pairs(check.pairs[numbers]), key) for key, numbers in owners.items()]
-        else:
-            units.append(reads.of(check.nodes))
-            parts.append((check, units[-1]))
-    everything = frozenset([*reads.numbers, *reads.words, *(place for place, _ in reads.boxes)])
+    parts, units = pieces(reads, checks)
     words = frozenset(reads.words)
-    news: list[frozenset[int]] = []
-    for unit in [*units, everything]:
-        new = unit.difference(*news)
-        if new:
-            news.append(new)
+    news = blocks([*units, reads.everything])
     number_of = {place: number for number, new in enumerate(news) for place in new}
-    deciding = [(max((number_of[place] for place in read), default=0), check, read) for check, read in parts]
+    deciding = [(max((number_of[place] for place in part.read), default=0), part) for part in parts]
     return [
         _Block(
             tuple(sorted(new - words)),
             tuple(sorted(new & words)),
-            tuple(_merged(check for last, check, _ in deciding if last == number)),
-            tuple((last, check) for last, check, read in deciding if read & new),
+            tuple(merged(part.check for last, part in deciding if last == number)),
+            tuple((last, part.check) for last, part in deciding if part.read & new),
         )
         for number, new in enumerate(news)
     ]
 
 
-def _merged(checks: Iterable[Check]) -> list[Check]:
-    """The checks, with all that is asked of collisions in one of them."""
-    merged: list[Check] = []
-    collisions: list[CollisionCheck] = []
-    for check in checks:
-        if isinstance(check, CollisionCheck):
-            collisions.append(check)
-        else:
-            merged.append(check)
-    if collisions:
-        merged.append(CollisionCheck.joined(collisions))
-    return merged
-
-
 class _State:
     """The draws of lanes: numbers of the unit interval and words ``(n,)`` by address."""
 
-    def __init__(self, reads: _Reads, lanes: int) -> None:
+    def __init__(self, reads: Reads, lanes: int) -> None:
         addresses = [*reads.numbers, *(place for place, _ in reads.boxes)]
         self._numbers: dict[int, NDArray[np.float64]] = {place: np.full(lanes, 0.5) for place in addresses}
         self._words: dict[int, Words] = {place: np.zeros(lanes, dtype=np.uint64) for place in reads.words}

@@ -7,6 +7,7 @@ draws is independent of the others, so that each may be looked for alone (`sceni
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate
 from typing import Any, Final
 
 import numpy as np
@@ -17,9 +18,10 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.draws import box_addresses
 from scenic.graph.node import Graph, Node
 from scenic.runtime.sampling.checks import Check, CollisionCheck, NodeCheck, ObjectNodes
-from scenic.runtime.sampling.engine import Plan
+from scenic.runtime.sampling.engine import Engine, Plan
+from scenic.runtime.sampling.halving import Tree, any_passes, divide
 
-__all__ = ["Components", "components_of"]
+__all__ = ["Components", "components_of", "divided"]
 
 _MARGIN: Final = 1e-9
 """Relative: what rounding may add to distances and sizes, with room to spare."""
@@ -29,12 +31,48 @@ _MARGIN: Final = 1e-9
 class Components:
     """The components of a plan, in the order of their first checks.
 
-    ``plans`` have the checks of one each. ``owner`` says to which component the draw at an address belongs; draws that no check
-    reads, and are not there, to the first.
+    ``plans`` have the checks of one each. A component has one *leaf*, a set of draws with an attempt number of its own, or those of the
+    tree into which it is divided. ``owner`` says to which leaf the draw at an address belongs; draws that no check reads, and are not
+    there, to the first.
     """
 
     plans: tuple[Plan, ...]
     owner: Mapping[int, int]
+    trees: tuple[Tree | None, ...]
+
+    @property
+    def leaves(self) -> int:
+        """The number of leaves."""
+        return sum(1 if tree is None else tree.leaves for tree in self.trees)
+
+    @property
+    def places(self) -> list[int]:
+        """The number of the first leaf of each component."""
+        counts = [1 if tree is None else tree.leaves for tree in self.trees]
+        return [0, *accumulate(counts)][:-1]
+
+
+def divided(engine: Engine, components: Components | None, *, always: bool = False) -> Components | None:
+    """The components of the plan of an engine, with those divided where that pays (`scenic.runtime.sampling.halving`).
+
+    Args:
+        engine: of the whole plan.
+        components: what `components_of` says of the plan.
+        always: divide them whether or not that pays.
+
+    """
+    if components is None and not always and any_passes(engine):
+        return None
+    known = components or Components((engine.plan,), {}, (None,))
+    trees = divide(engine, known.plans, always=always)
+    if not any(trees):
+        return components
+    made = Components(known.plans, {}, tuple(trees))
+    places = made.places
+    owner = {place: places[number] for place, number in known.owner.items()}
+    for tree in trees:
+        owner |= tree.owners() if tree is not None else {}
+    return Components(known.plans, owner, made.trees)
 
 
 def components_of(plan: Plan) -> Components | None:
@@ -92,7 +130,7 @@ def _split(plan: Plan) -> Components | None:
     for place, factor in parts_of_domain:
         if factor is not None and joins.leader(factor) in numbers:
             owner[place] = numbers[joins.leader(factor)]
-    return Components(plans, owner)
+    return Components(plans, owner, (None,) * len(plans))
 
 
 def _index(item: tuple[Any, ...]) -> Any:

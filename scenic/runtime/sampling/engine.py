@@ -183,6 +183,8 @@ class Engine:
         """Candidates that met every requirement."""
         self.seconds = 0.0
         """Processor time of all rounds so far."""
+        self.rehearsed: int | None = None
+        """How many candidates of the rehearsal passed; `None` where no rehearsal went through all checks."""
         self._pace = Pace(max(64, min(DEFAULT_LANES, BATCH_BYTES // max(1, plan.lane_bytes))))
         self._scheduler = Scheduler(plan.graph, grouped=grouped)
         self._single = Scheduler(plan.graph, grouped=False)
@@ -231,6 +233,7 @@ class Engine:
             # What the first turn has made, the second one finds: that one is measured.
             batch = self.batch(Counter(keys))
             self._judge(batch, stages[:-1], None)
+            self.rehearsed = len(batch)
             self._pace.add(len(keys), len(batch), time.thread_time() - made)
 
     def scenes(

@@ -5,7 +5,7 @@ of a hundred parking lots are evaluated in one call. Those that have found nothi
 """
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from itertools import islice
@@ -15,10 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.graph.batch import Batch
-from scenic.graph.draws import Lanes, Source, Words, attempt_keys, scene_keys, seed_word
+from scenic.graph.draws import Lanes, Source, attempt_keys, scene_keys, seed_word
 from scenic.runtime.geometry.ragged import expand
 from scenic.runtime.sampling.components import Components
+from scenic.runtime.sampling.composed import Composed
 from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Found
+from scenic.runtime.sampling.halving import Tree
+from scenic.runtime.sampling.joining import join
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.profiling import Meter, Profile
 from scenic.runtime.sampling.report import Exhausted
@@ -53,13 +56,13 @@ class _Limits:
 class _Block:
     """Scenes that are looked for together.
 
-    ``attempts`` ``(n, components)`` are those that were accepted, 0 where none is known yet. ``missing`` and ``errors`` tell, by scene, why
+    ``attempts`` ``(n, leaves)`` are those that were accepted, 0 where none is known yet. ``missing`` and ``errors`` tell, by scene, why
     it was not found; nothing is known of scenes from ``end`` on.
     """
 
-    def __init__(self, tasks: Sequence[tuple[int, int]], components: int) -> None:
+    def __init__(self, tasks: Sequence[tuple[int, int]], leaves: int) -> None:
         self.tasks = tasks
-        self.attempts = np.zeros((len(tasks), components), dtype=np.int64)
+        self.attempts = np.zeros((len(tasks), leaves), dtype=np.int64)
         self.missing: dict[int, Exhausted] = {}
         self.errors: dict[int, list[CandidateError]] = {}
         self.end = len(tasks)
@@ -78,8 +81,11 @@ class PiecewiseEngine:
         self._whole = whole
         self._components = components
         self._engines: list[Engine | None] = [None] * len(components.plans)
+        self._whole_ones = [number for number, tree in enumerate(components.trees) if tree is None]
+        """The components that are not divided."""
+        plans = [components.plans[number] for number in self._whole_ones]
         self._nodes = tuple(
-            dict.fromkeys(node for plan in components.plans for check in plan.checks for node in check.nodes)
+            dict.fromkeys(node for plan in plans for check in plan.checks for node in check.nodes)
         )
 
     @property
@@ -95,7 +101,8 @@ class PiecewiseEngine:
     def prepare(self) -> None:
         """Make what the first round would otherwise wait for."""
         self._whole.prepare()
-        self._whole.make_ready(self._nodes)
+        if self._nodes:
+            self._whole.make_ready(self._nodes)
 
     def driven(self, source: Callable[[Lanes], Source]) -> "PiecewiseEngine":
         """The same with other draws (`Engine.driven`)."""
@@ -141,7 +148,7 @@ class PiecewiseEngine:
                 size = min(4 * size, _FORESEEN[1])
 
     def accepted(self, seed: int, numbers: NDArray[np.int64], attempts: NDArray[np.int64]) -> list[Accepted]:
-        """Scenes of a seed of which the accepted attempts ``(n, components)`` are known; no check is made again."""
+        """Scenes of a seed of which the accepted attempts ``(n, leaves)`` are known; no check is made again."""
         return self._finished([(seed, int(k)) for k in numbers], attempts)
 
     def _engine(self, number: int) -> Engine:
@@ -151,13 +158,16 @@ class PiecewiseEngine:
         return engine
 
     def _block(self, tasks: Sequence[tuple[int, int]], limits: _Limits) -> Iterator[Accepted | Exhausted]:
-        block = _Block(tasks, self.count)
+        block = _Block(tasks, self._components.leaves)
         ahead = 0
-        if len(tasks) <= _TOGETHER and (limits.lanes is None or limits.lanes >= len(tasks)):
+        if self._nodes and len(tasks) <= _TOGETHER and (limits.lanes is None or limits.lanes >= len(tasks)):
             ahead = min(limits.attempts, _TOGETHER // len(tasks))
             self._together(block, ahead)
-        for number in range(self.count):
-            self._alone(number, block, ahead, limits)
+        for number, tree in enumerate(self._components.trees):
+            if tree is None:
+                self._alone(number, block, ahead, limits)
+            else:
+                self._joined(tree, block, limits)
         good = [row for row in range(block.end) if row not in block.missing and row not in block.errors]
         found = iter(self._finished([tasks[row] for row in good], block.attempts[good]))
         for row in range(block.end):
@@ -172,7 +182,7 @@ class PiecewiseEngine:
 
     def _alone(self, number: int, block: _Block, tried: int, limits: _Limits) -> None:
         """Look for one component of the scenes in which it is missing."""
-        mine = block.attempts[: block.end, number]
+        mine = block.attempts[: block.end, self._components.places[number]]
         if (mine == _FAILED).any():
             tried, mine[:] = 0, np.where(mine == _FAILED, 0, mine)  # its own engine finds out what failed
         rows = np.flatnonzero(mine == 0).tolist()
@@ -201,36 +211,61 @@ class PiecewiseEngine:
                 found, lane = result
                 mine[row] = found.attempts[lane]
 
+    def _joined(self, tree: Tree, block: _Block, limits: _Limits) -> None:
+        """Look for a component that is divided."""
+        rows = [row for row in range(block.end) if row not in block.missing]
+        if not rows:
+            return
+        tasks = [block.tasks[row] for row in rows]
+        found = join(
+            self._whole,
+            tree,
+            tasks,
+            max_attempts=limits.attempts,
+            lanes=limits.lanes,
+            deadline=limits.deadline,
+        )
+        block.attempts[rows, tree.first : tree.stop] = found.attempts
+        for row, (seed, k), tried, attempts in zip(
+            rows, tasks, found.tried.tolist(), found.attempts, strict=True
+        ):
+            if not attempts[0]:
+                given_up = self._whole.given_up(seed, k, tried)
+                reason = "attempts" if found.in_time else "time"
+                block.missing.setdefault(row, replace(given_up, reason=reason))
+
     def _together(self, block: _Block, ahead: int) -> None:
-        """Try all components of the scenes so many times."""
+        """Try all components of the scenes that are not divided so many times."""
         begun = time.thread_time()
         pending = self._whole.pending(block.tasks)
         owner, offset = expand(np.full(len(block.tasks), ahead, dtype=np.int64))
         batch = self._whole.attempts_at(pending, owner, offset)
         self._whole.evaluate(batch, self._nodes)
-        passes = np.ones((self.count, len(owner)), dtype=np.bool_)
-        failed = np.zeros((self.count, len(owner)), dtype=np.bool_)
-        for number, plan in enumerate(self._components.plans):
-            places = iter(plan.soft_places or ())
+        passes = np.ones((len(self._whole_ones), len(owner)), dtype=np.bool_)
+        failed = np.zeros((len(self._whole_ones), len(owner)), dtype=np.bool_)
+        for number, component in enumerate(self._whole_ones):
+            plan = self._components.plans[component]
+            soft = iter(plan.soft_places or ())
             for index, check in zip(plan.numbers or (), plan.checks, strict=True):
                 asked = time.perf_counter()
                 verdict = check.test(batch)
                 if check.probability < 1:
-                    verdict = verdict.unless(pending.inactive[owner, next(places)])
+                    verdict = verdict.unless(pending.inactive[owner, next(soft)])
                 passes[number] &= verdict.passes
                 if verdict.failed is not None:
                     failed[number] |= verdict.failed
                 spent = time.perf_counter() - asked
                 self._whole.note(index, len(owner), int(np.count_nonzero(verdict.passes)), spent)
         self._whole.note_round(len(owner), int(passes.all(axis=0).sum()), time.thread_time() - begun)
-        shape = (self.count, len(block.tasks), ahead)
+        shape = (len(self._whole_ones), len(block.tasks), ahead)
         passes, failed = passes.reshape(shape), failed.reshape(shape)
         first = passes.argmax(axis=2)
         fails = np.take_along_axis(failed, first[..., np.newaxis], axis=2)[..., 0]
-        block.attempts[:] = np.where(passes.any(axis=2), np.where(fails, _FAILED, first + 1), 0).T
+        places = [self._components.places[number] for number in self._whole_ones]
+        block.attempts[:, places] = np.where(passes.any(axis=2), np.where(fails, _FAILED, first + 1), 0).T
 
     def _finished(self, tasks: Sequence[tuple[int, int]], attempts: NDArray[np.int64]) -> list[Accepted]:
-        """Scenes of known attempts ``(n, components)``."""
+        """Scenes of known attempts ``(n, leaves)``."""
         if not tasks:
             return []
         seeds, numbers = [seed for seed, _ in tasks], [k for _, k in tasks]
@@ -252,41 +287,4 @@ class PiecewiseEngine:
             self._whole.source_of(Lanes(words, scenes, mine - 1, attempt_keys(keys, mine - 1)))
             for mine in attempts.T
         ]
-        return _Composed(sources, self._components.owner)
-
-
-class _Composed:
-    """The source whose draws come from one of several, by their components."""
-
-    def __init__(self, sources: Sequence[Source], owner: Mapping[int, int]) -> None:
-        self._sources = sources
-        self._owner = owner
-
-    def __len__(self) -> int:
-        return len(self._sources[0])
-
-    def take(self, lanes: NDArray[np.intp]) -> "_Composed":
-        return _Composed([source.take(lanes) for source in self._sources], self._owner)
-
-    def uniforms(self, addresses: Words) -> NDArray[np.float64]:
-        result = np.empty((len(addresses), len(self)))
-        for number, rows in self._parts(addresses):
-            result[rows] = self._sources[number].uniforms(addresses[rows])
-        return result
-
-    def uniform_each(self, addresses: Words) -> NDArray[np.float64]:
-        result = np.empty(len(addresses))
-        for number, lanes in self._parts(addresses):
-            result[lanes] = self._sources[number].take(lanes).uniform_each(addresses[lanes])
-        return result
-
-    def words(self, addresses: Words) -> Words:
-        result = np.empty((len(addresses), len(self)), dtype=np.uint64)
-        for number, rows in self._parts(addresses):
-            result[rows] = self._sources[number].words(addresses[rows])
-        return result
-
-    def _parts(self, addresses: Words) -> Iterator[tuple[int, NDArray[np.intp]]]:
-        owners = np.array([self._owner.get(place, 0) for place in addresses.tolist()], dtype=np.intp)
-        for number in np.unique(owners).tolist():
-            yield number, np.flatnonzero(owners == number)
+        return Composed(sources, self._components.owner)

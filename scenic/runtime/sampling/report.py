@@ -1,8 +1,12 @@
 """Why candidates were rejected, counted so that the order of checks does not matter."""
 
 from dataclasses import dataclass
+from typing import Final
 
 from scenic.language.spans import Span
+
+SHOWN: Final = 20
+"""Requirements that a report shows: thirty objects have 435 pairs that may collide."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,9 +42,11 @@ class RejectionReport:
 
     def __str__(self) -> str:
         lines = [f"of {self.candidates} candidates:   rejected     alone"]
-        for row in sorted(self.rows, key=lambda row: -row.rejected):
+        for row in sorted(self.rows, key=lambda row: -row.rejected)[:SHOWN]:
             where = f" (line {row.span.line})" if row.span else ""
             lines.append(f"{row.rejected:>24.1%} {row.alone:>9.1%}  {row.label}{where}")
+        if len(self.rows) > SHOWN:
+            lines.append(f"... and {len(self.rows) - SHOWN} more")
         return "\n".join(lines)
 
 

@@ -10,7 +10,7 @@ from scenic.graph.domain import Domain
 from scenic.graph.draws import Counter, Lanes, Points, Source
 from scenic.graph.points import PointSet
 from scenic.runtime.sampling.approximate import approximated
-from scenic.runtime.sampling.components import components_of
+from scenic.runtime.sampling.components import Components, components_of, divided
 from scenic.runtime.sampling.driving import driven
 from scenic.runtime.sampling.engine import Accepted, Engine, Plan
 from scenic.runtime.sampling.pending import Task
@@ -59,8 +59,9 @@ class Sampler:
         self._numbers, self._words = dict(numbers or {}), dict(words or {})
         self.engine = Engine(outline.plan(domain), self._fixing(lambda lanes: Counter(lanes.keys)))
         """The engine of the whole plan."""
-        components = None if self.impossible else components_of(self.engine.plan)
-        self._finder = self.engine if components is None else PiecewiseEngine(self.engine, components)
+        self._components = None if self.impossible else components_of(self.engine.plan)
+        self._finder = self._finder_of(self._components)
+        self._may_divide = False
 
     @property
     def plan(self) -> Plan:
@@ -74,8 +75,10 @@ class Sampler:
 
     def prepare(self) -> None:
         """Make what the first scene would otherwise wait for."""
-        if not self.impossible:
-            self._finder.prepare()
+        if self.impossible:
+            return
+        self._finder.prepare()
+        self._may_divide = self.engine.rehearsed == 0
 
     def fixed(self, numbers: Mapping[int, float], words: Mapping[int, int]) -> "Sampler":
         """A sampler in which these draws are fixed, too.
@@ -139,6 +142,7 @@ class Sampler:
         """The scenes of tasks without end; ``more`` tells whether to expect that more than the first one is wanted."""
         if self.impossible:
             return self._not_found(tasks)
+        self._divide()
         return self._finder.foresee(tasks, max_attempts=self._most_attempts(max_attempts), more=more)
 
     def accepted(
@@ -182,9 +186,24 @@ class Sampler:
             rows = lanes.scenes - first
             return Points({place: column[rows] for place, column in numbers.items()}, Counter(lanes.keys))
 
+        self._divide()
         engine = self._finder.driven(self._fixing(source))
         tasks = ((seed, k) for k in range(first, first + count))
         return engine.scenes(tasks, max_attempts=max_attempts)
+
+    def _divide(self) -> None:
+        """Divide components of which hardly any candidate passes, when the first scene is wanted."""
+        if not self._may_divide:
+            return
+        self._may_divide = False
+        components = divided(self.engine, self._components)
+        if components is not self._components:
+            self._components = components
+            self._finder = self._finder_of(components)
+
+    def _finder_of(self, components: Components | None) -> Engine | PiecewiseEngine:
+        """What finds scenes that are put together from components."""
+        return self.engine if components is None else PiecewiseEngine(self.engine, components)
 
     def _not_found(self, tasks: Iterable[tuple[int, int]]) -> Iterator[Exhausted]:
         report = None
@@ -213,6 +232,7 @@ class Sampler:
 
     def _engine_of(self, points: PointSet | None) -> Engine | PiecewiseEngine:
         """The engine that samples rows of a point set; the usual engine where there is none."""
+        self._divide()
         if points is None:
             return self._finder
         return self._finder.driven(self._fixing(driven(points, self.plan.graph)))

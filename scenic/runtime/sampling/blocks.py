@@ -1,0 +1,113 @@
+"""The draws of a plan in blocks, and which of them each check reads."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.draws import box_addresses
+from scenic.graph.node import Graph, Node
+from scenic.runtime.sampling.checks import Check, CollisionCheck
+
+__all__ = ["Piece", "Reads", "blocks", "merged", "pieces"]
+
+
+class Reads:
+    """The draws of a graph by address, and which of them nodes depend on.
+
+    Args:
+        graph: the graph.
+        joined: of each part of the domain the axes that are drawn together.
+
+    """
+
+    def __init__(self, graph: Graph, joined: Sequence[NDArray[np.intp]]) -> None:
+        self.numbers: Final = [graph.address(node) for node in graph.axes]
+        self.words: Final = [
+            graph.address(node) for node in graph.nodes if node.is_drawn and not node.is_axis
+        ]
+        self.boxes: Final = [
+            (place, frozenset(axes.tolist()))
+            for place, axes in zip(box_addresses(len(joined)).tolist(), joined, strict=True)
+            if len(axes)
+        ]
+        self._graph = graph
+
+    @property
+    def everything(self) -> frozenset[int]:
+        """The addresses of all draws."""
+        return frozenset([*self.numbers, *self.words, *(place for place, _ in self.boxes)])
+
+    def of(self, nodes: Iterable[Node]) -> frozenset[int]:
+        """The addresses of the draws below nodes, and of the boxes that these are drawn from."""
+        drawn = [node for node in Graph(nodes).nodes if node.is_drawn]
+        axes = {self._graph.axes[node] for node in drawn if node.is_axis}
+        boxes = [place for place, joined in self.boxes if joined & axes]
+        return frozenset([*map(self._graph.address, drawn), *boxes])
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A check, or the pairs of a check of collisions that read the same draws.
+
+    Attributes:
+        check: the check.
+        read: the addresses of the draws that it reads.
+        number: the number of the check among those that were asked about.
+        pairs: of collisions: the numbers of the pairs.
+
+    """
+
+    check: Check
+    read: frozenset[int]
+    number: int
+    pairs: tuple[int, ...] = ()
+
+
+def pieces(reads: Reads, checks: Sequence[Check]) -> tuple[list[Piece], list[frozenset[int]]]:
+    """The pieces of checks, and sets of draws in the order in which they are best made: those of objects come first."""
+    units: list[frozenset[int]] = []
+    found: list[Piece] = []
+    for number, check in enumerate(checks):
+        if isinstance(check, CollisionCheck):
+            below = [reads.of(item.all) for item in check.objects]
+            units = [*below, *units]
+            owners: dict[frozenset[int], list[int]] = {}
+            for pair, (one, other) in enumerate(check.pairs.tolist()):
+                owners.setdefault(below[one] | below[other], []).append(pair)
+            found += [
+                Piece(check.of_pairs(check.pairs[pairs]), read, number, tuple(pairs))
+                for read, pairs in owners.items()
+            ]
+        else:
+            units.append(reads.of(check.nodes))
+            found.append(Piece(check, units[-1], number))
+    return found, units
+
+
+def blocks(units: Iterable[frozenset[int]]) -> list[frozenset[int]]:
+    """The draws of sets one after the other, each draw in the first set that has it."""
+    known: set[int] = set()
+    found: list[frozenset[int]] = []
+    for unit in units:
+        new = unit - known
+        if new:
+            found.append(new)
+            known |= new
+    return found
+
+
+def merged(checks: Iterable[Check]) -> list[Check]:
+    """The checks, with all that is asked of collisions in one of them."""
+    others: list[Check] = []
+    collisions: list[CollisionCheck] = []
+    for check in checks:
+        if isinstance(check, CollisionCheck):
+            collisions.append(check)
+        else:
+            others.append(check)
+    if collisions:
+        others.append(CollisionCheck.joined(collisions))
+    return others

@@ -1,0 +1,241 @@
+"""Finds divided components (`scenic.runtime.sampling.halving`): parts by themselves, then pairs of them.
+
+Of each part of a scene there is one sequence of candidates that pass the checks within it: those of a leaf are its accepted
+attempts, in order; those of two halves are the pairs, first with first, second with second, that pass the checks between
+them. The first of the whole is the scene. So a scene depends neither on how many are looked for together, nor on how many
+candidates for a part are made ahead.
+"""
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.graph.draws import Lanes, Source, attempt_keys
+from scenic.runtime.geometry.ragged import expand
+from scenic.runtime.sampling.composed import Composed
+from scenic.runtime.sampling.engine import Engine
+from scenic.runtime.sampling.halving import Tree
+from scenic.runtime.sampling.pending import Pending
+
+__all__ = ["Joined", "join"]
+
+Numbers = NDArray[np.int64]
+
+_FAITH: Final = 20
+"""How many candidates an estimate counts for that was made before any was tried."""
+
+
+@dataclass(frozen=True, slots=True)
+class Joined:
+    """What was found of a component.
+
+    Attributes:
+        attempts: of each scene the accepted attempts at the leaves, from 1, ``(n, leaves)``; 0 where none was found.
+        tried: how many candidates for a leaf were tried, the most of all leaves, ``(n,)``.
+        in_time: whether all scenes that were not found reached their limit of attempts.
+
+    """
+
+    attempts: Numbers
+    tried: Numbers
+    in_time: bool
+
+
+def join(
+    engine: Engine,
+    tree: Tree,
+    tasks: Sequence[tuple[int, int]],
+    *,
+    max_attempts: int,
+    lanes: int | None = None,
+    deadline: float | None = None,
+) -> Joined:
+    """The first candidates for a component of some scenes that pass all of its checks.
+
+    Args:
+        engine: of the whole plan.
+        tree: how the component is divided.
+        tasks: which scenes: seeds, and numbers in the run of a seed.
+        max_attempts: candidates tried for one leaf of one scene.
+        lanes: candidates in one batch at most; changes speed and memory, never the scenes.
+        deadline: a time of `time.monotonic` after which nothing more is looked for.
+
+    """
+    return _Search(engine, tree, tasks, max_attempts, lanes or engine.most_lanes, deadline).run()
+
+
+class _LateError(Exception):
+    """There is no time left."""
+
+
+class _Queue:
+    """Candidates for a part of scenes that have not been used yet, in order."""
+
+    def __init__(self, tree: Tree, scenes: int) -> None:
+        self.tree: Final = tree
+        self.tried: Final = np.zeros(scenes, dtype=np.int64)
+        """Attempts at a leaf, or pairs of candidates for the halves, so far."""
+        self._kept = np.zeros((scenes, 4, tree.leaves), dtype=np.int64)
+        self._head = np.zeros(scenes, dtype=np.int64)
+        self._tail = np.zeros(scenes, dtype=np.int64)
+        self._judged, self._passed = float(_FAITH), _FAITH * tree.chance
+
+    @property
+    def count(self) -> Numbers:
+        """How many candidates there are for each scene."""
+        return self._tail - self._head
+
+    @property
+    def rate(self) -> float:
+        """How many candidates pass, as far as is known."""
+        return self._passed / self._judged
+
+    def learn(self, judged: int, passed: int) -> None:
+        """Take into account how many candidates have passed."""
+        self._judged += judged
+        self._passed += passed
+
+    def add(self, scenes: NDArray[np.intp], candidates: Numbers) -> None:
+        """Candidates ``(m, leaves)`` for scenes ``(m,)``, ascending."""
+        if not len(scenes):
+            return
+        rank = np.arange(len(scenes)) - np.searchsorted(scenes, scenes)
+        if (self._tail[scenes] + rank).max() >= self._kept.shape[1]:
+            self._make_room(int((self.count[scenes] + rank).max()) + 1)
+        self._kept[scenes, self._tail[scenes] + rank] = candidates
+        self._tail += np.bincount(scenes, minlength=len(self._tail))
+
+    def at(self, scenes: NDArray[np.intp], places: NDArray[np.int64]) -> Numbers:
+        """Candidates ``(m, leaves)`` at places in the queues of scenes."""
+        return np.asarray(self._kept[scenes, self._head[scenes] + places])
+
+    def drop(self, scenes: NDArray[np.intp], counts: Numbers) -> None:
+        """So many candidates for scenes have been used."""
+        self._head[scenes] += counts
+
+    def _make_room(self, wanted: int) -> None:
+        size = self._kept.shape[1]
+        while size < 2 * wanted:
+            size *= 2
+        places = np.minimum(self._head[:, np.newaxis] + np.arange(size), self._kept.shape[1] - 1)
+        self._kept = self._kept[np.arange(len(places))[:, np.newaxis], places]
+        self._tail, self._head = self.count, np.zeros_like(self._head)
+
+
+class _Search:
+    def __init__(
+        self,
+        engine: Engine,
+        tree: Tree,
+        tasks: Sequence[tuple[int, int]],
+        max_attempts: int,
+        lanes: int,
+        deadline: float | None,
+    ) -> None:
+        self._engine = engine
+        self._pending: Pending = engine.pending(tasks)
+        self._owner = tree.owners()
+        self._limit = max_attempts
+        self._lanes = lanes
+        self._deadline = deadline
+        self._is_over = np.zeros(len(tasks), dtype=np.bool_)
+        self._tree = tree
+        self._queues: dict[int, _Queue] = {}
+        """By the identity of parts, which live as long as the tree."""
+        parts = [tree]
+        while parts:
+            part = parts.pop()
+            self._queues[id(part)] = _Queue(part, len(tasks))
+            parts += part.halves or ()
+
+    def run(self) -> Joined:
+        scenes = len(self._is_over)
+        root, in_time = self._queues[id(self._tree)], True
+        try:
+            self._supply(root, np.ones(scenes, dtype=np.int64))
+        except _LateError:
+            in_time = False
+        found = root.count > 0
+        attempts = np.zeros((scenes, self._tree.leaves), dtype=np.int64)
+        where = np.flatnonzero(found)
+        attempts[where] = root.at(where, np.zeros(len(where), dtype=np.int64))
+        leaves = [queue.tried for queue in self._queues.values() if queue.tree.halves is None]
+        return Joined(attempts, np.maximum.reduce(leaves), in_time)
+
+    def _supply(self, queue: _Queue, wanted: Numbers) -> None:
+        """See to it that there are so many candidates for a part of each scene, or that a limit is reached."""
+        while True:
+            scenes = np.flatnonzero((queue.count < wanted) & ~self._is_over)[: self._lanes]
+            if not len(scenes):
+                return
+            if self._deadline is not None and time.monotonic() > self._deadline:
+                raise _LateError
+            missing = (wanted - queue.count)[scenes]
+            counts = np.clip(np.ceil(missing / queue.rate), 1, max(1, self._lanes // len(scenes))).astype(
+                np.int64
+            )
+            lanes, candidates = self._next(queue, scenes, counts)
+            good = np.flatnonzero(self._passes(queue.tree, lanes, candidates))
+            queue.learn(len(lanes), len(good))
+            queue.add(lanes[good], candidates[good])
+
+    def _next(
+        self, queue: _Queue, scenes: NDArray[np.intp], counts: Numbers
+    ) -> tuple[NDArray[np.intp], Numbers]:
+        """The next candidates for a part, at most so many for each of some scenes: whose they are, and attempts ``(m, leaves)``."""
+        if queue.tree.halves is None:
+            counts = np.minimum(counts, self._limit - queue.tried[scenes])
+            self._is_over[scenes[counts == 0]] = True
+            owner, offset = expand(counts)
+            lanes = scenes[owner]
+            candidates = (queue.tried[lanes] + offset + 1)[:, np.newaxis]
+        else:
+            halves = [self._queues[id(half)] for half in queue.tree.halves]
+            wanted = np.zeros(len(self._is_over), dtype=np.int64)
+            wanted[scenes] = counts
+            for half in halves:
+                self._supply(half, wanted)
+            counts = np.where(self._is_over[scenes], 0, counts)
+            owner, offset = expand(counts)
+            lanes = scenes[owner]
+            candidates = np.concatenate([half.at(lanes, offset) for half in halves], axis=1)
+            for half in halves:
+                half.drop(scenes, counts)
+        queue.tried[scenes] += counts
+        return lanes, candidates
+
+    def _passes(self, tree: Tree, lanes: NDArray[np.intp], candidates: Numbers) -> NDArray[np.bool_]:
+        """Which candidates ``(m, leaves)`` for a part of scenes ``(m,)`` pass the checks that are made of it."""
+        passes = np.ones(len(lanes), dtype=np.bool_)
+        if not tree.joints or not len(lanes):
+            return passes
+        batch = self._engine.batch(self._source(tree, lanes, candidates))
+        for joint in tree.joints:
+            begun = time.perf_counter()
+            batch.need(joint.check.nodes)
+            verdict = joint.check.test(batch)
+            if joint.soft_place is not None:
+                verdict = verdict.unless(self._pending.inactive[lanes[batch.rows], joint.soft_place])
+            alive = verdict.passes
+            self._engine.note(
+                joint.number, len(alive), int(np.count_nonzero(alive)), time.perf_counter() - begun
+            )
+            passes[batch.rows[~alive]] = False
+            batch.keep(alive)
+            if not len(batch):
+                break
+        return passes
+
+    def _source(self, tree: Tree, lanes: NDArray[np.intp], candidates: Numbers) -> Source:
+        """The draws of candidates for a part: of each leaf those of its attempt."""
+        pending = self._pending
+        seeds, scenes, keys = pending.seed[lanes], pending.k[lanes], pending.key[lanes]
+        sources = [
+            self._engine.source_of(Lanes(seeds, scenes, mine, attempt_keys(keys, mine)))
+            for mine in (candidates - 1).T
+        ]
+        return Composed(sources, self._owner, tree.first)
