@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.domains.driving.kinds import ManeuverType, VehicleType
+from scenic.domains.driving.levels import Ground
+from scenic.domains.driving.surfaces import GroundedLine, Surface, frames_of
 from scenic.graph.kinds import Column
 from scenic.language.errors import RejectionException
 from scenic.runtime.geometry.polygons import Polygons
 from scenic.runtime.regions.base import Points, Region
 from scenic.runtime.regions.fields import RegionField
 from scenic.runtime.regions.lines import PolylineRegion
-from scenic.runtime.regions.planar import PolygonalRegion
 from scenic.runtime.values.frozen import Frozen
 from scenic.runtime.values.values import Orientation
 
@@ -49,7 +50,7 @@ def _required(value: Any, what: str) -> Any:
     return value
 
 
-class NetworkElement(Frozen, PolygonalRegion):
+class NetworkElement(Frozen, Surface):
     """A part of a road network.
 
     Attributes:
@@ -93,6 +94,17 @@ class NetworkElement(Frozen, PolygonalRegion):
         """The direction of traffic within the element."""
         return RegionField(self)
 
+    @property
+    def ground(self) -> Ground | None:  # type: ignore[override] # follows from the network
+        """Its surface; ``None`` where the network is one of the plane."""
+        return self.surface if self.network.is_elevated else None
+
+    @cached_property
+    def surface(self) -> Ground:
+        """Its surface in space, also where the network is one of the plane."""
+        number = self.network.road_number(self._road_uid)
+        return Ground(self.network.levels, lambda points: np.full(len(points), number), [number])
+
     @cached_property
     def outline(self) -> Polygons:  # type: ignore[override] # made when somebody needs it
         """The polygons, for computations."""
@@ -116,14 +128,22 @@ class NetworkElement(Frozen, PolygonalRegion):
     def orientations(self, points: Points, *columns: Column) -> Column:
         """Directions ``(n, 4)`` at points: of the first guide that holds a point, else of the nearest one."""
         headings = self.headings_at(points[:, :2])
-        frames = np.zeros((len(points), 4))
-        frames[:, 2], frames[:, 3] = np.sin(headings / 2), np.cos(headings / 2)
-        return frames
+        return frames_of(headings) if self.ground is None else self.ground.frames(points, headings)
 
     def headings_at(self, places: Floats) -> Floats:
         """Headings ``(n,)``, anticlockwise from north, at places ``(n, 2)``."""
         guides = self._guides()
-        chosen = np.full(len(places), -1)
+        chosen = self._guide_at(places)
+        headings = np.empty(len(places))
+        for number in np.unique(chosen):
+            mine = chosen == number
+            headings[mine] = guides[number].along(places[mine])
+        return headings
+
+    def _guide_at(self, places: Floats) -> NDArray[np.intp]:
+        """The guide ``(n,)`` that holds each place ``(n, 2)``, the first one if several do; else the nearest."""
+        guides = self._guides()
+        chosen = np.full(len(places), -1, dtype=np.intp)
         for number, guide in enumerate(guides):
             if len(guides) == 1:
                 chosen[:] = 0
@@ -136,11 +156,7 @@ class NetworkElement(Frozen, PolygonalRegion):
         if lost.any():
             distances = np.stack([guide.outline.distances(*places[lost].T) for guide in guides])
             chosen[lost] = distances.argmin(axis=0)
-        headings = np.empty(len(places))
-        for number in np.unique(chosen):
-            mine = chosen == number
-            headings[mine] = guides[number].along(places[mine])
-        return headings
+        return chosen
 
     def nominalDirectionsAt(self, point: Any) -> tuple[Orientation, ...]:
         """The directions of traffic that are possible at a point; here one."""
@@ -148,13 +164,21 @@ class NetworkElement(Frozen, PolygonalRegion):
 
     def elevationAt(self, point: Any) -> Any:
         """The height in metres of this element's own road at a point, whatever passes above or below; ``None`` off the road."""
-        return self.network.elevationAt(point, self.uid if isinstance(self, Road) else self._road_uid)
+        return self.network.elevationAt(point, self)
 
     @property
     def _road_uid(self) -> str | None:
         """The ``uid`` of the road to which the element belongs; ``None`` for parts of intersections."""
         road = getattr(self, "road", None)
         return None if road is None else road.uid
+
+    def line_of(self, vertices: Floats) -> PolylineRegion:
+        """A line along the element, from its vertices ``(n, 2)``."""
+        if self.ground is None:
+            return ElementLine([(float(x), float(y), 0.0) for x, y in vertices])
+        import shapely
+
+        return GroundedLine(shapely.LineString(vertices), self.ground)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name or ''!r} id={self.id} uid={self.uid!r}>"
@@ -190,17 +214,17 @@ class LinearElement(NetworkElement):
     @cached_property
     def centerline(self) -> PolylineRegion:
         """The middle of the element, in its direction."""
-        return _polyline(self.line)
+        return self.line_of(self.line)
 
     @cached_property
     def leftEdge(self) -> PolylineRegion:
         """The left edge, in the direction of the element."""
-        return _polyline(self.left)
+        return self.line_of(self.left)
 
     @cached_property
     def rightEdge(self) -> PolylineRegion:
         """The right edge, in the direction of the element."""
-        return _polyline(self.right)
+        return self.line_of(self.right)
 
     @property
     def successor(self) -> Any:
@@ -257,10 +281,6 @@ class Segments:
 
 class ElementLine(Frozen, PolylineRegion):
     """A line of an element, which never changes."""
-
-
-def _polyline(line: Floats) -> ElementLine:
-    return ElementLine([(float(x), float(y), 0.0) for x, y in line])
 
 
 class LaneSection(LinearElement):
@@ -343,7 +363,7 @@ class LaneGroup(LinearElement):
     @cached_property
     def curb(self) -> PolylineRegion:
         """The border of the road on this side, in the direction of traffic."""
-        return _polyline(self._curb)
+        return self.line_of(self._curb)
 
     def _guides(self) -> Sequence[LinearElement]:
         return self.lanes
@@ -412,6 +432,10 @@ class Road(LinearElement):
         return self.lanes or (self,)
 
     @property
+    def _road_uid(self) -> str:  # its own
+        return self.uid
+
+    @property
     def is1Way(self) -> bool:
         """Whether all lanes have one direction."""
         return len(self.laneGroups) < 2
@@ -419,7 +443,7 @@ class Road(LinearElement):
     @cached_property
     def sidewalkRegion(self) -> Region:
         """All of its sidewalks."""
-        return union_region(self.sidewalks)
+        return self.network.region_of(self.sidewalks)
 
     def sectionAt(self, point: Any, reject: Any = False) -> RoadSection | None:
         """The road section at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
@@ -484,6 +508,16 @@ class PedestrianCrossing(LinearElement):
     startSidewalk: Sidewalk | None = None
     endSidewalk: Sidewalk | None = None
 
+    @cached_property
+    def _road_uid(self) -> str:
+        """The road that it crosses; in an intersection, the connecting road at its middle."""
+        if isinstance(self.parent, Road):
+            return self.parent.uid
+        middle = self.polygon.centroid
+        (number,) = self.parent.surface.roads_at(np.array([[middle.x, middle.y, 0.0]]))
+        uid: str = self.network.levels.elevation.roads[number].uid
+        return uid
+
 
 class Intersection(NetworkElement):
     """A junction of the map."""
@@ -498,6 +532,14 @@ class Intersection(NetworkElement):
 
     def _guides(self) -> Sequence[LinearElement]:
         return self._connecting
+
+    @cached_property
+    def surface(self) -> Ground:
+        """That of the connecting lane that holds a point, the first one if several do; else of the nearest."""
+        numbers = np.array([self.network.road_number(lane.road.uid) for lane in self._connecting])
+        return Ground(
+            self.network.levels, lambda points: numbers[self._guide_at(points[:, :2])], numbers.tolist()
+        )
 
     @property
     def is3Way(self) -> bool:
@@ -609,20 +651,6 @@ class Signal(Frozen):
 
     def __repr__(self) -> str:
         return f"<Signal {self.uid} type={self.type}>"
-
-
-def union_region(elements: Sequence[NetworkElement]) -> Region:
-    """The union of elements as a region with their directions; the empty region if there are none."""
-    import shapely
-
-    from scenic.runtime.regions.spaces import nowhere
-
-    if not elements:
-        return nowhere
-    return PolygonalRegion(
-        polygon=shapely.union_all([element.polygon for element in elements]),
-        orientation=elements[0].network.direction_of(elements),
-    )
 
 
 def share_along(line: Floats, point: Any) -> float:

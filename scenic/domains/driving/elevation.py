@@ -1,19 +1,30 @@
-"""The height of roads: the profile of the reference line, tilted by the superelevation (section 3.6)."""
+"""The surfaces of roads in space: the profile of the reference line, tilted by superelevation and crossfall (section 3.6).
+
+All roads of a map are tables, so that many points on different roads are computed at once.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.formats.opendrive.curves import cubic_values
 from scenic.formats.opendrive.records import Cubic
+from scenic.graph import quaternions
 
 __all__ = ["Elevation", "RoadHeight"]
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+_APART: Final = 1e7
+"""Metres by which the tables place one road behind another: more than any road is long."""
+_ROUNDS: Final = 4
+"""Steps of Newton's method, from a guess that is off by centimetres."""
+_CURLED: Final = 0.05
+"""The least factor by which lengths shrink on the inner side of a curve; beyond it, roads fold over themselves."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,47 +33,25 @@ class RoadHeight:
 
     Attributes:
         uid: the road's.
-        polygon: its area.
-        line: vertices of its reference line, ``(n, 2)``.
-        length: length of the exact reference line in metres, of which cubics are functions.
+        samples: places of its reference line, ``(n, 4)``: distance along it, x, y, and heading anticlockwise from east.
         profile: height of the reference line.
         tilt: superelevation in radians, positive where the right side is lower.
+        falls: crossfall of the left and of the right side in radians, positive where a side falls outwards.
 
     """
 
     uid: str
-    polygon: Any
-    line: Floats
-    length: float
+    samples: Floats
     profile: tuple[Cubic, ...]
     tilt: tuple[Cubic, ...]
-
-    def at(self, places: Floats) -> Floats:
-        """Heights ``(n,)`` of the road's surface at places ``(n, 2)``."""
-        import shapely
-
-        string = shapely.linestrings(self.line)
-        along = shapely.line_locate_point(string, shapely.points(places))
-        s = along * (self.length / max(string.length, 1e-9))
-        height = cubic_values(self.profile, s)
-        if self.tilt:
-            before = shapely.get_coordinates(
-                shapely.line_interpolate_point(string, np.maximum(along - 0.1, 0))
-            )
-            after = shapely.get_coordinates(shapely.line_interpolate_point(string, along + 0.1))
-            way = after - before
-            way /= np.maximum(np.hypot(*way.T), 1e-12)[:, None]
-            offset = places - (before + after) / 2
-            left = way[:, 0] * offset[:, 1] - way[:, 1] * offset[:, 0]
-            height = height + left * np.tan(cubic_values(self.tilt, s))
-        return height
+    falls: tuple[tuple[Cubic, ...], tuple[Cubic, ...]] = ((), ())
 
 
 class Elevation:
-    """The heights of all roads of a map.
+    """The surfaces of all roads of a map; roads are numbered in the order given.
 
     Args:
-        roads: the roads; others are level, at 0.
+        roads: the roads.
 
     """
 
@@ -70,38 +59,204 @@ class Elevation:
         self.roads = tuple(roads)
 
     @cached_property
-    def _tree(self) -> Any:
-        import shapely
-
-        return shapely.STRtree([road.polygon for road in self.roads])
-
-    @cached_property
-    def _numbers(self) -> dict[str, int]:
+    def numbers(self) -> dict[str, int]:
+        """The number of each road, by its ``uid``."""
         return {road.uid: number for number, road in enumerate(self.roads)}
 
-    def at(self, points: Floats, uid: str | None = None) -> Floats:
-        """Heights ``(n,)`` in metres at points ``(n, 3)``, NaN off the roads.
+    @cached_property
+    def is_level(self) -> bool:
+        """Whether all roads are level, at height 0."""
+        cubics = [
+            cubic
+            for road in self.roads
+            for cubic in (*road.profile, *road.tilt, *road.falls[0], *road.falls[1])
+        ]
+        return not any(cubic.a or cubic.b or cubic.c or cubic.d for cubic in cubics)
 
-        Args:
-            points: the points; where several roads hold one, the height nearest to its z counts.
-            uid: the only road to look at; all of them if not given.
+    @cached_property
+    def _profile(self) -> "_Cubics":
+        return _Cubics([road.profile for road in self.roads])
 
+    @cached_property
+    def _tilts(self) -> "tuple[_Cubics, _Cubics, _Cubics]":
+        """Superelevation, and crossfall on the left and on the right."""
+        return (
+            _Cubics([road.tilt for road in self.roads]),
+            _Cubics([road.falls[0] for road in self.roads]),
+            _Cubics([road.falls[1] for road in self.roads]),
+        )
+
+    @cached_property
+    def _lines(self) -> "_Lines":
+        return _Lines([road.samples for road in self.roads])
+
+    def heights(self, roads: Indices, places: Floats) -> Floats:
+        """Heights ``(n,)`` in metres of the surfaces of roads ``(n,)`` at places ``(n, 2)``, on the road or beside it."""
+        s, t, _, _ = self._lines.project(roads, places)
+        return self._profile.values(roads, s) + t * self._lean(roads, s, t)[0]
+
+    def gradients(self, roads: Indices, places: Floats) -> Floats:
+        """By how much surfaces rise towards east and north, ``(n, 2)``; see `heights`."""
+        s, t, heading, bend = self._lines.project(roads, places)
+        lean, change = self._lean(roads, s, t)
+        rise = self._profile.slopes(roads, s) + t * change
+        rise = rise / np.maximum(1 - bend * t, _CURLED)
+        cos, sin = np.cos(heading), np.sin(heading)
+        return np.stack([rise * cos - lean * sin, rise * sin + lean * cos], axis=-1)
+
+    def frames(self, roads: Indices, places: Floats, headings: Floats) -> Floats:
+        """Orientations ``(n, 4)`` of things that stand on surfaces and face headings ``(n,)``, anticlockwise from north."""
+        gradient = self.gradients(roads, places)
+        cos, sin = np.cos(headings), np.sin(headings)
+        pitch = np.arctan(gradient[:, 1] * cos - gradient[:, 0] * sin)
+        roll = -np.arctan((gradient[:, 0] * cos + gradient[:, 1] * sin) * np.cos(pitch))
+        return quaternions.from_euler(headings, pitch, roll)
+
+    def _lean(self, roads: Indices, s: Floats, t: Floats) -> tuple[Floats, Floats]:
+        """The slope across the road on the side where a point is, towards the left, and how it changes along the road."""
+        tilt, *falls = self._tilts
+        lean, change = np.zeros(len(s)), np.zeros(len(s))
+        for table, sign in (
+            (tilt, 1.0),
+            (falls[0], np.where(t > 0, -1.0, 0.0)),
+            (falls[1], np.where(t < 0, 1.0, 0.0)),
+        ):
+            if table.is_zero:
+                continue
+            slope = np.tan(table.values(roads, s))
+            lean += sign * slope
+            change += sign * (1 + slope * slope) * table.slopes(roads, s)
+        return lean, change
+
+    def bounds(self, road: int, reach: float) -> tuple[float, float]:
+        """The least and the greatest height of a road within ``reach`` metres of its reference line."""
+        end = float(self.roads[road].samples[-1, 0])
+        low, high = self._profile.bounds(road, end)
+        lean = sum(
+            np.tan(min(max(map(abs, table.bounds(road, end))), 1.5))
+            for table in self._tilts
+            if not table.is_zero
+        )
+        return low - reach * float(lean), high + reach * float(lean)
+
+    def reach(self, road: int, places: Floats) -> float:
+        """How far places ``(n, 2)`` are at most from the reference line of a road, in metres."""
+        if all(table.is_zero for table in self._tilts):
+            return 0.0
+        return float(np.abs(self._lines.project(np.full(len(places), road), places)[1]).max(initial=0.0))
+
+
+class _Cubics:
+    """Piecewise cubics of all roads; constant before the first piece, and 0 on roads without any."""
+
+    def __init__(self, by_road: Sequence[Sequence[Cubic]]) -> None:
+        rows, starts = [], []
+        for number, cubics in enumerate(by_road):
+            for cubic in cubics or (Cubic(0.0, 0.0, 0.0, 0.0, 0.0),):
+                rows.append((cubic.start, cubic.a, cubic.b, cubic.c, cubic.d))
+                starts.append(number)
+        self._table = np.array(rows).reshape(-1, 5)
+        self._road = np.array(starts, dtype=np.intp)
+        self._first = np.searchsorted(self._road, np.arange(len(by_road)))
+        self._keys = self._road * _APART + self._table[:, 0]
+        self.is_zero = not self._table[:, 1:].any()
+
+    def _at(self, roads: Indices, s: Floats) -> tuple[Floats, Floats]:
+        found = np.searchsorted(self._keys, roads * _APART + s, side="right") - 1
+        index = np.maximum(found, self._first[roads])
+        rows = self._table[index]
+        return rows[:, 1:].T, np.maximum(s - rows[:, 0], 0.0)
+
+    def values(self, roads: Indices, s: Floats) -> Floats:
+        """Values ``(n,)`` on roads ``(n,)`` at distances ``(n,)`` along them."""
+        (a, b, c, d), ds = self._at(roads, s)
+        return np.asarray(a + ds * (b + ds * (c + ds * d)))
+
+    def slopes(self, roads: Indices, s: Floats) -> Floats:
+        """Derivatives ``(n,)``; see `values`."""
+        (_, b, c, d), ds = self._at(roads, s)
+        return np.asarray(b + ds * (2 * c + 3 * ds * d))
+
+    def bounds(self, road: int, end: float) -> tuple[float, float]:
+        """The least and the greatest value on a road that is ``end`` metres long."""
+        mine = self._table[self._road == road]
+        lows, highs = [], []
+        for (start, a, b, c, d), stop in zip(mine, [*mine[1:, 0], end], strict=True):
+            width = max(stop - start, 0.0)
+            turns = np.roots([3 * d, 2 * c, b])
+            inner = [float(turn.real) for turn in turns if abs(turn.imag) < 1e-9 and 0 < turn.real < width]
+            values = [a + x * (b + x * (c + x * d)) for x in (0.0, width, *inner)]
+            lows.append(min(values))
+            highs.append(max(values))
+        return float(min(lows)), float(max(highs))
+
+
+class _Lines:
+    """The reference lines of all roads; between their samples, cubics with the headings of the samples."""
+
+    def __init__(self, samples: Sequence[Floats]) -> None:
+        import shapely
+
+        counts = np.array([len(rows) for rows in samples], dtype=np.intp)
+        self._s, self._x, self._y, self._heading = np.concatenate(samples).T
+        self._first = np.cumsum(counts) - counts
+        self._last = self._first + counts - 2  # the last segment of each road
+        self._lines = np.array([shapely.LineString(rows[:, 1:3]) for rows in samples], dtype=object)
+        steps = np.hypot(np.diff(self._x, append=0.0), np.diff(self._y, append=0.0))
+        chords = [
+            np.concatenate([[0.0], np.cumsum(steps[first : first + count - 1])])
+            for first, count in zip(self._first, counts, strict=True)
+        ]
+        self._chord = np.concatenate(chords)
+        self._keys = self._chord + np.repeat(np.arange(len(samples)), counts) * _APART
+
+    def project(self, roads: Indices, places: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """The coordinates of places ``(n, 2)`` on roads ``(n,)``.
+
+        Gives the distance along the reference line, the distance to its left, and heading (from east) and curvature of the line
+        there, ``(n,)`` each.
         """
         import shapely
 
-        found = np.full(len(points), np.nan)
-        if not self.roads:
-            return found
-        places = shapely.points(points[:, :2])
-        if uid is None:
-            owners, numbers = self._tree.query(places, predicate="intersects")
-        else:
-            number = self._numbers[uid]
-            owners = np.flatnonzero(shapely.intersects(self.roads[number].polygon, places))
-            numbers = np.full(len(owners), number)
-        for number in np.unique(numbers):
-            mine = owners[numbers == number]
-            height = self.roads[number].at(points[mine, :2])
-            nearer = ~(np.abs(found[mine] - points[mine, 2]) <= np.abs(height - points[mine, 2]))
-            found[mine[nearer]] = height[nearer]
-        return found
+        along = shapely.line_locate_point(self._lines[roads], shapely.points(places))
+        found = np.searchsorted(self._keys, roads * _APART + along, side="right") - 1
+        index = np.clip(found, self._first[roads], self._last[roads])
+        length = self._s[index + 1] - self._s[index]
+        chord = np.maximum(self._chord[index + 1] - self._chord[index], 1e-12)
+        share = (along - self._chord[index]) / chord
+        # A place beside a bend may belong to the neighbour of the nearest segment: its cubic goes on a little.
+        least = np.where(index == self._first[roads], 0.0, -0.5)
+        most = np.where(index == self._last[roads], 1.0, 1.5)
+        curve = self._curve(index, length)
+        for _ in range(_ROUNDS):
+            (px, py), (dx, dy), (ddx, ddy) = _hermite(curve, share)
+            off_x, off_y = px - places[:, 0], py - places[:, 1]
+            square = dx * dx + dy * dy
+            slope = square + off_x * ddx + off_y * ddy
+            share = share - (off_x * dx + off_y * dy) / np.maximum(slope, _CURLED * square)
+            share = np.clip(share, least, most)
+        (px, py), (dx, dy), (ddx, ddy) = _hermite(curve, share)
+        speed = np.hypot(dx, dy)
+        left = (dx * (places[:, 1] - py) - dy * (places[:, 0] - px)) / speed
+        bend = (dx * ddy - dy * ddx) / speed**3
+        return self._s[index] + share * length, left, np.arctan2(dy, dx), bend
+
+    def _curve(self, index: Indices, length: Floats) -> tuple[tuple[Floats, ...], tuple[Floats, ...]]:
+        """Ends and derivatives of segments, in x and in y."""
+        first, last = self._heading[index], self._heading[index + 1]
+        return (
+            (self._x[index], self._x[index + 1], length * np.cos(first), length * np.cos(last)),
+            (self._y[index], self._y[index + 1], length * np.sin(first), length * np.sin(last)),
+        )
+
+
+def _hermite(curve: Any, share: Floats) -> tuple[Any, Any, Any]:
+    """Places, first and second derivatives of cubics given by their ends and the derivatives there."""
+    u = share
+    places, firsts, seconds = [], [], []
+    for p, q, v, w in curve:
+        c, d = 3 * (q - p) - 2 * v - w, 2 * (p - q) + v + w
+        places.append(p + u * (v + u * (c + u * d)))
+        firsts.append(v + u * (2 * c + 3 * u * d))
+        seconds.append(2 * c + 6 * u * d)
+    return places, firsts, seconds

@@ -9,9 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.domains.driving.elements import LinearElement
+from scenic.domains.driving.levels import Ground, Levels
+from scenic.domains.driving.surfaces import GroundedLine
+from scenic.runtime.geometry.segments import Segments
 from scenic.runtime.regions.lines import PolylineRegion
 
-__all__ = ["FollowedLine", "concatenateCenterlines"]
+__all__ = ["FollowedLine", "concatenateCenterlines", "joined_ground"]
 
 Floats = NDArray[np.float64]
 
@@ -21,12 +24,34 @@ _WINDOW: Final = 12
 
 def concatenateCenterlines(centerlines: Sequence[Any] = ()) -> PolylineRegion:
     """Polylines joined in order, as one."""
-    points: list[tuple[float, float, float]] = []
+    points: list[tuple[float, float]] = []
     for line in centerlines:
-        for point in line.points:
-            if not points or max(abs(a - b) for a, b in zip(points[-1], point, strict=True)) > 1e-6:
-                points.append(point)
-    return PolylineRegion(points)
+        for x, y, *_ in line.points:
+            if not points or max(abs(points[-1][0] - x), abs(points[-1][1] - y)) > 1e-6:
+                points.append((x, y))
+    grounded = [line for line in centerlines if isinstance(line, GroundedLine)]
+    if not grounded:
+        return PolylineRegion(points)
+    import shapely
+
+    return GroundedLine(shapely.LineString(points), joined_ground(grounded[0].ground.levels, grounded))
+
+
+def joined_ground(levels: Levels, lines: Sequence[GroundedLine]) -> Ground:
+    """The surface along several lines: that of the nearest one."""
+    pieces = Segments(
+        np.concatenate([line.pieces.starts for line in lines]),
+        np.concatenate([line.pieces.ends for line in lines]),
+    )
+    roads = np.concatenate([line.ground.roads_at(line.pieces.starts) for line in lines])
+
+    def roads_at(points: Floats) -> NDArray[np.intp]:
+        places = np.array(points)
+        places[:, 2] = 0
+        found: NDArray[np.intp] = roads[pieces.nearest(places)[1]]
+        return found
+
+    return Ground(levels, roads_at, sorted(set(roads.tolist())))
 
 
 class FollowedLine:

@@ -89,12 +89,14 @@ class MapOptions:
         return LaneTypes(self.drivable_lane_types, self.sidewalk_lane_types, self.shoulder_lane_types)
 
 
-def load_network(path: Any, given: Mapping[str, Any], cls: type[_Network]) -> _Network:
+def load_network(
+    path: Any, given: Mapping[str, Any], cls: type[_Network], elevated: bool = False
+) -> _Network:
     """The network of a map file, of a class; see `Network.fromFile`."""
     options = MapOptions.of(given)
     file = map_file(path)
     with no_garbage_collection():
-        network = network_of(file.read_bytes(), str(file), options, cls)  # type: ignore[arg-type] # classes can be hashed
+        network = network_of(file.read_bytes(), str(file), options, cls, elevated)  # type: ignore[arg-type] # classes can be hashed
     assert isinstance(network, cls)
     return network
 
@@ -124,12 +126,23 @@ def map_file(path: Any) -> Path:
 
 @lru_cache(maxsize=8)
 def network_of(
-    content: bytes, filename: str, options: MapOptions, cls: type[RoadNetwork] = RoadNetwork
+    content: bytes,
+    filename: str,
+    options: MapOptions,
+    cls: type[RoadNetwork] = RoadNetwork,
+    elevated: bool = False,
 ) -> RoadNetwork:
-    """The network of the text of a map; once in a process for equal content and options.
+    """The network of the text of a map, in space if ``elevated``; once in a process for equal content and options.
 
     Raises `MapError` if it is not a map, or has no lane for traffic.
     """
+    network = _found(content, filename, options, cls)
+    network.is_elevated = elevated
+    return network
+
+
+def _found(content: bytes, filename: str, options: MapOptions, cls: type[RoadNetwork]) -> RoadNetwork:
+    """A network that was kept, or is built."""
     if not (options.useCache or options.writeCache):
         return _build(content, filename, options, cls)
     built: list[RoadNetwork] = []
@@ -194,11 +207,10 @@ def _build(content: bytes, filename: str, options: MapOptions, cls: type[RoadNet
         [
             RoadHeight(
                 road.road.uid,
-                road.road.polygon,
-                road.road.line,
-                road.record.length,
+                road.shape.samples,
                 road.record.elevation,
                 road.record.superelevation,
+                road.record.crossfall,
             )
             for road in built.values()
         ]

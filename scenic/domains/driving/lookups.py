@@ -9,10 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.domains.driving.elements import LinearElement, NetworkElement, Segments
+from scenic.domains.driving.levels import Levels
+from scenic.domains.driving.surfaces import frames_of
+from scenic.graph import quaternions
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call, Operation, always
 from scenic.runtime.geometry.cell_index import CellIndex
 from scenic.runtime.geometry.ragged import expand
 from scenic.runtime.regions.fields import TabulatedField
-from scenic.runtime.values.values import is_number
+from scenic.runtime.values.values import Orientation, Random, Vector, apply, is_number, to_vector
 
 __all__ = ["Finder", "RoadDirection"]
 
@@ -29,12 +34,16 @@ class Finder:
     Args:
         elements: the elements, in order of precedence.
         tolerance: metres within which an element counts as being at a place that none holds.
+        levels: what lies above each other; ``None`` in the plane, where heights do not count.
 
     """
 
-    def __init__(self, elements: Sequence[NetworkElement], tolerance: float) -> None:
+    def __init__(
+        self, elements: Sequence[NetworkElement], tolerance: float, levels: Levels | None = None
+    ) -> None:
         self.elements = tuple(elements)
         self._tolerance = tolerance
+        self._levels = levels
 
     @cached_property
     def _cells(self) -> CellIndex:
@@ -53,16 +62,37 @@ class Finder:
         return self._cells.first_at(places[:, 0], places[:, 1])
 
     def near(self, places: Floats) -> Indices:
-        """As `holding`; where none holds a place, the first one within the tolerance."""
+        """As `holding`; where none holds a place, the first one within the tolerance.
+
+        Where roads pass above each other, the heights of places ``(n, 3)`` choose between them.
+        """
         import shapely
 
         found = self.holding(places)
+        if self._levels is not None and places.shape[1] > 2:
+            some = np.flatnonzero(self._levels.stacked(places[:, :2]))
+            if len(some):
+                found[some] = self._at_level(places[some])
         lost = np.flatnonzero(found == len(self.elements))
         if len(lost) and self.elements and self._tolerance > 0:
             points = shapely.points(places[lost])
             pairs = self._tree.query(points, predicate="dwithin", distance=self._tolerance)
             np.minimum.at(found, lost[pairs[0]], pairs[1])
         return found
+
+    def _at_level(self, points: Floats) -> Indices:
+        """Index of the first element that holds each point ``(n, 3)`` and is at its level; else of the first that holds it."""
+        import shapely
+
+        found = self.holding(points)
+        best = np.full(len(points), len(self.elements), dtype=np.intp)
+        owner, number = self._tree.query(shapely.points(points[:, :2]), predicate="intersects")
+        for element in np.unique(number).tolist():
+            mine = owner[number == element]
+            ground = self.elements[element].ground
+            fits = np.ones(len(mine), dtype=np.bool_) if ground is None else ground.fits(points[mine])
+            np.minimum.at(best, mine[fits], element)
+        return np.where(best < len(self.elements), best, found)
 
     def nearest(self, places: Floats) -> Indices:
         """Index of the first element that holds each place, else of the nearest one."""
@@ -75,9 +105,9 @@ class Finder:
             found[lost[pairs[0]]] = pairs[1]
         return found
 
-    def at(self, x: float, y: float) -> NetworkElement | None:
+    def at(self, x: float, y: float, z: float = 0.0) -> NetworkElement | None:
         """The element at one place: the first that holds it, else the first within the tolerance."""
-        (index,) = self.near(np.array([[x, y]]))
+        (index,) = self.near(np.array([[x, y, z]]))
         return self.elements[index] if index < len(self.elements) else None
 
 
@@ -88,13 +118,21 @@ class RoadDirection(TabulatedField):
         name: for messages.
         elements: the elements, in order of precedence.
         tolerance: see `Finder`.
+        levels: those of a network in space, where directions follow the slope of the roads; ``None`` in the plane.
 
     """
 
     divides_backward = True
 
-    def __init__(self, name: str, elements: Sequence[NetworkElement], tolerance: float) -> None:
-        self._finder = Finder(elements, tolerance)
+    def __init__(
+        self,
+        name: str,
+        elements: Sequence[NetworkElement],
+        tolerance: float,
+        levels: Levels | None = None,
+    ) -> None:
+        self._finder = Finder(elements, tolerance, levels)
+        self._levels = levels
         super().__init__(name, self._value)
 
     @cached_property
@@ -121,14 +159,65 @@ class RoadDirection(TabulatedField):
 
     def headings(self, points: Floats) -> tuple[Floats, NDArray[np.bool_]]:
         """Headings at points ``(n, 3)``; every point has one."""
-        places = np.asarray(points)[:, :2]
+        headings, _, _ = self._found(np.asarray(points))
+        return headings, np.ones(len(points), dtype=np.bool_)
+
+    def _found(self, points: Floats) -> tuple[Floats, Indices, Indices]:
+        """Headings at points ``(n, 3)``, and which of them lie in some element, and in which of the guides."""
+        places = points[:, :2]
         headings = np.zeros(len(places))
-        found = self._finder.near(places)
+        found = self._finder.near(points if self._levels is not None else places)
         there = np.flatnonzero(found < len(self._finder.elements))
+        guide = there
         if len(there):
             guide = self._guide_at(places[there], found[there])
             headings[there] = self._along(places[there], guide)
-        return headings, np.ones(len(places), dtype=np.bool_)
+        return headings, there, guide
+
+    def roads_at(self, points: Floats) -> Indices:
+        """The number of the road whose direction holds at points ``(n, 3)``; off the roads, that of the nearest element."""
+        places = points[:, :2]
+        found = self._finder.near(points)
+        lost = found == len(self._finder.elements)
+        if lost.any():
+            found[lost] = self._finder.nearest(places[lost])
+        return self._numbers[self._guide_at(places, found)]
+
+    @cached_property
+    def _numbers(self) -> Indices:
+        """The numbers of the roads of all guides."""
+        guides = self._guides[0]
+        return np.array([guide.network.road_number(guide._road_uid) for guide in guides], dtype=np.intp)
+
+    def frames(self, points: Floats) -> Floats:
+        """Orientations ``(n, 4)`` at points ``(n, 3)``: on a road, pitched and rolled with it."""
+        headings, there, guide = self._found(points)
+        frames = frames_of(headings)
+        if self._levels is not None and len(there):
+            frames[there] = self._levels.elevation.frames(
+                self._numbers[guide], points[there, :2], headings[there]
+            )
+        return frames
+
+    def stepped(self, points: Floats, strides: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+        """As of any field; in space, points keep their height above the road."""
+        if self._levels is None:
+            return super().stepped(points, strides)
+        ahead = np.zeros((len(points), 3))
+        ahead[:, 1] = strides
+        reached = points + quaternions.rotate(self.frames(points), ahead)
+        on_road = self._levels.heights(points)
+        above = points[:, 2] - on_road
+        lands = self._levels.heights(np.column_stack([reached[:, :2], on_road + (reached - points)[:, 2]]))
+        known = np.isfinite(above) & np.isfinite(lands)
+        reached[known, 2] = (lands + above)[known]
+        return reached, np.ones(len(points), dtype=np.bool_)
+
+    def __getitem__(self, position: Any) -> Any:
+        place = to_vector(position, f"field {self.name!r}")
+        if self._levels is not None and isinstance(place, Random):
+            return apply(_FRAME, place, payload=self)
+        return super().__getitem__(place)
 
     def _guide_at(self, places: Floats, element: Indices) -> Indices:
         """The guide that holds each place, the first of its element; else the nearest one."""
@@ -220,8 +309,11 @@ class RoadDirection(TabulatedField):
         pair, step = expand(size[run])
         return owner[pair], begin[run][pair] + step
 
-    def _value(self, point: Any) -> float:
-        headings, _ = self.headings(np.array([[point.x, point.y, 0.0]]))
+    def _value(self, point: Any) -> Any:
+        place = np.array([[point.x, point.y, point.z]])
+        if self._levels is not None:
+            return Orientation.of(self.frames(place)[0].tolist())
+        headings, _ = self.headings(place)
         return float(headings[0])
 
     def followFrom(
@@ -230,10 +322,29 @@ class RoadDirection(TabulatedField):
         if steps is None and is_number(distance):
             size = self.defaultStepSize if stepSize is None else stepSize
             steps = max(self.minSteps, math.ceil(abs(distance) / size))
-        return super().followFrom(position, distance, steps, stepSize)
+        start = to_vector(position, "`follow ... from`")
+        if self._levels is not None and steps is not None and type(start) is Vector and is_number(distance):
+            place = np.array([tuple(start)])
+            for _ in range(steps):
+                place, _ = self.stepped(place, np.full(1, distance / steps))
+            return Vector.of(place[0].tolist())
+        return super().followFrom(start, distance, steps, stepSize)
 
     def random_parts(self) -> list[Any]:
         return []
 
     def sampled(self, sample: Any) -> "RoadDirection":
         return self
+
+
+def _frames(call: Call, points: Column) -> Column:
+    field: RoadDirection = call.payload
+    return field.frames(points)
+
+
+_FRAME = Operation(
+    "direction of roads in space",
+    always(Kind.ORIENTATION),
+    _frames,
+    "The direction of traffic at a point, pitched and rolled with the road; payload the field.",
+)

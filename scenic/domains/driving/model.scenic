@@ -10,7 +10,7 @@ from scenic.domains.driving.roads import (
     RoadSection, Shoulder, Sidewalk,
 )
 from scenic.domains.driving.sensors import RGBSensor, SSSensor
-from scenic.domains.driving.setting import is2DMode, nearer, network_of_program
+from scenic.domains.driving.setting import is2DMode, nearer, network_of_program, standing
 from scenic.domains.driving.workspace import DrivingWorkspace
 from scenic.simulators.utils.colors import Color
 from scenic.core.distributions import RejectionException
@@ -159,6 +159,14 @@ class Vehicle(DrivingObject):
         return True
 
 
+if network.is_elevated:
+
+    class Vehicle(Vehicle):
+        """A vehicle that stands on the road, inclined as it is."""
+
+        position: standing(new OrientedPoint on road)
+
+
 class Car(Vehicle):
     """A car."""
 
@@ -186,6 +194,14 @@ class Pedestrian(DrivingObject):
     @property
     def isPedestrian(self):
         return True
+
+
+if network.is_elevated:
+
+    class Pedestrian(Pedestrian):
+        """A pedestrian who stands upright on the ground."""
+
+        position: standing(new Point on network.walkableRegion)
 
 
 def withinDistanceToAnyCars(car, thresholdDistance):

@@ -18,11 +18,14 @@ from scenic.domains.driving.elements import (
     RoadSection,
     Shoulder,
     Sidewalk,
-    union_region,
 )
 from scenic.domains.driving.elevation import Elevation
+from scenic.domains.driving.joined_surfaces import JoinedSurface
+from scenic.domains.driving.levels import Levels
+from scenic.domains.driving.lines import joined_ground
 from scenic.domains.driving.lookups import Finder, RoadDirection
 from scenic.domains.driving.random_elements import NestedFinder, element_at
+from scenic.domains.driving.surfaces import GroundedLine
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import RejectionException
 from scenic.runtime.python.opaque import call_later
@@ -51,6 +54,7 @@ class RoadNetwork(Frozen):
         driveOnLeft: whether traffic keeps left.
         tolerance: metres within which an element counts as being at a place that none holds.
         problems: what is wrong with the map, and what was done instead.
+        is_elevated: whether its elements are surfaces in space, and not of the plane.
 
     """
 
@@ -68,6 +72,7 @@ class RoadNetwork(Frozen):
         self._fillings: tuple[Any, ...] = ()
         """Polygons that close gaps between the ends of linked lanes."""
         self._elevation = Elevation(())
+        self.is_elevated = False
         self._finders: dict[Any, Finder] = {}
         self._nested_finders: dict[str, NestedFinder] = {}
 
@@ -103,42 +108,42 @@ class RoadNetwork(Frozen):
     @cached_property
     def drivableRegion(self) -> Region:
         """Roads and intersections, without shoulders."""
-        return self._region((*self.intersections, *self.roads), self._fillings)
+        return self.region_of((*self.intersections, *self.roads), self._fillings)
 
     @cached_property
     def roadRegion(self) -> Region:
         """Ordinary roads."""
-        return self._region(self.roads)
+        return self.region_of(self.roads)
 
     @cached_property
     def laneRegion(self) -> Region:
         """All lanes."""
-        return self._region(self.lanes)
+        return self.region_of(self.lanes)
 
     @cached_property
     def intersectionRegion(self) -> Region:
         """All intersections."""
-        return self._region(self.intersections)
+        return self.region_of(self.intersections)
 
     @cached_property
     def walkableRegion(self) -> Region:
         """Sidewalks and crossings."""
-        return self._region((*self.sidewalks, *self.crossings))
+        return self.region_of((*self.sidewalks, *self.crossings))
 
     @cached_property
     def sidewalkRegion(self) -> Region:
         """All sidewalks."""
-        return self._region(self.sidewalks)
+        return self.region_of(self.sidewalks)
 
     @cached_property
     def crossingRegion(self) -> Region:
         """All pedestrian crossings."""
-        return self._region(self.crossings)
+        return self.region_of(self.crossings)
 
     @cached_property
     def shoulderRegion(self) -> Region:
         """All shoulders."""
-        return self._region(self.shoulders)
+        return self.region_of(self.shoulders)
 
     @cached_property
     def curbRegion(self) -> Region:
@@ -148,27 +153,59 @@ class RoadNetwork(Frozen):
             return nowhere
         import shapely
 
-        return PolylineRegion(polyline=shapely.MultiLineString([curb.lineString for curb in curbs]))
+        lines = shapely.MultiLineString([curb.lineString for curb in curbs])
+        if not self.is_elevated:
+            return PolylineRegion(polyline=lines)
+        return GroundedLine(
+            lines, joined_ground(self.levels, [curb for curb in curbs if isinstance(curb, GroundedLine)])
+        )
 
-    def _region(self, elements: Sequence[NetworkElement], fillings: Sequence[Any] = ()) -> Region:
+    def region_of(self, elements: Sequence[NetworkElement], fillings: Sequence[Any] = ()) -> Region:
+        """The union of elements as a region with their directions; the empty region if there are none.
+
+        Args:
+            elements: the elements, in order of precedence.
+            fillings: further polygons that belong to it.
+
+        """
         import shapely
 
-        if not fillings:
-            return union_region(elements)
         if not elements:
             return nowhere
+        if self.is_elevated:
+            return JoinedSurface(self, elements, fillings)
         merged = shapely.union_all([*(element.polygon for element in elements), *fillings])
         return PolygonalRegion(polygon=merged, orientation=self.direction_of(elements))
 
     def direction_of(self, elements: Sequence[NetworkElement]) -> RoadDirection:
         """The field of the first of some elements that holds a point."""
-        return RoadDirection("direction of elements", elements, self.tolerance)
+        return RoadDirection("direction of elements", elements, self.tolerance, self._levels_in_space)
 
     @cached_property
     def roadDirection(self) -> RoadDirection:
         """The direction of traffic."""
         elements = (*self.intersections, *self.roads, *self.shoulders)
-        return RoadDirection("roadDirection", elements, self.tolerance)
+        return RoadDirection("roadDirection", elements, self.tolerance, self._levels_in_space)
+
+    # Heights
+
+    @cached_property
+    def levels(self) -> Levels:
+        """The areas of roads, sidewalks and shoulders with their heights."""
+        areas = [
+            (element.polygon, element._road_uid)
+            for element in (*self.allRoads, *self.sidewalks, *self.shoulders)
+        ]
+        known = [(polygon, self.road_number(uid)) for polygon, uid in areas if uid in self._elevation.numbers]
+        return Levels(self._elevation, *map(list, zip(*known, strict=True)) if known else ([], []))
+
+    @property
+    def _levels_in_space(self) -> Levels | None:
+        return self.levels if self.is_elevated else None
+
+    def road_number(self, uid: str | None) -> int:
+        """The number of a road in `levels`."""
+        return self._elevation.numbers[uid or ""]
 
     # What is where
 
@@ -190,7 +227,7 @@ class RoadNetwork(Frozen):
             return defer(self.findPointIn, place, elems, reject)
         if is_random(place):
             return element_at(self._finder(tuple(elems)), place, reject)
-        found = self._finder(tuple(elems)).at(place.x, place.y)
+        found = self._finder(tuple(elems)).at(place.x, place.y, place.z)
         if found is None and reject:
             raise RejectionException(
                 reject if isinstance(reject, str) else "there is no such element at the point"
@@ -201,7 +238,7 @@ class RoadNetwork(Frozen):
         key = tuple(map(id, elements))  # they live as long as the network does
         finder = self._finders.get(key)
         if finder is None:
-            finder = self._finders[key] = Finder(elements, self.tolerance)
+            finder = self._finders[key] = Finder(elements, self.tolerance, self._levels_in_space)
         return finder
 
     def elementAt(self, point: Any, reject: Any = False) -> Any:
@@ -269,25 +306,32 @@ class RoadNetwork(Frozen):
         found = self.findPointIn(place, (*self.intersections, *self.roads, *self.shoulders), reject)
         return () if found is None else found.nominalDirectionsAt(place)
 
-    def elevationAt(self, point: Any, road: str | None = None) -> Any:
+    def elevationAt(self, point: Any, element: NetworkElement | None = None) -> Any:
         """The height in metres of the road at a point, ``None`` off the road.
 
         Args:
             point: anything with a position. Where roads pass above each other, its z chooses the nearest one.
-            road: the ``uid`` of the only road to look at.
+            element: the only element to look at, whatever passes above or below.
 
         """
         place = self.vector(point)
         if isinstance(place, Lazy):
-            return defer(self.elevationAt, place, road)
+            return defer(self.elevationAt, place, element)
         if is_random(place):
-            return call_later(self.elevationAt, place, road)
-        (height,) = self.elevations(np.array([[place.x, place.y, place.z]]), road)
+            return call_later(self.elevationAt, place, element)
+        (height,) = self.elevations(np.array([[place.x, place.y, place.z]]), element)
         return None if np.isnan(height) else float(height)
 
-    def elevations(self, points: NDArray[np.float64], road: str | None = None) -> NDArray[np.float64]:
+    def elevations(
+        self, points: NDArray[np.float64], element: NetworkElement | None = None
+    ) -> NDArray[np.float64]:
         """Heights ``(n,)`` of the road in metres at points ``(n, 3)``, NaN off the road; see `elevationAt`."""
-        return self._elevation.at(points, road)
+        if element is None:
+            return self.levels.heights(points)
+        heights = np.full(len(points), np.nan)
+        inside = np.flatnonzero(element.outline.contains(points[:, 0], points[:, 1]))
+        heights[inside] = element.surface.heights(points[inside])
+        return heights
 
     def __repr__(self) -> str:
         return f"<Network of {len(self.roads)} roads, {len(self.intersections)} intersections>"

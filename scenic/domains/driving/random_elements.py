@@ -26,7 +26,7 @@ class Search(Protocol):
         """The elements."""
 
     def near(self, places: NDArray[np.float64]) -> NDArray[np.intp]:
-        """Index of the element at each place ``(n, 2)``; their number where there is none."""
+        """Index of the element at each place ``(n, 2 | 3)``; their number where there is none."""
 
 
 class NestedFinder:
@@ -49,7 +49,7 @@ class NestedFinder:
         return tuple(part for finder in self._inner for part in finder.elements)
 
     def near(self, places: NDArray[np.float64]) -> NDArray[np.intp]:
-        """Index of the part at each place ``(n, 2)``; their number where there is none."""
+        """Index of the part at each place ``(n, 2 | 3)``; their number where there is none."""
         outer = self._outer.near(places)
         result = np.full(len(places), len(self.elements), dtype=np.intp)
         for number in np.unique(outer[outer < len(self._inner)]):
@@ -71,7 +71,7 @@ def element_at(search: Search, place: Any, reject: Any) -> Any:
 
 def _element(call: Call, points: Column) -> Column:
     search, reject = call.payload
-    found = search.near(points[:, :2])
+    found = search.near(points)
     if reject:
         call.reject(found == len(search.elements))
         found = np.minimum(found, len(search.elements) - 1)

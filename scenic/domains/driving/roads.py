@@ -58,13 +58,21 @@ class Network(RoadNetwork):
         """A kept network is not one of this map."""
 
     @classmethod
-    def fromFile(cls, path: Any, useCache: bool = True, writeCache: bool = True, **options: Any) -> "Network":
+    def fromFile(
+        cls,
+        path: Any,
+        useCache: bool = True,
+        writeCache: bool = True,
+        elevated: bool = False,
+        **options: Any,
+    ) -> "Network":
         """The network of a map file; the same one for equal content and options.
 
         Args:
             path: an OpenDRIVE file; ``.xodr`` may be left out.
             useCache: whether a network that was kept may be used.
             writeCache: whether to keep the network.
+            elevated: whether its elements are surfaces in space, with the heights of the map, and not of the plane.
             options: see `scenic.domains.driving.loading.MapOptions`.
 
         Raises:
@@ -73,7 +81,7 @@ class Network(RoadNetwork):
             MapError: if it is not a map.
 
         """
-        return load_network(path, {"useCache": useCache, "writeCache": writeCache, **options}, cls)
+        return load_network(path, {"useCache": useCache, "writeCache": writeCache, **options}, cls, elevated)
 
     @classmethod
     def fromOpenDrive(cls, path: Any, **options: Any) -> "Network":

@@ -5,10 +5,13 @@ from typing import Any
 from scenic.domains.driving.roads import Network
 from scenic.language.errors import InvalidScenarioError
 from scenic.language.spans import Span
+from scenic.runtime.instances.objects import OrientedPoint
 from scenic.runtime.program.builtins import running_simulation
 from scenic.runtime.program.context import current
+from scenic.runtime.values.lazy import Lazy
+from scenic.runtime.values.values import operate, to_vector, vector
 
-__all__ = ["SettingError", "is2DMode", "nearer", "network_of_program"]
+__all__ = ["SettingError", "is2DMode", "nearer", "network_of_program", "standing"]
 
 
 def is2DMode() -> bool:
@@ -40,14 +43,8 @@ def network_of_program(parameters: Any) -> Network:
     flat = bool(parameters["use2DMap"])
     if is2DMode() and not flat:
         raise _wrong("use2DMap", "in the 2D mode a map is flat", "leave `use2DMap` out, or set it to True")
-    if not flat:
-        raise _wrong(
-            "use2DMap",
-            "roads are flat: this program is compiled in the 3D mode",
-            "give `--2d` (`mode2D=True` from Python), or `--param use2DMap=True` for 3D objects on a flat map",
-        )
     try:
-        return Network.fromFile(parameters["map"], **dict(parameters["map_options"]))
+        return Network.fromFile(parameters["map"], elevated=not flat, **dict(parameters["map_options"]))
     except TypeError as error:
         name = "map_options" if parameters["map_options"] else "map"
         raise _wrong(name, str(error), "see docs/reference/driving.md for what it takes") from error
@@ -70,6 +67,19 @@ def _wrong(parameter: str, message: str, help: str) -> SettingError:
         error.message = f"{message} (given as `--param {parameter}=...`, or in `params`)"
         return error.at((Span(1, 0, 1, 0), f"--param {parameter}"))
     return error.at(context.parameter_places.get(parameter, context.model_place))
+
+
+def standing(spot: Any) -> Lazy:
+    """The position of what stands on a spot: upright on a point, inclined as the ground is on an oriented one."""
+
+    def place(thing: Any) -> Any:
+        gap = vector(0, 0, operate("divide", thing.contactTolerance, 2))
+        offset = operate("subtract", gap, to_vector(thing.baseOffset))
+        if isinstance(spot, OrientedPoint):
+            offset = operate("rotate", spot.orientation, offset)
+        return operate("add", spot.position, offset)
+
+    return Lazy(frozenset({"baseOffset", "contactTolerance"}), place)
 
 
 def nearer(agent: Any, threshold: float, kind: Any) -> list[Any]:

@@ -37,7 +37,7 @@ from scenic.runtime.geometry.store import Arrays
 
 __all__ = ["KIND", "restored", "stored"]
 
-KIND: Final = "road network 1"
+KIND: Final = "road network 2"
 """Name and version of the form of the arrays."""
 
 _Network = TypeVar("_Network", bound=RoadNetwork)
@@ -147,18 +147,19 @@ def stored(network: RoadNetwork) -> Arrays:
         "heights": [
             (
                 road.uid,
-                road.length,
-                [_numbers(cubic) for cubic in road.profile],
-                [_numbers(c) for c in road.tilt],
+                *([_numbers(cubic) for cubic in cubics] for cubics in (road.profile, road.tilt, *road.falls)),
             )
             for road in network._elevation.roads
         ],
     }
+    samples = [road.samples for road in network._elevation.roads]
     lines = [line for element in elements for line in _lines(element)]
     return {
         "text": np.frombuffer(json.dumps(text, separators=(",", ":")).encode(), dtype=np.uint8),
         "vertices": np.concatenate([*lines, np.empty((0, 2))]),
         "vertex_counts": np.array([len(line) for line in lines], dtype=np.int64),
+        "samples": np.concatenate([*samples, np.empty((0, 4))]),
+        "sample_counts": np.array([len(rows) for rows in samples], dtype=np.int64),
         **_binary("areas", [element.polygon for element in elements]),
         **_binary("fillings", network._fillings),
     }
@@ -199,12 +200,19 @@ def restored(arrays: Arrays, filename: str, tolerance: float, cls: type[_Network
         for code, message, line in text["problems"]
     )
     network._fillings = tuple(_polygons(arrays, "fillings"))
+    starts = [0, *np.cumsum(arrays["sample_counts"]).tolist()]
     network._elevation = Elevation(
         [
-            RoadHeight(uid, road.polygon, road.line, length, *(_cubics(profile), _cubics(tilt)))
-            for uid, length, profile, tilt in text["heights"]
-            for road in [network.elements[uid]]
-            if isinstance(road, Road)
+            RoadHeight(
+                uid,
+                arrays["samples"][start:stop],
+                _cubics(profile),
+                _cubics(tilt),
+                (_cubics(left), _cubics(right)),
+            )
+            for (uid, profile, tilt, left, right), start, stop in zip(
+                text["heights"], starts[:-1], starts[1:], strict=True
+            )
         ]
     )
     return network

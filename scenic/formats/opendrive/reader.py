@@ -209,6 +209,7 @@ class _Reader:
             geometry,
             _profile(element.first("elevationProfile"), "elevation"),
             _profile(element.first("lateralProfile"), "superelevation"),
+            self._crossfall(name, element.first("lateralProfile")),
             tuple(_cubics(lanes, "laneOffset", "s")),
             self._sections(name, lanes, ends),
             tuple(self._signals(name, element.first("signals"), ends)),
@@ -216,6 +217,34 @@ class _Reader:
             element.line,
             frozenset(self._lost),
         )
+
+    def _crossfall(self, road: str, profile: Element | None) -> tuple[tuple[Cubic, ...], tuple[Cubic, ...]]:
+        """The crossfall of the left and of the right side."""
+        if profile is None:
+            return (), ()
+        if (shape := profile.first("shape")) is not None:
+            message = f"the shape of the surface of road {road} is not read: it is taken for even"
+            self._tell("SC621", message, shape.line, "shape")
+        left, right = (
+            tuple(
+                _cubics(
+                    Element(
+                        "",
+                        {},
+                        0,
+                        [
+                            item
+                            for item in profile.all("crossfall")
+                            if item.attributes.get("side", "both") in (side, "both")
+                        ],
+                    ),
+                    "crossfall",
+                    "s",
+                )
+            )
+            for side in ("left", "right")
+        )
+        return left, right
 
     def _within(self, road: str, elements: Iterable[Element], end: float) -> None:
         """Report elements that are placed behind the end of a road."""

@@ -178,6 +178,8 @@ class Road:
     geometry: tuple[Geometry, ...]
     elevation: tuple[Cubic, ...]
     superelevation: tuple[Cubic, ...]
+    crossfall: tuple[tuple[Cubic, ...], tuple[Cubic, ...]]
+    """Of the left and of the right side."""
     lane_offset: tuple[Cubic, ...]
     sections: tuple[LaneSection, ...]
     signals: tuple[Signal | SignalReference, ...]

@@ -68,6 +68,15 @@ class RoadShape:
         """The reference line ``(n, 2)``, without repeated points."""
         return joined([section.reference for section in self.sections])
 
+    @property
+    def samples(self) -> Floats:
+        """Distance along the reference line, x, y and heading (from east) where it is sampled, ``(n, 4)``; distances ascend."""
+        rows = np.concatenate(
+            [np.column_stack([section.s, section.reference, section.headings]) for section in self.sections]
+        )
+        kept: Floats = rows[np.concatenate([[True], np.diff(rows[:, 0]) > 1e-6])]
+        return kept
+
 
 def road_shape(
     road: Road,

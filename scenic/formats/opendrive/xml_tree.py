@@ -1,6 +1,6 @@
 """XML as a light tree with line numbers; entities are not expanded, and nothing is fetched."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Final
 from xml.parsers import expat
 
@@ -26,11 +26,13 @@ class Element:
 
     __slots__ = ("attributes", "children", "line", "tag")
 
-    def __init__(self, tag: str, attributes: dict[str, str], line: int) -> None:
+    def __init__(
+        self, tag: str, attributes: dict[str, str], line: int, children: Iterable["Element"] = ()
+    ) -> None:
         self.tag = tag
         self.attributes = attributes
         self.line = line
-        self.children: list[Element] = []
+        self.children = list(children)
 
     def all(self, tag: str) -> Iterator["Element"]:
         """The elements of that name directly in this one."""

@@ -145,6 +145,9 @@ def intersection(first: Any, second: Any) -> Region:
         return b
     if isinstance(b, Everywhere) or isinstance(a, Nowhere):
         return a
+    if not (a.has_closed_form and b.has_closed_form):
+        # What is not level meets a region of the plane as a container.
+        return IntersectionRegion(*(_as_container(one, two) for one, two in ((a, b), (b, a))))
     if not (a.is_random or b.is_random):
         for one, two in ((a, b), (b, a)):
             if isinstance(one, PointSetRegion):
@@ -154,6 +157,11 @@ def intersection(first: Any, second: Any) -> Region:
         if exact is not None:
             return exact
     return _by_option(intersection, a, b) or IntersectionRegion(a, b)
+
+
+def _as_container(region: Region, other: Region) -> Region:
+    """A region of the plane as what is above and below it, if another region is not level."""
+    return region.footprint if region.has_closed_form and not other.has_closed_form else region
 
 
 def _exact_intersection(a: Region, b: Region) -> Region | None:
@@ -218,7 +226,7 @@ def union(first: Any, second: Any) -> Region:
         return a
     if isinstance(b, Everywhere) or isinstance(a, Nowhere):
         return b
-    if not (a.is_random or b.is_random):
+    if not (a.is_random or b.is_random) and a.has_closed_form and b.has_closed_form:
         flat_a, flat_b = flat_of(a), flat_of(b)
         areal = not (isinstance(a, LineRegion) or isinstance(b, LineRegion))
         if areal and flat_a is not None and flat_b is not None and flat_a[1] == flat_b[1]:
@@ -249,6 +257,8 @@ def difference(first: Any, second: Any) -> Region:
         return nowhere
     if isinstance(b, Nowhere):
         return a
+    if not a.has_closed_form:
+        return DifferenceRegion(a, _as_container(b, a))
     if not (a.is_random or b.is_random):
         if isinstance(a, PointSetRegion):
             kept = [point for point in a.points if not holds(b, point)]

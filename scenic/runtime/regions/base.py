@@ -99,6 +99,8 @@ class Region(metaclass=_RegionType):
     """The vector field of the preferred orientations, where there is one."""
     tolerance: float = 0.0
     """Metres by which a point may lie outside and count as in the region."""
+    has_closed_form: bool = True
+    """Whether it can be combined with others as a fixed geometry; surfaces that are not level cannot."""
     kindred: ClassVar[tuple[str, ...]] = ()
     """Names of further classes whose instances are, to a program that asks with ``isinstance``, of this class."""
 

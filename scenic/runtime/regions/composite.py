@@ -292,7 +292,7 @@ def levelled(region: Composite, points: Points, columns: Sequence[Column]) -> Po
     for leaf, mine in _leaves(region, columns):
         if isinstance(leaf, PlanarRegion):
             points = np.array(points)
-            points[:, 2] = leaf.heights(*mine)
+            points[:, 2] = leaf.heights_at(points, *mine)
             break
     return points
 
@@ -329,7 +329,7 @@ def exactly_contains(region: Region, points: Points, columns: Sequence[Column]) 
         return held
     inside = region.contains_points(points, *columns)
     if isinstance(region, PlanarRegion):
-        inside = inside & (np.abs(points[:, 2] - region.heights(*columns)) <= LEVEL)
+        inside = inside & (np.abs(points[:, 2] - region.heights_at(points, *columns)) <= LEVEL)
     return np.broadcast_to(inside, len(points))
 
 
@@ -344,7 +344,10 @@ def _leaves(region: Region, columns: Sequence[_Part]) -> Iterator[tuple[Region, 
 
 def is_flat(region: Region) -> bool:
     """Whether all leaves lie in planes or are columns."""
-    return all(isinstance(leaf, PlanarRegion | Footprint) for leaf, _ in _leaves(region, region.parameters))
+    return all(
+        isinstance(leaf, PlanarRegion | Footprint) and leaf.has_closed_form
+        for leaf, _ in _leaves(region, region.parameters)
+    )
 
 
 def _known_points(body: Body, lanes: NDArray[np.intp]) -> Iterator[Points]:

@@ -165,6 +165,14 @@ class TabulatedField(VectorField):
         """Bounds ``(m,)`` of the headings at points in boxes ``(m, 3)``; ``None`` where nothing is known."""
         return None
 
+    def stepped(self, points: Points, strides: NDArray[np.float64]) -> tuple[Points, Mask]:
+        """Where points ``(n, 3)`` come to along the field by strides ``(n,)`` in metres, and which have a direction, ``(n,)``."""
+        headings, known = self.headings(points)
+        reached = np.array(points)
+        reached[:, 0] -= strides * np.sin(headings)
+        reached[:, 1] += strides * np.cos(headings)
+        return reached, known
+
     def __getitem__(self, position: Any) -> Any:
         place = to_vector(position, f"field {self.name!r}")
         if isinstance(place, Random) and self._is_table:
@@ -611,11 +619,8 @@ def _follow_table(call: Call, points: Column, distance: Column) -> Column:
     missing = np.zeros(lanes, dtype=np.bool_)
     for step in range(int(counts.max(initial=0))):
         moving = np.flatnonzero(step < counts)
-        headings, known = field.headings(place[moving])
+        place[moving], known = field.stepped(place[moving], length[moving] / counts[moving])
         missing[moving] |= ~known
-        stride = length[moving] / counts[moving]
-        place[moving, 0] -= stride * np.sin(headings)
-        place[moving, 1] += stride * np.cos(headings)
     call.reject(missing)
     return place
 

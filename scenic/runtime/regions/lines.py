@@ -213,11 +213,14 @@ class PolylineRegion(LineRegion):
 
     def _end(self, point: Any, segment: int) -> OrientedPoint:
         place = Vector.of(point)
+        return oriented_point(place, self._direction(place, segment), by_angles=True)
+
+    def _direction(self, place: Vector, segment: int) -> Orientation:
+        """The orientation at a place of a segment."""
         if self._follows_segments:  # where a ring closes, two segments are as near
-            orientation = Orientation.of(self.pieces.frames[segment].tolist())
-        else:
-            orientation = Orientation() if self.orientation is None else self.orientation_at(place)
-        return oriented_point(place, orientation, by_angles=True)
+            return Orientation.of(self.pieces.frames[segment].tolist())
+        found: Orientation = Orientation() if self.orientation is None else self.orientation_at(place)
+        return found
 
     @property
     def start(self) -> OrientedPoint:

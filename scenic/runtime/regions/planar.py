@@ -139,6 +139,10 @@ class PlanarRegion(Region):
         """The z of the plane, ``(n | 1,)``."""
         return np.zeros(1)
 
+    def heights_at(self, points: Points, *columns: Column) -> Column:
+        """The z of the region above or below points ``(n, 3)``, ``(n | 1,)``: that of its plane."""
+        return self.heights(*columns)
+
     def from_above(self, *columns: Column) -> Flat:
         return Flat(self.geometries(*columns), self.heights(*columns))
 

@@ -38,13 +38,16 @@ def meshed(region: Region) -> Mesh | None:
 
 
 def flat_of(region: Region) -> tuple[Any, float | None] | None:
-    """A fixed region of the plane as a shapely geometry with its height; no height means all heights."""
+    """A fixed region of the plane as a shapely geometry with its height; no height means all heights.
+
+    A surface that is not level has no height either: questions about it are those about what is above and below it.
+    """
     if isinstance(region, PlanarRegion):
-        return region.polygons, float(region.height)
+        return region.polygons, float(region.height) if region.has_closed_form else None
     if isinstance(region, Footprint):
         return region.polygons, None
     if isinstance(region, PolylineRegion):
-        return region.lineString, 0.0
+        return region.lineString, 0.0 if region.has_closed_form else None
     return None
 
 

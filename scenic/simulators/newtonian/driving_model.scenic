@@ -36,3 +36,12 @@ class Debris:
 
     position: new Point on road
     yaw: Range(0, 360) deg
+
+
+if network.is_elevated:
+
+    class Debris(Debris):
+        """Something that lies on the road, inclined as it is."""
+
+        position: standing(new OrientedPoint on road)
+        parentOrientation: roadDirection at self.position

@@ -11,9 +11,10 @@ from typing import Any, Final
 from scenic.domains.driving.controllers import PIDLateralController, PIDLongitudinalController
 from scenic.domains.driving.simulators import DrivingSimulation, DrivingSimulator
 from scenic.runtime.scenes.scene import Scene
-from scenic.runtime.values.values import Orientation, Vector
+from scenic.runtime.values.values import Orientation, Vector, operate
 from scenic.simulators.cameras import Cameras
 from scenic.simulators.newtonian.controls import Walking
+from scenic.simulators.newtonian.terrain import Terrain
 
 __all__ = ["NewtonianSimulation", "NewtonianSimulator", "State"]
 
@@ -27,12 +28,16 @@ _UPRIGHT: Final = Orientation()
 class State:
     """An object of the simulation on plain numbers: metres, m/s, radians, and radians a second."""
 
-    __slots__ = ("heading", "is_car", "length", "position", "rate", "speed", "velocity")
+    __slots__ = ("above", "frame", "heading", "is_car", "length", "position", "rate", "speed", "velocity")
 
     def __init__(self, obj: Any) -> None:
         self.position: tuple[float, float, float] = tuple(obj.position)
         self.velocity: tuple[float, float, float] = tuple(obj.velocity)
         self.heading = float(obj.heading)
+        self.above = 0.0
+        """Metres between the road and its middle, where roads have heights."""
+        self.frame: Sequence[float] | None = None
+        """Its orientation, where that is more than its heading: on a road that is not level."""
         self.is_car = bool(getattr(obj, "isCar", False))
         self.length = float(obj.length)
         self.rate = 0.0
@@ -50,11 +55,14 @@ class NewtonianSimulation(DrivingSimulation):
     def __init__(self, scene: Scene, *, timestep: float | None = None, **options: Any) -> None:
         self._states: dict[int, State] = {}
         self._cameras = Cameras()
+        self._terrain = Terrain.under(scene)
         super().__init__(scene, timestep=0.1 if timestep is None else timestep, **options)
 
     def createObjectInSimulator(self, obj: Any) -> None:
         """Take the object's pose and velocity over."""
         self._states[id(obj)] = State(obj)
+        if self._terrain is not None:
+            self._terrain.stand([self._states[id(obj)]])
         if getattr(obj, "isCar", False):
             obj.resetControls()
         if isinstance(obj, Walking):
@@ -68,6 +76,8 @@ class NewtonianSimulation(DrivingSimulation):
     def place(self, obj: Any, position: Any) -> None:
         """Move an object."""
         self._states[id(obj)].position = tuple(position)
+        if self._terrain is not None:
+            self._terrain.stand([self._states[id(obj)]])
 
     def turn(self, obj: Any, heading: float) -> None:
         """Turn an object to a heading in radians; a car drives on at its speed in the new direction."""
@@ -100,6 +110,8 @@ class NewtonianSimulation(DrivingSimulation):
             state.position = (x + vx * dt, y + vy * dt, z + vz * dt)
             if state.rate:
                 state.heading = math.pi - (math.pi - state.heading - state.rate * dt) % (2 * math.pi)
+        if self._terrain is not None:
+            self._terrain.settle([self._states[id(obj)] for obj in self.steered()])
 
     def _drive(self, controls: Any, state: State, dt: float) -> None:
         speed = state.speed
@@ -122,6 +134,10 @@ class NewtonianSimulation(DrivingSimulation):
         parent = stored["parentOrientation"]
         if parent is not _UPRIGHT and parent != _UPRIGHT:
             yaw = (yaw - parent.yaw + math.pi) % (2 * math.pi) - math.pi
+        turned: dict[str, float] = {}
+        if state.frame is not None:
+            local = operate("compose", operate("inverse", parent), Orientation.of(tuple(state.frame)))
+            yaw, turned["pitch"], turned["roll"] = local.eulerAngles
         x, y, z = state.velocity
         values: dict[str, Any] = {
             "position": Vector.of(state.position),
@@ -131,6 +147,7 @@ class NewtonianSimulation(DrivingSimulation):
             "angularVelocity": Vector.of((0.0, 0.0, state.rate)),
             "yaw": yaw,
             "elevation": None if stored.get("elevation") is None else state.position[2],
+            **turned,
         }
         return {name: values[name] if name in values else stored[name] for name in properties}
 

@@ -1,0 +1,188 @@
+"""Roads above each other: which of them is meant at a point in space, and the surface of an element."""
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.domains.driving.elevation import Elevation
+from scenic.graph import quaternions
+
+__all__ = ["Ground", "Levels"]
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+_STOREY: Final = 2.5
+"""Metres between two surfaces from which on one passes above the other."""
+_LEVEL: Final = 1.0
+"""Metres within which two surfaces are equally near to a point."""
+_ROOM: Final = 4.5
+"""Metres above or below a surface within which things belong to it."""
+_SHARED: Final = 0.1
+"""Square metres that two areas share at least where they lie above each other."""
+
+
+class Levels:
+    """The areas of all roads, and where some lie above others.
+
+    Args:
+        elevation: the surfaces of the roads.
+        polygons: areas, shapely's.
+        roads: the number of the road of each area.
+
+    """
+
+    def __init__(self, elevation: Elevation, polygons: Sequence[Any], roads: Sequence[int]) -> None:
+        self.elevation = elevation
+        self._polygons = np.array(polygons, dtype=object)
+        self._roads = np.array(roads, dtype=np.intp)
+
+    @cached_property
+    def _tree(self) -> Any:
+        import shapely
+
+        return shapely.STRtree(self._polygons)
+
+    @cached_property
+    def _bounds(self) -> tuple[Floats, Floats]:
+        """The least and the greatest height of each road on its areas."""
+        import shapely
+
+        low, high = np.zeros(len(self.elevation.roads)), np.zeros(len(self.elevation.roads))
+        for road in np.unique(self._roads).tolist():
+            corners = shapely.get_coordinates(self._polygons[self._roads == road])
+            low[road], high[road] = self.elevation.bounds(road, self.elevation.reach(road, corners))
+        return low, high
+
+    def bounds(self, roads: Sequence[int]) -> tuple[float, float]:
+        """The least and the greatest height of some roads, on their areas."""
+        low, high = self._bounds
+        some = list(roads)
+        return float(low[some].min()) - 1e-6, float(high[some].max()) + 1e-6
+
+    @cached_property
+    def _stacks(self) -> tuple[set[tuple[int, int]], Any]:
+        """Pairs of roads of which one passes above the other, and the area where any does (``None`` if nowhere)."""
+        import shapely
+
+        if self.elevation.is_level:
+            return set(), None
+        low, high = (bound[self._roads] for bound in self._bounds)
+        one, two = self._tree.query(self._polygons, predicate="intersects")
+        may = (one < two) & (np.maximum(high[one] - low[two], high[two] - low[one]) > _STOREY)
+        one, two = one[may], two[may]
+        shared = shapely.intersection(self._polygons[one], self._polygons[two])
+        some = shapely.area(shared) > _SHARED
+        one, two, shared = one[some], two[some], shared[some]
+        middles = shapely.get_coordinates(shapely.point_on_surface(shared))
+        heights = [self.elevation.heights(self._roads[side], middles) for side in (one, two)]
+        above = np.abs(heights[0] - heights[1]) > _STOREY
+        pairs = {
+            (int(a), int(b))
+            for first, second in zip(self._roads[one[above]], self._roads[two[above]], strict=True)
+            for a, b in ((first, second), (second, first))
+        }
+        if not pairs:
+            return pairs, None
+        area = shapely.union_all(shared[above]).buffer(0.5)
+        shapely.prepare(area)
+        return pairs, area
+
+    @property
+    def pairs(self) -> set[tuple[int, int]]:
+        """Pairs of roads of which one passes above the other, each in both orders."""
+        return self._stacks[0]
+
+    def stacked(self, places: Floats) -> Mask:
+        """Where roads lie above each other, of places ``(n, 2)``."""
+        import shapely
+
+        area = self._stacks[1]
+        if area is None:
+            return np.zeros(len(places), dtype=np.bool_)
+        return np.asarray(shapely.intersects_xy(area, places[:, 0], places[:, 1]), dtype=np.bool_)
+
+    def _at(self, points: Floats) -> tuple[Indices, Indices, Floats]:
+        """Pairs of points ``(n, 3)`` and roads that hold them as seen from above, and by how much each road misses the point."""
+        import shapely
+
+        owner, area = self._tree.query(shapely.points(points[:, :2]), predicate="intersects")
+        roads = self._roads[area]
+        gaps = np.abs(points[owner, 2] - self.elevation.heights(roads, points[owner, :2]))
+        return owner, roads, gaps
+
+    def heights(self, points: Floats) -> Floats:
+        """Heights ``(n,)`` of the surfaces nearest to points ``(n, 3)``, NaN off the roads."""
+        found = np.full(len(points), np.nan)
+        there, roads = self._nearest(points)
+        found[there] = self.elevation.heights(roads, points[there, :2])
+        return found
+
+    def frames(self, points: Floats, headings: Floats) -> Floats:
+        """Orientations ``(n, 4)`` of things on the surfaces nearest to points ``(n, 3)`` that face headings ``(n,)``.
+
+        Headings are anticlockwise from north; off the roads, the ground is level.
+        """
+        frames = quaternions.from_euler(headings, np.zeros(1), np.zeros(1))
+        there, roads = self._nearest(points)
+        frames[there] = self.elevation.frames(roads, points[there, :2], headings[there])
+        return frames
+
+    def _nearest(self, points: Floats) -> tuple[Indices, Indices]:
+        """Which points ``(n, 3)`` lie on some road, and the road nearest in height to each of them."""
+        owner, roads, gaps = self._at(points)
+        order = np.lexsort((gaps, owner))
+        first = order[np.flatnonzero(np.diff(owner[order], prepend=-1))]
+        return owner[first], roads[first]
+
+    def fits(self, points: Floats, heights: Floats) -> Mask:
+        """At which points ``(n, 3)`` no other surface is nearer than one that has these heights ``(n,)`` there."""
+        result = np.ones(len(points), dtype=np.bool_)
+        some = np.flatnonzero(self.stacked(points[:, :2]))
+        if len(some):
+            owner, _, gaps = self._at(points[some])
+            least = np.full(len(some), np.inf)
+            np.minimum.at(least, owner, gaps)
+            result[some] = np.abs(points[some, 2] - heights[some]) <= least + _LEVEL
+        return result
+
+
+class Ground:
+    """The surface of a part of a road network in space.
+
+    Args:
+        levels: the areas and heights of its network.
+        roads_at: gives the numbers ``(n,)`` of the roads that are the surface at points ``(n, 3)``.
+        roads: the numbers of all of them.
+
+    """
+
+    def __init__(self, levels: Levels, roads_at: Callable[[Floats], Indices], roads: Sequence[int]) -> None:
+        self.levels = levels
+        self.roads_at = roads_at
+        self.roads = tuple(roads)
+
+    @cached_property
+    def bounds(self) -> tuple[float, float]:
+        """Its least and greatest height in metres."""
+        return self.levels.bounds(self.roads)
+
+    def heights(self, points: Floats) -> Floats:
+        """Its heights ``(n,)`` in metres above or below points ``(n, 3)``."""
+        return self.levels.elevation.heights(self.roads_at(points), points[:, :2])
+
+    def frames(self, points: Floats, headings: Floats) -> Floats:
+        """Orientations ``(n, 4)`` of things on it that face headings ``(n,)``, anticlockwise from north."""
+        return self.levels.elevation.frames(self.roads_at(points), points[:, :2], headings)
+
+    def fits(self, points: Floats) -> Mask:
+        """For which points ``(n, 3)`` on its area it is meant, and not what passes above or below."""
+        return self.levels.fits(points, self.heights(points))
+
+    def clearances(self, points: Floats, places: Floats) -> Floats:
+        """By how many metres points ``(n, 3)`` are too high or too low to belong to it, where its nearest places ``(n, 3)`` are."""
+        return np.maximum(np.abs(points[:, 2] - self.heights(places)) - _ROOM, 0.0)

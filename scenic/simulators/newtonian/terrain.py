@@ -1,0 +1,52 @@
+"""Roads with heights under the objects of the built-in simulator."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from scenic.domains.driving.levels import Levels
+    from scenic.simulators.newtonian.simulator import State
+
+__all__ = ["Terrain"]
+
+
+class Terrain:
+    """Keeps objects that move in the plane on the roads beneath them.
+
+    Args:
+        levels: the heights of the roads.
+
+    """
+
+    def __init__(self, levels: "Levels") -> None:
+        self._levels = levels
+
+    @classmethod
+    def under(cls, scene: Any) -> "Terrain | None":
+        """That of a scene; ``None`` where its map is flat."""
+        network = getattr(scene.workspace, "network", None)
+        if network is None or not network.is_elevated or network.levels.elevation.is_level:
+            return None
+        return cls(network.levels)
+
+    def stand(self, states: Sequence["State"]) -> None:
+        """Note how high above the road objects are; they keep that height."""
+        places = np.array([state.position for state in states])
+        above = places[:, 2] - self._levels.heights(places)
+        for state, height in zip(states, np.where(np.isfinite(above), above, 0.0).tolist(), strict=True):
+            state.above = height
+
+    def settle(self, states: Sequence["State"]) -> None:
+        """Put objects that have moved in the plane back on the road: at their height above it, and cars with its slope."""
+        new = np.array([state.position for state in states])
+        heights = self._levels.heights(new)
+        # Off the road, nobody knows a height: what leaves it goes on level.
+        settled = heights + np.array([state.above for state in states])
+        new[:, 2] = np.where(np.isfinite(heights), settled, new[:, 2])
+        frames = self._levels.frames(new, np.array([state.heading for state in states]))
+        for state, place, frame in zip(states, new.tolist(), frames.tolist(), strict=True):
+            state.position = (place[0], place[1], place[2])
+            if state.is_car:
+                state.frame = frame
