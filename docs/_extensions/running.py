@@ -4,15 +4,19 @@
   option ``seed=`` (by default 1). ``extends=OTHER`` puts the program of that name before it. ``steps=N`` simulates the
   scene, too. ``params`` writes its global parameters, and ``records`` what the simulation recorded. ``fails`` means
   that the program has an error. ``fragment`` means that the block is only parsed.
-- ``python``: run in a module that all such blocks of the page share.
+- ``python``: run in a module that all such blocks of the page share; with ``fragment`` only compiled.
+- ``sh``: commands of ``scenic``, which must succeed; large numbers of scenes become few (`shell`).
 - ``console``: lines that begin with ``$`` are commands; only ``scenic`` can be called.
 - ``text``: what the block before it writes.
+
+``elsewhere=WHY`` marks a block that needs what a test has not: it is not run, and a block of Python only compiled.
 """
 
 import contextlib
 import io
 import os
 import shlex
+import shutil
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -22,6 +26,7 @@ from unittest import mock
 
 import scenic
 from docs._extensions.blocks import Block, blocks_of, with_outputs
+from docs._extensions.shell import run_commands
 from scenic.cli.main import main
 from scenic.pipeline import load
 from scenic.runtime.scenes.scenario import Scenario
@@ -59,8 +64,14 @@ class Programs:
 
 
 @contextlib.contextmanager
-def workplace(folder: Path) -> Iterator[None]:
-    """Work in a folder in which the meshes and road maps of the examples are found."""
+def workplace(folder: Path, *, examples: bool = False) -> Iterator[None]:
+    """Work in a folder in which the meshes and road maps of the examples are found.
+
+    ``examples`` puts copies of all examples there, and of the programs of the pictures, as in the repository.
+    """
+    if examples:
+        for part in ("examples", "docs/pictures"):
+            shutil.copytree(ROOT / part, folder / part, ignore=shutil.ignore_patterns("__pycache__", "*.jpg"))
     for link, target in (("meshes", "meshes"), ("maps", "driving")):
         (folder / link).symlink_to(ROOT / "examples" / target)
     with contextlib.chdir(folder), mock.patch.dict(os.environ, COLUMNS=COLUMNS, NO_COLOR="1"):
@@ -73,17 +84,24 @@ class PageRun:
 
     programs: Programs
     names: dict[str, Any]
+    shell: bool = False
+    """Whether blocks of shell commands are run."""
 
     @classmethod
-    def begin(cls) -> "PageRun":
+    def begin(cls, *, shell: bool = False) -> "PageRun":
         """A run in which nothing is defined yet."""
-        return cls(Programs(), {"__name__": "page"})
+        return cls(Programs(), {"__name__": "page"}, shell)
 
     def output(self, block: Block) -> str | None:
         """What a block writes when it is run; ``None`` for a block that is not run."""
+        if "elsewhere" in block.options and block.language != "python":
+            return None
         match block.language:
             case "scenic":
                 return self._program(block)
+            case "sh" if self.shell:
+                run_commands(block.text)
+                return None
             case "python":
                 return self._python(block)
             case "console":
@@ -113,10 +131,13 @@ class PageRun:
                 _show(_records(scenario, block.options))
         return written.getvalue()
 
-    def _python(self, block: Block) -> str:
+    def _python(self, block: Block) -> str | None:
+        # Line numbers of the page appear in tracebacks.
+        code = compile("\n" * (block.first + 1) + block.text, "page", "exec")
+        if "fragment" in block.options or "elsewhere" in block.options:
+            return None
         with contextlib.redirect_stdout(io.StringIO()) as written:
-            # Line numbers of the page appear in tracebacks.
-            exec(compile("\n" * (block.first + 1) + block.text, "page", "exec"), self.names)
+            exec(code, self.names)
         return written.getvalue()
 
 

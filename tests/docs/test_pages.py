@@ -32,8 +32,8 @@ def test_the_page_shows_what_its_programs_do(path: Path, request: pytest.Fixture
     page = path.read_text(encoding="utf-8")
     folder = Path(tempfile.mkdtemp(prefix="scenic-docs-"))
     try:
-        with workplace(folder):
-            found = checked(page, PageRun.begin())
+        with workplace(folder, examples=True):
+            found = checked(page, PageRun.begin(shell=True))
     finally:
         shutil.rmtree(folder)
     if request.config.getoption("--update-golden"):

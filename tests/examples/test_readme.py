@@ -5,10 +5,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
-from tests.cli.commands import run_here
-
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text()
 
@@ -28,20 +24,6 @@ def test_the_code_prints_what_is_shown() -> None:
         [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
     )
     assert result.stdout == shown
-
-
-@pytest.mark.slow
-def test_its_commands_run_in_order(tmp_path: Path) -> None:
-    (tmp_path / "examples").symlink_to(ROOT / "examples")
-    lines = [line.partition("#")[0].split() for block in blocks("sh") for line in block.splitlines()]
-    commands = [words[1:] for words in lines if words[:1] == ["scenic"]]
-    assert [command[0] for command in commands] == ["sample", "simulate", "doctor", "new"]
-    for command in commands:
-        done = run_here(command, folder=tmp_path)
-        assert done.returncode == 0, done.stderr
-    assert {"desks.html", "desks.jsonl", "kitchen", "pictures", "runs", "runs.html"} <= {
-        path.name for path in tmp_path.iterdir()
-    }
 
 
 def test_links_lead_somewhere() -> None:
