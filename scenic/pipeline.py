@@ -2,7 +2,7 @@
 
 import inspect
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import CodeType, FrameType, ModuleType, TracebackType
@@ -36,6 +36,7 @@ from scenic.runtime.python.importing import beside
 from scenic.runtime.python.random_state import preserved, seed_globals
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Everywhere, Nowhere, Workspace, everywhere
+from scenic.runtime.regions.unturned import unturned
 from scenic.runtime.sampling.planning import Outline, outline
 from scenic.runtime.scenes.saving import program_digest
 from scenic.runtime.scenes.scenario import Scenario
@@ -323,8 +324,15 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
 
 def _narrowed(outlined: Outline) -> tuple[Domain, tuple[str, ...]]:
     """The part of the cube that the requirements allow, and the labels of those that cannot hold."""
-    pruning = contract(outlined.graph, conditions(outlined))
-    return pruning.domain, tuple(item.label for item in pruning.impossible)
+    facts = conditions(outlined)
+    pruning = contract(outlined.graph, [*facts, *_implied(facts)])
+    return pruning.domain, tuple(dict.fromkeys(item.label for item in pruning.impossible))
+
+
+def _implied(facts: Sequence[Fact]) -> list[Fact]:
+    """What follows from some facts, said so that bounds show more."""
+    seen = ((fact, unturned(fact.node)) for fact in facts)
+    return [replace(fact, node=node) for fact, node in seen if node is not None]
 
 
 def _sample(scenario: Scenario, n: int, **options: Any) -> Iterator[Scene]:

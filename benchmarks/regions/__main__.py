@@ -70,7 +70,7 @@ def main() -> None:
     if options.laws:
         from benchmarks.regions import laws
 
-        sys.exit(0 if laws.main() else 1)
+        sys.exit(0 if laws.main(options.region, options.question) else 1)
     if options.child:
         child(options.child)
         return

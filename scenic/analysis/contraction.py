@@ -59,6 +59,12 @@ LARGEST_ENUMERATION: Final = 1024
 SPLIT_AXES: Final = 8
 """Conditions on more axes than these are not paved: too few boxes would fall to each."""
 
+LARGEST_GROUP: Final = 32
+"""Conditions of one group, at most, that are looked at one by one where the group is about too many axes."""
+
+FEW_POINTS: Final = 64
+"""Points that tell of one of these how often it may hold."""
+
 GAIN: Final = 0.5
 """Pavings are used if they leave less than this share of their hull together."""
 
@@ -102,7 +108,7 @@ def _pave(graph: Graph, conditions: Sequence[Fact], hull: Boxes) -> list[Boxes] 
 
     ``None`` where some group cannot hold.
     """
-    groups = _groups(conditions)
+    groups = [part for group in _groups(conditions) for part in _small_groups(graph, group, hull)]
     pavings: list[Boxes] = []
     vain: Counter[tuple[int, ...]] = Counter()
     for group in groups:
@@ -117,6 +123,22 @@ def _pave(graph: Graph, conditions: Sequence[Fact], hull: Boxes) -> list[Boxes] 
         vain[shape] += paving.volume(axes) > FACTOR_GAIN * hull.volume(axes)
         pavings.append(paving)
     return pavings
+
+
+def _small_groups(graph: Graph, group: list[Fact], hull: Boxes) -> list[list[Fact]]:
+    """The group itself; if it is about too many axes to be paved, groups of those of its conditions that seldom hold.
+
+    A condition that often holds, as that things lie in a wide room, tells little, but joins all that is asked of them.
+    """
+    if len(group) == 1 or len(_Network(graph, group).axes) <= SPLIT_AXES or len(group) > LARGEST_GROUP:
+        return [group]
+    seldom = []
+    for condition in group:
+        network = _Network(graph, [condition])
+        axes = np.array(sorted(network.axes.values()), dtype=np.intp)
+        if 0 < len(axes) <= SPLIT_AXES and share_that_may_hold(network.once, hull, axes, FEW_POINTS) < RARE:
+            seldom.append(condition)
+    return _groups(seldom)
 
 
 def _groups(conditions: Sequence[Fact]) -> list[list[Fact]]:
@@ -240,7 +262,7 @@ class _Network:
         alive = np.flatnonzero(state.alive)
         return boxes.taken(alive), alive
 
-    def _once(self, boxes: Boxes) -> Boxes:
+    def once(self, boxes: Boxes) -> Boxes:
         """The boxes narrowed as long as that helps."""
         return self.contract(boxes, first=0)
 
@@ -250,7 +272,7 @@ class _Network:
         if not 0 < len(axes) <= SPLIT_AXES:
             return boxes
         are_few = self._combinations() <= LARGEST_ENUMERATION
-        share = 1.0 if are_few else share_that_may_hold(self._once, boxes, axes)
+        share = 1.0 if are_few else share_that_may_hold(self.once, boxes, axes)
         if share < RARE:
             return pave_by_trial(self._narrow, boxes, axes, share, self._cuts, lambda: self._visits <= 0)
         volume = boxes.volume(axes)
@@ -265,7 +287,7 @@ class _Network:
             halves, whole = self._halved(boxes, axes)
             if not len(halves.lower):
                 break
-            halves = self._once(halves)
+            halves = self.once(halves)
             boxes = Boxes(
                 np.concatenate([whole.lower, halves.lower]), np.concatenate([whole.upper, halves.upper])
             )

@@ -27,7 +27,7 @@ POINTS: Final = 256
 """Points that tell this share."""
 
 MOST: Final = 1024
-"""Boxes, at most; twice as many where hardly any point may meet the conditions."""
+"""Boxes, at most; four times as many where hardly any point may meet the conditions."""
 
 HARDLY_ANY: Final = 0.01
 """The share that counts as hardly any."""
@@ -48,7 +48,9 @@ VAIN: Final = 3
 """Rounds without a loss, of many boxes, after which splitting ends."""
 
 
-def share_that_may_hold(contract: Contract, hull: Boxes, axes: NDArray[np.intp]) -> float:
+def share_that_may_hold(
+    contract: Contract, hull: Boxes, axes: NDArray[np.intp], points: int = POINTS
+) -> float:
     """About the share of points of a box that may meet the conditions, by points that are spread evenly along some axes."""
     # The additive sequence of the generalised golden ratio (M. Roberts, "The unreasonable effectiveness of
     # quasirandom sequences", 2018).
@@ -56,11 +58,11 @@ def share_that_may_hold(contract: Contract, hull: Boxes, axes: NDArray[np.intp])
     for _ in range(64):
         ratio = (1 + ratio) ** (1 / (len(axes) + 1))
     steps = ratio ** -np.arange(1.0, len(axes) + 1)
-    places = np.mod(0.5 + np.arange(1, POINTS + 1)[:, np.newaxis] * steps, 1.0)
-    lower, upper = np.tile(hull.lower[:1], (POINTS, 1)), np.tile(hull.upper[:1], (POINTS, 1))
-    points = lower[:, axes] + (upper[:, axes] - lower[:, axes]) * places
-    lower[:, axes] = upper[:, axes] = points
-    return len(contract(Boxes(lower, upper))) / POINTS
+    places = np.mod(0.5 + np.arange(1, points + 1)[:, np.newaxis] * steps, 1.0)
+    lower, upper = np.tile(hull.lower[:1], (points, 1)), np.tile(hull.upper[:1], (points, 1))
+    chosen = lower[:, axes] + (upper[:, axes] - lower[:, axes]) * places
+    lower[:, axes] = upper[:, axes] = chosen
+    return len(contract(Boxes(lower, upper))) / points
 
 
 def pave_by_trial(
@@ -93,7 +95,7 @@ def pave_by_trial(
             boxes = contract(boxes.cut(axis, places))
             split.remove(axis)
     useful = np.array(split, dtype=np.intp)
-    most = MOST if share > HARDLY_ANY else 2 * MOST
+    most = MOST if share > HARDLY_ANY else 4 * MOST
     while split and 0 < 2 * len(boxes) <= most and not is_spent():
         if vain == VAIN:
             if len(useful) == len(split):

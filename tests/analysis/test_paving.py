@@ -36,6 +36,29 @@ FEW = {
         f"r = RectangularRegion((0, 0), 0, 100, 2.2)\nego = new Object contained in r, {ANY}, with width 1.6, with length 2",
         is_compared=True,
     ),
+    "a turned corridor": Few(
+        f"r = RectangularRegion((5, 1), 37 deg, 100, 2.2)\nworkspace = Workspace(r)\n"
+        f"ego = new Object in workspace, {ANY}, with width 2, with length 6",
+    ),
+    "a corridor turned at random": Few(
+        "r = RectangularRegion((Range(-9, 9), 1), Range(0, 180) deg, 100, 2.2)\n"
+        f"ego = new Object contained in r, {ANY}, with width 2, with length 6",
+    ),
+    "a short one turned at random": Few(
+        "r = RectangularRegion((Range(-1, 1), 1), Range(0, 90) deg, 3, 2)\n"
+        f"ego = new Object in r, {ANY}, with width 1, with length 1.8, with regionContainedIn r",
+        is_compared=True,
+    ),
+    "a place that a turned rectangle holds": Few(
+        "r = RectangularRegion((1, 2), 30 deg, 6, 2)\nego = new Object at (Range(-9, 9), Range(-9, 9))\n"
+        "require ego.position in r",
+        is_compared=True,
+    ),
+    "headings in a room": Few(
+        "workspace = Workspace(RectangularRegion((0, 0), 0, 50, 50))\n"
+        + "".join(f"{name} = new Object in workspace, {ANY}\n" for name in ("a", "b", "ego"))
+        + "require abs(relative heading of a) < 5 deg\nrequire abs(relative heading of b) < 5 deg",
+    ),
     "three headings": Few(
         "".join(f"{name} = new Object at ({5 * x}, 0), {ANY}\n" for x, name in enumerate(("a", "b", "ego")))
         + "require abs(a.heading - b.heading) < 5 deg\nrequire abs(relative heading of b) < 5 deg",

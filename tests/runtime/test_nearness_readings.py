@@ -44,7 +44,7 @@ from tests.runtime.geometry.samples import SHAPES
 from tests.runtime.programs import scenario
 from tests.runtime.test_region_readings import REGIONS, UNBOUNDED, around, columns_of
 
-CONTAINS, DISTANCE, DRAW = base._CONTAINS_POINT, base._DISTANCE, base._DRAW
+CONTAINS, DISTANCE, DRAW = base.CONTAINS_POINT, base._DISTANCE, base._DRAW
 Row = np.ndarray
 ROOT = Vector(0, 0, 0)
 

@@ -325,7 +325,7 @@ class Region(metaclass=_RegionType):
             held = single.holds_point(point.row)
             if held is not None:
                 return held
-        return apply(_CONTAINS_POINT, to_vector(point), *self.parameters, payload=self)
+        return apply(CONTAINS_POINT, to_vector(point), *self.parameters, payload=self)
 
     def containsObject(self, thing: Any) -> Any:
         """Whether the region holds the whole of an object."""
@@ -341,7 +341,7 @@ class Region(metaclass=_RegionType):
                 return held
         operands = body_operands(thing)
         mesh = None if is_random(operands[3]) else operands[3].mesh
-        return apply(_CONTAINS_BODY, *operands, *self.parameters, payload=Containment(self, mesh))
+        return apply(CONTAINS_BODY, *operands, *self.parameters, payload=Containment(self, mesh))
 
     def distanceTo(self, point: Any) -> Any:
         """Distance from a point to the nearest point of the region, in metres."""
@@ -471,7 +471,7 @@ def _contains_point(call: Call, points: Points, *columns: Column) -> Column:
     return np.asarray(call.payload.contains_points(points, *columns), dtype=np.bool_)
 
 
-_CONTAINS_POINT = Operation(
+CONTAINS_POINT = Operation(
     "region contains point",
     always(Kind.BOOLEAN),
     _contains_point,
@@ -504,7 +504,7 @@ def _contains_body(call: Call, *columns: Column) -> Column:
     return stack.restored(np.asarray(inside, dtype=np.bool_))
 
 
-_CONTAINS_BODY = Operation(
+CONTAINS_BODY = Operation(
     "region contains object",
     always(Kind.BOOLEAN),
     _contains_body,
@@ -602,6 +602,8 @@ def unsupported(what: str) -> UnsupportedError:
 
 
 __all__ = [
+    "CONTAINS_BODY",
+    "CONTAINS_POINT",
     "MEETS_BODY",
     "Mask",
     "Points",
