@@ -11,6 +11,7 @@ from scenic.language.types import FIELD, REGION, SCALAR, SHAPE, VECTOR, Type
 
 __all__ = [
     "ANGLE_METHODS",
+    "CONSTRUCTORS",
     "CONVERSIONS",
     "IMPORTABLE",
     "LIFTED_FUNCTIONS",
@@ -420,6 +421,13 @@ RESERVED: Final = frozenset({*TRACKED, *CONVERSIONS, "globalParameters"})
 
 LIFTED_FUNCTIONS: Final = frozenset(name.name for name in _ALL if name.lifted)
 """Functions whose calls in a condition may become part of the value graph."""
+
+CONSTRUCTORS: Final = frozenset(
+    name.name
+    for name in _ALL
+    if (name.kind is NameKind.REGION and "(" in name.signature) or name.name == "Vector"
+)
+"""What conditions may make of random values, as parts of the value graph."""
 
 ANGLE_METHODS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
     {"fromEuler": ("yaw", "pitch", "roll"), "rotatedBy": ("angle",)}

@@ -4,8 +4,8 @@ A condition is split at ``and``, ``or`` and ``not`` into leaves. Each leaf is gi
 expression that builds a node of the value graph, and as a function of the names in it that computes with concrete
 values. Both read
 names through their parameters, so that a condition can be built again when the program has ended: what it mutates is then
-known. Which leaves can become nodes is decided here, by their form alone: a leaf with a call of one of the program's
-own functions, a comprehension, ``is``, a lambda and so on is *opaque*, and given as a function only. Tracing such code
+known. Which leaves can become nodes is decided here, by their form alone: points, vectors and regions may be made in them, but a
+leaf with a call of one of the program's own functions, a comprehension, ``is``, a lambda and so on is *opaque*, and given as a function only. Tracing such code
 with random values could be silently wrong; calling it with sampled ones never is.
 """
 
@@ -27,8 +27,9 @@ from scenic.compiler.lowering.build import (
 )
 from scenic.compiler.scopes import PROVIDED, Resolution, ScopeKind
 from scenic.compiler.traversal import walk
-from scenic.language.names import CONVERSIONS, LIFTED_FUNCTIONS, LIFTED_METHODS, TRACKED
+from scenic.language.names import CONSTRUCTORS, CONVERSIONS, LIFTED_FUNCTIONS, LIFTED_METHODS, TRACKED
 from scenic.language.operators import OPERATORS
+from scenic.language.specifiers import SPECIFIERS
 
 __all__ = ["Conditions", "assigns", "implicit_ego", "truth_value"]
 
@@ -45,6 +46,16 @@ _COMPARISONS: Final[dict[type[ast.cmpop], str]] = {
 }
 _MEASURED: Final = {**_COMPARISONS, ast.In: "in", ast.NotIn: "not in"}
 """Comparisons of which it can be said by how much they hold."""
+
+_MADE: Final = frozenset({"Point", "OrientedPoint"})
+"""Classes of which a condition may make instances that become part of the value graph."""
+_POSING: Final = frozenset(
+    name
+    for name, declared in SPECIFIERS.items()
+    if not (declared.may_read_ego or declared.reads_workspace)
+    and name not in ("with", "in", "on", "contained in")
+)
+"""Specifiers that draw nothing, read nothing that the text does not name, and call no code of the program."""
 
 
 class Conditions:
@@ -253,6 +264,8 @@ class _Symbolic:
                 return self._call(node)
             case ast.ListComp():
                 return self._unrolled(node)
+            case scenic.New():
+                return self._new(node)
             case scenic.Operation(operator=operator, operands=operands):
                 args = [
                     start_of(ast.Constant(None), node) if operand is None else self.expression(operand)
@@ -323,8 +336,41 @@ class _Symbolic:
             case _:
                 return self.expression(node)
 
+    def _new(self, node: scenic.New) -> ast.expr:
+        """A point that the condition makes: of the language's own classes, and where nothing is drawn."""
+        if node.cls.id not in _MADE or self._resolution.binding(node.cls) is not None:
+            raise _OpaqueError
+        specifiers: list[ast.expr] = []
+        for part in node.specifiers:
+            if part.specifier not in _POSING:
+                raise _OpaqueError
+            operands = [
+                start_of(ast.Constant(None), node) if operand is None else self.expression(operand)
+                for operand in part.operands
+            ]
+            specifiers.append(prelude_call("specifier", [constant(part.specifier, part), *operands], part))
+        return prelude_call("new", [self._provided(node.cls), *specifiers], node)
+
+    def _construct(self, callee: ast.Name, node: ast.Call) -> ast.expr:
+        """A region or vector that the condition makes."""
+        if self._resolution.binding(callee) is not None or any(item.arg is None for item in node.keywords):
+            raise _OpaqueError
+        call = prelude_call("construct", [constant(callee.id, callee), callee, *self._all(node.args)], node)
+        keywords = [rebuilt(item, value=self.expression(item.value)) for item in node.keywords]
+        return rebuilt(call, keywords=keywords)
+
+    def _provided(self, callee: ast.Name) -> ast.expr:
+        """A name that the text does not bind: where a module may bring another of this name, the prelude looks."""
+        if not self._resolution.wildcard:
+            return callee
+        return prelude_call("provided", [constant(callee.id, callee), callee], callee)
+
     def _call(self, node: ast.Call) -> ast.expr:
-        if node.keywords or any(isinstance(arg, ast.Starred) for arg in node.args):
+        if any(isinstance(arg, ast.Starred) for arg in node.args):
+            raise _OpaqueError
+        if isinstance(node.func, ast.Name) and node.func.id in CONSTRUCTORS:
+            return self._construct(node.func, node)
+        if node.keywords:
             raise _OpaqueError
         over = _over_elements(node)
         if over is not None:
@@ -343,11 +389,7 @@ class _Symbolic:
             case ast.Name(id=function) as callee if function in LIFTED_FUNCTIONS:
                 if self._resolution.binding(callee) is not None:
                     raise _OpaqueError  # The program's own function of this name.
-                provided: ast.expr = callee
-                if self._resolution.wildcard:
-                    # A module may bring another function of this name: the prelude looks.
-                    provided = prelude_call("provided", [constant(function, callee), callee], callee)
-                return rebuilt(node, func=provided, args=self._all(node.args))
+                return rebuilt(node, func=self._provided(callee), args=self._all(node.args))
             case ast.Attribute(value=value, attr=method) if method in LIFTED_METHODS:
                 args = [self.expression(value), constant(method, node), *self._all(node.args)]
                 return prelude_call("call", args, node)
