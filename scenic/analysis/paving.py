@@ -27,7 +27,7 @@ POINTS: Final = 256
 """Points that tell this share."""
 
 MOST: Final = 1024
-"""Boxes, at most; four times as many where hardly any point may meet the conditions."""
+"""Boxes, at most; three times as many where hardly any point may meet the conditions."""
 
 HARDLY_ANY: Final = 0.01
 """The share that counts as hardly any."""
@@ -95,7 +95,7 @@ def pave_by_trial(
             boxes = contract(boxes.cut(axis, places))
             split.remove(axis)
     useful = np.array(split, dtype=np.intp)
-    most = MOST if share > HARDLY_ANY else 4 * MOST
+    most = MOST if share > HARDLY_ANY else 3 * MOST
     while split and 0 < 2 * len(boxes) <= most and not is_spent():
         if vain == VAIN:
             if len(useful) == len(split):

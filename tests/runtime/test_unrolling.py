@@ -1,4 +1,4 @@
-"""Comprehensions, `all`, `any`, `sum`, `max` and `min` over fixed sequences: what Python gives on samples, without calling it."""
+"""Conditions with sequences, regions and points of their own: what Python gives on samples, without calling it."""
 
 import pytest
 
@@ -14,6 +14,8 @@ limits, either = (3, 4, 5), Uniform(others, pair)
 x, n = Range(-3, 3), DiscreteRange(0, 4)
 def same(value):
     return value
+class Spot(Point):
+    note: same(3)
 """
 
 UNROLLED = (
@@ -36,6 +38,13 @@ UNROLLED = (
     "any([x > 1, n > 2])",
     "all([])",
     "ego.position.x > 0 and any(o.position.x > i for i in range(3) for o in pair)",
+    "ego.position in RectangularRegion((1, 2), 30 deg, 6, length=4)",
+    "ego in CircularRegion(Vector(others[0].position.x, 1), radius=n + 1)",
+    "not (ego intersects BoxRegion(dimensions=(3, 3, 3), position=others[0].position))",
+    "all((distance from o to Vector(x, n, 0)) < 9 for o in others)",
+    "(distance from ego to (new Point at (x, 2))) < 4",
+    "abs(relative heading of (new OrientedPoint at (x, 2), facing x) from ego) < 1",
+    "(distance from ego to (new OrientedPoint left of others[1] by 2)) < 9",
 )
 """Conditions that become nodes."""
 
@@ -47,6 +56,10 @@ OPAQUE = (
     "sum(len(str(o.position.x)) for o in pair) > 10",
     "max((o.position.x for o in others), default=1) > 0",
     "[o.position.x for o in others][0] == max({o.position.x for o in others})",
+    "ego.position in CircularRegion((0, 0), 9 * abs(x))",
+    "(distance from ego to (new Spot at (x, 2))) < 9",
+    "(distance from ego to (new Point at (x, 2), with note 3)) < 9",
+    "ego.position in CircularRegion(*[(0, 0), 9])",
 )
 """Conditions that Python computes."""
 

@@ -15,12 +15,9 @@ from dataclasses import replace
 from functools import partial
 from itertools import accumulate
 from pathlib import Path
-from types import CodeType, MappingProxyType, ModuleType
+from types import CodeType, ModuleType
 from typing import Any, Protocol
 
-from scenic.graph.construction import make_node
-from scenic.graph.kinds import Kind
-from scenic.graph.operations import TABLE
 from scenic.language.errors import (
     InvalidScenarioError,
     RejectionException,
@@ -33,7 +30,6 @@ from scenic.runtime.dynamics.definitions import behavior_of
 from scenic.runtime.dynamics.language import Dynamics
 from scenic.runtime.dynamics.run import RunContext
 from scenic.runtime.elements.functions import convert
-from scenic.runtime.elements.operands import is_kind, is_unknown
 from scenic.runtime.elements.operators import OPERATORS
 from scenic.runtime.elements.specifiers import (
     BUILDERS,
@@ -48,52 +44,27 @@ from scenic.runtime.instances.presence import is_always_present
 from scenic.runtime.instances.properties import ATTRIBUTES, PropertyDefinition
 from scenic.runtime.instances.resolution import build
 from scenic.runtime.program import builtins as names
-from scenic.runtime.program import conditions, unrolling
+from scenic.runtime.program import conditions
 from scenic.runtime.program.conditions import Condition
 from scenic.runtime.program.context import Context, current, here
 from scenic.runtime.program.outcome import Module, Program, Requirement
+from scenic.runtime.program.symbolic import Symbolic
 from scenic.runtime.python.class_members import sample_of
 from scenic.runtime.python.importing import beside, forget_stranger
 from scenic.runtime.python.ownership import PRELUDE
-from scenic.runtime.python.samples import Sample, may_return_instances
+from scenic.runtime.python.samples import Sample
 from scenic.runtime.python.starred_calls import spread
 from scenic.runtime.regions.base import Region
-from scenic.runtime.regions.choice import as_region
 from scenic.runtime.regions.spaces import Workspace, everywhere
 from scenic.runtime.temporal.formulas import is_temporal
 from scenic.runtime.values.access import sliceable
 from scenic.runtime.values.choices import per_option
-from scenic.runtime.values.frozen import Frozen
-from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.lazy import definite
-from scenic.runtime.values.methods import OrientationMethods, VectorMethods
 from scenic.runtime.values.values import (
-    IDENTITY,
-    Random,
-    apply,
-    as_node,
-    as_value,
     describe,
-    is_answered_by_code,
-    is_choice_of_frozen,
-    is_random,
-    operate,
     to_orientation,
 )
 from scenic.runtime.visibility.flat import sees_in_mode
-
-COMPARISONS: Mapping[str, str] = MappingProxyType(
-    {
-        "<": "less",
-        "<=": "less or equal",
-        ">": "greater",
-        ">=": "greater or equal",
-        "==": "equal",
-        "!=": "not equal",
-    }
-)
-
-_OF_ORDER = ("__eq__", "__ne__", "__lt__", "__le__", "__gt__", "__ge__")
 
 
 class Modules(Protocol):
@@ -106,7 +77,7 @@ class Modules(Protocol):
         """The compiled code of a file; raises `ScenicSyntaxError`."""
 
 
-class Prelude(Dynamics):
+class Prelude(Symbolic, Dynamics):
     """What one module of generated code can do. Method names are fixed by the compiler."""
 
     Object = Object
@@ -255,7 +226,7 @@ class Prelude(Dynamics):
                 help="create it before the `require` statement; points may be created in a requirement",
             )
         instance = build(cls, specifiers, mode_2d=self._context.mode_2d)
-        if self._context.evaluating:
+        if self._context.evaluating or self._context.judging:
             return instance
         if isinstance(instance, Object):
             instance.__dict__["behavior"] = per_option(instance.behavior, behavior_of)
@@ -419,100 +390,6 @@ class Prelude(Dynamics):
         return conditions.in_time(operator, parts)
 
     presence = staticmethod(conditions.presence)
-
-    # Inside the symbolic reading of a condition
-
-    def provided(self, name: str, function: Any) -> Any:
-        """The function, if it is the one that every module finds in scope under this name."""
-        if function is not names.provided(name):
-            raise conditions.NotSymbolicError
-        return function
-
-    def read(self, value: Any, name: str) -> Any:
-        """An attribute, read when the condition is evaluated."""
-        return getattr(value, name)
-
-    def call(self, value: Any, name: str, *args: Any) -> Any:
-        """A method that takes random arguments; any other is called on samples."""
-        if not isinstance(value, VectorMethods | OrientationMethods | Region | Random | Object | Frozen):
-            raise conditions.NotSymbolicError
-        if isinstance(value, Object) and getattr(type(value), name, None) is not getattr(Object, name, None):
-            raise conditions.NotSymbolicError  # The program's own method: never traced.
-        return getattr(value, name)(*args)
-
-    def compare(self, operator: str, left: Any, right: Any) -> Any:
-        """``left operator right`` as a truth value, which may be random."""
-        if may_return_instances(left) or may_return_instances(right):
-            return call_later(TABLE[COMPARISONS[operator]].python, left, right)
-        if any(is_answered_by_code(item, _OF_ORDER) for item in (left, right)):
-            raise conditions.NotSymbolicError
-        if is_random(left) or is_random(right):
-            return operate(COMPARISONS[operator], left, right)
-        if isinstance(left, Point) or isinstance(right, Point):
-            raise conditions.NotSymbolicError  # Whether two instances are equal is decided on their samples.
-        return operate(COMPARISONS[operator], left, right)
-
-    def identical(self, left: Any, right: Any) -> Any:
-        """``left is right`` of instances, of objects that never change, and of random choices among these."""
-        if all(item is None or isinstance(item, Point) for item in (left, right)):
-            return left is right  # so are their samples
-        nodes = [as_node(left), as_node(right)]
-        if not all(map(is_choice_of_frozen, nodes)):
-            raise conditions.NotSymbolicError
-        return apply(IDENTITY, left, right)
-
-    def contains(self, item: Any, container: Any) -> Any:
-        """``item in container``: containment in a region, else Python's."""
-        region = as_region(container)
-        # Of a value that is unknown until it is drawn, the draw has to tell whether all of it has to lie in the region.
-        if region is None or is_unknown(item):
-            raise conditions.NotSymbolicError
-        return region.containsObject(item) if is_kind(item, Object) else region.containsPoint(item)
-
-    def all_of(self, *values: Any) -> Any:
-        """``and`` of truth values inside an expression."""
-        return self._logic("and", values)
-
-    def any_of(self, *values: Any) -> Any:
-        """``or`` of truth values inside an expression."""
-        return self._logic("or", values)
-
-    def invert(self, value: Any) -> Any:
-        """``not`` of a truth value inside an expression."""
-        if isinstance(value, bool):
-            return not value
-        return as_value(conditions.connect("not", [conditions.truth(value)]))
-
-    def _logic(self, operation: str, values: Sequence[Any]) -> Any:
-        nodes = [as_node(value) for value in values]
-        if not all(node.kind is Kind.BOOLEAN for node in nodes):
-            raise conditions.NotSymbolicError  # Python's `and` and `or` give an operand, not a truth value.
-        return as_value(conditions.connect(operation, nodes))
-
-    def iterated(self, name: str, function: Any, *sequences: Any) -> Any:
-        """What one of Python's own functions gives to iterate over, of fixed sequences."""
-        return unrolling.iterated(self.provided(name, function), sequences)
-
-    def each(self, sequence: Any, function: Callable[..., list[Any]], spread: bool) -> list[Any]:
-        """The values of a comprehension, by a function of an element, or of its parts."""
-        return unrolling.each(sequence, function, spread=spread)
-
-    def given(self, test: Any, make: Callable[[], list[Any]]) -> list[Any]:
-        """The values behind an ``if`` of a comprehension."""
-        return unrolling.given(test, make)
-
-    def over(self, name: str, function: Any, values: Any) -> Any:
-        """``all``, ``any``, ``sum``, ``min`` or ``max`` of fixed sequences."""
-        self.provided(name, function)
-        return unrolling.over(name, values)
-
-    def choose(self, test: Condition, then: Callable[[], Any], otherwise: Callable[[], Any]) -> Any:
-        """``then if test else otherwise``."""
-        assert test.build is not None
-        node = test.build()
-        if node.is_constant:
-            return then() if node.value else otherwise()
-        return as_value(make_node(TABLE["if"], [node, as_node(then()), as_node(otherwise())], span=here()))
 
 
 class Loader:
@@ -698,4 +575,4 @@ class Loader:
         )
 
 
-__all__ = ["COMPARISONS", "Condition", "Loader", "Modules", "Prelude"]
+__all__ = ["Condition", "Loader", "Modules", "Prelude"]

@@ -13,7 +13,8 @@ from scenic.graph.kinds import Kind
 from scenic.graph.node import Node
 from scenic.runtime.regions.base import CONTAINS_BODY, CONTAINS_POINT, Region
 from scenic.runtime.regions.knowledge import Containment
-from scenic.runtime.regions.planar import Footprint, RectangularRegion
+from scenic.runtime.regions.planar import Footprint
+from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.values.values import Random, apply, as_node, as_value, operate, vector
 
 _UPRIGHT = "from euler"
