@@ -5,20 +5,18 @@ from typing import Final
 import numpy as np
 
 from scenic.formats.colors import linear
+from scenic.formats.scenery import USUAL, Scenery
 from scenic.formats.stage import Stage, ground_light
 from scenic.runtime.geometry.embree import Singles
 
-_GROUND_COLOR: Final = (0.80, 0.81, 0.83)
 _LINE_COLOR: Final = (0.55, 0.57, 0.61)
-_HORIZON: Final = (0.90, 0.92, 0.95)
-_ZENITH: Final = (0.74, 0.82, 0.91)
 
 
-def sky_color(directions: Singles) -> Singles:
-    """Linear colours ``(3, n)`` in directions ``(n, 3)``: a pale gradient; below the horizon it is the horizon's."""
+def sky_color(directions: Singles, scenery: Scenery = USUAL) -> Singles:
+    """Linear colours ``(3, n)`` in directions ``(n, 3)``: a gradient; below the horizon it is the horizon's."""
     x, y, z = directions.T
     up = np.clip(z / np.sqrt(x * x + y * y + z * z) * np.float32(2), 0, 1)
-    low, high = linear(_HORIZON), linear(_ZENITH)
+    low, high = (linear(color) * np.float32(scenery.exposure) for color in (scenery.horizon, scenery.zenith))
     result: Singles = low[:, None] + (high - low)[:, None] * up
     return result
 
@@ -48,13 +46,14 @@ def ground_color(
     x, y = (np.float32(eye[axis]) + directions[:, axis] * depth for axis in (0, 1))
     steepness = np.maximum(-directions[:, 2], np.float32(0.05))
     footprint = np.asarray(depth / steepness * np.float32(pixel), np.float32)
-    cover = _lines(stage, x, y, footprint)
-    ground, lines = linear(_GROUND_COLOR), linear(_LINE_COLOR)
-    result = ground_light(ground[:, None] + (lines - ground)[:, None] * cover, *light)
+    scenery = stage.scenery
+    cover = _lines(stage, x, y, footprint) if scenery.grid else np.zeros(len(x), np.float32)
+    ground, lines = linear(scenery.ground), linear(_LINE_COLOR)
+    result = ground_light(ground[:, None] + (lines - ground)[:, None] * cover, *light, scenery)
     away = np.sqrt(x * x + y * y) / np.float32(1.2 * stage.reach) - np.float32(0.5)
     far = np.flatnonzero(away > 0)
     part = np.minimum(away[far], 1) ** np.float32(0.8)
-    result[:, far] += part * (sky_color(directions[far]) - result[:, far])
+    result[:, far] += part * (sky_color(directions[far], scenery) - result[:, far])
     return result
 
 

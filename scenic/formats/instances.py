@@ -5,7 +5,7 @@ look round and edges stay sharp.
 """
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -82,10 +82,11 @@ class Instance:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """Scenes as drawn: the surfaces they share, and the instances of each scene."""
+    """Scenes as drawn: the surfaces they share, the instances of each scene, and its parameters."""
 
     surfaces: tuple[Surface, ...]
     scenes: tuple[tuple[Instance, ...], ...]
+    params: tuple[Mapping[str, object], ...]
 
 
 class Surfaces:
@@ -190,8 +191,8 @@ class Gallery:
 def picture(scenes: Iterable[Scene]) -> Picture:
     """What is to be drawn of the scenes."""
     gallery = Gallery()
-    drawn = tuple(gallery.add(scene) for scene in scenes)
-    return Picture(gallery.surfaces, drawn)
+    drawn = [(gallery.add(scene), scene.params) for scene in scenes]
+    return Picture(gallery.surfaces, tuple(item for item, _ in drawn), tuple(params for _, params in drawn))
 
 
 def distinct_labels(instances: Iterable[Instance]) -> list[str]:

@@ -17,6 +17,7 @@ from scenic.formats.buffers import Lens, seen
 from scenic.formats.instances import Array, Gallery, Instance
 from scenic.formats.poses import euler_angles
 from scenic.formats.render import paint
+from scenic.formats.scenery import scenery_of
 from scenic.formats.scenes import Scene, SceneObject
 from scenic.formats.sensors import Viewpoint
 from scenic.formats.stage import Stage
@@ -126,7 +127,7 @@ def observe(
     gallery = Gallery() if gallery is None else gallery
     index = {id(thing): number for number, thing in enumerate(scene.objects)}
     instances = [item for item in gallery.add(scene) if item.thing is not viewpoint.owner]
-    stage = Stage(gallery.surfaces, instances)
+    stage = Stage(gallery.surfaces, instances, scenery_of(scene.params))
     lens = Lens(viewpoint.camera, stage.center, viewpoint.size)
     buffer = seen(lens, stage.rays)
     numbers = np.array([index[id(item.thing)] for item in instances] + [-1], dtype=np.int32)

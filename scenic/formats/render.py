@@ -18,6 +18,7 @@ from scenic.formats.camera import Camera, corners, framing
 from scenic.formats.colors import decoded, encoded
 from scenic.formats.instances import Picture
 from scenic.formats.lighting import Index, Light, coarse_light, fine_light, own_light
+from scenic.formats.scenery import scenery_of
 from scenic.formats.stage import GROUND, SKY, Stage
 from scenic.runtime.geometry.embree import Singles
 
@@ -44,7 +45,7 @@ def render(
     """
     width, height = size
     instances = picture.scenes[number]
-    stage = Stage(picture.surfaces, instances)
+    stage = Stage(picture.surfaces, instances, scenery_of(picture.params[number]))
     return paint(stage, Lens(camera or framing(corners(instances), width / height), stage.center, size))
 
 
@@ -143,6 +144,10 @@ class _Drawing:
         if curved.any():
             some = np.flatnonzero(curved)
             result[:, thing[some]] = self._curved_color(seen.take(thing[some]), Light(sun[some], sky[some])).T
+        if stage.textures and len(thing):
+            start = self._lens.eye if eye is None else eye[thing]
+            places = start + seen.directions[thing] / seen.nearness[thing, None]
+            result[:, thing] *= stage.pattern(stage.owner[triangle], places)
         if (stage.alphas < 1).any():
             alpha = stage.alphas[stage.owner[triangle]]
             clear = thing[alpha < 1]
@@ -166,7 +171,7 @@ class _Drawing:
                 self._lens.pixel,
             )
         sky_seen = np.flatnonzero(seen.group == SKY)
-        result[:, sky_seen] = sky_color(seen.directions[sky_seen])
+        result[:, sky_seen] = sky_color(seen.directions[sky_seen], stage.scenery)
         return result
 
     def _curved_color(self, seen: Seen, light: Light) -> Singles:

@@ -15,13 +15,12 @@ from scenic.formats.camera import corners, ground_height
 from scenic.formats.colors import linear
 from scenic.formats.instances import Array, Instance, Surface
 from scenic.formats.poses import rotation_matrix
+from scenic.formats.scenery import USUAL, Scenery
+from scenic.formats.textures import texture_of
 from scenic.runtime.geometry.embree import RayScene, Singles
 
 GROUND: Final = -1
 SKY: Final = -2
-
-_SUN: Final = np.array([-0.55, -0.33, 0.77]) / np.linalg.norm([-0.55, -0.33, 0.77])
-"""Where the sun stands: in the west-south-west."""
 
 _SUN_COLOR: Final = np.array([1.0, 0.96, 0.9]) * 0.95
 _SKY_COLOR: Final = np.array([0.86, 0.93, 1.0]) * 0.62
@@ -35,7 +34,14 @@ SKY_SAMPLES: Final = 256
 class Stage:
     """The triangles of a scene, and the light on them.
 
+    Args:
+        surfaces: the meshes.
+        instances: the objects.
+        scenery: where light comes from.
+
     Attributes:
+        scenery: the same.
+        textures: of each instance, by its number; only of those that have one.
         center: middle of the scene in the world, ``(3,)``, the origin of all places here.
         reach: the scene's diagonal, metres.
         ground: height of the ground, relative to the center.
@@ -50,7 +56,16 @@ class Stage:
 
     """
 
-    def __init__(self, surfaces: Sequence[Surface], instances: Sequence[Instance]) -> None:
+    def __init__(
+        self, surfaces: Sequence[Surface], instances: Sequence[Instance], scenery: Scenery = USUAL
+    ) -> None:
+        self.scenery = scenery
+        self._instances = instances
+        self.textures = {
+            number: texture
+            for number, item in enumerate(instances)
+            if (texture := texture_of(item.thing.properties.get("texture"), item.color)) is not None
+        }
         points = corners(instances)
         self.center = (points.min(axis=0) + points.max(axis=0)) / 2
         self.reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
@@ -75,7 +90,7 @@ class Stage:
         away = np.abs(corner_normals - mean[:, None]) > np.float32(1e-3)
         self.smooth = np.append(away.reshape(-1, 9).any(axis=1), False)
         albedo = linear(rgba[:, :3])[self.owner]
-        self.sunny, self.shady = _light_on(corner_normals, albedo)
+        self.sunny, self.shady = _light_on(scenery, corner_normals, albedo)
         # Flat triangles are most of the pixels; entries of one array after the other are quick to take.
         flat = np.concatenate([self.sunny[:, 0], self.shady[:, 0]], axis=1).T
         self.flat = np.concatenate([flat, np.zeros((6, 1), np.float32)], axis=1)
@@ -88,15 +103,35 @@ class Stage:
         """A number for the object and the rough direction of triangles, at least 1; `SKY` for -1."""
         return np.take(self._groups, triangle)
 
+    def pattern(self, owner: npt.NDArray[np.int32], places: Singles) -> Singles:
+        """By how much textures change colours at places on instances; components ``(3, n)``.
+
+        Args:
+            owner: the instances, ``(n,)``.
+            places: places on them, ``(n, 3)``.
+
+        """
+        factor = np.ones((3, len(owner)), np.float32)
+        for number, texture in self.textures.items():
+            mine = np.flatnonzero(owner == number)
+            if len(mine):
+                item = self._instances[number]
+                offset = places[mine] - (np.array(item.position) - self.center).astype(np.float32)
+                share = texture.share(offset @ rotation_matrix(item.quaternion).astype(np.float32))
+                own, second = linear(item.color[:3]), linear(texture.color)
+                change = second / np.maximum(own, np.float32(1e-3)) - np.float32(1)
+                factor[:, mine] += change[:, None] * share
+        return factor
+
     def sunlit(self, places: Singles, normals: Singles, pattern: npt.NDArray[np.int64], rays: int) -> Singles:
         """The part of the sun seen from places ``(n, 3)``, by so many rays each; 0 where it is behind the surface.
 
         Places of another ``pattern``, ``(n,)``, use other rays; those of one are neighbours in the sequence of samples,
         and so are spread evenly by themselves.
         """
-        table = _sun_directions()
+        table = _sun_directions(self.scenery.sun)
         total = np.zeros(len(places), np.float32)
-        facing = np.flatnonzero(normals @ _SUN.astype(np.float32) > 0)
+        facing = np.flatnonzero(normals @ self.scenery.sun.astype(np.float32) > 0)
         start = places[facing] + normals[facing] * np.float32(self.reach * 2e-4)
         for k in range(rays):
             directions = table[(pattern[facing] * rays + k) % SUN_SAMPLES]
@@ -119,31 +154,39 @@ class Stage:
         return result
 
 
-def ground_light(albedo: Singles, sun: Singles, sky: Singles) -> Singles:
+def ground_light(albedo: Singles, sun: Singles, sky: Singles, scenery: Scenery = USUAL) -> Singles:
     """Linear colours ``(3, n)`` of ground of a colour, in so much of the sun's light and of the sky's, ``(n,)``."""
-    sunny, shady = (_SUN_COLOR * _SUN[2]).astype(np.float32), _SKY_COLOR.astype(np.float32)
+    sun_color, sky_color, _ = _colors(scenery)
+    sunny, shady = (sun_color * scenery.sun[2]).astype(np.float32), sky_color.astype(np.float32)
     result: Singles = albedo * (sunny[:, None] * sun + shady[:, None] * sky)
     return result
 
 
-def _light_on(normals: Singles, albedo: Singles) -> tuple[Singles, Singles]:
+def _colors(scenery: Scenery) -> tuple[Array, Array, Array]:
+    """The linear colours of the light of the sun, of the sky and of the ground."""
+    sun, sky = scenery.exposure * scenery.sunlight, scenery.exposure * scenery.skylight
+    return _SUN_COLOR * sun, _SKY_COLOR * sky, _BOUNCE_COLOR * sky
+
+
+def _light_on(scenery: Scenery, normals: Singles, albedo: Singles) -> tuple[Singles, Singles]:
     """Colours that sun and sky give the corners of triangles ``(t, 3, 3)`` of colours ``(t, 3)``."""
-    facing = np.maximum(normals @ _SUN.astype(np.float32), 0)
+    facing = np.maximum(normals @ scenery.sun.astype(np.float32), 0)
     upward = normals[..., 2] * np.float32(0.5) + np.float32(0.5)
-    sun, sky, bounce = (color.astype(np.float32) for color in (_SUN_COLOR, _SKY_COLOR, _BOUNCE_COLOR))
+    sun, sky, bounce = (color.astype(np.float32) for color in _colors(scenery))
     sunny = (albedo * sun)[:, None] * facing[..., None]
     shady = albedo[:, None] * (bounce + upward[..., None] * (sky - bounce))
     return sunny, shady
 
 
-def _sun_directions() -> Singles:
+def _sun_directions(sun: Array) -> Singles:
     """Directions to evenly spread points of the sun's disc, ``(SUN_SAMPLES, 3)``."""
-    side = np.cross(_SUN, [0, 0, 1])
+    # A sun straight above has no side of its own.
+    side = np.cross(sun, [0, 0, 1] if sun[2] < 1 - 1e-9 else [0, 1, 0])
     side /= np.linalg.norm(side)
     points = sequence(SUN_SAMPLES)
     radius, angle = _SUN_RADIUS * np.sqrt(points[:, 0]), 2 * np.pi * points[:, 1]
     disc = (
-        _SUN + np.outer(radius * np.cos(angle), side) + np.outer(radius * np.sin(angle), np.cross(_SUN, side))
+        sun + np.outer(radius * np.cos(angle), side) + np.outer(radius * np.sin(angle), np.cross(sun, side))
     )
     result: Singles = (disc / np.linalg.norm(disc, axis=1, keepdims=True)).astype(np.float32)
     return result

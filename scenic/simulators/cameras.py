@@ -59,7 +59,7 @@ class Present:
         self.egoObject = scene.egoObject
         self.workspace = scene.workspace
         self.seed, self.k, self.attempts = scene.seed, scene.k, scene.attempts
-        self.params: Mapping[str, object] = {}
+        self.params: Mapping[str, object] = scene.params
 
     def origin(self, thing: Any) -> Any:
         """What an object is in all scenes; nobody asks while images are made."""
