@@ -1,8 +1,9 @@
 """Bounds that programs tell of their own functions and distributions."""
 
+import numpy as np
 import pytest
 
-from scenic.language.errors import InvalidScenarioError
+from scenic.language.errors import InvalidScenarioError, UnsupportedError
 from tests.runtime.programs import scenario
 
 PROGRAM = """\
@@ -62,3 +63,53 @@ def test_the_support_of_a_distribution_prunes() -> None:
     assert scenario(text.format("return 1 / 0")).domain.is_whole
     never = scenario(text.format("return (2, 5)") + "require y > 6 as high\n")
     assert "high" in never.impossible
+
+
+RING = """\
+import numpy as np
+from scenic import bounded
+@bounded(lambda inner, outer: ((-outer[1], outer[1]), (-outer[1], outer[1]), (0, 0)))
+class Ring(Region):
+    dimension, draws, parameter_names = 2, 2, ("inner", "outer")
+    def __init__(self, inner, outer):
+        super().__init__(inner, outer)
+        self.inner, self.outer = inner, outer
+    def contains_points(self, points, inner, outer):
+        radius = np.hypot(points[:, 0], points[:, 1])
+        return (inner <= radius) & (radius <= outer)
+    def draw_points(self, uniforms, keys, inner, outer):
+        radius = np.sqrt(inner**2 + uniforms[0] * (outer**2 - inner**2))
+        angle = 2 * np.pi * uniforms[1]
+        return np.stack([radius * np.cos(angle), radius * np.sin(angle), 0 * radius], axis=1), None
+ring = Ring(2, {})
+ego = new Object at (Range(-50, 50), Range(-50, 50))
+other = new Point in ring
+require ego.position in ring
+require other.x > {}
+"""
+
+
+@pytest.mark.parametrize("outer", ["6", "Range(4, 6)"])
+def test_a_region_of_the_program_prunes(outer: str) -> None:
+    program = scenario(RING.format(outer, 1))
+    assert program.domain.volume < 0.0145
+    for scene in program.sample(50, seed=0):
+        assert 2 <= float(np.hypot(*scene.objects[0].position[:2])) <= 6
+    never = scenario(RING.format(outer, 6.5))
+    assert never.impossible
+    with pytest.raises(InvalidScenarioError, match="no interval"):
+        scenario(RING.format(outer, 1).replace(", (0, 0)))", "))"))
+    with pytest.raises(UnsupportedError, match="containment of objects"):
+        scenario(RING.format(outer, 1) + "require ring.containsObject(ego)\n").sample(1, seed=0)
+
+
+def test_ways_along_a_field_of_polygons_are_no_longer_than_they_are() -> None:
+    program = scenario(
+        "strip = PolygonalRegion([(0, 0), (100, 0), (100, 10), (0, 10)])\n"
+        "flow = PolygonalVectorField('flow', [(strip, 30 deg)])\n"
+        "ego = new Object in strip\n"
+        "other = new Object following flow from ego for Range(2, 5)\nrequire other.x > 80\n"
+    )
+    assert program.domain.volume < 0.35
+    for scene in program.sample(50, seed=0):
+        assert scene.objects[1].position.x > 80

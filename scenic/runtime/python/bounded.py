@@ -1,4 +1,4 @@
-"""What analysis is told of Python code by those who wrote it: bounds of a function's result, and of a distribution's draws."""
+"""What analysis is told of Python code by those who wrote it: bounds of results of functions, of draws, and of regions."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -9,15 +9,18 @@ import numpy as np
 from scenic.graph.bounds import Bounds, outward
 from scenic.language.errors import InvalidScenarioError
 
-__all__ = ["bounded", "bounds_of_call", "bounds_of_support"]
+__all__ = ["bounded", "bounds_of_call", "bounds_of_region", "bounds_of_support"]
 
-_Function = TypeVar("_Function", bound=Callable[..., Any])
+_Told = TypeVar("_Told", bound=Callable[..., Any])
 
 _MARK = "__scenic_bounds__"
 
+_ULPS = 4
+"""Units in the last place that readings may be wrong by, since they are written without outward rounding."""
 
-def bounded(reading: Callable[..., tuple[float, float]]) -> Callable[[_Function], _Function]:
-    """Tell analysis between which numbers the result of a function lies, so that requirements about it can prune.
+
+def bounded(reading: Callable[..., tuple[Any, ...]]) -> Callable[[_Told], _Told]:
+    """Tell analysis between which numbers the result of a function lies, or in which box a region, so that requirements can prune.
 
     >>> from scenic import bounded
     >>> @bounded(lambda speed, friction: (speed[0] ** 2 / (20 * friction[1]), speed[1] ** 2 / (20 * friction[0])))
@@ -27,7 +30,8 @@ def bounded(reading: Callable[..., tuple[float, float]]) -> Callable[[_Function]
     Args:
         reading: is called with an interval ``(low, high)`` for each positional argument of the function, and gives one that
             holds every result for arguments within those. Of what is no number, or not known, the interval is
-            ``(-inf, inf)``; of a vector there are three.
+            ``(-inf, inf)``; of a vector there are three. For a class of regions it is called with the intervals of the
+            parameters, in the order in which they are given to ``Region.__init__``, and gives the three intervals of a box.
 
     The function has to be lifted by `distributionFunction`, and its result computed before the requirement that asks for it:
     ``d = stopping(v, f)``, then ``require d < 20`` (what a requirement calls itself is called on samples only). An interval that
@@ -35,9 +39,9 @@ def bounded(reading: Callable[..., tuple[float, float]]) -> Callable[[_Function]
 
     """
 
-    def mark(function: _Function) -> _Function:
-        setattr(function, _MARK, reading)
-        return function
+    def mark(told: _Told) -> _Told:
+        setattr(told, _MARK, reading)
+        return told
 
     return mark
 
@@ -56,10 +60,34 @@ def bounds_of_call(
     reading = getattr(function, _MARK, None)
     if reading is None:
         return None
-    bounds = [known(item) for item in args]
+    ends = np.array([_ends(found) for found in _readings(reading, [known(item) for item in args])])
+    return outward(ends[:, 0], ends[:, 1], _ULPS)
+
+
+def bounds_of_region(kind: type, parameters: Sequence[Bounds | None]) -> Bounds | None:
+    """Bounds ``(m, 3)`` of the points of regions of a `bounded` class, box by box; ``None`` of others.
+
+    Args:
+        kind: the class.
+        parameters: bounds of the region's parameters, ``None`` where there are none.
+
+    """
+    reading = getattr(kind, _MARK, None)
+    if reading is None:
+        return None
+    rows = []
+    for found in _readings(reading, parameters):
+        if not isinstance(found, tuple | list) or len(found) != 3:
+            raise _no_interval(found, "three intervals, of x, y and z")
+        rows.append([_ends(interval) for interval in found])
+    ends = np.array(rows)
+    return outward(ends[..., 0], ends[..., 1], _ULPS)
+
+
+def _readings(reading: Callable[..., Any], bounds: Sequence[Bounds | None]) -> list[Any]:
+    """What a reading says of each of the boxes for which there are bounds."""
     boxes = max((len(item.lower) for item in bounds if item is not None), default=1)
-    ends = np.array([_ends(reading, [_interval(item, box) for item in bounds]) for box in range(boxes)])
-    return outward(ends[:, 0], ends[:, 1], 4)
+    return [reading(*(_interval(item, box) for item in bounds)) for box in range(boxes)]
 
 
 def _interval(bounds: Bounds | None, box: int) -> Any:
@@ -72,18 +100,20 @@ def _interval(bounds: Bounds | None, box: int) -> Any:
     return tuple(zip(low.tolist(), high.tolist(), strict=True))
 
 
-def _ends(reading: Callable[..., Any], intervals: Sequence[Any]) -> tuple[float, float]:
-    found = reading(*intervals)
+def _ends(found: Any) -> tuple[float, float]:
     try:
         low, high = (float(end) for end in found)
     except (TypeError, ValueError):
         low = high = math.nan
     if not low <= high:
-        raise InvalidScenarioError(
-            f"the bounds of a `bounded` function are {found!r}, which is no interval",
-            help="give two numbers, the smaller first; (-inf, inf) where nothing is known",
-        )
+        raise _no_interval(found, "two numbers, the smaller first; (-inf, inf) where nothing is known")
     return low, high
+
+
+def _no_interval(found: Any, wanted: str) -> InvalidScenarioError:
+    return InvalidScenarioError(
+        f"the bounds that `bounded` was given are {found!r}, which is no interval", help=f"give {wanted}"
+    )
 
 
 def bounds_of_support(support: Callable[[], Any]) -> Bounds | None:

@@ -27,6 +27,7 @@ from scenic.language.errors import (
 from scenic.language.types import OBJECT
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.program.context import here
+from scenic.runtime.python.bounded import bounds_of_region
 from scenic.runtime.regions import generic
 from scenic.runtime.regions.flat import Flat
 from scenic.runtime.regions.knowledge import (
@@ -140,9 +141,9 @@ class Region(metaclass=_RegionType):
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         """Which points ``(n, 3)`` lie in the region, shape ``(n,)``."""
 
-    @abstractmethod
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         """In which lanes the whole body lies in the region, shape ``(lanes,)``."""
+        raise unsupported(f"containment of objects in a region of the kind {type(self).__name__}")
 
     def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         """In which lanes the body shares a point with the region, shape ``(lanes,)``; here one lane after the other."""
@@ -202,6 +203,9 @@ class Region(metaclass=_RegionType):
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
         """Lower and upper corners ``(n | 1, 3)`` of boxes that hold the region; infinite where it is not bounded."""
+        told = bounds_of_region(type(self), [Bounds(column, column) for column in columns])
+        if told is not None:
+            return told.lower, told.upper
         return np.full((1, 3), -np.inf), np.full((1, 3), np.inf)
 
     def container_box(self, *columns: Column) -> tuple[Points, Points]:
@@ -215,10 +219,13 @@ class Region(metaclass=_RegionType):
     def extent(self, *parameters: Bounds | None) -> Bounds | None:
         """Bounds ``(m | 1, 3)`` of the region's points from those of its parameters; ``None`` where nothing is known.
 
-        Here, and wherever parameters are fixed, by `box`. Kinds whose parameters are often random know more.
+        Here, and wherever parameters are fixed, by `box`, and by what a `bounded` class was told. Kinds whose parameters are often
+        random know more.
         """
         columns = fixed(parameters)
-        return None if columns is None else Bounds(*self.box(*columns))
+        if columns is not None:
+            return Bounds(*self.box(*columns))
+        return bounds_of_region(type(self), parameters)
 
     def drawn_extent(self, numbers: Sequence[Bounds], *parameters: Bounds | None) -> Bounds | None:
         """Bounds ``(m | 1, 3)`` of points that are drawn by numbers in these bounds; here, those of any point."""

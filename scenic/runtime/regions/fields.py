@@ -625,11 +625,37 @@ def _follow_table(call: Call, points: Column, distance: Column) -> Column:
     return place
 
 
+def _follow_bounds(_payload: Any, points: Bounds | None, distance: Bounds | None) -> Bounds | None:
+    """Where a way can end: no further from its start than it is long, at the same height."""
+    return _around(points, distance)
+
+
+def _follow_inverse(
+    _payload: Any, result: Bounds, _points: Bounds | None, distance: Bounds | None
+) -> Sequence[Bounds | None]:
+    """Where a way that ends somewhere can begin."""
+    return _around(result, distance), None
+
+
+def _around(points: Bounds | None, distance: Bounds | None) -> Bounds | None:
+    if points is None or distance is None:
+        return None
+    length = np.maximum(np.abs(distance.lower), np.abs(distance.upper)) * (1 + _ROUNDING) + _ROUNDING
+    reach = np.stack([length, length, np.full_like(length, _ROUNDING)], axis=1)
+    return Bounds(points.lower - reach, points.upper + reach)
+
+
+_ROUNDING: Final = 1e-9
+"""What the steps of a way may add to its length, relative, and in metres."""
+
+
 _FOLLOW_TABLE = Operation(
     "follow polygons",
     always(Kind.VECTOR),
     _follow_table,
     "The end of a way along a field of polygons; the candidate is rejected where the way leaves them.",
+    bounds=_follow_bounds,
+    inverse=_follow_inverse,
     rejects=True,
     missing="direction of the field",
 )
