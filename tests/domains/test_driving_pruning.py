@@ -56,3 +56,33 @@ def test_the_law_is_the_same_with_fewer_candidates(tmp_path: Path, name: str) ->
         kinds = sorted({*mine, *theirs})
         counts = [[side.count(kind) for kind in kinds] for side in (mine, theirs)]
         assert chi2_contingency(counts).pvalue > FALSE_ALARM
+
+
+VIEW = """
+ego = new Car at Uniform((-100, -1.75), (-40, -1.75)), facing (-90 deg, 0, 0)
+place = new Point on {region}
+param place = place
+"""
+
+
+@pytest.mark.parametrize("region", ["curb", "road"])
+def test_what_is_in_view_is_drawn_uniformly(tmp_path: Path, region: str) -> None:
+    """Beside points of the whole region, of which those in view are kept."""
+    (tmp_path / "cross.xodr").write_text(cross(arm=150, half=15))
+    head = HEAD.replace("MAP", repr(str(tmp_path / "cross.xodr")))
+    texts = (
+        VIEW.format(region=f"visible {region}"),
+        VIEW.format(region=region) + "require ego can see place",
+    )
+    found: list[dict[float, list[tuple[float, float]]]] = []
+    for text in texts:
+        scenes = scenic.scenarioFromString(head + text, mode2D=True).sample(500, seed=5)
+        by_ego: dict[float, list[tuple[float, float]]] = {-100.0: [], -40.0: []}
+        for scene in scenes:
+            place = scene.params["place"].position
+            assert scene.egoObject.position.distanceTo(place) <= 50 + 1e-6
+            by_ego[scene.egoObject.position.x].append((place.x, place.y))
+        found.append(by_ego)
+    for ego, places in found[0].items():
+        for mine, theirs in zip(np.array(places).T, np.array(found[1][ego]).T, strict=True):
+            assert ks_2samp(np.round(mine, 6), np.round(theirs, 6)).pvalue > FALSE_ALARM

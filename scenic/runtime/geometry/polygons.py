@@ -7,7 +7,9 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from scenic.runtime.geometry.near_boxes import near_boxes, tree_of_boxes
 from scenic.runtime.geometry.poses import Booleans, Floats
+from scenic.runtime.geometry.ragged import choose
 
 _ROUNDING: Final = 4e-16
 """Relative error of a number times an area."""
@@ -156,12 +158,25 @@ class Polygons:
         """Points ``(n, 2)``, uniform by area, from three columns ``(n,)`` of uniform numbers in (0, 1)."""
         corners, areas = self._triangles
         triangle = np.searchsorted(areas, choice * areas[-1], side="right")
-        a, b, c = np.moveaxis(corners[np.minimum(triangle, len(areas) - 1)], 1, 0)
-        # The square root makes a strip parallel to bc as likely as it is long.
-        root = np.sqrt(first)[:, None]
-        along = second[:, None]
-        result: Floats = (1 - root) * a + root * (1 - along) * b + root * along * c
-        return result
+        return _in_triangles(corners[np.minimum(triangle, len(areas) - 1)], first, second)
+
+    def sample_in(
+        self, choice: Floats, first: Floats, second: Floats, lower: Floats, upper: Floats
+    ) -> tuple[Floats, Booleans]:
+        """Points ``(n, 2)`` of the triangles that meet boxes ``(n, 2 or more)``, as `sample` draws them, and which boxes meet any."""
+        corners, _ = self._triangles
+        owner, number = near_boxes(self._tree, lower, upper)
+        ab, ac = (corners[:, side] - corners[:, 0] for side in (1, 2))
+        areas = np.abs(ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0])
+        member, _, there = choose(owner, areas[number], len(choice), choice)
+        if not len(owner):
+            return np.zeros((len(choice), 2)), there
+        return _in_triangles(corners[number[member]], first, second), there
+
+    @cached_property
+    def _tree(self) -> Any:
+        corners, _ = self._triangles
+        return tree_of_boxes(corners.min(axis=1), corners.max(axis=1))
 
     def contains(self, x: Floats, y: Floats) -> Booleans:
         """Which points lie inside or on the edge, ``(n,)``."""
@@ -243,3 +258,13 @@ class Polygons:
         import shapely
 
         return bool(shapely.covers(self._grown, shapely.polygons(corners)).all())
+
+
+def _in_triangles(corners: Floats, first: Floats, second: Floats) -> Floats:
+    """Uniform points ``(n, 2)`` of triangles ``(n, 3, 2)``."""
+    a, b, c = np.moveaxis(corners, 1, 0)
+    # The square root makes a strip parallel to bc as likely as it is long.
+    root = np.sqrt(first)[:, None]
+    along = second[:, None]
+    result: Floats = (1 - root) * a + root * (1 - along) * b + root * along * c
+    return result

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from scenic.runtime.geometry.poses import Indices
+from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 
 
 class Groups(NamedTuple):
@@ -67,3 +67,33 @@ def rows(count: int, width: int, most: int) -> Iterator[slice]:
     step = max(1, most // max(width, 1))
     for start in range(0, count, step):
         yield slice(start, min(start + step, count))
+
+
+def choose(owner: Indices, weights: Floats, groups: int, numbers: Floats) -> tuple[Indices, Floats, Booleans]:
+    """For each group, the member that a uniform number chooses by its weight.
+
+    Args:
+        owner: the group of each member, ascending.
+        weights: of the members, not negative.
+        groups: how many there are.
+        numbers: uniform in (0, 1), one for each group.
+
+    Returns:
+        The members ``(groups,)``, the shares of their weights at which the numbers lie, uniform in [0, 1], and which groups have a
+        member of a weight above 0.
+
+    """
+    starts = np.searchsorted(owner, np.arange(groups))
+    counts = np.diff(np.append(starts, len(owner)))
+    # A row for each group: its sums depend on no other group, in any bit.
+    table = np.zeros((groups, max(int(counts.max(initial=0)), 1)))
+    table[owner, np.arange(len(owner)) - starts[owner]] = weights
+    sums = np.cumsum(table, axis=1)
+    target = numbers * sums[:, -1]
+    column = np.minimum((sums <= target[:, np.newaxis]).sum(axis=1), np.maximum(counts - 1, 0))
+    every = np.arange(groups)
+    before = np.where(column > 0, sums[every, column - 1], 0.0)
+    weight = table[every, column]
+    there = weight > 0
+    share = np.where(there, (target - before) / np.where(there, weight, 1.0), 0.0)
+    return np.minimum(starts + column, max(len(owner) - 1, 0)), np.clip(share, 0.0, 1.0), there

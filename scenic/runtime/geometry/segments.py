@@ -4,16 +4,21 @@ import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final, Self
+from typing import Any, Final, Self
 
 import numpy as np
 
 from scenic.graph import quaternions
+from scenic.runtime.geometry.near_boxes import near_boxes, tree_of_boxes
 from scenic.runtime.geometry.nearest import Nearest
-from scenic.runtime.geometry.poses import Floats, Indices
+from scenic.runtime.geometry.poses import Booleans, Floats, Indices
+from scenic.runtime.geometry.ragged import choose
 
 _FEW: Final = 96
 """Segments up to which looking at all of them is faster than a tree."""
+
+_SLACK: Final = 1e-9
+"""Metres by which boxes are widened in which points are drawn: more than rounding."""
 
 CHUNK: Final = 1 << 20
 """Pairs of points and segments looked at together."""
@@ -76,6 +81,33 @@ class Segments:
         before = np.where(chosen > 0, sums[chosen - 1], 0.0)
         part = np.clip((ways - before) / (sums[chosen] - before), 0, 1)[:, np.newaxis]
         return np.asarray(self.starts[chosen] * (1 - part) + self.ends[chosen] * part)
+
+    def at_in(self, numbers: Floats, lower: Floats, upper: Floats) -> tuple[Floats, Booleans]:
+        """Points ``(n, 3)`` of the parts of the line within boxes ``(n, 3)``, uniform by length, from numbers ``(n,)`` in (0, 1).
+
+        Also tells which boxes the line passes, ``(n,)``.
+        """
+        owner, number = near_boxes(self._tree, lower, upper)
+        start, along = self.starts[number], self.ends[number] - self.starts[number]
+        low, high = lower[owner] - _SLACK, upper[owner] + _SLACK
+        moving = along != 0
+        step = np.where(moving, along, 1.0)
+        ends = (low - start) / step, (high - start) / step
+        inside = (low <= start) & (start <= high)
+        first = np.where(moving, np.minimum(*ends), np.where(inside, -np.inf, np.inf)).max(axis=1)
+        last = np.where(moving, np.maximum(*ends), np.where(inside, np.inf, -np.inf)).min(axis=1)
+        first, last = np.clip(first, 0.0, 1.0), np.clip(last, 0.0, 1.0)
+        length = np.sqrt((along * along).sum(axis=1))
+        member, share, there = choose(owner, np.maximum(last - first, 0.0) * length, len(numbers), numbers)
+        if not len(owner):
+            return np.zeros((len(numbers), 3)), there
+        part = (first[member] + share * (last[member] - first[member]))[:, np.newaxis]
+        return start[member] + part * along[member], there
+
+    @cached_property
+    def _tree(self) -> Any:
+        ends = np.stack([self.starts, self.ends])
+        return tree_of_boxes(ends.min(axis=0), ends.max(axis=0))
 
     def boxes_between(self, first: Floats, last: Floats) -> tuple[Floats, Floats]:
         """The corners ``(m, 3)`` of boxes around the parts of the line between lengths ``(m,)`` along it."""

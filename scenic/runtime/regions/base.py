@@ -175,6 +175,12 @@ class Region(metaclass=_RegionType):
             f"no point can be drawn uniformly from a region of the kind {type(self).__name__}", span=here()
         )
 
+    def draw_points_in(
+        self, lower: Points, upper: Points, uniforms: Column, keys: Column, *columns: Column
+    ) -> tuple[Points, Mask | None]:
+        """As `draw_points`, from a part of the region that holds all of its points in boxes ``(n, 3)``; here, from all of it."""
+        return self.draw_points(uniforms, keys, *columns)
+
     def orientations(self, points: Points, *columns: Column) -> Column:
         """Preferred orientations ``(n, 4)`` at points of the region; only where `has_orientation`."""
         raise unsupported(f"the orientation of a region of the kind {type(self).__name__}")
@@ -215,6 +221,10 @@ class Region(metaclass=_RegionType):
             found = at_any_height(Bounds(lower, upper))
             return found.lower, found.upper
         return lower, upper
+
+    def tight_box(self, *columns: Column) -> tuple[Points, Points]:
+        """As `container_box`; of kinds that know a smaller one, that."""
+        return self.container_box(*columns)
 
     def extent(self, *parameters: Bounds | None) -> Bounds | None:
         """Bounds ``(m | 1, 3)`` of the region's points from those of its parameters; ``None`` where nothing is known.

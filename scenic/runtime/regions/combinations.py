@@ -70,6 +70,22 @@ class IntersectionRegion(Composite):
             raise ScenicTypeError("no point can be drawn from an intersection of unbounded regions")
         return bounded[:1], np.ones((1, 1))
 
+    def _boxes_of_draws(
+        self, sources: Sequence[int], columns: Sequence[Column]
+    ) -> tuple[Points, Points] | None:
+        boxes = [
+            member.tight_box(*mine)
+            for number, (member, mine) in enumerate(self._parts(columns))
+            if number not in sources
+        ]
+        finite = [
+            box for box in boxes if np.isfinite(box[0][:, :2]).all() and np.isfinite(box[1][:, :2]).all()
+        ]
+        if not finite:
+            return None
+        lower, upper = zip(*finite, strict=True)
+        return reduce(np.maximum, lower), reduce(np.minimum, upper)
+
     def _accept(self, points: Points, inside: Sequence[Mask], chosen: NDArray[np.intp], dice: Column) -> Mask:
         return all_of(inside)
 

@@ -226,6 +226,12 @@ class Composite(Region):
     def _sources(self, columns: Sequence[Column]) -> tuple[list[int], NDArray[np.float64]]:
         """The members to draw from, with weights ``(members, n | 1)``."""
 
+    def _boxes_of_draws(
+        self, sources: Sequence[int], columns: Sequence[Column]
+    ) -> tuple[Points, Points] | None:
+        """Boxes ``(n | 1, 3)`` outside of which no draw is kept; ``None`` where nothing is known."""
+        return None
+
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         lanes = uniforms.shape[1]
         sources, weights = self._sources(columns)
@@ -234,8 +240,10 @@ class Composite(Region):
         found = np.zeros(lanes, dtype=np.bool_)
         words = np.broadcast_to(np.asarray(keys, dtype=np.uint64), lanes)
         parts = list(self._parts(columns))
+        boxes = self._boxes_of_draws(sources, columns)
+        empty = np.zeros(lanes, dtype=np.bool_)
         first = 0
-        while first < TRIES and len(missing := np.flatnonzero(~found)):
+        while first < TRIES and len(missing := np.flatnonzero(~found & ~empty)):
             # The first attempt that is kept counts, so looking at several at once changes nothing. They become more as lanes
             # turn out to find it hard.
             count = min(max(first, 1), TRIES - first, max(_TOGETHER // len(missing), 1))
@@ -260,7 +268,15 @@ class Composite(Region):
                     if member.draws
                     else np.empty((0, len(mine)))
                 )
-                drawn[mine], present = member.draw_points(fresh, mix(own[mine] + np.uint64(3)), *some)
+                words_of_mine = mix(own[mine] + np.uint64(3))
+                if boxes is None:
+                    drawn[mine], present = member.draw_points(fresh, words_of_mine, *some)
+                else:
+                    corners = [corner if len(corner) == 1 else corner[lane[mine]] for corner in boxes]
+                    corners = [np.broadcast_to(corner, (len(mine), 3)) for corner in corners]
+                    drawn[mine], present = member.draw_points_in(*corners, fresh, words_of_mine, *some)
+                    if present is not None and len(sources) == 1:
+                        empty[lane[mine[~present]]] = True
                 known[mine] = True if present is None else present
             rows = [column if len(column) == 1 else column[lane] for column in columns]
             kept = known & self._accept(

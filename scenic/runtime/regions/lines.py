@@ -49,6 +49,11 @@ class LineRegion(Region):
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         return self.pieces.at(uniforms[0] * self.pieces.length), None
 
+    def draw_points_in(
+        self, lower: Points, upper: Points, uniforms: Column, keys: Column, *columns: Column
+    ) -> tuple[Points, Mask | None]:
+        return self.pieces.at_in(uniforms[0], lower, upper)
+
     def drawn_extent(self, numbers: Sequence[Bounds], *parameters: Bounds | None) -> Bounds | None:
         ways = numbers[0]
         length = self.pieces.length

@@ -298,6 +298,15 @@ class PolygonalRegion(PlanarRegion):
         points[:, 2] = self.z
         return points, None
 
+    def draw_points_in(
+        self, lower: Points, upper: Points, uniforms: Column, keys: Column, *columns: Column
+    ) -> tuple[Points, Mask | None]:
+        points = np.empty((uniforms.shape[1], 3))
+        choice, first, second = uniforms
+        points[:, :2], there = self.outline.sample_in(choice, first, second, lower, upper)
+        points[:, 2] = self.z
+        return points, there
+
     def box(self, *columns: Column) -> tuple[Points, Points]:
         x, y, last_x, last_y = self.outline.polygon.bounds
         return np.array([[x, y, self.z]]), np.array([[last_x, last_y, self.z]])

@@ -21,6 +21,22 @@ from scenic.runtime.regions.planar import PlanarRegion, positive, rounded_outwar
 from scenic.runtime.values.values import to_heading, to_vector
 
 
+def sector_box(center: Column, radius: Column, heading: Column, angle: Column) -> tuple[Points, Points]:
+    """Boxes ``(n, 3)`` around sectors, from columns of their centres, radii, headings of their middles, and widths."""
+    # The centre, both ends of the arc, and where the arc crosses a direction of the axes.
+    half = np.minimum(angle / 2, math.pi)
+    ways = [heading - half, heading + half]
+    for quarter in range(4):
+        way = np.full_like(heading, quarter * math.pi / 2)
+        off = np.remainder(way - heading + math.pi, 2 * math.pi) - math.pi
+        ways.append(np.where(np.abs(off) <= half, way, heading + half))
+    lanes = max(map(len, (center, radius, heading, angle)))
+    points = np.zeros((lanes, 7, 3))
+    for number, way in enumerate(ways):
+        points[:, number, 0], points[:, number, 1] = -radius * np.sin(way), radius * np.cos(way)
+    return rounded_outward(center + points.min(axis=1), center + points.max(axis=1))
+
+
 class SectorRegion(PlanarRegion):
     """A sector of a disc.
 
@@ -68,19 +84,7 @@ class SectorRegion(PlanarRegion):
         return columns[0][:, 2]
 
     def box(self, *columns: Column) -> tuple[Points, Points]:
-        center, radius, heading, angle = columns
-        # The centre, both ends of the arc, and where the arc crosses a direction of the axes.
-        half = np.minimum(angle / 2, math.pi)
-        ways = [heading - half, heading + half]
-        for quarter in range(4):
-            way = np.full_like(heading, quarter * math.pi / 2)
-            off = np.remainder(way - heading + math.pi, 2 * math.pi) - math.pi
-            ways.append(np.where(np.abs(off) <= half, way, heading + half))
-        lanes = max(map(len, columns))
-        points = np.zeros((lanes, 7, 3))
-        for number, way in enumerate(ways):
-            points[:, number, 0], points[:, number, 1] = -radius * np.sin(way), radius * np.cos(way)
-        return rounded_outward(center + points.min(axis=1), center + points.max(axis=1))
+        return sector_box(*columns)
 
     def extent(self, *parameters: Bounds | None) -> Bounds | None:
         return super().extent(*parameters) or disc_extent(*parameters[:2])

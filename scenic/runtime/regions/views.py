@@ -33,7 +33,7 @@ from scenic.runtime.regions.circular import CircularRegion
 from scenic.runtime.regions.combinations import DifferenceRegion, IntersectionRegion
 from scenic.runtime.regions.nearness import grown
 from scenic.runtime.regions.planar import PlanarRegion
-from scenic.runtime.regions.sectors import SectorRegion
+from scenic.runtime.regions.sectors import SectorRegion, sector_box
 from scenic.runtime.regions.spaces import Everywhere, Workspace
 from scenic.runtime.values.values import (
     Orientation,
@@ -50,6 +50,9 @@ from scenic.runtime.visibility.seeing import view_operands
 
 VIEW_PARAMETERS: Final = 5
 """The first so many of an observer's operands say what is in view: the others are about rays."""
+
+_SLACK: Final = 1e-6
+"""Share, or radians, by which boxes of views are larger: more than the slack of being in view."""
 
 _TRIES: Final = 1000
 """So often a point is drawn again until it lies in the right place; then the region counts as empty."""
@@ -188,6 +191,19 @@ class ViewRegion(Region):
     def box(self, *columns: Column) -> tuple[Points, Points]:
         camera, reach = columns[0], columns[4][:, None]
         return camera - reach, camera + reach
+
+    def tight_box(self, *columns: Column) -> tuple[Points, Points]:
+        camera, orientation, horizontal, _, distance = columns
+        lower, upper = self.box(*columns)
+        # Upright views are sectors, seen from above.
+        upright = (orientation[:, :2] == 0).all(axis=1)
+        if upright.any():
+            heading = 2 * np.arctan2(orientation[:, 2], orientation[:, 3])
+            sector = sector_box(camera, distance * (1 + _SLACK), heading, horizontal + _SLACK)
+            flat = upright[:, np.newaxis] & np.array([True, True, False])
+            lower = np.where(flat, np.maximum(sector[0], lower), lower)
+            upper = np.where(flat, np.minimum(sector[1], upper), upper)
+        return lower, upper
 
     def extent(self, *parameters: Bounds | None) -> Bounds | None:
         camera, reach = parameters[0], parameters[4]

@@ -278,7 +278,9 @@ class Engine:
                 # about as long as all before.
                 fixed, _ = self._pace.cost()
                 likely = max(32 * given, self._pace.scenes_within(fixed + self.seconds - before))
-            wanted = min(likely, _MOST_FORESEEN, self._pace.scenes_within(_FORESIGHT_SECONDS))
+            # Where a round that finds next to nothing takes longer, so may one that finds many.
+            patience = max(_FORESIGHT_SECONDS, 2 * self._pace.cost()[0])
+            wanted = min(likely, _MOST_FORESEEN, self._pace.scenes_within(patience))
             return wanted, wanted * 3 // 2 if given >= _MOST_FORESEEN else wanted
 
         return self._results(tasks, max_attempts, self._pace.most, window, None)

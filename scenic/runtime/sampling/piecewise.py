@@ -35,7 +35,10 @@ _FORESEEN: Final = (8, 256)
 """Scenes looked for at first, and at most, where nobody knows how many are wanted."""
 
 _FORESIGHT_SECONDS: Final = 0.0125
-"""What takes longer is not followed by four times as much."""
+"""What takes longer is not followed by four times as much, unless more than four times as much has been spent before."""
+
+_LONGEST_SECONDS: Final = 1.0
+"""What takes longer is not followed by more at all."""
 
 _TOGETHER: Final = 32
 """Lanes in which all components are tried together."""
@@ -141,10 +144,17 @@ class PiecewiseEngine:
         """The same for tasks without end, of which nobody knows how many are wanted."""
         waiting, limits = iter(tasks), _Limits(max_attempts)
         size = _FORESEEN[0] if more else 1
-        while True:
+        spent = 0.0
+        while wanted := list(islice(waiting, size)):
             begun = time.thread_time()
-            yield from self._block(list(islice(waiting, size)), limits)
-            if time.thread_time() - begun < _FORESIGHT_SECONDS:
+            block = self._block(wanted, limits)
+            first = next(block)  # which takes the time of all of them
+            last = time.thread_time() - begun
+            spent += last
+            yield first
+            yield from block
+            # A larger block that nobody wants takes at most about as long as all before, and mostly hardly longer than the last.
+            if last < _FORESIGHT_SECONDS or (last < _LONGEST_SECONDS and 4 * last <= spent):
                 size = min(4 * size, _FORESEEN[1])
 
     def accepted(self, seed: int, numbers: NDArray[np.int64], attempts: NDArray[np.int64]) -> list[Accepted]:

@@ -112,3 +112,23 @@ def test_boxes_hold_the_parts_between_two_lengths() -> None:
         assert (points <= upper + 1e-12).all()
     # Short parts have small boxes: no vertex is counted that a part does not pass.
     assert (upper - lower).max(axis=1)[ends[1] - ends[0] < 1e-3].max(initial=0) < 1e-2
+
+
+def test_points_in_a_box_are_uniform_on_the_parts_within_it() -> None:
+    line = Segments.of_chains([[(0, 0, 0), (10, 0, 0), (10, 10, 0)], [(-5, 2, 0), (20, 2, 0)]])
+    lower, upper = np.array([[6.0, -1.0, -1.0]]), np.array([[12.0, 3.0, 1.0]])
+    numbers = (np.arange(2000) + 0.5) / 2000
+    points, there = line.at_in(numbers, lower.repeat(2000, axis=0), upper.repeat(2000, axis=0))
+    assert there.all()
+    assert ((lower - 1e-6 <= points) & (points <= upper + 1e-6)).all()
+    # 4 m of the first segment, 3 m of the second, 6 m of the line across.
+    on_first, across = (
+        np.isclose(points[:, 1], 0),
+        np.isclose(points[:, 1], 2) & ~np.isclose(points[:, 0], 10),
+    )
+    assert on_first.mean() == pytest.approx(4 / 13, abs=0.01)
+    assert across.mean() == pytest.approx(6 / 13, abs=0.01)
+    assert np.sort(points[on_first, 0]) == pytest.approx(np.linspace(6, 10, on_first.sum()), abs=0.02)
+    alone, _ = line.at_in(numbers[7:8], lower, upper)
+    assert (alone[0] == points[7]).all()
+    assert not line.at_in(numbers[:1], lower + 100, upper + 100)[1].any()
