@@ -297,8 +297,8 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
 
     context = Context(locate=span_of, name=locator.name, mode_2d=options.mode_2d)
     program = Program(overrides=dict(options.params), context=context)
-    context.parameter = program.parameter
-    context.given_parameters = frozenset(options.params)
+    context.parameters.value = program.parameter
+    context.parameters.given = frozenset(options.params)
     modules = Loader(_Modules(Path(filename).parent), context, program, model=options.model)
     token = current.set(context)
     try:
@@ -309,7 +309,7 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
                 program.top = _run_chosen(module, state, options.scenario)
                 program.ego, program.workspace = state.ego, state.workspace
                 apply_noise(program)
-                if context.looks or context.has_later_elements:
+                if context.record.looks or context.record.has_later_elements:
                     # Only now everything is there that may hide something, or that a condition speaks of.
                     program.requirements[:] = [item.rebuilt() for item in program.requirements]
             program.external_names = _external_names({**program.parameters, **vars(module)}, context)
@@ -457,7 +457,7 @@ def _names(module: ModuleType, ego: Object | None) -> Mapping[int, str]:
 
 def _external_names(values: Mapping[str, Any], context: Context) -> dict[int, str]:
     """Parameters and variables that hold external parameters, by address."""
-    places = {id(item): place for place, item in context.externals.items()}
+    places = {id(item): place for place, item in context.record.externals.items()}
     names: dict[int, str] = {}
     for name, value in values.items():
         found = choosable_of(value)

@@ -62,11 +62,11 @@ def _wrong(parameter: str, message: str, help: str) -> SettingError:
     context = current.get()
     if context is None:
         return error
-    if parameter in context.given_parameters:
+    if parameter in context.parameters.given:
         # The program has no line that would have to change.
         error.message = f"{message} (given as `--param {parameter}=...`, or in `params`)"
         return error.at((Span(1, 0, 1, 0), f"--param {parameter}"))
-    return error.at(context.parameter_places.get(parameter, context.model_place))
+    return error.at(context.parameters.places.get(parameter, context.parameters.model_place))
 
 
 def standing(spot: Any) -> Lazy:

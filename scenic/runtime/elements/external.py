@@ -49,7 +49,7 @@ def _make(operation: str, operands: Sequence[Any], payload: Any, choosable: Choo
     span, place = here(), next_address()
     uniform = axis(span, place)
     assert place is not None
-    context.externals[place] = choosable
+    context.record.externals[place] = choosable
     constants = [as_node(item) for item in operands]
     node = make_node(TABLE[operation], [uniform, *constants], payload, span)
     return as_value(node, lambda: _make(operation, operands, payload, choosable))
@@ -74,7 +74,7 @@ def choosable_of(value: Any) -> Choosable | None:
     first = node.operands[0] if node.operands else None
     if first is None or not first.is_axis or first.payload is None:
         return None
-    return context.externals.get(int(first.payload))
+    return context.record.externals.get(int(first.payload))
 
 
 class ExternalParameter(metaclass=_Kind):
@@ -343,7 +343,7 @@ def TimeSeries(param: Any) -> Any:
     context = current.get()
     if choosable_of(param) is None or context is None:
         raise ScenicTypeError(f"`TimeSeries` takes an external parameter, not {describe(param)}", span=here())
-    steps = context.parameter("timeBound", 0)
+    steps = context.parameters.value("timeBound", 0)
     if not isinstance(steps, int) or steps < 1:
         raise InvalidScenarioError(
             "`TimeSeries` needs the parameter `timeBound`, the number of steps",

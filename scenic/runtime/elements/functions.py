@@ -133,7 +133,7 @@ def _note_empty(result: Any, count: int) -> None:
     """Note where a filter left nothing of some elements: a choice from its result says so."""
     context = current.get()
     if context is not None and context.is_symbolic:
-        context.emptied.append((result, count, here()))
+        context.record.emptied.append((result, count, here()))
 
 
 def _kept_of_options(function: Callable[[Any], Any] | None, values: Any) -> Any:

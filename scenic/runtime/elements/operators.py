@@ -211,7 +211,7 @@ def _can_see(ego: Ego, viewer: Any, target: Any) -> Any:
     if context is None:
         return sees(viewer, target, ())
     if context.judging:
-        context.looks = True
+        context.record.looks = True
     elif context.is_symbolic and context.sample is None:
         raise InvalidScenarioError(
             "`can see` cannot be used while the program runs: the scene is not there yet",

@@ -38,9 +38,9 @@ def stand_in(instance: Any) -> Any:
         return instance
     if not isinstance(instance, Point) or "_source" in instance.__dict__:
         return instance
-    known = context.stand_ins.get(id(instance))
+    known = context.stand_ins.made.get(id(instance))
     if known is None:
-        known = context.stand_ins[id(instance)] = (instance, _made(instance))
+        known = context.stand_ins.made[id(instance)] = (instance, _made(instance))
     return known[1]
 
 
@@ -75,7 +75,7 @@ def _of_any_kind(value: Any) -> Any:
 
 def complete(context: Context) -> None:
     """Give all stand-ins the values that instances have now that mutation is over."""
-    for instance, copy in context.stand_ins.values():
+    for instance, copy in context.stand_ins.made.values():
         for name, value in copy.__dict__.items():
             if isinstance(value, Random) and value.node.operation is _LATE:
                 new = as_node(instance.__dict__[name])

@@ -10,6 +10,7 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Hashable, Sequence
 from contextvars import ContextVar
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType, TracebackType
 from typing import Any, Final
@@ -30,6 +31,54 @@ in, since the runtime knows nothing of source text."""
 
 Namer = Callable[[FrameType], Hashable]
 """What names the place of a frame whatever is added before it: the text of its line, not the number."""
+
+
+@dataclass(slots=True)
+class Parameters:
+    """Global parameters, as far as code below the program's own has to know them."""
+
+    value: Callable[[str, Any], Any] = lambda _name, default: default
+    """Returns a parameter as the program has set it so far, or else a default."""
+    given: frozenset[str] = frozenset()
+    """The parameters whose values are given from outside, and win over the program's own."""
+    places: dict[str, tuple[Span | None, str | None]] = field(default_factory=dict)
+    """Place and file where the program itself, rather than its model, has set each of its parameters."""
+    model_place: tuple[Span | None, str | None] = None, None
+    """Place and file of the program's ``model`` statement."""
+
+
+@dataclass(slots=True)
+class StandIns:
+    """Substitutes for instances that choices draw, until the program has ended and they may be mutated."""
+
+    make: Callable[[Any], Any] = lambda instance: instance
+    """Returns the substitute: the instance itself unless some module may mutate instances."""
+    made: dict[int, tuple[Any, Any]] = field(default_factory=dict)
+    """Instances and their substitutes, by the identities of the instances."""
+
+
+@dataclass(slots=True)
+class Record:
+    """Facts about the program that running it brings up, for whoever works on it afterwards."""
+
+    calls: list[tuple[Any, tuple[Any, ...]]] = field(default_factory=list)
+    """The nodes of calls that are made on samples, each with the instances that it sees."""
+    externals: dict[int, Choosable] = field(default_factory=dict)
+    """Values that an external sampler may choose, by address."""
+    unrolled: list[tuple[Sequence[Any], tuple[Any, ...]]] = field(default_factory=list)
+    """Sequences that conditions were unrolled over, with the elements that they had."""
+    emptied: list[tuple[Any, int, Span | None]] = field(default_factory=list)
+    """Results of filters in which nothing is left: the result, of how many elements, and where."""
+    looks: bool = False
+    """True if some condition asks what is seen: it has to be made again when all objects are there."""
+
+    @property
+    def has_later_elements(self) -> bool:
+        """Return whether a sequence that a condition was unrolled over has other elements now."""
+        return any(
+            len(sequence) != len(before) or any(a is not b for a, b in zip(sequence, before, strict=True))
+            for sequence, before in self.unrolled
+        )
 
 
 class Context:
@@ -57,46 +106,19 @@ class Context:
         self._occurrences: Counter[Hashable] = Counter()
         self.generator = generator
         self.mode_2d = mode_2d
+        self.objects: list[Any] = []
+        """The objects of the scenario so far, in order of creation: what may stand in the way of a look."""
         self.evaluating = False
         """Whether a requirement's condition is being evaluated: nothing may be created then."""
         self.judging = False
         """Whether the node of a requirement's condition is being made."""
-        self.objects: list[Any] = []
-        """The objects of the scenario so far, in order of creation: what may stand in the way of a look."""
-        self.calls: list[tuple[Any, tuple[Any, ...]]] = []
-        """The nodes of calls that are made on samples, each with the instances that it sees."""
-        self.stand_in: Callable[[Any], Any] = lambda instance: instance
-        """What stands for an instance that a choice draws: the instance itself unless some module may mutate instances."""
-        self.stand_ins: dict[int, tuple[Any, Any]] = {}
-        """Instances that choices draw and what stands for them until they are mutated, by their identities."""
         self.sample: Any = None
         """The sample on which Python code is being called."""
         self.concerns: Span | None = None
         """The place of what is worked on where no line of the program runs."""
-        self.externals: dict[int, Choosable] = {}
-        """What an external sampler may choose, by address."""
-        self.parameter: Callable[[str, Any], Any] = lambda _name, default: default
-        """A global parameter as the program has set it so far, or else a default."""
-        self.given_parameters: frozenset[str] = frozenset()
-        """The parameters whose values are given from outside, and win over the program's own."""
-        self.parameter_places: dict[str, tuple[Span | None, str | None]] = {}
-        """Where the program itself, rather than its model, has set each of its parameters: place and file."""
-        self.model_place: tuple[Span | None, str | None] = None, None
-        """Place and file of the program's ``model`` statement."""
-        self.unrolled: list[tuple[Sequence[Any], tuple[Any, ...]]] = []
-        """Sequences that conditions were unrolled over, with the elements that they had."""
-        self.looks = False
-        self.emptied: list[tuple[Any, int, Span | None]] = []
-        """Results of filters in which nothing is left: the result, of how many elements, and where."""
-        """Whether some condition asks what is seen: it has to be made again when all objects are there."""
-
-    @property
-    def has_later_elements(self) -> bool:
-        """Whether a sequence that a condition was unrolled over has other elements now."""
-        return any(
-            len(sequence) != len(before) or any(a is not b for a, b in zip(sequence, before, strict=True))
-            for sequence, before in self.unrolled
-        )
+        self.parameters = Parameters()
+        self.stand_ins = StandIns()
+        self.record = Record()
 
     @property
     def present(self) -> Sequence[Any]:

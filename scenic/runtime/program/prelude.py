@@ -301,13 +301,13 @@ class Prelude(Symbolic, Dynamics):
             elif not (self._module.is_model and name in program.parameters):
                 program.parameters[name] = value
                 if not self._module.is_model:
-                    self._context.parameter_places[name] = self._context.place(), self._context.file()
+                    self._context.parameters.places[name] = self._context.place(), self._context.file()
 
     def model(self, name: str, scope: dict[str, Any]) -> None:
         """``model name``: everything that the module defines, with its parameters as defaults."""
         if self._module.is_model:
             raise InvalidScenarioError("a model cannot itself use `model`", span=here())
-        self._context.model_place = self._context.place(), self._context.file()
+        self._context.parameters.model_place = self._context.place(), self._context.file()
         self._modules.use_model(name, scope, self._module)
 
     def mutate(self, targets: Sequence[Any] | None = None, scale: Any = 1) -> None:
@@ -441,7 +441,7 @@ class Loader:
             self._program, state.filename, lambda *args: self._import(state, *args)
         )
         if may_mutate(code):
-            self._context.stand_in = stand_in
+            self._context.stand_ins.make = stand_in
         if not isinstance(current.get(), RunContext):
             self._program.scopes.append(scope)
         exec(code, scope)

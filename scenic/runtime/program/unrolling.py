@@ -76,7 +76,7 @@ def _fixed(sequence: Any) -> list[Any]:
     elements = list(_few(sequence))
     context = current.get()
     if type(sequence) is list and context is not None:
-        context.unrolled.append((sequence, tuple(elements)))
+        context.record.unrolled.append((sequence, tuple(elements)))
     return elements
 
 

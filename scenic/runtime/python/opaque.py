@@ -72,7 +72,7 @@ def later(
     reads: list[Any] = [function, *args, *keywords.values()]
     looks = context is not None and mention(reads, seen, "can see")
     if context is not None and looks:
-        context.looks = True
+        context.record.looks = True
         reads += context.objects
     operands = (own, *dependencies(reads, seen))
     habit = _Habit()
@@ -81,7 +81,7 @@ def later(
     code = OpaqueCode(instances, function, tuple(args), keywords, operands, seen, context, looks, habit)
     node = make_node(operation, operands, code, here())
     if instances and context is not None and context.is_symbolic:
-        context.calls.append((node, instances))
+        context.record.calls.append((node, instances))
     return node
 
 
@@ -91,7 +91,7 @@ def see_mutated(context: Context) -> None:
     What a call sees of an instance is looked up when it is made on a sample; so the nodes of what has been
     mutated since have to be among its operands; but not what the call itself decides.
     """
-    for node, instances in context.calls:
+    for node, instances in context.record.calls:
         new = [item for item in dependencies(instances) if item not in node.operands]
         if new and node in Graph(new).index:
             new = [item for item in new if node not in Graph([item]).index]

@@ -49,7 +49,7 @@ def _refuse_nothing(parts: Parts) -> None:
     context = current.get()
     if context is None or len(parts) != 1:
         return
-    for result, count, place in context.emptied:
+    for result, count, place in context.record.emptied:
         if result is parts[0][1]:
             line = "" if place is None else f" in line {place.line}"
             raise InvalidScenarioError(

@@ -160,7 +160,7 @@ class Scenario(Generating):
     @property
     def externals(self) -> Mapping[int, Choosable]:
         """The external parameters by the addresses of their draws, in the order in which the program makes them."""
-        return self._program.context.externals
+        return self._program.context.record.externals
 
     @property
     def external_names(self) -> Mapping[int, str]:

@@ -178,7 +178,7 @@ def drawn_option(option: Node) -> Any:
     """The value of an option of a choice, as the choice draws it: an instance after mutation."""
     value = as_value(option)
     context = current.get()
-    return value if context is None or kind_of(value) is not Kind.OBJECT else context.stand_in(value)
+    return value if context is None or kind_of(value) is not Kind.OBJECT else context.stand_ins.make(value)
 
 
 def options_of(value: Any) -> tuple[Any, ...]:
