@@ -1,4 +1,4 @@
-"""What running and analysing a program proves about it: `scenic check --deep`."""
+"""Findings that are proved by running and analysing a program: `scenic check --deep`."""
 
 from importlib.util import find_spec
 from pathlib import Path
@@ -15,7 +15,7 @@ __all__ = ["deep_check"]
 
 
 def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
-    """What is wrong with a program, found by running and analysing it (no scene is sampled)."""
+    """The faults of a program that running and analysing it finds (no scene is sampled)."""
     if find_spec("z3") is None:
         from scenic.formats.png import MissingLibraryError
 

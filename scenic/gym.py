@@ -102,7 +102,7 @@ def _several(actions: Any) -> tuple[Any, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """What a function for the reward sees.
+    """The input of a function for the reward.
 
     Attributes:
         agent: whose actions are taken, with its properties as they are now.

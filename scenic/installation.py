@@ -18,7 +18,7 @@ __all__ = ["Finding", "State", "findings"]
 
 
 class State(StrEnum):
-    """How a finding is meant: ``fine``, ``missing`` for what is optional, or ``problem``."""
+    """The weight of a finding: ``fine``, ``missing`` for what is optional, or ``problem``."""
 
     FINE = "fine"
     MISSING = "missing"

@@ -139,7 +139,7 @@ def analyze(
     mode2D: bool = False,
     candidates: int | None = None,
 ) -> "Assessment":
-    """What a program is like to sample: what analysis removes, how many candidates pass, which requirement costs most.
+    """The cost of sampling a program: what analysis removes, how many candidates pass, which requirement costs most.
 
     Args:
         program: a ``.scenic`` file, or a scenario.

@@ -45,7 +45,7 @@ LARGEST_PAVING: Final = 256
 """Boxes of a paving, at most."""
 
 SPLITS: Final = 16
-"""How often all boxes of a paving are split, at most."""
+"""Number of times that all boxes of a paving are split, at most."""
 
 PATIENCE: Final = 4
 """Splits after which a paving ends that has lost nothing: most programs gain nothing by it, and shall not pay for all of it."""
@@ -74,7 +74,7 @@ FACTOR_GAIN: Final = 0.9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pruning:
-    """What contraction found: the part of the cube that is left, and conditions that no point of the cube meets.
+    """The result of contraction: the part of the cube that is left, and conditions that no point of the cube meets.
 
     Where ``impossible`` is not empty the domain is the whole cube.
     """

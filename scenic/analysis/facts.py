@@ -1,4 +1,4 @@
-"""What analysis is asked about: conditions that every scene must meet."""
+"""The questions of analysis: conditions that every scene must meet."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What analysis proves, as diagnostics."""
+"""Diagnostics of facts that analysis proves."""
 
 from collections.abc import Collection, Sequence
 from typing import Final

@@ -35,7 +35,7 @@ class Contradiction:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Verdict:
-    """What the solver found out about a set of conditions."""
+    """The answer of the solver about a set of conditions."""
 
     contradictions: tuple[Contradiction, ...]
     tautologies: tuple[Fact, ...]

@@ -1,4 +1,4 @@
-"""What random values can be: over the whole cube, and over the part of it that analysis leaves."""
+"""Values that random quantities can have: over the whole cube, and over the part of it that analysis leaves."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -26,12 +26,12 @@ NAMES: Final[Mapping[str, str]] = MappingProxyType(
         "choice": "choice",
     }
 )
-"""What users call primitive distributions, by operation; everything else that is drawn is a place in a region."""
+"""Names of primitive distributions for users, by operation; everything else that is drawn is a place in a region."""
 
 
 @dataclass(frozen=True, slots=True)
 class DrawnSupport:
-    """What one primitive value can be.
+    """The values that one primitive quantity can have.
 
     Attributes:
         kind: what is drawn: ``Range``, ``Normal``, ``choice``, ...; ``place`` for a point of a region.
@@ -54,7 +54,7 @@ class DrawnSupport:
 
 
 def supports(graph: Graph, domain: Domain) -> tuple[DrawnSupport, ...]:
-    """What each primitive value of a graph can be, in the order of the graph."""
+    """The supports of all primitive values of a graph, in the order of the graph."""
     drawn: dict[Node, list[int]] = {}
     for node in graph.nodes:
         axes = [graph.axes[operand] for operand in node.operands if operand.is_axis]

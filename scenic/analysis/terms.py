@@ -23,7 +23,7 @@ TOTAL: Final = 20_000_000
 
 @unique
 class Answer(Enum):
-    """What the solver says of a set of formulas."""
+    """The answer of the solver about a set of formulas."""
 
     POSSIBLE = "possible"
     IMPOSSIBLE = "impossible"
@@ -97,7 +97,7 @@ class SolverTerms:
 
 
 class Questions:
-    """Which of a fixed set of formulas can hold together, given what always holds."""
+    """A fixed set of formulas: the solver tells which of them can hold together, given what always holds."""
 
     def __init__(self, terms: SolverTerms, always: Sequence[Term], formulas: Sequence[Term]) -> None:
         import z3
@@ -112,7 +112,7 @@ class Questions:
             self._solver.add(z3.Implies(name, formula, terms.context))
 
     def ask(self, members: Sequence[int]) -> Answer:
-        """Whether the formulas of these numbers can hold together."""
+        """Return whether the formulas of these numbers can hold together."""
         if self._spent() >= TOTAL:
             return Answer.UNKNOWN
         result = self._solver.check(*(self._names[number] for number in members))
@@ -141,7 +141,7 @@ class Questions:
         return tuple(core)
 
     def refutes(self, formula: Term, members: Sequence[int]) -> bool:
-        """Whether ``formula`` is certainly false where the formulas of these numbers hold."""
+        """Return whether ``formula`` is certainly false where the formulas of these numbers hold."""
         self._solver.push()
         try:
             self._solver.add(formula)

@@ -57,7 +57,7 @@ def contradictions(requirements: Sequence[Required]) -> list[tuple[tuple[Require
 
 
 def shortest_trace(requirements: Sequence[Required]) -> int | None:
-    """How many states a shortest trace has that meets all requirements; ``None`` if there is none."""
+    """The number of states of a shortest trace that meets all requirements; ``None`` if there is none."""
     number: dict[Hashable, int] = {}
     fixed: dict[int, bool] = {}
     atoms = [[number.setdefault(_key(atom), len(number)) for atom in item.atoms] for item in requirements]

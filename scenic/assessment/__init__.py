@@ -1,1 +1,1 @@
-"""What a program is like to sample: what analysis removes, how many candidates pass, which requirement costs most."""
+"""The cost of sampling a program: what analysis removes, how many candidates pass, which requirement costs most."""

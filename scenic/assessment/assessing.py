@@ -23,7 +23,7 @@ _SHOWN = 100
 
 
 def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -> Assessment:
-    """What a scenario is like to sample.
+    """The cost of sampling a scenario.
 
     Args:
         scenario: the scenario.

@@ -1,4 +1,4 @@
-"""What is found out about a program before scenes are made in numbers, to be read, shown and drawn."""
+"""Findings about a program before scenes are sampled in numbers, to be read, shown and drawn."""
 
 import json
 import math
@@ -28,14 +28,14 @@ class ValueRow:
 
     @property
     def before(self) -> str:
-        """What it could be by itself."""
+        """The range that the value could have by itself."""
         if self.support.options:
             return ", ".join(self.support.options)
         return _interval(self.support.before)
 
     @property
     def after(self) -> str:
-        """What is left of that."""
+        """The part of the range that analysis leaves."""
         options = self.support.options
         if options:
             return ", ".join(options[number] for number in self.support.left if number < len(options))
@@ -44,7 +44,7 @@ class ValueRow:
 
 @dataclass(frozen=True, slots=True)
 class Assessment:
-    """What is found out about a program.
+    """The findings about a program.
 
     Attributes:
         filename: the program.

@@ -100,7 +100,7 @@ class Encoder:
 
     @property
     def most(self) -> int:
-        """How many scenes are encoded together, at most."""
+        """Number of scenes that are encoded together, at most."""
         return LONGEST if self._images is None else _IMAGES
 
     def __getstate__(self) -> dict[str, Any]:

@@ -39,7 +39,7 @@ class Engine(Protocol):
 
     @property
     def jobs(self) -> int:
-        """How many calls are under way at a time."""
+        """Number of calls that are under way at a time."""
 
     def run(
         self,
@@ -158,7 +158,7 @@ class DaskCluster:
 
     @property
     def jobs(self) -> int:
-        """How many tasks the cluster runs at a time; one where it has no workers yet."""
+        """Number of tasks that the cluster runs at a time; one where it has no workers yet."""
         threads: int = sum(self._client.nthreads().values())
         return max(1, threads)
 

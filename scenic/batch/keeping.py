@@ -86,7 +86,7 @@ class Kept:
             self._tape.add(poses)
 
     def looked_back(self) -> bool:
-        """Whether a try read more of its course than was kept."""
+        """Return whether a try read more of its course than was kept."""
         from scenic.simulators.results import Latest
 
         if self._simulation is not None:

@@ -62,7 +62,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """How a data set was made. Everything but ``parts`` and ``seconds`` decides what its rows are.
+    """The settings of a data set. Everything but ``parts`` and ``seconds`` decides what its rows are.
 
     Attributes:
         program: name of the program's file.
@@ -126,12 +126,12 @@ class Manifest:
 
     @property
     def is_complete(self) -> bool:
-        """Whether all parts are there."""
+        """Return whether all parts are there."""
         return sum(part.last - part.first for part in self.parts) == self.count
 
     @property
     def rows(self) -> int:
-        """How many scenes the parts hold."""
+        """Number of scenes in the parts."""
         return sum(part.rows for part in self.parts)
 
     def ranges(self) -> list[tuple[int, int]]:

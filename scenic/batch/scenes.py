@@ -54,7 +54,7 @@ class WorkerDiedError(Located):
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """What to sample: scenes ``first`` to ``last`` (exclusive) of a seed, within limits.
+    """Scenes to sample: ``first`` to ``last`` (exclusive) of a seed, within limits.
 
     ``deadline`` is a time of `time.monotonic`; ``source`` gives random numbers that are not hashed, and ``approximate`` scenes
     are made so many together (see `Scenario.stream`).

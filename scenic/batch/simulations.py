@@ -27,7 +27,7 @@ _NOTHING_KEPT: Final = (
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """How simulations run; everything here but ``stuck_after`` decides what comes out."""
+    """Settings of simulations; everything here but ``stuck_after`` decides the results."""
 
     seed: int
     max_steps: int | None = 100
@@ -38,9 +38,9 @@ class Running:
     stuck_after: float = 10.0
     """Seconds that the program may run within one step."""
     keep_violations: bool = False
-    """Whether a simulation that violates a requirement runs to its end, rather than being rejected."""
+    """True if a simulation that violates a requirement runs to its end, rather than being rejected."""
     sobol: bool = False
-    """Whether scenes and simulations are rows of Sobol's sequence."""
+    """True if scenes and simulations are rows of Sobol's sequence."""
 
     def options(self) -> dict[str, Any]:
         """The arguments of `simulate_number` that decide what comes out."""
@@ -57,7 +57,7 @@ class Running:
 
 @dataclass(frozen=True, slots=True)
 class SimulationRow:
-    """What became of simulation ``k``: exactly one of ``about``, ``missing`` and ``error`` is set.
+    """The outcome of simulation ``k``: exactly one of ``about``, ``missing`` and ``error`` is set.
 
     Attributes:
         k: its number in the run of the seed.
@@ -262,7 +262,7 @@ class Simulations:
 
 
 def is_violated(about: Mapping[str, Any]) -> bool:
-    """Whether a simulation, by the document about it, violates a requirement or leaves one unmet at its end."""
+    """Return whether a simulation, by the document about it, violates a requirement or leaves one unmet at its end."""
     return any(item["verdict"] in ("FALSE", "PRESUMABLY_FALSE") for item in about["requirements"])
 
 

@@ -37,7 +37,7 @@ def verify(
     share: float = 0.01,
     advance: Callable[[int], None] = lambda _: None,
 ) -> Iterator[Damage]:
-    """What is wrong with a data set.
+    """The faults of a data set.
 
     Args:
         folder: the data set.

@@ -32,7 +32,7 @@ _memory_file: Final[Callable[[str], int] | None] = getattr(os, "memfd_create", N
 
 
 def usable_cpus() -> int:
-    """How many processors this process may use."""
+    """Number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0)) or 1
     return os.cpu_count() or 1

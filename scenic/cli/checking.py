@@ -26,7 +26,7 @@ _FRAMES: Final = 6
 
 
 class Fixing(Enum):
-    """What to do with the repairs that diagnostics carry."""
+    """The treatment of repairs that diagnostics carry."""
 
     NONE = "none"
     MAKE = "make"
@@ -50,12 +50,12 @@ class Task:
     fixing: Fixing = Fixing.NONE
     text: str | None = None
     strict: bool = False
-    """Whether what is wrong with a part of a map is an error."""
+    """True if what is wrong with a part of a map is an error."""
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What came of a task.
+    """The outcome of a task.
 
     ``fixed`` counts the repairs made or shown; ``text`` is the text after them, of a file that is not written;
     ``diff`` shows them. ``trace`` says where a fault of ours happened.

@@ -1,4 +1,4 @@
-"""Which files the arguments of a command stand for."""
+"""The files that the arguments of a command stand for."""
 
 import os
 from collections.abc import Iterator, Sequence

@@ -48,7 +48,7 @@ def exit_code(diagnostics: Iterable[Diagnostic], *, failing: Collection[Severity
 
 
 def has_colours(stream: TextIO) -> bool:
-    """Whether to use colours: on a terminal that has them, unless ``NO_COLOR`` is set (no-color.org)."""
+    """Return whether to use colours: on a terminal that has them, unless ``NO_COLOR`` is set (no-color.org)."""
     if os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
         return False
     return stream.isatty()
@@ -86,7 +86,7 @@ def shown_warnings() -> Iterator[None]:
 
 
 def summary(diagnostics: Iterable[Diagnostic]) -> str:
-    """How many there are of each severity, in words."""
+    """Numbers of diagnostics of each severity, in words."""
     severities = [item.severity for item in diagnostics]
     counts = [(severity.value, severities.count(severity)) for severity in Severity]
     parts = [

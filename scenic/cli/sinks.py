@@ -41,12 +41,12 @@ class OutputChoiceError(Located):
 
 
 def is_dataset(output: str | None) -> bool:
-    """Whether scenes go to a data set: a name that ends in a slash, or a folder."""
+    """Return whether scenes go to a data set: a name that ends in a slash, or a folder."""
     return output is not None and (output.endswith(("/", "\\")) or Path(output).is_dir())
 
 
 def is_table(path: Path) -> bool:
-    """Whether scenes go to one Parquet file, by its name's ending; raises as `parquet_support` without the library."""
+    """Return whether scenes go to one Parquet file, by its name's ending; raises as `parquet_support` without the library."""
     if path.suffix.lower() != ".parquet":
         return False
     from scenic.formats.trajectory_tables import parquet_support
@@ -57,7 +57,7 @@ def is_table(path: Path) -> bool:
 
 
 def is_lines(path: Path) -> bool:
-    """Whether scenes are written to a file as JSON Lines, by its name's ending.
+    """Return whether scenes are written to a file as JSON Lines, by its name's ending.
 
     Raises ``OutputChoiceError`` for endings of formats that scenes are not written as.
     """

@@ -21,7 +21,7 @@ __all__ = ["check_again", "check_text", "in_order"]
 def check_text(
     text: str, *, filename: str, surroundings_of: SurroundingsOf | None = None, typing: bool = False
 ) -> tuple[Diagnostic, ...]:
-    """What the lexer, the parser, the resolver and the compiler have to say, in order of place.
+    """The findings of the lexer, the parser, the resolver and the compiler, in order of place.
 
     Without what comments of the program silence, and with what is wrong with these comments. ``surroundings_of`` finds
     out about the modules that the program imports (`scenic.project.surroundings`); without it, nothing is known of them.

@@ -1,4 +1,4 @@
-"""Who gets a closing word that the innermost operator must leave to one around it.
+"""Closing words that the innermost operator must leave to one around it.
 
 The parser reads from left to right and gives `from`, `to` and `of` to the innermost operator that can use them. In
 ``follow distance to x from b for c`` that leaves none for `follow`, which cannot do without; likewise, in

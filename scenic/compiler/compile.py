@@ -47,12 +47,12 @@ class Compiled:
 
 
 Warned: TypeAlias = Mapping[str, tuple[tuple[int, str], ...]]
-"""What Python warns of in statements of the top level, by their text: lines from 0, and messages."""
+"""Python's warnings about statements of the top level, by their text: lines from 0, and messages."""
 
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """What was found in a program; the rest saves the check of its next version from looking at what has not changed."""
+    """The findings in a program; the rest saves the check of its next version from looking at unchanged parts."""
 
     diagnostics: tuple[Diagnostic, ...]
     warned: Warned = field(default_factory=dict, repr=False)
@@ -100,7 +100,7 @@ def check_parsed(
     go_on: Callable[[], None] = lambda: None,
     typing: bool = False,
 ) -> Checked:
-    """What can be said of a program without running any of it.
+    """The findings about a program without running any of it.
 
     That is all that `compile_text` says, what is legal but hardly meant, and what will fail once it is reached. Only
     what Python may complain of is compiled, and only what has changed of that. ``surroundings_of`` finds out about the

@@ -1,4 +1,4 @@
-"""What Python's compiler may refuse or warn of in a program that is right by all other checks.
+"""Python's own errors and warnings about a program that passes all other checks.
 
 Nearly every program has nothing of the kind, and lowering and compiling it takes longer than all other checks together: a
 check compiles only what is suspected here. What CPython (3.11 to 3.14) says while it compiles a tree depends on few things,

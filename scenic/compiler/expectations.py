@@ -1,4 +1,4 @@
-"""What to say of a token that cannot stand where it stands."""
+"""Messages about a token that cannot stand where it stands."""
 
 from collections.abc import Iterable
 from typing import Final
@@ -131,7 +131,7 @@ class Expectations:
         )
 
     def found(self, token: int) -> str:
-        """What stands at a token, in words."""
+        """The text at a token, in words."""
         kind = self._kinds[token]
         text = self._tokens.texts[token]
         if kind in (NUMBER, STRING) or kind >= 16:
@@ -141,7 +141,7 @@ class Expectations:
         return _KINDS.get(kind, "this")
 
     def wanted(self, expected: Iterable[int | str], *, after_word: bool = False) -> str:
-        """What could have stood somewhere, in words; ``after_word``: directly after a soft keyword."""
+        """The possible texts at a place, in words; ``after_word``: directly after a soft keyword."""
         kinds = {each for each in expected if isinstance(each, int)}
         words = {each for each in expected if isinstance(each, str)}
         if kinds >= _TEMPORAL_STARTS:

@@ -16,7 +16,7 @@ Place = tuple[int, int, int, int]
 
 
 class Reader(Protocol):
-    """What is needed of `scenic.compiler.actions.Actions`."""
+    """The part of `scenic.compiler.actions.Actions` that is needed here."""
 
     def fail(self, place: Place, message: str, *, help: str | None = None, code: str = ...) -> None: ...
 

@@ -89,7 +89,7 @@ def accepts(types: Sequence[Type], kind: Kind) -> bool:
 
 
 class Meanings(Protocol):
-    """What the names of a program mean."""
+    """The meanings of the names of a program."""
 
     def provided(self, name: ast.expr) -> str | None:
         """The name of what the language provides."""

@@ -44,7 +44,7 @@ def lex(text: str, words: Mapping[str, int]) -> Tokens:
 def prepared(
     text: str, words: Mapping[str, int], lexer: "Callable[[str, Mapping[str, int]], Lexer]"
 ) -> Tokens:
-    """What ``lexer`` makes of a text, without its byte order mark and with line ends as it wants them."""
+    """The text as ``lexer`` reads it: without its byte order mark, with the line ends that it wants."""
     text = text.lstrip("\ufeff")
     if "\r" in text:
         text = text.replace("\r\n", "\n").replace("\r", "\n")
@@ -102,7 +102,7 @@ class Lexer(LineReader):
     __slots__ = ("brackets", "fields", "words")
 
     careful: ClassVar[bool] = False
-    """Whether the methods that are called only then doubt what they read (see `scenic.compiler.careful`)."""
+    """True if the methods that are called only then doubt what they read (see `scenic.compiler.careful`)."""
 
     def __init__(self, text: str, words: Mapping[str, int]) -> None:
         super().__init__(text)
@@ -288,7 +288,7 @@ class Lexer(LineReader):
     # Strings.
 
     def text_is_open(self, start: int, end: int) -> bool:
-        """Whether a string that is closed only seems to be."""
+        """Return whether a string that is closed only seems to be."""
         return False
 
     def open_text(self, start: int, end: int) -> int:

@@ -1,4 +1,4 @@
-"""What the lexer says about text that it cannot read."""
+"""Messages of the lexer about text that it cannot read."""
 
 from collections.abc import Iterator
 from typing import Final
@@ -62,7 +62,7 @@ def open_string(quote: str, span: Span) -> Diagnostic:
 
 
 def is_open_text(diagnostic: Diagnostic) -> bool:
-    """Whether it says that a string of several lines is not closed, which all of the text after it may change."""
+    """Return whether it says that a string of several lines is not closed, which all of the text after it may change."""
     return diagnostic.code == "SC101" and (diagnostic.help or "").endswith(('"""`', "'''`"))
 
 

@@ -54,7 +54,7 @@ Known: TypeAlias = Callable[[Tokens], Statements]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Parsed:
-    """What was made of some tokens: the tree, what is wrong, and where the statements of the top level stand."""
+    """The result of parsing: the tree, the mistakes, and the places of the statements of the top level."""
 
     tokens: Tokens
     tree: ast.Module

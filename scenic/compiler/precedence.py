@@ -59,7 +59,7 @@ class Fixity(StrEnum):
 
 
 class Associativity(StrEnum):
-    """Which end operand may be of the form's own level.
+    """The end operand that may be of the form's own level.
 
     ``CHAINED`` forms of one level make one node with all their operands, as in ``a < b <= c`` and ``a or b or c``.
     """
@@ -95,7 +95,7 @@ class Slot:
     target: Target | None
 
     def accepts(self, form: "Form") -> bool:
-        """Whether an operand of this form fits without parentheses."""
+        """Return whether an operand of this form fits without parentheses."""
         if form.rule in self.also:
             return True
         if form.ladder is self.ladder:

@@ -1,4 +1,4 @@
-"""What may stand at a place of a text, as the grammar says: the parser is run up to there and asked what it wanted.
+"""The possible continuations at a place of a text: the parser is run up to there and asked what it wanted.
 
 The text after the place does not count. Of the text before it, only the statement around the place has to be right;
 where this has a mistake, the line alone.
@@ -39,7 +39,7 @@ _LABELLED: Final = {
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What may stand at a place.
+    """The possible continuations at a place.
 
     ``words`` are keywords and operators; ``labels`` what messages call other things, such as ``"an expression"``;
     ``kinds`` are those of tokens of varying text, such as ``"NAME"``. ``before`` are the tokens of the logical line
@@ -64,7 +64,7 @@ def _beginnings(label: str) -> frozenset[str]:
 
 
 def wanted_at(text: str, line: int, column: int) -> Wanted | None:
-    """What may stand at ``line`` (from 1) and ``column`` (in characters from 0), where a new token begins.
+    """The possible continuations at ``line`` (from 1) and ``column`` (in characters from 0), where a new token begins.
 
     ``None`` in strings and comments, and where what stands before on the line cannot be right.
     """

@@ -29,7 +29,7 @@ _FARTHER: Final = (0, 2, 12)
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What has changed between two texts: ``first`` lines at the beginning are the same, and ``last`` at the end.
+    """The difference between two texts: ``first`` lines at the beginning are the same, and ``last`` at the end.
 
     ``before`` and ``after`` are the numbers of their lines.
     """
@@ -70,7 +70,7 @@ class Lexed:
 def lex_again(
     text: str, lines: Sequence[str], before: Lexed, change: Change, lex: Callable[[str], Lexed]
 ) -> tuple[Lexed, Splice] | None:
-    """What ``lex`` makes of a text, with the help of what it made before; ``None`` if that is no help.
+    """The tokens of a text as ``lex`` finds them, with the help of an earlier result; ``None`` if that is no help.
 
     ``lines`` are those of the text.
     """

@@ -56,7 +56,7 @@ PROVIDED: Final = frozenset(dir(builtins)) | frozenset(NAMES) | frozenset(TRACKE
 
 
 class ScopeKind(StrEnum):
-    """What opens a scope."""
+    """The kinds of constructs that open scopes."""
 
     MODULE = "module"
     CLASS = "class"
@@ -71,7 +71,7 @@ class ScopeKind(StrEnum):
 
 
 class BindingKind(StrEnum):
-    """How a name is bound."""
+    """The ways in which names are bound."""
 
     VARIABLE = "variable"
     PARAMETER = "parameter"
@@ -149,7 +149,7 @@ class Scope:
             scope = scope.parent
 
     def lookup(self, name: str) -> Binding | None:
-        """What a read of ``name`` in this scope means; ``None`` if no scope within the module binds it in reach.
+        """The binding that a read of ``name`` in this scope means; ``None`` if no scope within the module binds it in reach.
 
         As in Python, the names of a class body are out of reach of the functions in it.
         """
@@ -177,7 +177,7 @@ class Reference:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Contents:
-    """What is in a stretch of the top level, as far as it can be told without what stands around it.
+    """The names and nodes in a stretch of the top level, as far as they do not depend on other stretches.
 
     ``bound`` gives the nodes that bind each name of the module, and how. ``references`` to names of the module have no
     binding here. ``nodes``, ``scopes``, ``nonlocals`` and ``tolerated`` are as in `Resolution`; ``reserved`` are the
@@ -236,7 +236,7 @@ class Stretch:
 
     @property
     def contents(self) -> Contents:
-        """What is in it."""
+        """The contents of the stretch."""
         if self._contents is None:
             # Scopes are compared by identity: all threads must have the same.
             with self._lock:
@@ -248,7 +248,7 @@ class Stretch:
 
     @cached_property
     def keys(self) -> tuple[object, ...]:
-        """What each statement has in common with its copies on other lines, and with no other statement."""
+        """Keys of the statements: each is shared with copies on other lines, and with no other statement."""
         return tuple(key_of(each) for each in self.statements)
 
     @cached_property
@@ -302,7 +302,7 @@ class Stretch:
 
     @cached_property
     def loaded(self) -> frozenset[Binding]:
-        """What is read here of what scopes within the module bind."""
+        """Names of scopes within the module that are read here."""
         return frozenset(
             each.binding
             for each in self.references.values()
@@ -417,7 +417,7 @@ def _needs(stretch: Stretch) -> Mapping[str, frozenset[str]]:
 
 
 def key_of(statement: ast.stmt) -> object:
-    """What a statement of the top level has in common with its copies on other lines, and with no other statement."""
+    """The key of a statement of the top level: shared with its copies on other lines, and with no other statement."""
     # Copies have the attributes of the original.
     return statement.__dict__.setdefault("scenic_key", object())
 
@@ -494,7 +494,7 @@ class Resolution:
 
     @cached_property
     def references(self) -> Mapping[ast.AST, Reference]:
-        """What each name means, in no particular order.
+        """The meanings of names, in no particular order.
 
         Names bound by other nodes than ``ast.Name`` (functions, parameters, imports, captures) are found through
         `Binding.sites`.
@@ -586,7 +586,7 @@ class Resolution:
         return frozenset().union(*(each.used for each in self.stretches))
 
     def is_read(self, binding: Binding) -> bool:
-        """Whether the value of a binding is read anywhere."""
+        """Return whether the value of a binding is read anywhere."""
         if binding.scope is self.module:
             return any(binding.name in each.read for each in self.stretches)
         return any(binding in each.loaded for each in self.around(binding.scope.node))
@@ -611,7 +611,7 @@ class Resolution:
         return found if binding is found.binding else Reference(found.node, found.scope, binding)
 
     def binding(self, name: ast.AST) -> Binding | None:
-        """What a name of the program means, as far as the text says."""
+        """The meaning of a name of the program, as far as the text shows it."""
         reference = self.reference(name)
         return None if reference is None else reference.binding
 
@@ -632,11 +632,11 @@ class Resolution:
         return next((each.scopes[node] for each in self.around(node) if node in each.scopes), None)
 
     def lookup(self, name: str, scope: Scope) -> Binding | None:
-        """What a read of ``name`` in a scope means; ``None`` if the text binds it nowhere in reach."""
+        """The binding that a read of ``name`` in a scope means; ``None`` if the text binds it nowhere in reach."""
         return scope.lookup(name) or self.names.get(name)
 
     def bindings(self, scope: Scope) -> Mapping[str, Binding]:
-        """What is bound in a scope."""
+        """The bindings of a scope."""
         return self.names if scope.kind is ScopeKind.MODULE else scope.bindings
 
     def names_in_reach(self, scope: Scope) -> set[str]:

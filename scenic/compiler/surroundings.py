@@ -1,4 +1,4 @@
-"""What the checks of one program are told about the modules that it imports.
+"""Facts about the modules that a program imports, for the checks of that program.
 
 The compiler looks into no other file. Who knows the project (`scenic.project`) hands a `Surroundings` to the checks; a
 program that is compiled to be run has none, and whatever an import brings is unknown then.
@@ -28,7 +28,7 @@ class Property:
 
 @dataclass(frozen=True, slots=True)
 class Foreign:
-    """What another module defines under a name.
+    """The definition of a name in another module.
 
     ``definition`` is the one definition that it can only mean, without decorators; ``None`` if there may be others.
     ``parameters`` are those of a class that is called like a function. ``properties`` are those of a class of objects,
@@ -46,40 +46,40 @@ class Foreign:
 
 
 class Surroundings(Protocol):
-    """What is known about the imports of a program."""
+    """Facts about the imports of a program."""
 
     @property
     def state(self) -> object:
-        """What stands for all other modules: equal as long as nothing of them has changed."""
+        """A value that stands for all other modules: equal as long as nothing of them has changed."""
 
     @property
     def complete(self) -> bool:
-        """Whether ``names`` are all names that star imports and the model bring."""
+        """Return whether ``names`` are all names that star imports and the model bring."""
 
     @property
     def names(self) -> Collection[str]:
         """The names that star imports and the model bring."""
 
     def brought(self, name: str) -> Foreign | None:
-        """What one of ``names`` means; ``None`` if that is not known."""
+        """The meaning of one of ``names``; ``None`` if it is not known."""
 
     def imported(self, alias: ast.alias) -> Foreign | None:
-        """What ``from m import name`` brings; ``None`` if that is not known."""
+        """The definition that ``from m import name`` brings; ``None`` if it is not known."""
 
     def attribute(self, node: ast.Attribute) -> Foreign | None:
-        """What ``m.name`` means, where ``m`` is an imported module; ``None`` if that is not known."""
+        """The meaning of ``m.name``, where ``m`` is an imported module; ``None`` if it is not known."""
 
     def is_missing(self, alias: ast.alias) -> bool:
-        """Whether nothing is known that an import of a name could mean."""
+        """Return whether nothing is known that an import of a name could mean."""
 
     def is_begun(self, alias: ast.alias) -> bool:
-        """Whether what an import names is missing, and the beginning of something that is there."""
+        """Return whether what an import names is missing, and the beginning of something that is there."""
 
     def sets_ego(self, statement: ast.Import | ast.ImportFrom | scenic.Model) -> bool:
-        """Whether an import may bring an ego along."""
+        """Return whether an import may bring an ego along."""
 
     def findings(self) -> Iterator[Diagnostic]:
-        """What is wrong with the imports themselves."""
+        """The faults of the imports themselves."""
 
 
 SurroundingsOf = Callable[[ast.Module, Source, Resolution], Surroundings]

@@ -54,7 +54,7 @@ class Kind:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """What another rule matches."""
+    """The text that another rule matches."""
 
     rule: str
 
@@ -137,7 +137,7 @@ class StatementForm:
 
     @property
     def is_soft(self) -> bool:
-        """Whether it starts with a word that is a name elsewhere."""
+        """Return whether it starts with a word that is a name elsewhere."""
         return self.start in SOFT_KEYWORDS
 
 

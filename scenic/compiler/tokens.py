@@ -42,7 +42,7 @@ class Tokens:
     diagnostics: list[Diagnostic] = field(default_factory=list)
 
     def lists(self) -> "TokenLists":
-        """What a parser reads; it looks at a few tokens after the present one, so the kinds go on a little."""
+        """The input of a parser, which looks at a few tokens after the present one: so the kinds go on a little."""
         return (
             [*self.kinds, 0, 0, 0, 0],
             self.texts,

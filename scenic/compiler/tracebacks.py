@@ -60,7 +60,7 @@ class Locator:
         return self._places[key]
 
     def name(self, where: FrameType) -> tuple[str, int] | None:
-        """What tells a place from others, and stays the same when lines are added elsewhere.
+        """A name that tells a place from others, and stays the same when lines are added elsewhere.
 
         The text of the line without its comment, and the column in it.
         """

@@ -369,7 +369,7 @@ class ScenarioDef(ScenicStatement):
 
 
 def is_documentation(node: ast.stmt) -> bool:
-    """Whether a statement is a plain string, as a docstring is."""
+    """Return whether a statement is a plain string, as a docstring is."""
     if node.__class__ is not ast.Expr:
         return False
     value = node.value

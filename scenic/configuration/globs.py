@@ -12,7 +12,7 @@ _BECOMES: Final = {"**/": "(?:.*/)?", "**": ".*", "*": "[^/]*", "?": "[^/]"}
 
 
 def matches(parts: Sequence[str], pattern: str) -> bool:
-    """Whether a pattern stands for a path, given by its parts, or for a folder above it.
+    """Return whether a pattern stands for a path, given by its parts, or for a folder above it.
 
     A pattern without a slash may stand for any part, another one begins with the first. ``*`` and ``?`` stop at
     slashes, ``**`` does not, and ``[...]`` is one of several characters.

@@ -41,7 +41,7 @@ class Configuration:
     problems: tuple[Diagnostic, ...] = ()
 
     def excludes(self, path: str) -> bool:
-        """Whether a file or folder is left out when folders are searched."""
+        """Return whether a file or folder is left out when folders are searched."""
         return any(self._matches(path, pattern) for pattern in self.exclude)
 
     def rules_for(self, path: str, select: Sequence[str] = (), ignore: Sequence[str] = ()) -> Rules:
@@ -61,7 +61,7 @@ class Configuration:
 
 
 PLAIN: Final = Configuration()
-"""What holds without any settings."""
+"""The configuration without any settings."""
 
 
 class Configurations:
@@ -99,7 +99,7 @@ class Configurations:
 
     @property
     def problems(self) -> tuple[Diagnostic, ...]:
-        """What is wrong with the configurations found so far."""
+        """The faults of the configurations found so far."""
         used = self._by_folder.values() if self._fixed is None else (self._fixed,)
         return tuple(dict.fromkeys(problem for each in used for problem in each.problems))
 

@@ -37,7 +37,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """What runs are evaluated by; other processes get it whole.
+    """The evaluation of runs; other processes get it whole.
 
     Attributes:
         scenario: the scenario.

@@ -32,7 +32,7 @@ class ExternalSampler:
     """
 
     rejectionFeedback: Any = None
-    """What is told after a candidate that was rejected."""
+    """The feedback after a candidate that was rejected."""
 
     def __init__(self, params: Sequence[Coordinate], globalParams: Mapping[str, Any]) -> None:
         self.params = tuple(params)

@@ -1,4 +1,4 @@
-"""What a search makes small: robustness of requirements, records, expressions, functions."""
+"""Objectives of a search: robustness of requirements, records, expressions, functions."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -40,7 +40,7 @@ _NAMES: Final[Mapping[str, Any]] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Objective:
-    """What is to become small; by default the least robustness of all temporal requirements.
+    """The quantity to make small; by default the least robustness of all temporal requirements.
 
     Attributes:
         name: of a requirement (its label, or ``line 3``), of a ``record final``, or, of scenes, of a parameter.
@@ -55,7 +55,7 @@ class Objective:
 
     @property
     def label(self) -> str:
-        """What to call it."""
+        """The name of the objective in reports."""
         if self.function is not None:
             return getattr(self.function, "__name__", "function")
         return self.expression or self.name or "robustness"

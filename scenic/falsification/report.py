@@ -35,7 +35,7 @@ def load_result(folder: Path) -> FalsificationResult:
 
 
 def importances(result: FalsificationResult) -> list[tuple[str, float]]:
-    """How strongly each coordinate goes with the value: the size of Spearman's rank correlation, the greatest first."""
+    """The strength with which each coordinate goes with the value: the size of Spearman's rank correlation, the greatest first."""
     rows = [row for row in result.rows if row["values"] is not None and math.isfinite(_value(row))]
     if len(rows) < 3:
         return []

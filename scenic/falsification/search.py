@@ -83,7 +83,7 @@ class Plan:
 
 @dataclass
 class FalsificationResult:
-    """What a search has found.
+    """The result of a search.
 
     Attributes:
         rows: one mapping for each run: its number ``run``, ``status`` (held, counterexample, rejected, failed), ``values`` of the
@@ -105,7 +105,7 @@ class FalsificationResult:
 
     @property
     def evaluated(self) -> int:
-        """How many runs have a value."""
+        """Number of runs that have a value."""
         return sum(row["values"] is not None for row in self.rows)
 
     @property

@@ -48,7 +48,7 @@ class Coordinate:
 
     @property
     def is_continuous(self) -> bool:
-        """Whether samplers that do not learn take values from all along the coordinate, and not bucket by bucket."""
+        """Return whether samplers that do not learn take values from all along the coordinate, and not bucket by bucket."""
         return self.count is None and not self.is_stratified
 
     def number(self, place: Floats) -> Floats:

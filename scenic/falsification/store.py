@@ -90,7 +90,7 @@ def _manifest(path: Path) -> dict[str, Any]:
 
 
 def manifest_of(folder: Path) -> dict[str, Any]:
-    """What the manifest of a search says; raises `SearchFolderError` if there is none."""
+    """The manifest of a search; raises `SearchFolderError` if there is none."""
     return _manifest(folder / "manifest.json")
 
 

@@ -1,4 +1,4 @@
-"""What a sampled scene is written as: JSON Lines, GLB, an HTML page, PNG images.
+"""Output formats of sampled scenes: JSON Lines, GLB, an HTML page, PNG images.
 
 Everything here reads scenes through the protocols of :mod:`scenic.formats.scenes` and writes complete files or
 none. Nothing here samples, compiles or prints.

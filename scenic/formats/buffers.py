@@ -1,4 +1,4 @@
-"""What rays through the pixels of an image meet first."""
+"""The first hits of rays through the pixels of an image."""
 
 from dataclasses import dataclass
 
@@ -33,7 +33,7 @@ class Buffer:
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """What some rays meet first: objects, ground or sky; an entry for each ray.
+    """The first hits of some rays: objects, ground or sky; an entry for each ray.
 
     Attributes:
         directions: of the rays, ``(n, 3)``.
@@ -109,7 +109,7 @@ class Lens:
 
 
 def seen(lens: Lens, rays: RayScene) -> Buffer:
-    """What each pixel sees through its middle."""
+    """The hit of the ray through the middle of each pixel."""
     directions = lens.through_all(1)
     hits = rays.first_hits(_repeated(lens.eye, directions.size // 3), directions.reshape(-1, 3))
     parts = (hits.triangle, np.float32(1) / hits.distance, hits.second, hits.third)
@@ -117,7 +117,7 @@ def seen(lens: Lens, rays: RayScene) -> Buffer:
 
 
 def look(stage: Stage, eye: Singles, directions: Singles) -> Seen:
-    """What rays from an eye ``(3,)`` or eyes ``(n, 3)`` meet first in directions ``(n, 3)``."""
+    """The first hits of rays from an eye ``(3,)`` or eyes ``(n, 3)`` in directions ``(n, 3)``."""
     hits = stage.rays.first_hits(_repeated(eye, len(directions)), directions)
     return grounded(
         stage, eye, directions, hits.triangle, np.float32(1) / hits.distance, hits.second, hits.third
@@ -144,7 +144,7 @@ def grounded(
 
 
 def falls(stage: Stage, eye: Singles, directions: Singles) -> npt.NDArray[np.bool_]:
-    """Whether rays reach the ground if nothing else stops them, ``(n,)``."""
+    """Return whether rays reach the ground if nothing else stops them, ``(n,)``."""
     return np.asarray((directions[:, 2] < -1e-6) & (eye[..., 2] > stage.ground))
 
 

@@ -32,7 +32,7 @@ _MOST: Final = 65535
 
 @dataclass(frozen=True, slots=True)
 class Shot:
-    """What a camera gives of one scene.
+    """The images of one scene from a camera.
 
     Attributes:
         files: contents by names: the images, then the labels.

@@ -51,7 +51,7 @@ class _Shown:
 
 
 def course_data(course: Course, tape: PoseTape) -> dict[str, Any]:
-    """What the page needs of a simulation, all of whose states are on the tape, as plain data."""
+    """The data that the page needs of a simulation, all of whose states are on the tape, as plain data."""
     page = Page("")
     instances = page.add(_Shown(course))
     data = page.data()

@@ -32,7 +32,7 @@ def _reason(error: OSError) -> str:
 
 
 def is_special(path: Path) -> bool:
-    """Whether the path names a device or a pipe, to which a name cannot be given anew."""
+    """Return whether the path names a device or a pipe, to which a name cannot be given anew."""
     try:
         mode = path.stat().st_mode
     except OSError:
@@ -126,7 +126,7 @@ def writing(path: Path) -> Iterator[BinaryIO]:
 
 
 class Waiting:
-    """What is to be in the file ``path``, in a file without a name in the same folder; raises ``OutputError``."""
+    """A file without a name in the folder of ``path``, to become the file of that name; raises ``OutputError``."""
 
     def __init__(self, path: Path) -> None:
         self._path = path

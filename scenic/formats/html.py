@@ -68,7 +68,7 @@ class Page:
         return self._outlines.setdefault(text, len(self._outlines))
 
     def data(self) -> dict[str, Any]:
-        """What the page holds, as plain data."""
+        """The contents of the page, as plain data."""
         return {
             "meshes": [_mesh(surface) for surface in self._gallery.surfaces],
             "scenes": self._scenes,

@@ -137,7 +137,7 @@ class Gallery:
         return tuple(self._surfaces)
 
     def add(self, scene: Scene) -> tuple[Instance, ...]:
-        """What is drawn of a scene: all but objects with ``render`` false and those of no size."""
+        """Add a scene: all objects but those with ``render`` false and those of no size."""
         instances = []
         names = scene.names
         shades: Counter[str] = Counter()
@@ -189,7 +189,7 @@ class Gallery:
 
 
 def picture(scenes: Iterable[Scene]) -> Picture:
-    """What is to be drawn of the scenes."""
+    """The picture of the scenes."""
     gallery = Gallery()
     drawn = [(gallery.add(scene), scene.params) for scene in scenes]
     return Picture(gallery.surfaces, tuple(item for item, _ in drawn), tuple(params for _, params in drawn))

@@ -1,4 +1,4 @@
-"""What a camera sees of a scene, exactly: images by pixel, and what is known of every object in them.
+"""Exact images of a scene from a camera, by pixel, with the facts about every object in them.
 
 The label ``visible`` is the answer of `can see` for an observer in the camera's place with its view angles, its owner's
 `visibleDistance` and one ray for each pixel (`viewRayCount`). Rays of `can see` stand evenly in azimuth and altitude and
@@ -30,7 +30,7 @@ from scenic.runtime.geometry.visibility.seen_bodies import sees_bodies
 from scenic.runtime.geometry.visibility.views import CORNERS, Views
 
 DEFAULT_RANGE = 50.0
-"""How far objects see that say nothing else, metres."""
+"""Range of view of objects that give none, metres."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +84,7 @@ class Label:
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """What a camera sees of a scene.
+    """The images and facts that a camera sees of a scene.
 
     Attributes:
         viewpoint: the camera.
@@ -114,7 +114,7 @@ def observe(
     labelled: bool = True,
     painted: bool = False,
 ) -> Observation:
-    """What a camera sees of a scene.
+    """Observe a scene with a camera; a gallery shares what is known of meshes between scenes.
 
     Args:
         scene: the scene.

@@ -1,4 +1,4 @@
-"""How much of the sun and of the sky reaches what an image shows.
+"""The share of the sun and of the sky that reaches what an image shows.
 
 Both are estimated by rays, sparsely: at every other row and column of the coarse image (`scenic.formats.render`), its
 *nodes*. From there light is spread over the surfaces; where the nodes around a place disagree, as in half shadow, it

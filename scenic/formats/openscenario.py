@@ -129,7 +129,7 @@ def openscenario_document(
 
 
 def stands_on_ground(scene: Any) -> bool:
-    """Whether positions in a scene are on the ground, as on flat maps, rather than in the middle of the objects."""
+    """Return whether positions in a scene are on the ground, as on flat maps, rather than in the middle of the objects."""
     return bool(scene.program.context.mode_2d or scene.params.get("use2DMap"))
 
 

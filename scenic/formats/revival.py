@@ -46,7 +46,7 @@ class RevivedScene:
         )
 
     def origin(self, thing: RevivedObject) -> "RevivedOrigin":
-        """What is known of an object: the properties that its line tells."""
+        """The facts about an object: the properties that its line tells."""
         return RevivedOrigin(thing)
 
 

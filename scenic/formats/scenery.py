@@ -1,4 +1,4 @@
-"""What pictures of a scene show beside its objects: the sun, the sky and the ground, as the scene's parameters say.
+"""Surroundings in pictures of a scene: the sun, the sky and the ground, as the scene's parameters say.
 
 ``param lighting`` is a mapping with ``sun`` (azimuth and elevation in radians; azimuths as headings, anticlockwise from North),
 ``sunlight`` and ``skylight`` (factors of the usual strength) and ``exposure`` (in stops). ``param backdrop`` is one with ``ground``,

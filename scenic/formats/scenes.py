@@ -1,4 +1,4 @@
-"""What the writers need to know of a scene: structural types that the runtime's scenes and objects satisfy."""
+"""The parts of scenes that writers need: structural types that the runtime's scenes and objects satisfy."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Protocol
@@ -79,7 +79,7 @@ class SceneObject(Protocol):
 
 
 class Origin(Protocol):
-    """What an object is in all scenes of its program."""
+    """The description of an object in all scenes of its program."""
 
     @property
     def names(self) -> Sequence[str]:
@@ -101,7 +101,7 @@ class Scene(Protocol):
     """A sampled scene."""
 
     def origin(self, thing: Any) -> Origin:
-        """What an object of the scene is in all scenes."""
+        """The description of an object of the scene in all scenes."""
 
     @property
     def seed(self) -> int: ...
@@ -111,7 +111,7 @@ class Scene(Protocol):
 
     @property
     def attempts(self) -> int:
-        """How many candidates were drawn until this one met every requirement."""
+        """Number of candidates that were drawn until this one met every requirement."""
 
     @property
     def params(self) -> Mapping[str, object]: ...

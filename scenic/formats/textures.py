@@ -74,7 +74,7 @@ PATTERNS: Final[Mapping[str, Callable[[Singles], Singles]]] = {
     "stripes": _stripes,
     "noise": _noise,
 }
-"""How much of the second colour there is at places, in cells of size 1, by the name of the pattern."""
+"""The share of the second colour at places, in cells of size 1, by the name of the pattern."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ class Texture:
     color: tuple[float, float, float]
 
     def share(self, places: Singles) -> Singles:
-        """How much of the second colour there is at places in the object's frame ``(n, 3)``, metres."""
+        """The share of the second colour at places in the object's frame ``(n, 3)``, metres."""
         return PATTERNS[self.pattern](places / np.float32(self.scale) + np.float32(_SHIFT))
 
 

@@ -55,7 +55,7 @@ class Trajectory:
         return self.positions[:, self.index(name)]
 
     def orientation(self, name: str) -> Array:
-        """How it stood, ``(s, 4)``: quaternions x, y, z, w."""
+        """The orientations of the object, ``(s, 4)``: quaternions x, y, z, w."""
         return self.orientations[:, self.index(name)]
 
     def size(self, name: str) -> tuple[float, float, float]:
@@ -64,7 +64,7 @@ class Trajectory:
         return width, length, height
 
     def record(self, name: str) -> Any:
-        """What a ``record`` statement saved: of a series, which is kept as pairs of step and value, the values alone."""
+        """The values that a ``record`` statement saved: of a series, which is kept as pairs of step and value, the values alone."""
         found = self.about["records"][name]
         is_series = isinstance(found, list) and all(
             isinstance(item, list) and len(item) == 2 for item in found

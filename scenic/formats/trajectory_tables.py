@@ -101,7 +101,7 @@ class ParquetFile:
 
 
 def parquet_about(path: Path) -> dict[str, Any]:
-    """What is said of the whole simulation; raises ``ValueError`` for a file that is none of ours."""
+    """The facts about the whole simulation; raises ``ValueError`` for a file of another kind."""
     pyarrow, parquet = parquet_support()
     try:
         metadata = parquet.read_schema(path).metadata or {}

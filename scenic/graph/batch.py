@@ -77,11 +77,11 @@ class Batch:
         self._rejections = rejections
         self._meter = meter
         self.rows: NDArray[np.intp] = np.arange(len(source))
-        """Which of the first lanes each present lane is, ascending."""
+        """The numbers of the present lanes among the first ones, ascending."""
         self.errors: dict[Node, Exception] = {}
-        """What went wrong at a node; exact only in a batch of one lane whose nodes are evaluated singly."""
+        """The error at a node; exact only in a batch of one lane whose nodes are evaluated singly."""
         self.has_faults = False
-        """Whether an operation has failed in some lane."""
+        """True if an operation has failed in some lane."""
         self._generation = 0
         self._kept: list[NDArray[np.intp]] = []
         self._schedule: Schedule = scheduler.start

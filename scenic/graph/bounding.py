@@ -1,4 +1,4 @@
-"""What is known of a node's value without sampling: the bounds of its kind, of a constant, of the whole cube."""
+"""Bounds of a node's value without sampling: those of its kind, of a constant, of the whole cube."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence

@@ -28,7 +28,7 @@ class Bounds:
         return Bounds(array, array)
 
     def empty(self) -> NDArray[np.bool_]:
-        """Which boxes admit no value, shape ``(m,)``."""
+        """The mask of the boxes that admit no value, shape ``(m,)``."""
         bad: NDArray[np.bool_] = np.logical_not(self.lower <= self.upper)
         return np.asarray(bad.reshape(len(bad), -1).any(axis=1))
 

@@ -64,7 +64,7 @@ class Domain:
 
     @property
     def is_whole(self) -> bool:
-        """Whether nothing of the cube is left out."""
+        """Return whether nothing of the cube is left out."""
         return all(
             len(part.lower) == 1 and bool((part.lower == 0).all() and (part.upper == 1).all())
             for part in self.parts
@@ -154,7 +154,7 @@ class Domain:
         return np.asarray(np.cumsum(volumes) / volumes.sum())
 
     def contains(self, points: Floats) -> NDArray[np.bool_]:
-        """Which points of the cube, shape ``(n, dimension)``, lie in the domain; shape ``(n,)``."""
+        """The mask ``(n,)`` of the points of the cube, shape ``(n, dimension)``, that lie in the domain."""
         everywhere = np.ones(len(points), dtype=np.bool_)
         for part in self.parts:
             inside = np.zeros(len(points), dtype=np.bool_)

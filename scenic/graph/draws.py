@@ -44,7 +44,7 @@ def address(*parts: object) -> int:
 
 
 BOX: Final = address("box of the domain")
-"""Which box of a domain of several is drawn from."""
+"""Address of the draw that chooses a box where a domain has several."""
 
 
 def box_addresses(parts: int) -> Words:
@@ -113,7 +113,7 @@ class Source(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Lanes:
-    """Whose numbers those of a number of lanes are: attempts ``(n,)`` at scenes ``(n,)`` of seeds ``(n,)``.
+    """The owners of the numbers of some lanes: attempts ``(n,)`` at scenes ``(n,)`` of seeds ``(n,)``.
 
     ``seeds`` are words (`seed_word`), ``keys`` (`attempt_keys`) what the hash gives for all three.
     """
@@ -206,7 +206,7 @@ class Points:
 
 
 def each_of_distinct(source: Source, addresses: Words) -> Floats:
-    """What `Source.uniform_each` gives, by way of all lanes' numbers of all those addresses."""
+    """The numbers of `Source.uniform_each`, by way of all lanes' numbers of all those addresses."""
     distinct, which = np.unique(addresses, return_inverse=True)
     numbers: Floats = source.uniforms(distinct)[which, np.arange(len(addresses))]
     return numbers

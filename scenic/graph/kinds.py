@@ -35,9 +35,9 @@ class Kind(Enum):
     trailing: tuple[int, ...]
     """Shape of one lane's value."""
     is_number: bool
-    """Whether Python's arithmetic applies to the column as it is."""
+    """True if Python's arithmetic applies to the column as it is."""
     is_boxed: bool
-    """Whether columns of this kind hold Python objects."""
+    """True if columns of this kind hold Python objects."""
 
     def __new__(cls, word: str, dtype: type[Any], trailing: tuple[int, ...] = ()) -> Self:
         kind = object.__new__(cls)

@@ -26,7 +26,7 @@ _DEEPEST: Final = 64
 
 
 def is_choice_of_draws(node: Node) -> bool:
-    """Whether a node takes one of several axes: a lane draws that one alone."""
+    """Return whether a node takes one of several axes: a lane draws that one alone."""
     return node.operation is SELECT and all(option.is_axis for option in node.operands[1:])
 
 

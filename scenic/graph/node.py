@@ -62,7 +62,7 @@ class Node:
 
     @property
     def runs_python(self) -> bool:
-        """Whether evaluation calls Python functions lane by lane, which may be the program's own."""
+        """Return whether evaluation calls Python functions lane by lane, which may be the program's own."""
         return self.operation.runs_python(self.operands, self.kind)
 
     @property
@@ -76,17 +76,17 @@ class Node:
 
     @property
     def is_constant(self) -> bool:
-        """Whether the value is fixed."""
+        """Return whether the value is fixed."""
         return self.operation is CONSTANT
 
     @property
     def is_axis(self) -> bool:
-        """Whether this is an axis of the unit cube."""
+        """Return whether this is an axis of the unit cube."""
         return self.operation is AXIS
 
     @property
     def is_drawn(self) -> bool:
-        """Whether the value comes straight from the source of random numbers: an axis, or a key."""
+        """Return whether the value comes straight from the source of random numbers: an axis, or a key."""
         return self.operation is AXIS or self.operation is KEY
 
     @property

@@ -1,4 +1,4 @@
-"""What an entry of the table of operations consists of: one operation, all its readings side by side."""
+"""An entry of the table of operations: one operation, all its readings side by side."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ Status = NDArray[np.int8]
 
 
 class Operand(Protocol):
-    """What rules over operands may know of one before anything is evaluated (`scenic.graph.node.Node`)."""
+    """The facts about an operand before anything is evaluated (`scenic.graph.node.Node`)."""
 
     @property
     def kind(self) -> Kind:
@@ -35,7 +35,7 @@ class Operand(Protocol):
 
     @property
     def is_constant(self) -> bool:
-        """Whether it is fixed."""
+        """Return whether it is fixed."""
 
     @property
     def value(self) -> Any:
@@ -172,7 +172,7 @@ KindRule = Callable[[Sequence[Any], Any], Kind]
 """``(operands, payload) -> kind`` of the result; the operands are each an `Operand`."""
 
 Declared = bool | Callable[[Sequence[Any], Any], bool]
-"""Whether something may happen in some lane: a fact of the operation, or of its operands and payload."""
+"""True if something may happen in some lane: a fact of the operation, or of its operands and payload."""
 
 CutsReading = Callable[[Any, Sequence[Any]], Any]
 """``(payload, operands) -> cuts``: the first points ``(m,)`` of the axis, ascending, from which a discrete value is the next one.
@@ -231,13 +231,13 @@ class Operation:
     missing: str = "value"
 
     def may_fault(self, operands: Sequence[Operand], payload: Any, kind: Kind) -> bool:
-        """Whether a lane may fail at a node of this operation, given fine operands."""
+        """Return whether a lane may fail at a node of this operation, given fine operands."""
         if self.is_python(operands, kind):
             return True
         return self.faults(operands, payload) if callable(self.faults) else self.faults
 
     def may_reject(self, operands: Sequence[Operand], payload: Any, kind: Kind) -> bool:
-        """Whether a lane may have no value at a node of this operation, given fine operands."""
+        """Return whether a lane may have no value at a node of this operation, given fine operands."""
         if self.is_python(operands, kind):
             return True
         return self.rejects(operands, payload) if callable(self.rejects) else self.rejects
@@ -247,13 +247,13 @@ class Operation:
         return operands if self.looks_at is None else operands[self.looks_at(payload)]
 
     def is_python(self, operands: Sequence[Operand], kind: Kind) -> bool:
-        """Whether a node is evaluated lane by lane by the ``python`` function, which may raise anything."""
+        """Return whether a node is evaluated lane by lane by the ``python`` function, which may raise anything."""
         if self.python is None or not self.strict:
             return False
         return kind.is_boxed or any(operand.kind.is_boxed for operand in operands)
 
     def runs_python(self, operands: Sequence[Operand], kind: Kind) -> bool:
-        """Whether evaluation of a node calls Python functions lane by lane, which may be the program's own."""
+        """Return whether evaluation of a node calls Python functions lane by lane, which may be the program's own."""
         return self.calls_code or self.is_python(operands, kind)
 
 

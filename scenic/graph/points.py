@@ -19,7 +19,7 @@ class PointSet(Protocol):
 
     @property
     def retries(self) -> bool:
-        """Whether a row has other numbers for a scene whose first ones do not meet the requirements."""
+        """Return whether a row has other numbers for a scene whose first ones do not meet the requirements."""
 
     def of_scenes(self, axes: NDArray[np.intp], count: int, lanes: Lanes) -> Floats:
         """The numbers ``(axes, lanes)`` of some of a program's ``count`` axes; NaN where a row has none, which are hashed.

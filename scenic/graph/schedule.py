@@ -70,11 +70,11 @@ class Step:
     operands: tuple[Gather, ...]
     nodes: tuple[Node, ...]
     stacked: bool
-    """Whether the operation takes the dimension of the members; if not there is one member."""
+    """True if the operation takes the dimension of the members; if not there is one member."""
     is_python: bool
-    """Whether Python's own function evaluates it lane by lane."""
+    """True if Python's own function evaluates it lane by lane."""
     may_mark: bool
-    """Whether the operation declares that lanes may fail or be rejected."""
+    """True if the operation declares that lanes may fail or be rejected."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,7 @@ class ChosenDraw:
 
     slot: Slot
     index: Gather
-    """Which one."""
+    """Number of the stage."""
     addresses: Words
     axes: np.ndarray[Any, np.dtype[np.intp]]
     """Numbers of the axes in the domain."""
@@ -104,7 +104,7 @@ AnyStep = Draw | ChosenDraw | Step
 
 @dataclass(frozen=True, slots=True)
 class Schedule:
-    """What to do to get some nodes; afterwards they, and what else is kept, are at ``places``."""
+    """The steps to take to get some nodes; afterwards they, and what else is kept, are at ``places``."""
 
     steps: tuple[AnyStep, ...]
     places: Mapping[Node, Place]
@@ -141,7 +141,7 @@ class Scheduler:
         return _START
 
     def after(self, before: Schedule, roots: tuple[Node, ...]) -> Schedule:
-        """What gets ``roots`` once ``before``, which keeps all, has been done."""
+        """The schedule that gets ``roots`` once ``before``, which keeps all, has been done."""
         key = (id(before), roots)
         schedule = self._known.get(key)
         if schedule is None:
@@ -152,7 +152,7 @@ class Scheduler:
         return schedule
 
     def chain(self, stages: Sequence[Sequence[Node]]) -> tuple[Schedule, ...]:
-        """What gets the nodes of one stage after the other, from nothing, freeing each column after its last use.
+        """Schedules that get the nodes of one stage after the other, from nothing, and free each column after its last use.
 
         A stage's nodes can be read until the next one begins; those of the last are kept.
         """
@@ -183,7 +183,7 @@ class Scheduler:
         )
 
     def below(self, roots: Iterable[Node]) -> frozenset[Node]:
-        """What is evaluated to get some nodes when nothing is there."""
+        """The nodes that are evaluated to get some nodes when nothing is there."""
         return frozenset(self._missing(roots, {}))
 
     def without_python(self, roots: Sequence[Node]) -> tuple[Node, ...]:

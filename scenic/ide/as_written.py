@@ -1,4 +1,4 @@
-"""What a formatted statement keeps of its spelling: numbers, and parentheses that group what an operator takes.
+"""The parts of its spelling that a formatted statement keeps: numbers, and parentheses that group operands.
 
 The unparser writes values and the parentheses that precedence asks for. Its tokens are laid beside those of the text; where the
 two differ in another way than in numbers, quotes and parentheses, the unparser's text stays as it is.

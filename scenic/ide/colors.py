@@ -32,7 +32,7 @@ def colors(snapshot: Snapshot) -> tuple[Color, ...]:
 
 
 def presentation(red: float, green: float, blue: float, opacity: float) -> str:
-    """How a colour is written."""
+    """The text of a colour."""
     parts = [red, green, blue] if opacity == 1 else [red, green, blue, opacity]
     return "(" + ", ".join(f"{round(part, 3):g}" for part in parts) + ")"
 

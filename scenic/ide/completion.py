@@ -1,4 +1,4 @@
-"""What can be written at a place: words that the grammar allows there, names that are in scope, members, modules."""
+"""Completions at a place: words that the grammar allows there, names that are in scope, members, modules."""
 
 import ast
 import builtins
@@ -80,7 +80,7 @@ _BLOCKS: Final[Mapping[str, str]] = {
 
 
 def completions(project: Project, snapshot: Snapshot, line: int, column: int) -> Completions:
-    """What can be written at a place: ``line`` from 1, ``column`` in characters from 0. Nothing in comments."""
+    """Completions at a place: ``line`` from 1, ``column`` in characters from 0. None in comments."""
     content = snapshot.source.line(line)[:column]
     begun = _BEGUN.search(content)
     start = column if begun is None else begun.start()
@@ -101,13 +101,13 @@ def completions(project: Project, snapshot: Snapshot, line: int, column: int) ->
 
 
 def must_follow(snapshot: Snapshot, line: int, column: int) -> bool:
-    """Whether something must follow after the blank before a place: possibilities are not offered after each."""
+    """Return whether something must follow after the blank before a place: possibilities are not offered after each."""
     before = snapshot.source.line(line)[:column].split()
     return bool(before) and (before[-1].endswith(",") or (before[-1] in WORDS and before[-1].isidentifier()))
 
 
 def document(project: Project, snapshot: Snapshot | None, key: tuple[str, ...]) -> str | None:
-    """What a reader should know of a possibility, in Markdown."""
+    """The documentation of a possibility, in Markdown."""
     match key:
         case ("specifier", name):
             return documentation.of_specifier(SPECIFIERS[name]) if name in SPECIFIERS else None

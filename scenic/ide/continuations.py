@@ -24,7 +24,7 @@ __all__ = ["Continuation", "Continuations", "PhraseKind", "continuations", "prep
 
 
 class PhraseKind(StrEnum):
-    """What a word begins."""
+    """The kinds of phrases that a word begins."""
 
     SPECIFIER = "specifier"
     OPERATOR = "operator"
@@ -66,7 +66,7 @@ class Continuation:
 
     @property
     def markdown(self) -> str | None:
-        """What a reader should know of it."""
+        """The documentation of the phrase, in Markdown."""
         match self.kind:
             case PhraseKind.SPECIFIER:
                 return documentation.of_specifier(SPECIFIERS[self.name])
@@ -82,7 +82,7 @@ class Continuation:
 
 @dataclass(frozen=True, slots=True)
 class Continuations:
-    """What may stand at a place: ``items`` of the language, and by ``labels`` and ``kinds`` other things.
+    """The possible continuations at a place: ``items`` of the language, and by ``labels`` and ``kinds`` other things.
 
     Labels are those of the grammar's rules: ``"an expression"``, ``"a condition"``, ``"an argument"``, ``"a pattern"``,
     ``"a name"`` (after ``new``, of a class), ``"the name of a module"``; kinds those of tokens: ``"NAME"`` where a new name or
@@ -100,7 +100,7 @@ _NOWHERE: Final = Continuations((), frozenset(), frozenset(), ())
 
 
 def continuations(text: str, line: int, column: int) -> Continuations:
-    """What may stand at ``line`` (from 1) and ``column`` (in characters from 0); a word begun there is not looked at.
+    """The possible continuations at ``line`` (from 1) and ``column`` (in characters from 0); a word begun there is not looked at.
 
     Nothing in strings and comments, and after a mistake in the same statement. Runs nothing of the program.
     """

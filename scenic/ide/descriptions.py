@@ -1,4 +1,4 @@
-"""What a reader should know of something that has a name, as Markdown: its header, its documentation, its place."""
+"""Descriptions of named things, as Markdown: header, documentation, place."""
 
 import ast
 import builtins

@@ -1,4 +1,4 @@
-"""What is wrong with a document, as the editor shows it: the same as ``scenic check``."""
+"""Diagnostics of a document, as the editor shows them: the same as ``scenic check``."""
 
 from collections.abc import Callable
 

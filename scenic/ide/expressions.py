@@ -1,4 +1,4 @@
-"""What an expression would mean at a place of a document, though it does not stand there as a whole yet."""
+"""The meaning of an expression at a place of a document, though it does not stand there as a whole yet."""
 
 import ast
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""What an editor can fold: blocks, what stands in brackets, long strings, runs of comments and of imports."""
+"""Parts of a text that an editor can fold: blocks, brackets, long strings, runs of comments and of imports."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ _IMPORTS = frozenset({"import", "from", "model"})
 
 
 class FoldKind(StrEnum):
-    """What is folded, as far as editors treat it in a way of its own."""
+    """The kinds of folds that editors treat in a way of their own."""
 
     CODE = "code"
     COMMENT = "comment"

@@ -1,4 +1,4 @@
-"""Who calls whom, and which class derives from which."""
+"""Hierarchies of calls and of classes."""
 
 import ast
 from collections.abc import Iterator
@@ -58,7 +58,7 @@ def class_at(project: Project, filename: str, line: int, column: int) -> Symbol 
 
 
 def callers(project: Project, symbol: Symbol) -> tuple[Call, ...]:
-    """What calls a function: each caller once. Code outside of functions is its module."""
+    """The callers of a function, each once. Code outside of functions is its module."""
     found: dict[Symbol, list[Span]] = {}
     for place in references(project, symbol):
         module = project.module(place.filename)
@@ -72,7 +72,7 @@ def callers(project: Project, symbol: Symbol) -> tuple[Call, ...]:
 
 
 def callees(project: Project, symbol: Symbol) -> tuple[Call, ...]:
-    """What a function calls: each callee once, with the places of the calls in the function."""
+    """The callees of a function, each once, with the places of the calls in the function."""
     module, node = symbol.module, symbol.node
     if module is None or node is None:
         return ()

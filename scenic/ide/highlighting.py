@@ -1,4 +1,4 @@
-"""What a highlighter without a parser should know: the words of the language and the places where they are keywords.
+"""Input of a highlighter without a parser: the words of the language and the places where they are keywords.
 
 Read from the grammar and the declarations; Pygments, TextMate grammars, Vim and the playground show the same. Soft
 keywords are names in most places, so most of them count only within a phrase of several words, or before an operand.
@@ -23,7 +23,7 @@ __all__ = ["PATTERNS", "VOCABULARY", "Category", "Pattern", "Vocabulary", "any_o
 
 
 class Category(StrEnum):
-    """What a piece of text is shown as."""
+    """The categories that pieces of text are shown as."""
 
     STATEMENT = "statement"
     DEFINITION = "definition"
@@ -208,7 +208,7 @@ class Pattern:
 
     @property
     def categories(self) -> tuple[Category, ...]:
-        """What the groups are shown as."""
+        """The categories of the groups."""
         return tuple(category for _, category in self.pieces if category)
 
 

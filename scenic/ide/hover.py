@@ -1,4 +1,4 @@
-"""What a word of a program means: keywords, operators, specifiers, properties, names of the language and of the program."""
+"""Explanations of the words of a program: keywords, operators, specifiers, properties, names of the language and of the program."""
 
 import ast
 from collections.abc import Callable

@@ -191,7 +191,7 @@ def _imports(body: Sequence[ast.stmt]) -> list[ast.Import | ast.ImportFrom | sce
 
 
 def can_organize(snapshot: Snapshot, found: Sequence[Diagnostic]) -> bool:
-    """Whether `organize_imports` has something to do; decided without working out what."""
+    """Return whether `organize_imports` has something to do; decided without working out what."""
     if snapshot.parsed.diagnostics:
         return False
     return any(item.code == _UNUSED for item in found) or organize_imports(snapshot, ()) is not None

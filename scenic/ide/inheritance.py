@@ -1,4 +1,4 @@
-"""Which classes derive from which, and which definitions of a member take each other's place."""
+"""Base and derived classes, and the definitions of members that replace each other."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -55,7 +55,7 @@ def family(project: Project, symbol: Symbol) -> Family:
 
 
 def own_member(cls: Class, name: str) -> Symbol | None:
-    """What a class itself defines under a name."""
+    """The definition of a name in a class itself."""
     member = cls.member(name)
     symbol = None if member is None else member.symbol
     if member is None or symbol is None or symbol.filename != cls.symbol.filename:
@@ -77,7 +77,7 @@ def subclasses(project: Project, symbol: Symbol, *, deep: bool) -> tuple[Symbol,
 
 
 def is_derived(project: Project, symbol: Symbol, base: Symbol, *, deep: bool) -> bool:
-    """Whether a class derives from another one."""
+    """Return whether a class derives from another one."""
     seen: set[Symbol] = set()
     pending = [symbol]
     while pending:

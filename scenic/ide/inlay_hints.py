@@ -1,4 +1,4 @@
-"""What a program leaves unsaid, for editors to show between its words: units, defaults, names of parameters, priorities."""
+"""Hints for editors to show between the words of a program: units, defaults, names of parameters, priorities."""
 
 import ast
 from collections.abc import Iterator
@@ -36,7 +36,7 @@ _DISTANCES: Final = frozenset({"distance"})
 
 
 class HintKind(StrEnum):
-    """What a hint tells."""
+    """The kinds of hints."""
 
     UNIT = "unit"
     DEFAULT = "default"

@@ -1,4 +1,4 @@
-"""What an editor does by itself while one types: comments, brackets, indentation. In the terms of Visual Studio Code,
+"""Behavior of an editor while one types: comments, brackets, indentation. In the terms of Visual Studio Code,
 which other editors have taken over; regular expressions are JavaScript's.
 """
 

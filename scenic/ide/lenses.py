@@ -1,4 +1,4 @@
-"""What can be run in a document: the program itself, and each scenario that it defines."""
+"""Commands to run parts of a document: the program itself, and each scenario that it defines."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class Lens:
 
 
 def lenses(snapshot: Snapshot) -> tuple[Lens, ...]:
-    """What can be run: nothing in a text that makes no objects."""
+    """The commands of a document; none in a text that makes no objects."""
     return snapshot.derived("lenses", lambda: tuple(_find(snapshot)))
 
 

@@ -1,4 +1,4 @@
-"""What can stand after a dot: members of modules, of instances, and of values whose kind the text shows."""
+"""Completions after a dot: members of modules, of instances, and of values whose kind the text shows."""
 
 from collections.abc import Iterator
 
@@ -21,7 +21,7 @@ __all__ = ["members"]
 def members(
     project: Project, snapshot: Snapshot, before: tuple[str, ...], line: int, column: int
 ) -> Iterator[Completion]:
-    """What can stand after the dot that follows ``before``; nothing if it is not known what has members there."""
+    """Completions after the dot that follows ``before``; none if it is not known what has members there."""
     text = operand_before(before)
     found = expression(project, snapshot, text, line, column) if text else None
     if found is None:

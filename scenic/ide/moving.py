@@ -1,4 +1,4 @@
-"""What becomes of the imports of a project when files or folders get other names, or move."""
+"""Changes of the imports of a project when files or folders get other names, or move."""
 
 import ast
 import os

@@ -62,7 +62,7 @@ class Highlight:
 
 @dataclass(frozen=True, slots=True)
 class Moniker:
-    """What tells a name from all others: the file below its folder of the workspace, and the names on the way to it."""
+    """An identifier of a name that no other has: the file below its folder of the workspace, and the names on the way to it."""
 
     identifier: str
     is_local: bool

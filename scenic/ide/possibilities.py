@@ -1,4 +1,4 @@
-"""What completion offers, as plain data."""
+"""Completions, as plain data."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -10,7 +10,7 @@ __all__ = ["Completion", "CompletionKind", "Completions", "kind_of_symbol"]
 
 
 class CompletionKind(StrEnum):
-    """What is offered, as far as editors tell it apart."""
+    """The kinds of completions, as far as editors tell them apart."""
 
     KEYWORD = "keyword"
     SPECIFIER = "specifier"

@@ -55,7 +55,7 @@ def ignoring(
 
 
 def can_repair_all(found: Sequence[Diagnostic]) -> bool:
-    """Whether `repair_all` may have something to do in a document with these diagnostics."""
+    """Return whether `repair_all` may have something to do in a document with these diagnostics."""
     return any(item.fix is not None and item.fix.certain for item in found)
 
 
@@ -100,7 +100,7 @@ def _of_fix(item: Diagnostic) -> list[Span]:
 
 
 def touch(one: Span, other: Span) -> bool:
-    """Whether two places have a point in common."""
+    """Return whether two places have a point in common."""
     return _start(one) <= _end(other) and _start(other) <= _end(one)
 
 

@@ -1,4 +1,4 @@
-"""What a selection grows to, step by step: a word, the expressions around it, statements, blocks, the document."""
+"""Steps in which a selection grows: a word, the expressions around it, statements, blocks, the document."""
 
 from typing import Final
 

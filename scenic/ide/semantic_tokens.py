@@ -1,4 +1,4 @@
-"""What each word of a document is, for editors to colour: what the tree and the scopes know, not only the spelling."""
+"""Categories of the words of a document, for editors to colour: by the tree and the scopes, not only the spelling."""
 
 import ast
 from collections.abc import Callable, Iterator
@@ -295,4 +295,4 @@ def _python_names() -> dict[str, str]:
 
 
 PYTHON_NAMES: Final = _python_names()
-"""What Python's builtins are."""
+"""Categories of Python's builtins."""

@@ -1,4 +1,4 @@
-"""How the function is called whose arguments are being written, and which of its parameters is next."""
+"""The signature of the function whose arguments are being written, and the parameter that is next."""
 
 import ast
 from dataclasses import dataclass

@@ -121,7 +121,7 @@ class Snapshot:
         return range(bisect_left(lines, line), bisect_right(lines, line))
 
     def is_word(self, token: int) -> bool:
-        """Whether a token is a name or a keyword."""
+        """Return whether a token is a name or a keyword."""
         return self.tokens.kinds[token] >= NAME or (
             self.tokens.texts[token][:1].isidentifier() and self._is_key(token)
         )
@@ -202,7 +202,7 @@ class Snapshot:
     def check(
         self, surroundings_of: SurroundingsOf | None, go_on: Callable[[], None] = lambda: None
     ) -> tuple[Diagnostic, ...]:
-        """What the static check finds. Looks only at what may be different from the version that was checked before."""
+        """The findings of the static check. Looks only at parts that may differ from the version that was checked before."""
         checked = check_again(
             self.parsed,
             self.source,

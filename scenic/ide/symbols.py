@@ -1,4 +1,4 @@
-"""What a document defines, as a tree, and what a workspace defines, as a list to search in."""
+"""Definitions of a document, as a tree, and of a workspace, as a list to search in."""
 
 import ast
 from collections.abc import Iterator, Sequence
@@ -19,7 +19,7 @@ _DEEPEST: Final = 40
 
 
 class Kind(StrEnum):
-    """What a symbol is, in the language's own words."""
+    """The kinds of symbols, in the language's own words."""
 
     CLASS = "class"
     PROPERTY = "property"
@@ -60,7 +60,7 @@ def flat(found: Sequence[Symbol], container: str = "") -> Iterator[tuple[Symbol,
 
 
 def matches(name: str, query: str) -> bool:
-    """Whether the characters of a query occur in a name, in order, whatever their case."""
+    """Return whether the characters of a query occur in a name, in order, whatever their case."""
     rest = iter(name.lower())
     return all(character in rest for character in query.lower() if not character.isspace())
 

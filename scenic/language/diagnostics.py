@@ -1,4 +1,4 @@
-"""What the tools say about a program: one value for every problem, and the table of all codes.
+"""Diagnostics of programs: one value for every problem, and the table of all codes.
 
 A diagnostic is plain data. The command line, the language server and the exceptions of the Python API
 all show the same ones; how they look is decided where they are shown.
@@ -20,7 +20,7 @@ UNSUPPORTED: Final = "SC900"
 
 
 class Severity(StrEnum):
-    """How bad it is: errors keep a program from being compiled; errors and warnings make ``scenic check`` fail."""
+    """Severity of a diagnostic: errors keep a program from being compiled; errors and warnings make ``scenic check`` fail."""
 
     ERROR = "error"
     WARNING = "warning"

@@ -13,7 +13,7 @@ from scenic.language.spans import Span
 
 
 class Finding(Exception):
-    """What there is to say of a program, with a code, a place (``span`` and ``filename``) and help; never raised itself."""
+    """A finding about a program, with a code, a place (``span`` and ``filename``) and help; never raised itself."""
 
     code = "SC400"
     severity = Severity.ERROR
@@ -231,7 +231,7 @@ def annotate(error: BaseException, diagnostic: Diagnostic, note: str) -> None:
 
 
 def annotation(error: BaseException) -> Diagnostic | None:
-    """What `annotate` has told an exception."""
+    """The note that `annotate` has added to an exception."""
     return getattr(error, "scenic_diagnostic", None)
 
 

@@ -1,4 +1,4 @@
-"""What the keywords of the language mean, for readers: hard ones, soft ones and the temporal operators."""
+"""Meanings of the keywords of the language, for readers: hard ones, soft ones and the temporal operators."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

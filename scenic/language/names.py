@@ -26,7 +26,7 @@ __all__ = [
 
 
 class NameKind(StrEnum):
-    """What a provided name stands for."""
+    """The kinds of provided names."""
 
     CLASS = "class"
     DISTRIBUTION = "distribution"
@@ -403,7 +403,7 @@ _ALL = (
 )
 
 NAMES: Final[Mapping[str, Name]] = MappingProxyType({name.name: name for name in _ALL})
-"""What is in scope beside Python's own builtins."""
+"""Names in scope beside Python's own builtins."""
 
 CONVERSIONS: Final = frozenset({"int", "float", "str"})
 """Conversions: their calls are lifted wherever they stand, so the names cannot be bound."""
@@ -427,7 +427,7 @@ CONSTRUCTORS: Final = frozenset(
     for name in _ALL
     if (name.kind is NameKind.REGION and "(" in name.signature) or name.name == "Vector"
 )
-"""What conditions may make of random values, as parts of the value graph."""
+"""Constructors that conditions may apply to random values, as parts of the value graph."""
 
 ANGLE_METHODS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
     {"fromEuler": ("yaw", "pitch", "roll"), "rotatedBy": ("angle",)}

@@ -155,7 +155,7 @@ SIDES: Final = (
 
 
 FRAMES: Final = (FIELD, ORIENTED_POINT, SCALAR, ORIENTATION, VECTOR)
-"""What `relative to` and `offset by` take."""
+"""Types of the operands of `relative to` and `offset by`."""
 
 
 def _side(side: str) -> Operator:

@@ -74,7 +74,7 @@ PROPERTY_ATTRIBUTES: Final[Mapping[str, str]] = MappingProxyType(
         "final": "The value always follows from its definition: it can be neither specified nor defined again.",
     }
 )
-"""What may stand in the brackets of a property definition."""
+"""Words for the brackets of a property definition."""
 
 _P = BuiltinProperty
 

@@ -1,4 +1,4 @@
-"""Which diagnostics are shown, and how bad they are: choices by code, or by the beginning of codes.
+"""Selection of diagnostics and of their severities, by code, or by the beginning of codes.
 
 A *selector* is a code (``SC304``) or what codes begin with (``SC3``, ``SC``).
 """
@@ -19,7 +19,7 @@ _LASTING: Final = ("SC1", "SC6", "SC999")
 
 
 def is_selector(text: str) -> bool:
-    """Whether ``text`` is a code that exists, or what such codes begin with."""
+    """Return whether ``text`` is a code that exists, or what such codes begin with."""
     return text.startswith("SC") and any(code.startswith(text) for code in CODES)
 
 
@@ -32,7 +32,7 @@ def similar_selector(text: str) -> str | None:
 
 
 def is_lasting(diagnostic: Diagnostic) -> bool:
-    """Whether a diagnostic is shown whatever is selected or ignored.
+    """Return whether a diagnostic is shown whatever is selected or ignored.
 
     So are errors of syntax, without which nothing else can be said about a program, of files and options, and
     faults of the tools.
@@ -47,7 +47,7 @@ def longest_match(code: str, selectors: Iterable[str]) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Rules:
-    """What to show of a file's diagnostics.
+    """Rules that select a file's diagnostics.
 
     Of ``select`` and ``ignore`` the longer selector decides, and of equal ones ``ignore``; so ``SC304`` can be
     selected although ``SC3`` is ignored, and the other way round. What is in ``never`` is not shown whatever is
@@ -60,7 +60,7 @@ class Rules:
     severity: tuple[tuple[str, Severity], ...] = ()
 
     def shows(self, code: str) -> bool:
-        """Whether diagnostics of a code are shown, if they are none that always are."""
+        """Return whether diagnostics of a code are shown, if they are none that always are."""
         chosen = longest_match(code, self.select)
         return chosen > longest_match(code, self.ignore) and longest_match(code, self.never) < 0
 

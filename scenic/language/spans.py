@@ -20,7 +20,7 @@ class Span:
             raise ValueError(f"not a span: {self.line}:{self.column}-{self.end_line}:{self.end_column}")
 
     def contains(self, other: "Span") -> bool:
-        """Whether ``other`` lies within this span."""
+        """Return whether ``other`` lies within this span."""
         return (self.line, self.column) <= (other.line, other.column) and (
             other.end_line,
             other.end_column,

@@ -1,4 +1,4 @@
-"""How close two names are, for "did you mean" and for warnings about misspelt properties."""
+"""Distances of names, for "did you mean" and for warnings about misspelt properties."""
 
 from collections.abc import Iterable
 
@@ -32,7 +32,7 @@ def distance(first: str, second: str, *, limit: int) -> int:
 
 
 def is_slip(name: str, meant: str) -> bool:
-    """Whether ``name`` is hardly anything else than ``meant`` mistyped.
+    """Return whether ``name`` is hardly anything else than ``meant`` mistyped.
 
     That is one letter too many, missing, or swapped with its neighbour, in names of four letters or more; or a wrong
     one, but not the first, in names of six or more. Digits tell names apart, so they must agree.

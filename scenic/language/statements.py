@@ -25,7 +25,7 @@ class Place(StrEnum):
 
 
 class Effect(StrEnum):
-    """How a method of the prelude carries out a statement."""
+    """The ways in which a method of the prelude carries out a statement."""
 
     CALL = "call"
     """The call is all."""

@@ -1,4 +1,4 @@
-"""What the language has and this version refuses, computed from the declarations."""
+"""Parts of the language that this version refuses, computed from the declarations."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""How the server's features are offered, and what it asks the client to report.
+"""The capabilities that the server offers, and those that it asks the client to report.
 
 That a feature is offered follows from its handler; here stands what there is to say besides.
 """
@@ -88,7 +88,7 @@ def options_for(client: types.ClientCapabilities) -> Mapping[str, Any]:
 
 
 def registrations(client: types.ClientCapabilities) -> list[types.Registration]:
-    """What the client is asked to report, as far as it can be asked."""
+    """The reports that the client is asked for, as far as it can be asked."""
     found = []
     if get_capability(client, "workspace.did_change_watched_files.dynamic_registration"):
         watchers = types.DidChangeWatchedFilesRegistrationOptions(

@@ -39,7 +39,7 @@ LONGEST_WAIT: Final = 0.3
 _IMPORTS: Final = re.compile(r"^\s*(?:import|from|model)\b", re.MULTILINE)
 
 Found: TypeAlias = tuple[list[types.Diagnostic], tuple[Diagnostic, ...]]
-"""What is wrong with a document by the settings of its project, and with these settings."""
+"""The faults of a document by the settings of its project, and those of the settings."""
 
 
 class Checks:
@@ -215,7 +215,7 @@ class Checks:
 
 
 def finder(session: Session, document: Document) -> Callable[[GoOn], Found]:
-    """What finds the problems of a document, in any thread. To be called in the loop's thread."""
+    """A function that finds the problems of a document, in any thread. To be called in the loop's thread."""
     project, stamp = session.project_beside(document), session.generation
 
     return lambda go_on: found_in_document(session, document, project, stamp, go_on)
@@ -224,7 +224,7 @@ def finder(session: Session, document: Document) -> Callable[[GoOn], Found]:
 def found_in_document(
     session: Session, document: Document, project: Project, stamp: int, go_on: GoOn
 ) -> Found:
-    """What is wrong with a document, and with its settings; ``stamp`` is the generation that ``project`` is of."""
+    """The faults of a document, and of its settings; ``stamp`` is the generation that ``project`` is of."""
     if not document.is_program:
         return [], ()
     configurations, rules = session.rules(document.snapshot.filename)

@@ -31,7 +31,7 @@ _UNNECESSARY: Final = frozenset({"SC205", "SC206", "SC303", "SC390"})
 
 
 class Encoding(StrEnum):
-    """How columns are counted."""
+    """The encodings in which columns are counted."""
 
     UTF8 = "utf-8"
     UTF16 = "utf-16"

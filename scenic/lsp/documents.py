@@ -44,16 +44,16 @@ class Document:
 
     @property
     def is_program(self) -> bool:
-        """Whether it is a Scenic program: an editor may also show us the Python modules beside it."""
+        """Return whether it is a Scenic program: an editor may also show us the Python modules beside it."""
         return self.language not in _OTHERS and not self.snapshot.filename.endswith((".py", ".pyi", ".toml"))
 
     @property
     def line_end(self) -> str:
-        """How its lines end."""
+        """The line end of the document."""
         return "\r\n" if "\r\n" in self.text else "\n"
 
     def is_saved(self) -> bool:
-        """Whether its file holds its present text."""
+        """Return whether its file holds its present text."""
         try:
             return read_source(self.snapshot.filename).text == self.snapshot.text
         except ScenicError:

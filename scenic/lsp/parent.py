@@ -26,7 +26,7 @@ def watch(process: int, gone: Callable[[], None]) -> None:
 
 
 def is_alive(process: int) -> bool:
-    """Whether a process of this number runs. One that has ended, but that nobody has asked for, does not."""
+    """Return whether a process of this number runs. One that has ended, but that nobody has asked for, does not."""
     if sys.platform == "win32":
         return _is_alive_on_windows(process)
     if process <= 0:

@@ -33,7 +33,7 @@ class Partial(Generic[_T]):
 
 
 class Progress:
-    """What is told of one piece of work, to a client that gave a ``token`` for that; without one, nothing."""
+    """Progress of one piece of work, reported to a client that gave a ``token`` for it; without one, nothing."""
 
     def __init__(self, session: Session, token: types.ProgressToken | None, title: str) -> None:
         self._session = session

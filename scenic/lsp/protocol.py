@@ -49,7 +49,7 @@ _OURS: Final = (
 
 
 class Stage(Enum):
-    """How far the conversation is."""
+    """The stages of a conversation."""
 
     NEW = auto()
     RUNNING = auto()

@@ -1,4 +1,4 @@
-"""What the server knows while it talks to one client: what the client can do, the open documents, what is asked of it."""
+"""State of the server while it talks to one client: the client's capabilities, the open documents, pending requests."""
 
 import asyncio
 import os
@@ -75,15 +75,15 @@ class Session:
     def __init__(self, protocol: "Protocol", idle: threading.Event, *, trusting: bool) -> None:
         self.protocol = protocol
         self.trusting = trusting
-        """Whether the client can be believed when it says that programs may be run."""
+        """True if the client can be believed when it says that programs may be run."""
         self.client = types.ClientCapabilities()
-        """What the client can do, as it says at the beginning."""
+        """The capabilities of the client, as it says at the beginning."""
         self.encoding = Encoding.UTF16
         self.documents: dict[str, Document] = {}
         self.folders: dict[str, str] = {}
         """The folders of the workspace: names of folders by their addresses."""
         self.trusted: bool | None = None
-        """Whether programs may be run; ``None`` if the client did not say."""
+        """True if programs may be run; ``None`` if the client did not say."""
         self.settings: Mapping[str, Any] = {}
         self.garbage = Garbage()
         self.checker = Beside("checks", idle)
@@ -109,11 +109,11 @@ class Session:
         self.encoding = Encoding(ServerCapabilitiesBuilder.choose_position_encoding(client))
 
     def can(self, path: str) -> bool:
-        """Whether there is ``true`` at a path of its capabilities."""
+        """Return whether there is ``true`` at a path of its capabilities."""
         return get_capability(self.client, path) is True
 
     def has(self, path: str) -> bool:
-        """Whether there is anything at a path of its capabilities."""
+        """Return whether there is anything at a path of its capabilities."""
         return get_capability(self.client, path) is not None
 
     def lists(self, path: str) -> frozenset[str]:

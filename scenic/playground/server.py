@@ -220,7 +220,7 @@ class Playground:
 
 
 def is_built() -> bool:
-    """Whether the page's files are there; a checkout has them once ``make playground`` has made them."""
+    """Return whether the page's files are there; a checkout has them once ``make playground`` has made them."""
     return all((_static() / name).is_file() for name in (*_FILES, "page.html"))
 
 

@@ -25,7 +25,7 @@ _INTERVAL: Final = 0.3
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """What the page shows besides the scenes; ``version`` grows whenever one of them changes."""
+    """State of the page besides the scenes; ``version`` grows whenever a part of it changes."""
 
     program: str
     version: int = 0

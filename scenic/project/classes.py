@@ -1,4 +1,4 @@
-"""What a class has: properties, methods and attributes, its own and inherited ones; and the classes of values."""
+"""Members of classes: properties, methods and attributes, their own and inherited ones; and the classes of values."""
 
 import ast
 from dataclasses import dataclass, field
@@ -65,7 +65,7 @@ class Class:
 
     @property
     def properties(self) -> tuple[Member, ...]:
-        """What can be given after ``with``."""
+        """Properties that can be given after ``with``."""
         return tuple(each for each in self.members if each.kind is SymbolKind.PROPERTY)
 
 
@@ -213,7 +213,7 @@ def _set_by_methods(module: Module, symbol: Symbol, node: ast.ClassDef) -> list[
 
 
 def meaning(project: Project, module: Module, node: ast.expr) -> Symbol | None:
-    """What a name or an attribute of a program means; ``None`` if that cannot be told."""
+    """The meaning of a name or an attribute of a program; ``None`` if that cannot be told."""
     return _meaning(project, module, node, 0)
 
 

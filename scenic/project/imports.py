@@ -85,7 +85,7 @@ class Imports:
         return (found, *(each for each in inner if isinstance(each, Found)))
 
     def member(self, alias: ast.alias) -> Exported | Found | None:
-        """What ``from m import name`` brings."""
+        """The definition that ``from m import name`` brings."""
         statement = self._statements.get(alias)
         if statement is None:
             return None
@@ -94,14 +94,14 @@ class Imports:
         )
 
     def is_missing(self, alias: ast.alias) -> bool:
-        """Whether there is no such module, or the module is not known to have such a name."""
+        """Return whether there is no such module, or the module is not known to have such a name."""
         statement = self._statements.get(alias)
         if statement is None:
             return self._project.find(alias.name, importer=self._source.filename).is_missing
         return self.member(alias) is None
 
     def is_begun(self, alias: ast.alias) -> bool:
-        """Whether what an import names is missing, and the beginning of something that is there."""
+        """Return whether what an import names is missing, and the beginning of something that is there."""
         if not self.is_missing(alias):
             return False
         importer = self._source.filename
@@ -116,7 +116,7 @@ class Imports:
         return any(name.startswith(beginning) for name in names)
 
     def attribute(self, node: ast.Attribute) -> Exported | Found | None:
-        """What ``m.name`` means, where ``m`` is a module that the program imports."""
+        """The meaning of ``m.name``, where ``m`` is a module that the program imports."""
         home = self._module(node.value)
         if home is None:
             return None

@@ -67,7 +67,7 @@ class Exports:
 
     @property
     def complete(self) -> bool:
-        """Whether it has no other names."""
+        """Return whether it has no other names."""
         return not self.unseen
 
 
@@ -113,7 +113,7 @@ class Project:
         self._exports: dict[str, Exports] = {}
         self._compiled: dict[str, Exports] = {}
         self.derived: dict[object, Any] = {}
-        """What others compute from the modules; emptied when any of them changes."""
+        """Results that others compute from the modules; emptied when any of them changes."""
         self._files = object()
         self._absolute: dict[str, str] = {}
 
@@ -167,7 +167,7 @@ class Project:
         return changed
 
     def state_beside(self, filename: str) -> object:
-        """What equals another such state as long as no module but the one in this file has changed."""
+        """A value that equals another such state as long as no module but the one in this file has changed."""
         own = os.path.abspath(filename)
         return self._files, tuple(module for name, module in sorted(self._opened.items()) if name != own)
 
@@ -328,7 +328,7 @@ class Project:
         return self.find(node.module or "", importer=importer, level=node.level)
 
     def member(self, found: Found, name: str, *, importer: str, level: int = 0) -> Exported | Found | None:
-        """What ``from m import name`` brings: a name of the module, else a module in it; ``None`` if it has neither."""
+        """The meaning of ``from m import name``: a name of the module, else a module in it; ``None`` if it has neither."""
         exported = self.exports_of(found).names.get(name)
         if exported is not None and not self._is_own_module(exported, found):
             return exported

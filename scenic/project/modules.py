@@ -91,7 +91,7 @@ class Module:
 
     @cached_property
     def owner_of_specifier(self) -> dict[ast.AST, scenic.New | scenic.Override]:
-        """What each specifier belongs to."""
+        """The class or module that each specifier belongs to."""
         return {
             specifier: node
             for node in walk(self.tree)
@@ -110,11 +110,11 @@ class Module:
         }
 
     def knows(self, name: str) -> bool:
-        """Whether what is computed under a name is there already."""
+        """Return whether what is computed under a name is there already."""
         return name in self._derived
 
     def derived(self, name: str, compute: Callable[[], _T]) -> _T:
-        """What is computed from the module once, when it is first asked for, under a name."""
+        """The result of a computation from the module, made when it is first asked for, under a name."""
         known = self._derived.get(name)
         if known is None:
             known = self._derived[name] = compute()
@@ -131,7 +131,7 @@ class Module:
 
     @cached_property
     def public(self) -> frozenset[str] | None:
-        """What ``__all__`` lists; ``None`` without it, or if it is not a plain list of strings."""
+        """The names in ``__all__``; ``None`` without it, or if it is not a plain list of strings."""
         binding = self.resolution.names.get("__all__")
         if binding is None:
             return None
@@ -157,14 +157,14 @@ class Module:
 
     @cached_property
     def is_dynamic(self) -> bool:
-        """Whether it may have names that its text does not show, apart from those that star imports bring."""
+        """Return whether it may have names that its text does not show, apart from those that star imports bring."""
         if self.broken or "__getattr__" in self.resolution.names:
             return True
         return self.resolution.rebinding
 
     @cached_property
     def sets_ego(self) -> bool:
-        """Whether running the module may set the ego (that of a scenario in it does not count)."""
+        """Return whether running the module may set the ego (that of a scenario in it does not count)."""
         return any(
             not isinstance(reference.node.ctx, ast.Load) and not _in_scenario(reference.scope)
             for reference in self.resolution.uses("ego")

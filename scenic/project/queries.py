@@ -1,4 +1,4 @@
-"""What stands at a place of a module, and where else the same thing is used."""
+"""The symbol at a place of a module, and the other places where it is used."""
 
 import ast
 from bisect import bisect_right
@@ -182,7 +182,7 @@ def _first_line(node: ast.stmt) -> int:
 
 
 def symbol_at(project: Project, filename: str, line: int, column: int) -> Symbol | None:
-    """What the word at a place means."""
+    """The symbol that the word at a place means."""
     module = project.module(filename)
     found = None if module is None else occurrence_at(module, line, column)
     return None if module is None or found is None else symbol_of(project, module, found)
@@ -195,7 +195,7 @@ def definition(project: Project, filename: str, line: int, column: int) -> Symbo
 
 
 def symbol_of(project: Project, module: Module, occurrence: Occurrence) -> Symbol | None:
-    """What a word of a module means."""
+    """The symbol that a word of a module means."""
     node: Any = occurrence.node
     match node:
         case ast.Name():
@@ -288,7 +288,7 @@ def _keyword(project: Project, module: Module, node: ast.keyword) -> Symbol | No
 
 
 def call_signature(project: Project, module: Module, call: ast.Call) -> Signature | None:
-    """How what a call calls is called."""
+    """The signature of the function that a call calls."""
     callee = meaning(project, module, call.func)
     return None if callee is None else signature_of(project, callee)
 

@@ -28,7 +28,7 @@ _LIBRARY: Final = str(Path(language.__path__[0]).parent.parent)
 
 
 class ModuleKind(StrEnum):
-    """What a module was found to be."""
+    """The kinds of modules that are found."""
 
     SCENIC = "Scenic module"
     PYTHON = "Python module"
@@ -57,7 +57,7 @@ class Found:
 
     @property
     def is_missing(self) -> bool:
-        """Whether there is no such module."""
+        """Return whether there is no such module."""
         return self.kind is ModuleKind.MISSING
 
 
@@ -95,7 +95,7 @@ class Finder:
         self._found = {}
 
     def is_stale(self, importer: str) -> bool:
-        """Whether there may be other files beside one than were found when its folder was listed."""
+        """Return whether there may be other files beside one than were found when its folder was listed."""
         folders = self._beside(os.path.dirname(os.path.abspath(importer)))
         return any(folder in self._stamps and self._stamps[folder] != _stamp(folder) for folder in folders)
 

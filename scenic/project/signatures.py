@@ -1,4 +1,4 @@
-"""How what a project defines is called: parameters with their defaults, as written."""
+"""Signatures of the definitions of a project: parameters with their defaults, as written."""
 
 import ast
 from dataclasses import dataclass, field
@@ -27,7 +27,7 @@ class Parameter:
 
     @property
     def required(self) -> bool:
-        """Whether every call must give it."""
+        """Return whether every call must give it."""
         return self.default is None and not self.prefix
 
     def __str__(self) -> str:
@@ -41,7 +41,7 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Signature:
-    """How something is called. ``parameters`` are without ``self`` for methods and classes."""
+    """A signature. ``parameters`` are without ``self`` for methods and classes."""
 
     name: str
     parameters: tuple[Parameter, ...]
@@ -68,7 +68,7 @@ class Signature:
 
 
 def signature_of(project: Project, symbol: Symbol) -> Signature | None:
-    """How a symbol is called; ``None`` of what cannot be called, or of which that is not known."""
+    """The signature of a symbol; ``None`` if it cannot be called, or its signature is not known."""
     if symbol.is_builtin:
         declared = NAMES.get(symbol.name)
         if declared is None or "(" not in declared.signature:

@@ -1,4 +1,4 @@
-"""What a project tells the checks of a program about the modules that it imports."""
+"""Facts about imported modules, which a project hands to the checks of a program."""
 
 import ast
 from collections.abc import Collection, Iterator, Mapping

@@ -1,4 +1,4 @@
-"""What a name of a project is: its definition, signature and documentation."""
+"""Symbols of a project: the definition, signature and documentation of a name."""
 
 import ast
 import re
@@ -30,7 +30,7 @@ __all__ = [
 
 
 class SymbolKind(StrEnum):
-    """What a symbol stands for."""
+    """The kinds of symbols."""
 
     MODULE = "module"
     CLASS = "class"
@@ -67,7 +67,7 @@ class Symbol:
 
     @property
     def is_builtin(self) -> bool:
-        """Whether the language provides it, so that it has no place."""
+        """Return whether the language provides it, so that it has no place."""
         return self.filename is None
 
     @property
@@ -171,7 +171,7 @@ def _statement_span(module: Module, node: ast.AST) -> Span:
 
 
 def symbols_of(module: Module) -> tuple[Symbol, ...]:
-    """What a module binds at its top level, in order of place."""
+    """The symbols that a module binds at its top level, in order of place."""
     bindings = module.resolution.names.values()
     return tuple(
         sorted(

@@ -1,4 +1,4 @@
-"""What agents do in one step."""
+"""Actions of agents in one step."""
 
 from abc import ABC, abstractmethod
 from typing import Any
@@ -12,7 +12,7 @@ class Action(Carrier, ABC):
     """Base of actions. What a program has made before the simulation holds sampled values within it."""
 
     def canBeTakenBy(self, agent: Any) -> bool:
-        """Whether an agent is able to take the action."""
+        """Return whether an agent is able to take the action."""
         return True
 
     @abstractmethod

@@ -35,7 +35,7 @@ class Numbered:
     simulation: Simulation | None
     has_scene: bool = True
     rejections: tuple[tuple[str, int], ...] = ()
-    """What rejected the tries, and how many each; the most frequent first."""
+    """Reasons for which tries were rejected, and how many each; the most frequent first."""
 
 
 def choose_simulator(name: str | None, scenario: Scenario) -> Simulator:

@@ -1,4 +1,4 @@
-"""What the cameras of objects see while a simulation runs, with rays: no display, the same everywhere."""
+"""Images of the cameras of objects while a simulation runs, with rays: no display, the same everywhere."""
 
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any
@@ -62,5 +62,5 @@ class Present:
         self.params: Mapping[str, object] = scene.params
 
     def origin(self, thing: Any) -> Any:
-        """What an object is in all scenes; nobody asks while images are made."""
+        """Raise ``KeyError``: nobody asks for the origins of objects while images are made."""
         raise KeyError(thing)

@@ -37,7 +37,7 @@ class Command(Action):
     models: ClassVar[tuple[str, ...]]
 
     def canBeTakenBy(self, agent: Any) -> bool:
-        """Whether the agent's model understands the command."""
+        """Return whether the agent's model understands the command."""
         return model_of(agent) in self.models
 
     def applyTo(self, agent: Any, simulation: Any) -> None:
@@ -46,7 +46,7 @@ class Command(Action):
 
     @abstractmethod
     def commands(self) -> Mapping[str, float]:
-        """What it sets, by name."""
+        """The settings that it makes, by name."""
 
 
 class SetVelocity(Command):

@@ -36,7 +36,7 @@ class DummySimulation(Simulation):
                 obj.__dict__["position"] = Vector.of((x, y + self.drift, z))
 
     def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
-        """What the properties are."""
+        """The values of the properties."""
         stored = obj.__dict__
         return {name: stored[name] for name in properties}
 

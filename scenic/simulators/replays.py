@@ -122,7 +122,7 @@ class Tape:
         self._step = 0
         self.draws: Draws | None = None
         self.replaying = earlier is not None
-        """Whether the earlier simulation is still followed."""
+        """True if the earlier simulation is still followed."""
         seeded = Seeded(key)
         self._others: Source = seeded if sourcing is None else sourcing(seeded)
         self._recorded = (
@@ -182,14 +182,14 @@ class Tape:
                 self._diverged(f"{name} of object {number} is {new!r}, was {old!r}")
 
     def differ(self, expected: Any, actual: Any) -> bool:
-        """Whether two values of a property differ by more than the tolerance."""
+        """Return whether two values of a property differ by more than the tolerance."""
         first, second = _numbers(expected), _numbers(actual)
         if first is None or second is None or len(first) != len(second):
             return bool(expected != actual)
         return any(abs(one - other) > self._tolerance for one, other in zip(first, second, strict=True))
 
     def replay(self) -> Replay:
-        """What has been recorded."""
+        """The recording of the simulation."""
         made = [] if self.draws is None or not self._keep_draws else list(self.draws.made)
         return Replay(self._key, made, self._states)
 

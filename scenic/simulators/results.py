@@ -1,4 +1,4 @@
-"""What a simulation leaves: its course, and how it ended."""
+"""The results of a simulation: its course, and how it ended."""
 
 from collections.abc import Mapping, Sequence
 from enum import Enum
@@ -27,7 +27,7 @@ class TerminationType(Enum):
 
 
 class ActionsTaken(dict[Any, tuple[Any, ...]]):
-    """What each agent did in a step; whatever else is asked for, an object without a behavior perhaps, did nothing."""
+    """The actions of each agent in a step; whatever else is asked for, an object without a behavior perhaps, did nothing."""
 
     def __missing__(self, key: Any) -> tuple[Any, ...]:
         return ()
@@ -61,7 +61,7 @@ class NotKeptError(LookupError):
 
     @classmethod
     def behind(cls, error: BaseException | None) -> bool:
-        """Whether that is why another error came up."""
+        """Return whether that is why another error came up."""
         while error is not None:
             if isinstance(error, cls):
                 return True
@@ -83,7 +83,7 @@ class Latest(Sequence[Any]):
         self.newest: list[Any] = []
         """The newest member, if there is one."""
         self.missed = False
-        """Whether somebody asked for a member that is not kept."""
+        """True if somebody asked for a member that is not kept."""
 
     def append(self, value: Any) -> None:
         """The next member."""
@@ -91,7 +91,7 @@ class Latest(Sequence[Any]):
         self._count += 1
 
     def __len__(self) -> int:
-        """How many there have been."""
+        """Number of entries so far."""
         return self._count
 
     def __getitem__(self, place: Any) -> Any:
@@ -104,7 +104,7 @@ class Latest(Sequence[Any]):
 
 
 def kept(series: Sequence[Any]) -> Sequence[Any]:
-    """What there is of a series."""
+    """The kept part of a series."""
     return series.newest if isinstance(series, Latest) else series
 
 

@@ -211,7 +211,7 @@ class Simulation(ABC):
 
     @property
     def is_over(self) -> bool:
-        """Whether the simulation has ended or was given up."""
+        """Return whether the simulation has ended or was given up."""
         return self._destroyed
 
     def end(self, reason: str) -> None:
@@ -341,7 +341,7 @@ class Simulation(ABC):
         return self.agents
 
     def actionsAreCompatible(self, agent: Any, actions: Sequence[Any]) -> bool:
-        """Whether an agent can take these actions in one step."""
+        """Return whether an agent can take these actions in one step."""
         return all(hasattr(action, "canBeTakenBy") and action.canBeTakenBy(agent) for action in actions)
 
     def executeActions(self, allActions: Mapping[Any, Sequence[Any]]) -> None:
@@ -357,7 +357,7 @@ class Simulation(ABC):
         )
 
     def valuesHaveDiverged(self, obj: Any, prop: str, expected: Any, actual: Any) -> bool:
-        """Whether a property differs from the replayed simulation's by more than the tolerance."""
+        """Return whether a property differs from the replayed simulation's by more than the tolerance."""
         return self._tape.differ(expected, actual)
 
     def destroy(self) -> None:  # noqa: B027 - most simulators have nothing to clean up
@@ -523,7 +523,7 @@ class Simulation(ABC):
 
     @property
     def replaying(self) -> bool:
-        """Whether draws of an earlier simulation are still used."""
+        """Return whether draws of an earlier simulation are still used."""
         return self._tape.replaying
 
 

@@ -20,7 +20,7 @@ class Simulator(ABC):
     def __init__(self, verbosity: int = 0) -> None:
         self._destroyed = False
         self.verbosity = verbosity
-        """What simulations print where `simulate` is not told otherwise, from 0 to 3."""
+        """Verbosity of simulations where `simulate` is not told otherwise, from 0 to 3."""
 
     def __enter__(self) -> Self:
         return self

@@ -15,7 +15,7 @@ TEMPLATES: Final[Mapping[str, str]] = MappingProxyType(
         "drone": "a drone that flies to a pad and keeps away from a mast",
     }
 )
-"""What each template is about, by its name, which is that of its folder."""
+"""Descriptions of the templates, by their names, which are those of their folders."""
 
 
 def copy(template: str, folder: Path) -> list[str]:

@@ -1,4 +1,4 @@
-"""How diagnostics are shown: one module per output format, each with a function from a report to text."""
+"""Output formats of diagnostics: one module each, with a function from a report to text."""
 
 from collections.abc import Callable, Mapping
 from importlib import import_module

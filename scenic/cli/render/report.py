@@ -1,4 +1,4 @@
-"""What a renderer gets: all that there is to say about one run."""
+"""The input of a renderer: all that there is to say about one run."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""How many diagnostics there are of each code."""
+"""Numbers of diagnostics of each code."""
 
 from collections import Counter
 

@@ -1,4 +1,4 @@
-"""What the grammar's actions call: the parts of building a tree that are more than making a node.
+"""Functions that the grammar's actions call: the parts of building a tree that are more than making a node.
 
 A method that returns ``None`` makes its alternative fail; before that it notes why with `Actions.fail`, which the
 messages prefer to what the parser expected. What is wrong without making the text unreadable is reported instead.

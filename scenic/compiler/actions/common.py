@@ -1,4 +1,4 @@
-"""What all actions need: the tokens, a way to say what is wrong, a way to make nodes."""
+"""Needs of all actions: the tokens, a way to report mistakes, a way to make nodes."""
 
 import ast
 from collections.abc import Iterable

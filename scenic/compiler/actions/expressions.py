@@ -12,7 +12,7 @@ class ExpressionActions(CommonActions):
     """Expressions whose parts need a check."""
 
     def is_direction(self, side: int) -> bool:
-        """Whether the token ``left`` or ``right`` is not the end of ``front left of`` and the like."""
+        """Return whether the token ``left`` or ``right`` is not the end of ``front left of`` and the like."""
         words = self._tokens.texts
         before = words[side - 1]
         if before in ("front", "back"):

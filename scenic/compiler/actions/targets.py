@@ -12,7 +12,7 @@ DELETE: Final = ast.Del()
 
 
 class TargetActions(CommonActions):
-    """What can be assigned, changed and deleted."""
+    """Actions for targets: expressions that are assigned, changed and deleted."""
 
     def storable(self, node: ast.expr) -> ast.expr | None:
         """Make a target of an expression, in place; ``None`` if it cannot be one."""
@@ -65,7 +65,7 @@ class TargetActions(CommonActions):
         return False
 
     def is_simple(self, node: ast.expr, start: int) -> int:
-        """Whether the target of an annotation is a bare name."""
+        """Return whether the target of an annotation is a bare name."""
         return int(isinstance(node, ast.Name) and self._tokens.kinds[start] >= 256)
 
     def augmentable(self, node: ast.expr) -> bool:
@@ -115,7 +115,7 @@ _DESCRIPTIONS: Final = {
 
 
 def describe(node: ast.expr) -> str:
-    """What an expression is, in words."""
+    """An expression in words."""
     if isinstance(node, ast.Constant):
         if node.value is None or node.value is True or node.value is False:
             return f"`{node.value}`"

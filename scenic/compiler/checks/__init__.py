@@ -111,7 +111,7 @@ NOTED: Final = frozenset(
 def check(
     context: Context, *, provided: Collection[str], go_on: Callable[[], None] = lambda: None
 ) -> tuple[Diagnostic, ...]:
-    """What no program may contain, ordered by place. ``provided`` are the names in scope that nothing binds.
+    """Findings about constructs that no program may contain, ordered by place. ``provided`` are the names in scope that nothing binds.
 
     ``go_on`` is called now and then, and may raise to stop.
     """
@@ -127,7 +127,7 @@ def check(
 
 
 def lint(context: Context, go_on: Callable[[], None] = lambda: None) -> tuple[Diagnostic, ...]:
-    """What a program may contain but hardly means, and what is bound to fail when it is reached; ordered by place.
+    """Findings about constructs that hardly mean what they say, or are bound to fail when they are reached; ordered by place.
 
     ``go_on`` is called now and then, and may raise to stop.
     """

@@ -28,7 +28,7 @@ _KINDS: Final[dict[type[ast.AST], str]] = {
 
 
 def kind_of(definition: ast.AST) -> str:
-    """What a definition defines, in a word."""
+    """The kind of a definition, in a word."""
     return _KINDS[type(definition)]
 
 

@@ -18,7 +18,7 @@ DYNAMIC: Final = frozenset({Place.BEHAVIOR, Place.MONITOR, Place.COMPOSE})
 
 @dataclass(frozen=True, slots=True)
 class Where:
-    """What surrounds a node. ``function`` is ``None``, ``"def"``, ``"async def"`` or ``"lambda"``, within ``place``."""
+    """The surroundings of a node. ``function`` is ``None``, ``"def"``, ``"async def"`` or ``"lambda"``, within ``place``."""
 
     place: Place = Place.TOP
     function: str | None = None
@@ -26,7 +26,7 @@ class Where:
     in_class_block: bool = False
     interruptible: bool = False
     broken: bool = False
-    """What the statements stand in could not be parsed, so that nobody knows what it is."""
+    """True if the text around the statements could not be parsed, so that their place is not known."""
 
 
 class Block(NamedTuple):
@@ -131,7 +131,7 @@ _PLACES: Final = {
 
 
 def where_of(node: Any, scope: Scope) -> Where:
-    """What surrounds an expression that stands in ``scope``, apart from loops and the like."""
+    """The surroundings of an expression in ``scope``, apart from loops and the like."""
     function: str | None = None
     for outer in scope.ancestors():
         if outer.kind is ScopeKind.FUNCTION:
@@ -148,5 +148,5 @@ def where_of(node: Any, scope: Scope) -> Where:
 
 
 def in_compose(node: Any, scenario: Any) -> bool:
-    """Whether a node of a scenario stands in its compose block, which is always the last."""
+    """Return whether a node of a scenario stands in its compose block, which is always the last."""
     return bool(scenario.compose) and position(node) >= position(scenario.compose[0])

@@ -24,7 +24,7 @@ BUILT_IN: Mapping[str, Mapping[str, Property]] = MappingProxyType(
 
 
 class Meanings(Protocol):
-    """What expressions that name something mean."""
+    """The meanings of expressions that name something."""
 
     def definition(self, name: ast.expr) -> ast.AST | None:
         """The one definition that an expression can mean."""
@@ -33,7 +33,7 @@ class Meanings(Protocol):
         """The name of what the language provides."""
 
     def foreign(self, name: ast.expr) -> Foreign | None:
-        """What another module defines."""
+        """The definition in another module that a name means."""
 
 
 class Classes:
@@ -71,7 +71,7 @@ class Classes:
         return found
 
     def is_circular(self, properties: Mapping[str, Property]) -> bool:
-        """Whether the defaults of a class need one another in a circle."""
+        """Return whether the defaults of a class need one another in a circle."""
         known = self._circular.get(id(properties))
         if known is None:
             known = self._circular[id(properties)] = _is_circular(properties)

@@ -28,7 +28,7 @@ _COMPARISONS: Final[Mapping[type[ast.cmpop], Callable[[Any, Any], Any]]] = Mappi
 
 
 def truth(condition: ast.expr) -> bool | None:
-    """Whether a condition always or never holds, by its literals alone; ``None`` if that cannot be told."""
+    """Return whether a condition always or never holds, by its literals alone; ``None`` if that cannot be told."""
     negated = False
     while isinstance(condition, ast.UnaryOp) and isinstance(condition.op, ast.Not):
         negated = not negated

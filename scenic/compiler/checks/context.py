@@ -1,4 +1,4 @@
-"""What every rule is given: the program, what its names mean, and the making of diagnostics."""
+"""The input of every rule: the program, what its names mean, and the making of diagnostics."""
 
 import ast
 from collections import Counter
@@ -80,7 +80,7 @@ class Context:
         self.resolution = resolution
         self.surroundings = surroundings
         self.typing: Final = typing
-        """Whether somebody is writing the program, in an editor."""
+        """True if somebody is writing the program, in an editor."""
         if before is None:
             # All of them will be asked for: they are put together at once.
             _ = resolution.references
@@ -88,7 +88,7 @@ class Context:
         """The names that star imports and the model are known to bring."""
         self.before: Final = before
         self.said: Final[dict[tuple[str, tuple[object, ...]], Said]] = {}
-        """What was said of each stretch by each group of rules."""
+        """Findings of each group of rules about each stretch."""
         self.asked: Final[set[str]] = set()
         """The facts about the whole program that rules have asked for."""
         self._facts: Final[dict[str, Any]] = {}
@@ -109,7 +109,7 @@ class Context:
 
     @cached_property
     def meanings(self) -> ProgramMeanings:
-        """What names mean for the inference of kinds."""
+        """The meanings of names for the inference of kinds."""
         return ProgramMeanings(proxy(self))
 
     @cached_property
@@ -124,7 +124,7 @@ class Context:
 
     @cached_property
     def kept(self) -> Kept:
-        """What was said, for the next version."""
+        """The findings, kept for the next version."""
         return Kept(self._state, self.resolution.names, self.resolution.stretches, self.said)
 
     @cached_property
@@ -157,7 +157,7 @@ class Context:
         return changed_names(before.names, self.resolution.names, self.resolution.stretches)
 
     def is_unchanged(self, stretch: Stretch) -> bool:
-        """Whether all that a stretch that stood in the version before may depend on is as it was, but for `fact`."""
+        """Return whether all that a stretch that stood in the version before may depend on is as it was, but for `fact`."""
         return self._changed is not None and self._changed.isdisjoint(stretch.used)
 
     @cached_property
@@ -166,7 +166,7 @@ class Context:
         return Moves(() if self.before is None else self.before.stretches, self.resolution.stretches)
 
     def follows_error(self, stretch: Stretch) -> bool:
-        """Whether the last thing before a stretch that could be a header could not be parsed."""
+        """Return whether the last thing before a stretch that could be a header could not be parsed."""
         return stretch in self._after_errors
 
     @cached_property
@@ -194,7 +194,7 @@ class Context:
 
     @property
     def broken(self) -> bool:
-        """Whether parts could not be parsed: then nothing can be said to be missing or unused."""
+        """Return whether parts could not be parsed: then nothing can be said to be missing or unused."""
         found: bool = self.fact("broken")
         return found
 
@@ -224,7 +224,7 @@ class Context:
 
     @property
     def owners(self) -> Mapping[str, int]:
-        """How many classes of the program define an attribute or method of each name."""
+        """Numbers of classes of the program that define an attribute or method of each name."""
         found: Mapping[str, int] = self.fact("owners")
         return found
 
@@ -254,7 +254,7 @@ class Context:
         return max(map(position, (*stars, *models)), default=(0, 0))
 
     def binding(self, name: ast.Name) -> Binding | None:
-        """What a name of the program means, as far as the text says."""
+        """The meaning of a name of the program, as far as the text shows it."""
         return self.resolution.binding(name)
 
     def definition(self, name: ast.expr | None) -> Definition | None:
@@ -276,7 +276,7 @@ class Context:
         return not self.resolution.wildcard and name not in self.brought
 
     def foreign(self, name: ast.expr | None) -> Foreign | None:
-        """What an expression means, if that is something that another module certainly defines."""
+        """The meaning of an expression, if another module certainly defines it."""
         if self.surroundings is None or self.resolution.reflective or name is None:
             return None
         # Several rules ask about each name.
@@ -538,10 +538,10 @@ _FACTS: Final[Mapping[str, Callable[[Context], Any]]] = {
 
 
 NodeRule = Callable[[Any, Scope, Context], Iterator[Diagnostic]]
-"""What is said about one node, which stands in a scope."""
+"""A rule about one node in a scope."""
 
 ProgramRule = Callable[[Context], Iterator[Diagnostic]]
-"""What is said about a program as a whole."""
+"""A rule about a program as a whole."""
 
 
 def _mentioned(stretch: Stretch) -> frozenset[str]:

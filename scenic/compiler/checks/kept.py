@@ -1,4 +1,4 @@
-"""What was said of parts of a program, kept for the check of its next version.
+"""Findings about parts of a program, kept for the check of its next version.
 
 The top level is divided into stretches (`scenic.compiler.scopes`), in which nothing may change but the lines on which
 they stand. What a rule says of a stretch depends on its nodes, on what the names that it reads mean, on what these need in
@@ -20,7 +20,7 @@ __all__ = ["Kept", "Moves", "Said", "changed_names"]
 
 @dataclass(frozen=True, slots=True)
 class Said:
-    """What was found in one stretch, and the facts about the whole program that were asked for meanwhile.
+    """The findings in one stretch, and the facts about the whole program that they depend on.
 
     ``follows_error`` is what was known of the statements before it.
     """
@@ -32,7 +32,7 @@ class Said:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Kept:
-    """What was said of the stretches of one version by each group of rules, which are known by their keys.
+    """The findings of each group of rules in the stretches of one version, which are known by their keys.
 
     ``state`` is what every rule may depend on, ``names`` what the names of the module mean.
     """
@@ -73,7 +73,7 @@ class Moves:
         ]
 
     def of(self, said: Said, filename: str) -> Said | None:
-        """What was said, of the same places where they are now; ``None`` if one of them is gone."""
+        """The kept findings at the present places of their statements; ``None`` if one of the statements is gone."""
         if not said.found:
             return said
         try:

@@ -1,4 +1,4 @@
-"""What looks like the making or running of something and is neither: calls of classes, tuples, behaviors without `do`."""
+"""Expressions that look like the making or running of something and are neither: calls of classes, tuples, behaviors without `do`."""
 
 import ast
 from collections.abc import Iterator

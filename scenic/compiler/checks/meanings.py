@@ -1,4 +1,4 @@
-"""What the names of a program mean for the inference of kinds (`scenic.compiler.kinds`)."""
+"""Meanings of the names of a program for the inference of kinds (`scenic.compiler.kinds`)."""
 
 import ast
 from collections.abc import Collection, Iterator

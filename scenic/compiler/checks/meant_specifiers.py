@@ -1,4 +1,4 @@
-"""What reads as a tuple or as an operator, and can only be meant as a specifier of a new object."""
+"""Expressions that read as a tuple or an operator, and can only be meant as a specifier of a new object."""
 
 import ast
 from collections.abc import Iterator

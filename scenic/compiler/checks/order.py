@@ -1,4 +1,4 @@
-"""What is used at the top level before it exists: names, and the ego."""
+"""Names, and the ego, that are used at the top level before they exist."""
 
 import ast
 import sys

@@ -37,7 +37,7 @@ class Piece:
 
     @property
     def loaded(self) -> Collection[Binding]:
-        """What is read in it of what scopes within the module bind."""
+        """Names of scopes within the module that the piece reads."""
         return self._stretch.loaded
 
     @cached_property
@@ -52,13 +52,13 @@ class Piece:
 
 
 PieceRule: TypeAlias = Callable[[Piece, Context], Iterator[Diagnostic]]
-"""What is said about a piece of a program: nothing that depends on the statements around it but by names."""
+"""A rule about a piece of a program, which depends on the statements around it only through names."""
 
 
 def piecewise(
     context: Context, group: str, rules: Sequence[PieceRule], go_on: Callable[[], None]
 ) -> Iterator[Diagnostic]:
-    """What a group of rules says of all pieces; of what has not changed, what it said before."""
+    """The findings of a group of rules about all pieces; of unchanged pieces, the findings of the version before."""
     before = context.before
     for stretch in context.resolution.stretches:
         go_on()

@@ -1,4 +1,4 @@
-"""How the distributions and functions of the language are called, read off their declared signatures."""
+"""Parameters of the distributions and functions of the language, read off their declared signatures."""
 
 import ast
 import re

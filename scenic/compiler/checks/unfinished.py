@@ -101,7 +101,7 @@ def _operators() -> Mapping[str, str]:
 
 
 def text_before(context: Context, node: ast.Name) -> str:
-    """What stands before a name on its line, without blanks at the end."""
+    """The text before a name on its line, without blanks at the end."""
     span = context.source.span(node)
     return context.source.line(span.line)[: span.column].rstrip()
 
@@ -112,7 +112,7 @@ def _word_before(context: Context, node: ast.Name) -> str:
 
 
 def unfinished(context: Context, node: ast.Name) -> Diagnostic | None:
-    """What is missing after a name that is a word of the language, and nothing else in its place."""
+    """The missing rest after a name that is a word of the language and has nothing else in its place."""
     if node.id not in SOFT_KEYWORDS:
         return None
     span = context.source.span(node)
@@ -196,7 +196,7 @@ def _names_in_row(value: ast.expr) -> Iterator[ast.Name]:
 
 
 def may_bind_more(context: Context) -> bool:
-    """Whether a statement is half typed, so that any name may be one that the rest of it binds.
+    """Return whether a statement is half typed, so that any name may be one that the rest of it binds.
 
     Such are assignments that end with ``=`` or an open bracket, beginnings of targets and, while somebody is typing, names in
     a row, and those that may become the first word of a statement that binds others.

@@ -170,7 +170,7 @@ class Conditions:
 
 
 def implicit_ego(node: scenic.Operation) -> list[int]:
-    """Which operands are left out and mean the ego."""
+    """The operands that are left out and mean the ego, by index."""
     declared = OPERATORS[node.operator].operands
     return [
         index
@@ -188,7 +188,7 @@ def _unwritten_ego(node: ast.expr) -> list[ast.Name]:
 
 
 def assigns(node: ast.expr) -> bool:
-    """Whether there is an assignment expression in a condition."""
+    """Return whether there is an assignment expression in a condition."""
     return any(isinstance(part, ast.NamedExpr) for part in walk(node))
 
 

@@ -37,7 +37,7 @@ __all__ = ["RULES", "Blocks", "Lowerer", "definition", "plain"]
 
 
 class Lowerer(Protocol):
-    """What the rules here need of the lowering of a program."""
+    """The part of the lowering of a program that the rules here need."""
 
     blocks: "Blocks"
 

@@ -105,7 +105,7 @@ RULES: Final[tuple[Rule, ...]] = (
 
 
 def explain(at: Situation) -> Problem | None:
-    """What the first rule that knows the mistake says, ``None`` if none does."""
+    """The message of the first rule that knows the mistake, ``None`` if none does."""
     for rule in RULES:
         problem = rule(at)
         if problem is not None:

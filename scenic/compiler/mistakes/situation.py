@@ -1,4 +1,4 @@
-"""What a rule about a mistake can ask: the tokens around it, what was expected, whether a repair would do."""
+"""The questions of rules about a mistake: the tokens around it, what was expected, whether a repair would do."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -72,34 +72,34 @@ class Situation:
         return text
 
     def is_name(self, index: int) -> bool:
-        """Whether a token is a name, which soft keywords are too."""
+        """Return whether a token is a name, which soft keywords are too."""
         return self.first <= index < self.end and self.tokens.kinds[index] >= NAME
 
     def is_plain_name(self, index: int) -> bool:
-        """Whether a token is a name and no keyword of any kind."""
+        """Return whether a token is a name and no keyword of any kind."""
         return self.first <= index < self.end and self.tokens.kinds[index] == NAME
 
     def is_class_name(self, index: int) -> bool:
-        """Whether a token is a name that looks like that of a class."""
+        """Return whether a token is a name that looks like that of a class."""
         return self.is_plain_name(index) and self.word(index)[:1].isupper()
 
     def starts_operand(self, index: int) -> bool:
-        """Whether an expression can start with a token."""
+        """Return whether an expression can start with a token."""
         if not self.first <= index < self.end:
             return False
         kind = self.tokens.kinds[index]
         return kind >= NAME or kind in (NUMBER, STRING) or self.word(index) in _OPERAND_WORDS or kind == 6
 
     def is_long(self) -> bool:
-        """Whether the line is so long that no repair can be tried."""
+        """Return whether the line is so long that no repair can be tried."""
         return self.end - self.first > LONGEST
 
     def at_end(self) -> bool:
-        """Whether the line ends where it should go on."""
+        """Return whether the line ends where it should go on."""
         return self.token >= self.end
 
     def expects(self, *wanted: str) -> bool:
-        """Whether one of these words, or rules by their labels, could have stood there."""
+        """Return whether one of these words, or rules by their labels, could have stood there."""
         return any(word in self.expected or WORDS.get(word) in self.expected for word in wanted)
 
     def opener(self, index: int) -> int | None:
@@ -116,7 +116,7 @@ class Situation:
         return None
 
     def adjacent(self, index: int) -> bool:
-        """Whether nothing stands between a token and the next."""
+        """Return whether nothing stands between a token and the next."""
         tokens = self.tokens
         return (
             index + 1 < self.end
@@ -143,7 +143,7 @@ class Situation:
         return self.elsewhere(first, first + 1)
 
     def context(self) -> str:
-        """How the line is read: as an item of a class, a line of specifiers, or a statement (see `Trials.run`)."""
+        """The reading of the line: as an item of a class, a line of specifiers, or a statement (see `Trials.run`)."""
         if self._context is None:
             self._context = ""
             index = self._block_start()
@@ -215,13 +215,13 @@ class Situation:
     # Repairs.
 
     def reads(self, changes: Sequence[Change], *, context: str | None = None) -> Outcome:
-        """What becomes of the line with ``changes``."""
+        """The reading of the line with ``changes``."""
         if context is None:
             context = self.context()
         return self.trials.run(self.token, changes, context=context)
 
     def repairs(self, *changes: Change, context: str | None = None) -> bool:
-        """Whether the line is right with ``changes``."""
+        """Return whether the line is right with ``changes``."""
         return self.reads(changes, context=context).complete
 
     def helps(self, *changes: Change, context: str | None = None) -> bool:

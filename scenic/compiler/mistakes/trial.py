@@ -29,12 +29,12 @@ class Change:
     end: int
     words: tuple[str, ...]
     tight: bool = False
-    """Whether the blanks before the tokens go, too."""
+    """True if the blanks before the tokens go, too."""
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What a trial came to.
+    """The outcome of a trial.
 
     ``complete``: the whole line is right. ``reached``: the token, by its number in the original text, that cannot
     stand where it stands now.

@@ -98,7 +98,7 @@ class ExpressionWriter:
         return ", ".join(texts)
 
     def target(self, node: ast.expr, after: After) -> str:
-        """What is bound, where the grammar wants a primary: no operator is tried there."""
+        """A bound expression, where the grammar wants a primary: no operator is tried there."""
         if node.__class__ is ast.Tuple and node.elts:
             return self.row(node.elts, PRIMARY, after, "", 0)
         return WRITERS[node.__class__](self, node, PRIMARY, after, "", 0)
@@ -491,7 +491,7 @@ class ExpressionWriter:
         return self.operands(node.operands, plan, after, closer, lead & FIRST_OF_CONDITION)
 
     def plan(self, plans: Mapping[tuple[str, tuple[int, ...]], Plan], name: str, node: Any) -> Plan:
-        """How to write an operator with the operands that it has."""
+        """The plan by which to write an operator with the operands that it has."""
         operands = node.operands
         absent = () if None not in operands else tuple(i for i, each in enumerate(operands) if each is None)
         plan = plans.get((name, absent))

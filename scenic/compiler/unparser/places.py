@@ -43,9 +43,9 @@ DO: Final = 256
 """The word before is the statement's."""
 
 FIRST: Final = ~(TEMPORAL | ALSO)
-"""What the first operand of an ordinary operator has of the flags of the operator's own place."""
+"""Mask of the flags that the first operand of an ordinary operator takes from the operator's own place."""
 FIRST_OF_CONDITION: Final = ~ALSO
-"""What the first operand of an operator of the temporal ladder has of them."""
+"""Mask of the flags that the first operand of an operator of the temporal ladder takes from its place."""
 
 _ORDINARY: Final = LADDERS[Ladder.ORDINARY]
 YIELD: Final = _ORDINARY["named_expression"] - 1
@@ -86,7 +86,7 @@ class Operand:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """How to write a form: ``head``, then each operand and its text.
+    """A plan by which to write a form: ``head``, then each operand and its text.
 
     ``absorbs`` are the words that would be taken for a part of the form if they followed it. ``is_open`` says whether
     it ends with an operand. ``clashes`` are the flags of places where the word before would take its first word for a
@@ -198,14 +198,14 @@ def _plans(node: str, forms: tuple[Form, ...]) -> Mapping[tuple[str, tuple[int, 
 
 
 OPERATIONS: Final = _plans("Operation", FORMS)
-"""How Scenic's operators are written, by name and operands left out."""
+"""Plans by which to write Scenic's operators, by name and operands left out."""
 CONDITIONS: Final = _plans("Temporal", FORMS)
 SPECIFIER_PLANS: Final = _plans("SpecifierPhrase", SPECIFIERS)
 
 
 @dataclass(frozen=True, slots=True)
 class Binary:
-    """How an operator of Python's with two operands is written."""
+    """A plan by which to write an operator of Python's with two operands."""
 
     level: int
     left: int
@@ -248,7 +248,7 @@ INFIX: Final = frozenset(
     for form in FORMS
     if form.ladder is Ladder.ORDINARY and isinstance(form.parts[0], Slot)
 )
-"""What an open operand of the loosest level goes on with."""
+"""Words that can continue an open operand of the loosest level."""
 
 SPECIFIER_STARTS: Final = frozenset(_first_words(form, 0) for form in SPECIFIERS)
 
@@ -259,7 +259,7 @@ OPERAND_STARTS: Final = frozenset(
     for word in chain(INFIX, *(form.words for form in FORMS if form.ladder is Ladder.TEMPORAL))
     if word in SOFT_KEYWORDS
 }
-"""What can follow an operand and can also begin one: soft keywords are names there."""
+"""Words that can follow an operand and can also begin one: soft keywords are names there."""
 
 
 def _second_words() -> Mapping[str, frozenset[str]]:
@@ -338,7 +338,7 @@ WATCHED: Final = frozenset(chain(_SECOND_WORDS, _WHOLE_STATEMENTS, *_BEFORE_OPER
 
 
 def is_keyword(name: str, after: After, closer: str, lead: int) -> bool:
-    """Whether the parser would take a name for something else in this place."""
+    """Return whether the parser would take a name for something else in this place."""
     if after in ("left", "right") and name in ("front", "back", "top", "bottom"):
         return True
     if lead & PREFIX:
@@ -396,7 +396,7 @@ _FIRST_FIELDS: Final[Mapping[type[ast.AST], str]] = MappingProxyType(
 
 
 def absorbs_comma(after: After) -> bool:
-    """Whether a list of specifiers would go on after a comma with the node that follows it."""
+    """Return whether a list of specifiers would go on after a comma with the node that follows it."""
     if not isinstance(after, ast.AST):
         return False
     return hasattr(after, "specifier") or first_word(after) in SPECIFIER_STARTS

@@ -297,7 +297,7 @@ class StatementWriter(PatternWriter):
             previous = kind
 
     def annotated_in_class(self, node: ast.AnnAssign, indent: str, before: ast.stmt | None) -> None:
-        """What would be a property on a line of its own, or without parentheses around the target."""
+        """An annotation that would be a property on a line of its own, or without parentheses around the target."""
         if node.simple:
             if before is None or _ends_its_line(before):
                 raise UnparseError(

@@ -1,4 +1,4 @@
-"""What cars and pedestrians do in one step (sections 5.1 and 5.2 of the driving specification)."""
+"""Actions of cars and pedestrians in one step (sections 5.1 and 5.2 of the driving specification)."""
 
 import math
 from typing import Any
@@ -131,7 +131,7 @@ class SteeringAction(Action):
     """Base of actions of agents that steer."""
 
     def canBeTakenBy(self, agent: Any) -> bool:
-        """Whether the agent steers."""
+        """Return whether the agent steers."""
         return isinstance(agent, Steers)
 
 
@@ -233,7 +233,7 @@ class WalkingAction(Action):
     """Base of actions of agents that walk."""
 
     def canBeTakenBy(self, agent: Any) -> bool:
-        """Whether the agent walks."""
+        """Return whether the agent walks."""
         return isinstance(agent, Walks)
 
 

@@ -36,7 +36,7 @@ _SLIVER: Final = 0.002
 
 @dataclass(frozen=True, slots=True)
 class LaneTypes:
-    """Which types of lanes of the file are what."""
+    """The types of lanes in the file, by their use."""
 
     drivable: frozenset[str] = frozenset(
         ["driving", "entry", "exit", "offRamp", "onRamp", "connectingRamp", "slipLane", "bidirectional"]

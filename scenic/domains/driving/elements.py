@@ -437,7 +437,7 @@ class Road(LinearElement):
 
     @property
     def is1Way(self) -> bool:
-        """Whether all lanes have one direction."""
+        """Return whether all lanes have one direction."""
         return len(self.laneGroups) < 2
 
     @cached_property
@@ -543,22 +543,22 @@ class Intersection(NetworkElement):
 
     @property
     def is3Way(self) -> bool:
-        """Whether three roads meet."""
+        """Return whether three roads meet."""
         return len(self.roads) == 3
 
     @property
     def is4Way(self) -> bool:
-        """Whether four roads meet."""
+        """Return whether four roads meet."""
         return len(self.roads) == 4
 
     @property
     def isSignalized(self) -> bool:
-        """Whether there is any signal, stop signs included."""
+        """Return whether there is any signal, stop signs included."""
         return bool(self.signals)
 
     @property
     def hasTrafficLights(self) -> bool:
-        """Whether there is a traffic light."""
+        """Return whether there is a traffic light."""
         return any(signal.isTrafficLight for signal in self.signals)
 
     def maneuversAt(self, point: Any) -> list["Maneuver"]:
@@ -646,7 +646,7 @@ class Signal(Frozen):
 
     @property
     def isTrafficLight(self) -> bool:
-        """Whether it is a traffic light, by its type in the file."""
+        """Return whether it is a traffic light, by its type in the file."""
         return self.type in ("1000001", "1000011")
 
     def __repr__(self) -> str:

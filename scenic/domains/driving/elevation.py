@@ -65,7 +65,7 @@ class Elevation:
 
     @cached_property
     def is_level(self) -> bool:
-        """Whether all roads are level, at height 0."""
+        """Return whether all roads are level, at height 0."""
         cubics = [
             cubic
             for road in self.roads
@@ -140,7 +140,7 @@ class Elevation:
         return low - reach * float(lean), high + reach * float(lean)
 
     def reach(self, road: int, places: Floats) -> float:
-        """How far places ``(n, 2)`` are at most from the reference line of a road, in metres."""
+        """Upper bounds of the distances of places ``(n, 2)`` from the reference line of a road, in metres."""
         if all(table.is_zero for table in self._tilts):
             return 0.0
         return float(np.abs(self._lines.project(np.full(len(places), road), places)[1]).max(initial=0.0))

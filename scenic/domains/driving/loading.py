@@ -32,7 +32,7 @@ _Network = TypeVar("_Network", bound=RoadNetwork)
 
 @dataclass(frozen=True, slots=True)
 class MapOptions:
-    """How a map becomes a network (the parameter ``map_options``).
+    """Options by which a map becomes a network (the parameter ``map_options``).
 
     Attributes:
         tolerance: metres within which an element counts as being at a place that none holds.

@@ -1,4 +1,4 @@
-"""Which elements are at a place, for many places at a time, and the direction of traffic there."""
+"""The elements at many places at a time, and the direction of traffic there."""
 
 import math
 from collections.abc import Sequence

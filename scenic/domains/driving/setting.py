@@ -15,7 +15,7 @@ __all__ = ["SettingError", "is2DMode", "nearer", "network_of_program", "standing
 
 
 def is2DMode() -> bool:
-    """Whether the program is compiled in the 2D mode."""
+    """Return whether the program is compiled in the 2D mode."""
     context = current.get()
     return context is not None and context.mode_2d
 

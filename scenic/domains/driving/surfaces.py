@@ -49,7 +49,7 @@ class Surface(PolygonalRegion):
 
     @property
     def has_closed_form(self) -> bool:  # type: ignore[override] # only in the plane
-        """Whether it lies in the plane."""
+        """Return whether it lies in the plane."""
         return self.ground is None
 
     def single(self) -> Single | None:

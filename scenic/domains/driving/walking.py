@@ -28,7 +28,7 @@ def heading_to(agent: Any, place: Any) -> float:
 
 
 def arrived(agent: Any, place: Any, speed: float) -> bool:
-    """Whether an agent is as near to a place as it comes in half a step at a speed in m/s."""
+    """Return whether an agent is as near to a place as it comes in half a step at a speed in m/s."""
     reach: float = max(0.05, 0.5 * speed * running_simulation().timestep)
     return math.hypot(agent.position[0] - place[0], agent.position[1] - place[1]) <= reach
 

@@ -35,7 +35,7 @@ class Nearness:
         self._distance = 0.0
 
     def closer_than(self, limit: float, point: Any) -> bool:
-        """Whether the distance of a point from the target is less than a limit in metres."""
+        """Return whether the distance of a point from the target is less than a limit in metres."""
         x, y, *_ = point
         if self._target is not None:
             return math.hypot(x - self._target[0], y - self._target[1]) < limit
@@ -77,7 +77,7 @@ class InsideWatch:
         self._found: Any = None
 
     def __call__(self) -> bool:
-        """Whether it is now."""
+        """Return whether it is now."""
         x, y, *_ = self._agent.position
         moved = math.hypot(x - self._x, y - self._y)
         if self._found is not None:

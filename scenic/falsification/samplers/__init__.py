@@ -31,7 +31,7 @@ SAMPLERS: Final[Mapping[str, Callable[[Space, int, Any], Sampler]]] = MappingPro
         "tpe": Parzen,
     }
 )
-"""What makes samplers, of a space, a seed and options."""
+"""Functions that make samplers from a space, a seed and options."""
 
 
 def make_sampler(name: str, space: Space, seed: int, given: Any = None) -> Sampler:

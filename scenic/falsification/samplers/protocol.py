@@ -24,13 +24,13 @@ class Sampler(Protocol):
 
     @property
     def batch(self) -> int | None:
-        """How many points it wants to be asked for at a time; ``None`` if that does not matter."""
+        """Number of points that the sampler wants to be asked for at a time; ``None`` if that does not matter."""
 
     def ask(self, count: int) -> Floats:
         """The next points ``(count, d)``; raises `Exhausted` if there are none."""
 
     def tell(self, points: Floats, values: Floats) -> None:
-        """What came of points ``(n, d)``: values ``(n,)``, smaller ones better, NaN where a point was rejected."""
+        """Take the values of points ``(n, d)``: ``(n,)``, smaller ones better, NaN where a point was rejected."""
 
 
 def options(given: Any, defaults: Mapping[str, Any], name: str) -> dict[str, Any]:

@@ -80,7 +80,7 @@ class Geometry:
     normalized: bool
     line: int
     corrected: bool = False
-    """Whether the length is not that of the file, which contradicts where the next piece begins."""
+    """True if the length is not that of the file, which contradicts where the next piece begins."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ class Lane:
     """Kinds of road users that the file allows or denies, as ``allow bicycle``."""
     line: int
     lost: frozenset[str] = frozenset()
-    """Which of ``predecessor`` and ``successor`` the file has, but not so that they can be used."""
+    """The ones of ``predecessor`` and ``successor`` that the file has, but not so that they can be used."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +110,7 @@ class LaneSection:
     lanes: tuple[Lane, ...]
     line: int
     is_whole: bool = True
-    """Whether no lane of the file is missing here because something is wrong with it, which has been told."""
+    """True if no lane of the file is missing here because something is wrong with it, which has been told."""
 
 
 @dataclass(frozen=True, slots=True)

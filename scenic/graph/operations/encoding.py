@@ -1,4 +1,4 @@
-"""What the solver readings share."""
+"""Functions that the solver readings share."""
 
 from collections.abc import Callable, Sequence
 from typing import Any

@@ -1,4 +1,4 @@
-"""What the inverse readings share.
+"""Functions that the inverse readings share.
 
 A result was rounded when it was computed, so every inverse starts from result bounds moved outward (`before_rounding`).
 """
@@ -20,7 +20,7 @@ def before_rounding(result: Bounds, ulps: int = 1) -> Bounds:
 
 
 def collapsed(bounds: Bounds, like: Bounds) -> Bounds:
-    """What vector bounds say of a number that stood beside the vector: it must suit every component."""
+    """Bounds of a number that stood beside a vector, from bounds of the vector: it must suit every component."""
     if bounds.lower.ndim == like.lower.ndim:
         return bounds
     return Bounds(bounds.lower.max(axis=1), bounds.upper.min(axis=1))

@@ -1,4 +1,4 @@
-"""What the numeric operations share: their kinds, and evaluation by Python's own functions lane by lane."""
+"""The common ground of numeric operations: their kinds, and evaluation by Python's own functions lane by lane."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, Final
@@ -51,7 +51,7 @@ def as_integers(column: Column) -> Column:
 
 
 def are_exact(*columns: Column) -> bool:
-    """Whether every integer of the columns is a float too, so that mixed arithmetic loses nothing."""
+    """Return whether every integer of the columns is a float too, so that mixed arithmetic loses nothing."""
     return all(column.dtype != np.int64 or bool((np.abs(column) <= EXACT).all()) for column in columns)
 
 

@@ -1,4 +1,4 @@
-"""What the server does for each method of the protocol: one module for each theme.
+"""Handlers of the methods of the protocol: one module for each theme.
 
 A handler is given what the client sent as the protocol's types have it, calls one function of `scenic.ide`, and converts what
 that returns. The modules are imported when the first request of their theme arrives: the server starts without them.

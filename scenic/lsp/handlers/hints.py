@@ -1,4 +1,4 @@
-"""What editors show beside the text: inlay hints, lenses, links, colours."""
+"""Handlers of what editors show beside the text: inlay hints, lenses, links, colours."""
 
 from typing import Any, Final
 

@@ -1,4 +1,4 @@
-"""What a reader or writer wants to know about a place: hover, completion, signatures."""
+"""Handlers of information about a place: hover, completion, signatures."""
 
 from typing import Any, Final, Protocol
 

@@ -20,7 +20,7 @@ WAIT: tuple[Any, ...] = ()
 
 
 class Termination:
-    """What ``terminate`` yields."""
+    """The value that ``terminate`` yields."""
 
     __slots__ = ("simulation", "span")
 
@@ -36,7 +36,7 @@ class Termination:
 
 
 Yielded = tuple[Any, ...] | Termination
-"""What running code yields to the simulation: actions (none for ``wait``), or a request to end something."""
+"""A value that running code yields to the simulation: actions (none for ``wait``), or a request to end something."""
 
 
 class Activation(Guarded):
@@ -51,7 +51,7 @@ class Activation(Guarded):
     """
 
     composes = False
-    """Whether it runs scenarios."""
+    """True if it runs scenarios."""
     __slots__ = ("agent", "direct", "generator", "scenario")
 
     def __init__(self, run: "Run", instance: Invocable, agent: Any, scenario: "ScenarioActivation") -> None:
@@ -65,7 +65,7 @@ class Activation(Guarded):
         self.agent = agent
         self.scenario = scenario
         self.direct = True
-        """Whether the last yield was by a statement of its own, not by something that it does."""
+        """True if the last yield was by a statement of its own, not by something that it does."""
         self.generator: Generator[Yielded, None, Any] | None = None
 
     def start(self) -> None:
@@ -77,7 +77,7 @@ class Activation(Guarded):
         self.instance._activation = self
 
     def resume(self) -> Yielded | None:
-        """What it yields next; ``None`` if it has ended. Raises what its code raises, and guard violations."""
+        """The next value that it yields; ``None`` if it has ended. Raises what its code raises, and guard violations."""
         generator = self.generator
         if generator is None:
             return None

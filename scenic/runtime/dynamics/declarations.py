@@ -1,4 +1,4 @@
-"""What a scenario asks for beside its objects: requirements, monitors, ends, records.
+"""Declarations of a scenario beside its objects: requirements, monitors, ends, records.
 
 The same for the scenario that is compiled and for those that are set up during a simulation.
 """
@@ -43,7 +43,7 @@ class Kept:
         return self.function(*self.captured)
 
     def random_parts(self) -> list[Any]:
-        """What may be random in it."""
+        """Values in it that may be random."""
         return [self.function, *self.captured]
 
 
@@ -122,7 +122,7 @@ class RecordUse:
 
 @dataclass(slots=True)
 class Declared:
-    """What one scenario asks for, in program order."""
+    """Declarations of one scenario, in program order."""
 
     ends: list[End] = field(default_factory=list)
     monitors: list[MonitorUse] = field(default_factory=list)
@@ -140,7 +140,7 @@ class Declared:
         )
 
     def random_parts(self) -> list[Any]:
-        """What may be random in it, for sampling."""
+        """Values in it that may be random, for sampling."""
         parts: list[Any] = [item.monitor for item in self.monitors]
         for item in self.ends:
             parts += item.condition.random_parts()

@@ -26,7 +26,7 @@ Guard = Callable[..., Any]
 
 @dataclass(frozen=True, slots=True)
 class Definition:
-    """What a definition consists of.
+    """The parts of a definition.
 
     ``body`` is the generator function of a behavior, monitor or compose block (``None`` without one), ``setup`` the
     set-up of a scenario. Functions take the instance, those of behaviors then the agent, then the arguments (not
@@ -41,7 +41,7 @@ class Definition:
     invariants: Sequence[Guard] = ()
     span: Span | None = None
     sets_up: bool = False
-    """Whether a scenario has a set-up of its own, and does not only compose others."""
+    """True if a scenario has a set-up of its own, and does not only compose others."""
 
     @property
     def functions(self) -> list[Callable[..., Any]]:
@@ -99,7 +99,7 @@ class Invocable:
                 given[name] = self.__dict__[name] = resolve(value, SimpleNamespace())
 
     def random_parts(self) -> list[Any]:
-        """What may be random in it, for sampling."""
+        """Values in it that may be random, for sampling."""
         return [*self._arguments.arguments.values(), *self.__dict__.values(), *self._definition.functions]
 
     def sampled(self, sample: Any) -> "Invocable":
@@ -189,7 +189,7 @@ def define(base: type[Invocable], definition: Definition, documentation: str | N
 
 
 def behavior_of(value: Any) -> Any:
-    """What the property ``behavior`` holds: a class stands for an instance without arguments.
+    """The value of the property ``behavior``: a class stands for an instance without arguments.
 
     Raises `ScenicTypeError` for what is no behavior, nor a random value that may be one.
     """

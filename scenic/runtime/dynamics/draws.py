@@ -92,7 +92,7 @@ class Recorded:
 
 
 class Draws:
-    """What the distributions of a running simulation draw from.
+    """The source that the distributions of a running simulation draw from.
 
     Args:
         source: of the numbers.

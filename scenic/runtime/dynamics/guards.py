@@ -58,7 +58,7 @@ class Guarded(ABC):
             self._check(guard, InvariantViolation)
 
     def may_start(self) -> bool:
-        """Whether all guards hold."""
+        """Return whether all guards hold."""
         try:
             self.check_all()
         except GuardViolation:

@@ -156,7 +156,7 @@ class Dynamics:
         return statements.Outcome("return", value)
 
     def returned(self, outcome: statements.Outcome | None) -> bool:
-        """Whether a block ended by ``return``."""
+        """Return whether a block ended by ``return``."""
         return outcome is not None and outcome.way == "return"
 
     def margin(self, symbols: Sequence[str], operands: Sequence[Any]) -> float | None:

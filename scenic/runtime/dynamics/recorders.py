@@ -45,7 +45,7 @@ class Recorder:
 
 @dataclass(frozen=True, slots=True)
 class Filed:
-    """What stands for a series that is in a file, or in files: the file's name, or the pattern of their names."""
+    """A reference to a series that is in a file, or in files: the file's name, or the pattern of their names."""
 
     name: str
 

@@ -30,7 +30,7 @@ class Recording:
         self._recorder: Recorder | None = None
         self._ended = False
         self.begun = False
-        """Whether there is a value."""
+        """True if there is a value."""
         if use.to is not None:
             run.recordings.append(self)
             recorder = use.to if isinstance(use.to, Recorder) else for_pattern(use.to)

@@ -15,7 +15,7 @@ __all__ = ["Followed", "Outcome"]
 
 
 class Outcome:
-    """What became of a requirement in one simulation.
+    """The outcome of a requirement in one simulation.
 
     ``robustness`` is by how much it held or failed, where that was asked for: positive if it held.
     """
@@ -88,7 +88,7 @@ class Followed:
 
     @property
     def outcome(self) -> Outcome:
-        """What has become of it so far."""
+        """The outcome so far."""
         if self._outcome is not None:
             return self._outcome
         value = None if self._robustness is None else self._robustness.value

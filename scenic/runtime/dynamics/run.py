@@ -24,7 +24,7 @@ __all__ = ["Ending", "Run", "RunContext", "Simulated"]
 
 
 class Simulated(Protocol):
-    """What a run needs of the simulation that it is part of (`scenic.simulators.simulation.Simulation`)."""
+    """The part of a simulation that its run needs (`scenic.simulators.simulation.Simulation`)."""
 
     scene: Any
     name: str
@@ -73,7 +73,7 @@ class RunContext(Context):
         super().__init__(locate=locate, name=name, generator=run.draws, mode_2d=mode_2d)  # type: ignore[arg-type] # it has `random`
         self.run = run
         self.guarding = False
-        """Whether a guard, or the condition of an interrupt or ``until``, is being evaluated."""
+        """True if a guard, or the condition of an interrupt or ``until``, is being evaluated."""
 
     @property
     def present(self) -> Sequence[Any]:
@@ -136,12 +136,12 @@ class Run:
             name: copies.value(value) for name, value in program.parameters.items()
         }
         self.agent: Any = None
-        """Whose behavior is running."""
+        """The agent whose behavior is running."""
         self.ending: Ending | None = None
         self.unmet: RejectSimulationException | None = None
         """That a requirement of a scenario did not hold when an exception stopped it; it rejects once that has been caught."""
         self.in_first_setup = False
-        """Whether the set-up runs that is the first of the simulation: that of a program which only composes has been none."""
+        """True if the set-up runs that is the first of the simulation: that of a program which only composes has been none."""
         self._has_set_up = program.top is None or program.top._definition.sets_up
         self._finished = False
         self._count = 0
@@ -215,7 +215,7 @@ class Run:
             context.guarding = before
 
     def holds(self, condition: Callable[[], Any]) -> bool:
-        """Whether a condition of an interrupt holds; one that reads a variable of a scenario that is not set yet does not."""
+        """Return whether a condition of an interrupt holds; one that reads a variable of a scenario that is not set yet does not."""
         context = self.context
         before = context.guarding
         context.guarding = True

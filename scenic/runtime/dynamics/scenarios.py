@@ -69,7 +69,7 @@ class ScenarioActivation(Guarded):
         self.reason: str | None = None
         """Why it stopped."""
         self.timed_out = False
-        """Whether a ``terminate after`` stopped it."""
+        """True if a ``terminate after`` stopped it."""
         self.number = run.number_of(self)
         self._elapsed = 0
         self._limit = math.inf
@@ -182,7 +182,7 @@ class ScenarioActivation(Guarded):
         return ()
 
     def holds(self, end: End) -> bool:
-        """Whether the condition of a ``terminate when`` holds."""
+        """Return whether the condition of a ``terminate when`` holds."""
         with self.run.within(self), self.run.condition():
             return bool(end.condition())
 

@@ -34,7 +34,7 @@ Steps = Generator[Yielded, None, Any]
 
 
 class Outcome:
-    """How a block of ``try-interrupt`` ended, other than at its end; ``value`` is that of ``return``."""
+    """The way in which a block of ``try-interrupt`` ended, other than at its end; ``value`` is that of ``return``."""
 
     __slots__ = ("value", "way")
 

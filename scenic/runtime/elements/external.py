@@ -64,7 +64,7 @@ class _Kind(type):
 
 
 def choosable_of(value: Any) -> Choosable | None:
-    """What may be chosen, if a value is an external parameter itself."""
+    """The values that may be chosen, if a value is an external parameter itself."""
     context = current.get()
     if context is None or not isinstance(value, Random):
         return None

@@ -152,13 +152,13 @@ def type_of(value: Any, types: Sequence[Type], label: str) -> Type | None:
 
 
 def is_kind(value: Any, cls: type[Point]) -> bool:
-    """Whether a value is certainly an instance of a class: for a choice, every option."""
+    """Return whether a value is certainly an instance of a class: for a choice, every option."""
     options = options_of(value)
     return all(is_kind(option, cls) for option in options) if options else isinstance(value, cls)
 
 
 def is_unknown(value: Any, cls: type[Point] = Object) -> bool:
-    """Whether only the draw shows if a random value is an instance of a class (section 4.3)."""
+    """Return whether only the draw shows if a random value is an instance of a class (section 4.3)."""
     return is_open(value) or len({is_kind(option, cls) for option in options_of(value)}) > 1
 
 

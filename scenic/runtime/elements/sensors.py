@@ -39,7 +39,7 @@ class CameraSensor(Sensor):
     """
 
     outputs: ClassVar[tuple[str, ...]] = ()
-    """What images it gives."""
+    """The images that it gives."""
 
     def __init__(
         self,

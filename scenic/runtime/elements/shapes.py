@@ -89,12 +89,12 @@ class Shape:
 
     @property
     def isConvex(self) -> bool:
-        """Whether the volume is convex."""
+        """Return whether the volume is convex."""
         return self.mesh.is_convex
 
     @property
     def containsCenter(self) -> bool:
-        """Whether the middle of the bounding box lies in the volume."""
+        """Return whether the middle of the bounding box lies in the volume."""
         body = Body((self.mesh,), None, Poses.fixed(np.zeros(3), size=np.ones(3)))
         return bool(contains_points(body, np.zeros((1, 3)))[0])
 

@@ -409,7 +409,7 @@ BUILDERS: Mapping[str, Callable[..., Specifier]] = MappingProxyType(
         "not visible": partial(visible, wanted=False),
     }
 )
-"""How each specifier of `scenic.language.specifiers` is built, from its converted operands; ``with`` gets its property first, and
+"""Builders of the specifiers of `scenic.language.specifiers`, from their converted operands; ``with`` gets its property first, and
 a specifier that reads the ego or the workspace gets that first."""
 
 

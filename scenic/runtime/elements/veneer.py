@@ -163,12 +163,12 @@ def in_initial_scenario() -> bool:
 
 
 def isActive() -> bool:
-    """Whether a program is being compiled, or simulated."""
+    """Return whether a program is being compiled, or simulated."""
     return current.get() is not None
 
 
 def simulationInProgress() -> bool:
-    """Whether a simulation is running."""
+    """Return whether a simulation is running."""
     return isinstance(current.get(), RunContext)
 
 

@@ -19,7 +19,7 @@ def intersection(solids: Sequence[Mesh]) -> Mesh | None:
 
 
 def difference(first: Mesh, others: Sequence[Mesh]) -> Mesh | None:
-    """What is left of ``first``; ``None`` if one operand is no manifold or the result is empty."""
+    """The rest of ``first``; ``None`` if one operand is no manifold or the result is empty."""
     return _combined([first, *others], "Subtract")
 
 

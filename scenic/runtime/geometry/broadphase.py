@@ -35,7 +35,7 @@ _SPREAD: Final = 2.5
 
 
 def boxes_overlap(a: Poses, b: Poses) -> Booleans:
-    """Whether the oriented boxes of two poses share a point, ``(n,)``; touching counts.
+    """Return whether the oriented boxes of two poses share a point, ``(n,)``; touching counts.
 
     The separating axis test of Gottschalk, Lin and Manocha ("OBBTree", SIGGRAPH 1996): two boxes are apart
     exactly if their projections are apart on a face normal of one of them, or on the cross product of an edge

@@ -1,4 +1,4 @@
-"""Which of many polygons holds a point: by a grid of bins over their boxes."""
+"""The polygon, among many, that holds a point: by a grid of bins over their boxes."""
 
 from collections.abc import Sequence
 from typing import Any, Final

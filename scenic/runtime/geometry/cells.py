@@ -1,4 +1,4 @@
-"""Which cells of a regular grid over the unit cube the faces of a unit mesh touch."""
+"""The cells of a regular grid over the unit cube that the faces of a unit mesh touch."""
 
 from collections.abc import Iterator
 from typing import Final

@@ -1,4 +1,4 @@
-"""Which lanes have bodies that collide: many bodies over many lanes, cheap tests first.
+"""Collisions of many bodies over many lanes, cheap tests first.
 
 A lane that is lost is not looked at again; that saves work and changes no answer.
 """
@@ -38,7 +38,7 @@ _LIKELY: Final = (0.25, 0.5)
 
 
 class Collisions(NamedTuple):
-    """What was found.
+    """The collisions that were found.
 
     Attributes:
         free: lanes in which no pair collides, ``(n,)``.
@@ -53,7 +53,7 @@ class Collisions(NamedTuple):
 def collide(
     bodies: Sequence[Body], pairs: npt.ArrayLike | None, lanes: int, *, exhaustive: bool = False
 ) -> Collisions:
-    """Whether bodies collide, lane by lane: `Collider.test` for a single batch."""
+    """Return whether bodies collide, lane by lane: `Collider.test` for a single batch."""
     return Collider(bodies, pairs).test(bodies, lanes, exhaustive=exhaustive)
 
 
@@ -90,7 +90,7 @@ class Collider:
         """The fixed bodies that collide with each other, ``(c, 2)``, the smaller number first."""
 
     def test(self, bodies: Sequence[Body] | Crowd, lanes: int, *, exhaustive: bool = False) -> Collisions:
-        """Whether the bodies collide, lane by lane.
+        """Return whether the bodies collide, lane by lane.
 
         Args:
             bodies: the same cast as ever, in this batch; or, stacked, those of them that are not fixed.

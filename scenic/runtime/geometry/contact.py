@@ -1,4 +1,4 @@
-"""Whether the surfaces of posed meshes share a point, for many pairs of different meshes at once.
+"""Contacts of the surfaces of posed meshes, for many pairs of different meshes at once.
 
 Exact up to rounding: trees of boxes name the pairs of faces that may meet, and those are compared by separating
 axes. Each mesh stays in its unit frame; what is known of it there serves all sizes and poses.
@@ -45,7 +45,7 @@ class Surfaces:
         self._forest = forest
 
     def touch(self, first: Indices, second: Indices, forth: AffineMaps, back: AffineMaps) -> Booleans:
-        """Which surfaces share a point, ``(n,)``.
+        """The mask of pairs of surfaces that share a point, ``(n,)``.
 
         Args:
             first: mesh numbers, ``(n,)``.
@@ -60,7 +60,7 @@ class Surfaces:
         return result
 
     def touch_among(self, front: Front, chosen: Indices, forth: AffineMaps, back: AffineMaps) -> Booleans:
-        """Which surfaces of pairs share a point, ``(n,)``, where it is known which of their leaves may.
+        """The mask of pairs of surfaces that share a point, ``(n,)``, where it is known which of their leaves may.
 
         Args:
             front: those leaves.

@@ -1,4 +1,4 @@
-"""Whether a container holds the whole of a body, lane by lane.
+"""Containment of whole bodies, lane by lane.
 
 A body lies in a convex container if the corners of its convex hull do. Two quick tests spare most lanes the
 hull: the corners of the oriented bounding box inside mean yes, a few extreme corners of the hull outside mean
@@ -31,7 +31,7 @@ _Test = Callable[[Indices, Floats], Booleans]
 
 
 def contains_points(body: Body, points: Floats) -> Booleans:
-    """Whether the solid of a body holds a point ``(n | 1, 3)``, lane by lane."""
+    """Return whether the solid of a body holds a point ``(n | 1, 3)``, lane by lane."""
     lanes = max(len(body), len(points))
     result = np.zeros(lanes, dtype=np.bool_)
     for mesh, chosen in body.by_mesh(lanes):
@@ -45,7 +45,7 @@ def contains_points(body: Body, points: Floats) -> Booleans:
 
 
 def in_convex_polygon(body: Body, corners: Floats, lanes: int) -> Booleans:
-    """Whether the column above and below a convex polygon holds the body, ``(lanes,)``.
+    """Return whether the column above and below a convex polygon holds the body, ``(lanes,)``.
 
     Args:
         body: the body.
@@ -139,7 +139,7 @@ def _box_margins(poses: Poses, corners: Floats, edges: Floats) -> Floats:
 
 
 def in_polygons(body: Body, polygons: Polygons, lanes: int) -> Booleans:
-    """Whether the columns above and below fixed polygons hold the body, ``(lanes,)``."""
+    """Return whether the columns above and below fixed polygons hold the body, ``(lanes,)``."""
     convex = polygons.convex_corners
     if convex is not None:
         return in_convex_polygon(body, convex[None], lanes)
@@ -175,7 +175,7 @@ def in_polygons(body: Body, polygons: Polygons, lanes: int) -> Booleans:
 
 
 def in_box(body: Body, dimensions: Floats, position: Floats, rotation: Floats, lanes: int) -> Booleans:
-    """Whether a solid box holds the body, ``(lanes,)``.
+    """Return whether a solid box holds the body, ``(lanes,)``.
 
     Args:
         body: the body.
@@ -198,7 +198,7 @@ def in_box(body: Body, dimensions: Floats, position: Floats, rotation: Floats, l
 
 
 def in_ellipsoid(body: Body, dimensions: Floats, position: Floats, rotation: Floats, lanes: int) -> Booleans:
-    """Whether a solid ellipsoid with these diameters holds the body; arguments as for `in_box`."""
+    """Return whether a solid ellipsoid with these diameters holds the body; arguments as for `in_box`."""
     container, proper = _container(dimensions, position, rotation)
 
     def test(chosen: Indices, points: Floats) -> Booleans:
@@ -213,7 +213,7 @@ def in_ellipsoid(body: Body, dimensions: Floats, position: Floats, rotation: Flo
 
 
 def in_body(body: Body, container: Body, lanes: int) -> Booleans:
-    """Whether the solid of another body holds the body, ``(lanes,)``."""
+    """Return whether the solid of another body holds the body, ``(lanes,)``."""
     result = np.zeros(lanes, dtype=np.bool_)
     for outer, outer_lanes in container.by_mesh(lanes):
         for inner, inner_lanes in body.by_mesh(lanes):
@@ -226,7 +226,7 @@ def in_body(body: Body, container: Body, lanes: int) -> Booleans:
 
 
 def mesh_in_mesh(inner: Mesh, inner_poses: Poses, outer: Mesh, outer_poses: Poses) -> Booleans:
-    """Whether the solid of one mesh lies in that of another, entry by entry, ``(n,)``."""
+    """Return whether the solid of one mesh lies in that of another, entry by entry, ``(n,)``."""
     count = max(len(inner_poses), len(outer_poses))
     every = np.arange(count)
 

@@ -1,4 +1,4 @@
-"""How deep one pair of convex solids are in each other, or how far apart, without trees of their faces."""
+"""Depth to which one pair of convex solids are in each other, or their distance, without trees of their faces."""
 
 from typing import Final
 

@@ -11,7 +11,7 @@ Singles: TypeAlias = npt.NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class Hits:
-    """What rays met first, an entry for each ray: the triangle (-1 for none), the distance along the ray in lengths of
+    """The first hits of rays, an entry for each ray: the triangle (-1 for none), the distance along the ray in lengths of
     its direction, and the weights of the triangle's second and third corners.
     """
 
@@ -34,7 +34,7 @@ class RayScene:
             self._mesh: Any = TriangleMesh(self._scene, np.ascontiguousarray(triangles, dtype=np.float32))
 
     def first_hits(self, origins: Singles, directions: Singles) -> Hits:
-        """What each ray meets first."""
+        """The first hit of each ray."""
         count = len(origins)
         if self._empty or not count:
             return Hits(
@@ -62,7 +62,7 @@ class RayScene:
         return found
 
     def blocked(self, origins: Singles, directions: Singles, reach: float = 1e30) -> npt.NDArray[np.bool_]:
-        """Whether each ray meets anything within ``reach`` lengths of its direction."""
+        """Return whether each ray meets anything within ``reach`` lengths of its direction."""
         count = len(origins)
         if self._empty or not count:
             return np.zeros(count, dtype=bool)

@@ -24,7 +24,7 @@ _STEP: Final = 3
 
 
 class Front(NamedTuple):
-    """What comes near.
+    """The parts of surfaces that come near each other.
 
     Attributes:
         touching: pairs that are seen to touch, ``(n,)``.

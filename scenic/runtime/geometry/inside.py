@@ -1,4 +1,4 @@
-"""Whether points lie in a solid, decided exactly by parity in double precision.
+"""Containment of points in a solid, decided exactly by parity in double precision.
 
 A vertical line through the point is followed upwards, and its crossings with the surface are counted. What
 counts as a crossing is decided per edge of the projected triangles, by the same operations on the same
@@ -98,7 +98,7 @@ def column_grid(mesh: Mesh) -> ColumnGrid:
 
 
 def contains_points(mesh: Mesh, points: Floats) -> Booleans:
-    """Whether points ``(n, 3)``, in the frame of the mesh, lie in the solid that the closed mesh bounds."""
+    """Return whether points ``(n, 3)``, in the frame of the mesh, lie in the solid that the closed mesh bounds."""
     result = np.zeros(len(points), dtype=np.bool_)
     near = (points >= mesh.bounds[0]) & (points <= mesh.bounds[1])
     candidates = np.flatnonzero(near[:, 0] & near[:, 1] & near[:, 2])
@@ -114,7 +114,7 @@ def contains_points(mesh: Mesh, points: Floats) -> Booleans:
 
 
 def contains_lattice(mesh: Mesh, x: Floats, y: Floats, z: Floats) -> Booleans:
-    """What `contains_points` says of all combinations of coordinates, ``(len(x), len(y), len(z))``; much faster.
+    """The answers of `contains_points` for all combinations of coordinates, ``(len(x), len(y), len(z))``; much faster.
 
     Args:
         mesh: closed.

@@ -54,7 +54,7 @@ METRES: Final[Mapping[str, float]] = MappingProxyType(
 
 
 def factor_of(unit: Any, scale: Any, what: str) -> float:
-    """What turns the numbers of a mesh file into metres.
+    """The factor that turns the numbers of a mesh file into metres.
 
     Args:
         unit: the unit of length of the file, one of `METRES`.

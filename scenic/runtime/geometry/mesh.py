@@ -99,7 +99,7 @@ class Mesh:
 
     @cached_property
     def digest(self) -> bytes:
-        """What stands for the mesh where something that follows from it is kept on disk."""
+        """The digest that stands for the mesh where something that follows from it is kept on disk."""
         return digest_of(self.vertices, self.faces)
 
     @cached_property
@@ -148,7 +148,7 @@ class Mesh:
 
     @property
     def is_volume(self) -> bool:
-        """Whether the mesh bounds a solid: closed, consistently wound, normals outwards."""
+        """Return whether the mesh bounds a solid: closed, consistently wound, normals outwards."""
         return self.census.is_closed and self.volume > 0
 
     @cached_property
@@ -187,7 +187,7 @@ class Mesh:
 
     @cached_property
     def is_box(self) -> bool:
-        """Whether the solid is its own bounding box."""
+        """Return whether the solid is its own bounding box."""
         corner = (self.vertices == self.bounds[0]) | (self.vertices == self.bounds[1])
         used = np.zeros(len(self.vertices), dtype=np.bool_)
         used[self.faces] = True
@@ -199,7 +199,7 @@ class Mesh:
 
     @cached_property
     def is_convex(self) -> bool:
-        """Whether the solid is convex."""
+        """Return whether the solid is convex."""
         if not self.is_volume:
             return False
         # Necessary and cheap: no vertex lies above the plane of a face next to it. It spares large meshes the hull.

@@ -1,4 +1,4 @@
-"""Whether two posed solids share a point, decided on their meshes.
+"""Contacts of posed solids, decided on their meshes.
 
 Steps from cheap to dear, each on what the ones before leave open: oriented boxes apart; points of one solid found
 in solid cells of the other; boxes that cover one solid found in empty cells of the other; surfaces that touch; one
@@ -96,7 +96,7 @@ class Solids:
         return np.cumsum(counts) - counts, counts, np.concatenate(vertices)
 
     def intersect(self, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses) -> Booleans:
-        """Whether solids share a point, ``(n,)``; touching counts, up to rounding.
+        """Return whether solids share a point, ``(n,)``; touching counts, up to rounding.
 
         Args:
             first: mesh numbers, ``(n,)``.
@@ -120,7 +120,7 @@ class Solids:
     def prove(
         self, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses
     ) -> tuple[Booleans, Booleans]:
-        """Which entries are proved to share a point ``(n,)``, and which remain open ``(n,)``; at least one entry.
+        """The masks of entries that are proved to share a point ``(n,)``, and of those that remain open ``(n,)``; at least one entry.
 
         The cells that it takes are made once exact tests have taken as long: until then all remain open.
         """
@@ -206,13 +206,13 @@ class Solids:
     def surfaces_touch(
         self, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses
     ) -> Booleans:
-        """Whether the surfaces share a point, ``(n,)``."""
+        """Return whether the surfaces share a point, ``(n,)``."""
         return self._surfaces_touch(_Pairs.of(first, first_poses, second, second_poses))
 
     def some_part_inside(
         self, inner: Indices, inner_poses: Poses, outer: Indices, outer_poses: Poses
     ) -> Booleans:
-        """Whether a connected surface of ``inner`` lies in ``outer``, ``(n,)``, given that the surfaces do not touch."""
+        """Return whether a connected surface of ``inner`` lies in ``outer``, ``(n,)``, given that the surfaces do not touch."""
         return self._some_part_inside(inner, outer, relative_map(inner_poses, outer_poses))
 
     def _some_part_inside(self, inner: Indices, outer: Indices, maps: AffineMaps) -> Booleans:
@@ -273,6 +273,6 @@ def _either(ways: Booleans) -> Booleans:
 
 
 def meshes_intersect(mesh_a: Mesh, poses_a: Poses, mesh_b: Mesh, poses_b: Poses) -> Booleans:
-    """Whether the solids of two closed unit meshes share a point, ``(n,)``; touching counts, up to rounding."""
+    """Return whether the solids of two closed unit meshes share a point, ``(n,)``; touching counts, up to rounding."""
     numbers = np.zeros(max(len(poses_a), len(poses_b)), dtype=np.intp)
     return Solids([mesh_a, mesh_b]).intersect(numbers, poses_a, numbers + 1, poses_b)

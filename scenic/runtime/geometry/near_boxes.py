@@ -1,4 +1,4 @@
-"""Which of many boxes of the plane meet which others."""
+"""Pairs of boxes of the plane, among many, that meet."""
 
 from typing import Any
 

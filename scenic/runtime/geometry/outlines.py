@@ -47,14 +47,14 @@ class Area(Protocol):
     """An area of the plane in each of some lanes."""
 
     def meets_geometries(self, geometries: Geometries, rows: Indices) -> Booleans:
-        """Whether shapely geometries ``(k,)`` meet the areas of the lanes with the numbers ``rows``, ``(k,)``."""
+        """Return whether shapely geometries ``(k,)`` meet the areas of the lanes with the numbers ``rows``, ``(k,)``."""
 
     def meets_points(self, points: Floats, rows: Indices) -> Booleans:
-        """Whether some of the points ``(k, m, 2)`` lie in the areas of the lanes with the numbers ``rows``, ``(k,)``."""
+        """Return whether some of the points ``(k, m, 2)`` lie in the areas of the lanes with the numbers ``rows``, ``(k,)``."""
 
 
 def shadows_meet(body: Body, lanes: Indices, area: Area) -> Booleans:
-    """Whether the outlines of a body seen from above meet an area, in some lanes, ``(n,)``.
+    """Return whether the outlines of a body seen from above meet an area, in some lanes, ``(n,)``.
 
     Triangles are compared one by one, and only where neither the convex hull nor a vertex of the body decides.
     """
@@ -180,7 +180,7 @@ def hulls(points: Floats) -> Geometries:
 
 
 def upright(poses: Poses) -> Booleans:
-    """Whether the unit frames stand upright, ``(n | 1,)``: whether they are turned about the vertical alone."""
+    """Return whether the unit frames stand upright, ``(n | 1,)``: whether they are turned about the vertical alone."""
     result: Booleans = (poses.orientation[:, 0] == 0) & (poses.orientation[:, 1] == 0)
     return result
 

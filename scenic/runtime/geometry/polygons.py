@@ -179,7 +179,7 @@ class Polygons:
         return tree_of_boxes(corners.min(axis=1), corners.max(axis=1))
 
     def contains(self, x: Floats, y: Floats) -> Booleans:
-        """Which points lie inside or on the edge, ``(n,)``."""
+        """The mask of points that lie inside or on the edge, ``(n,)``."""
         import shapely
 
         shapely.prepare(self.polygon)
@@ -224,7 +224,7 @@ class Polygons:
         return np.where(self.contains(x, y), depths, 0.0)
 
     def nearly_contains(self, x: Floats, y: Floats) -> Booleans:
-        """Which points lie inside up to the tolerance, ``(n,)``."""
+        """The mask of points that lie inside up to the tolerance, ``(n,)``."""
         import shapely
 
         return np.asarray(shapely.intersects_xy(self._grown, x, y), dtype=np.bool_)
@@ -238,14 +238,14 @@ class Polygons:
         return grown
 
     def holds_discs(self, x: Floats, y: Floats, radius: Floats) -> Booleans:
-        """Which discs are quickly seen to lie inside, ``(n,)``; not all that do."""
+        """The mask of discs that are quickly seen to lie inside, ``(n,)``; not all that do."""
         import shapely
 
         near = shapely.dwithin(self._boundary, shapely.points(x, y), radius)
         return np.asarray(self.contains(x, y) & ~near, dtype=np.bool_)
 
     def covers_hulls(self, points: Floats) -> Booleans:
-        """Which convex hulls of points ``(n, k, 2)`` lie inside, up to the tolerance."""
+        """The mask of convex hulls of points ``(n, k, 2)`` that lie inside, up to the tolerance."""
         import shapely
 
         count, size = points.shape[:2]
@@ -254,7 +254,7 @@ class Polygons:
         return np.asarray(shapely.covers(self._grown, hulls), dtype=np.bool_)
 
     def covers_triangles(self, corners: Floats) -> bool:
-        """Whether all triangles ``(t, 3, 2)`` lie inside, up to the tolerance."""
+        """Return whether all triangles ``(t, 3, 2)`` lie inside, up to the tolerance."""
         import shapely
 
         return bool(shapely.covers(self._grown, shapely.polygons(corners)).all())

@@ -28,7 +28,7 @@ _CHUNK: Final = 1 << 18
 
 
 class Edges(NamedTuple):
-    """What is left of the lines of pairs of planes: ends ``(n, e, 3)``, and where something is left, ``(n, e)``."""
+    """The rest of the lines of pairs of planes: ends ``(n, e, 3)``, and where something is left, ``(n, e)``."""
 
     starts: Floats
     ends: Floats
@@ -73,7 +73,7 @@ def joined(*parts: Floats) -> Floats:
 
 
 def edges(planes: Floats) -> Edges:
-    """What is left of the lines of all pairs of planes ``(n, k, 4)`` within all half-spaces."""
+    """The rest of the lines of all pairs of planes ``(n, k, 4)`` within all half-spaces."""
     count = planes.shape[1]
     first, second = np.triu_indices(count, 1)
     shape = (len(planes), len(first))
@@ -113,7 +113,7 @@ def _clipped(planes: Floats, one: Floats, two: Floats) -> Edges:
 
 
 def hold(planes: Floats, points: Floats) -> Booleans:
-    """Which points ``(n, m, 3)`` lie in all half-spaces ``(n | 1, k, 4)``, up to rounding."""
+    """The mask of points ``(n, m, 3)`` that lie in all half-spaces ``(n | 1, k, 4)``, up to rounding."""
     inside = np.ones(points.shape[:2], dtype=np.bool_)
     for number in range(planes.shape[1]):
         plane = planes[:, number, np.newaxis]

@@ -112,7 +112,7 @@ class Poses:
 
     @property
     def knows_bounds(self) -> bool:
-        """Whether `bounds` have been computed."""
+        """Return whether `bounds` have been computed."""
         return "_bounds" in self.__dict__
 
     @cached_property

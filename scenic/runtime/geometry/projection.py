@@ -89,7 +89,7 @@ def near_surface(
     lanes: int,
     tolerance: float = TOLERANCE,
 ) -> Booleans:
-    """Which points ``(lanes | 1, 3)`` lie within the tolerance of the side, ``(lanes,)``."""
+    """The mask ``(lanes,)`` of points ``(lanes | 1, 3)`` within the tolerance of the side."""
     result = np.zeros(lanes, dtype=np.bool_)
     for mesh, chosen in body.by_mesh(lanes):
         poses = body.poses.take(chosen)

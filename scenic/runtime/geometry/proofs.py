@@ -21,7 +21,7 @@ _WEIGHTS: Final = np.array([[_STEP**2], [_STEP], [1]])
 
 
 class ProofTable:
-    """What is known of the cells of several closed unit meshes; entries name meshes by their number."""
+    """Facts about the cells of several closed unit meshes; entries name meshes by their number."""
 
     def __init__(self, meshes: Sequence[Mesh]) -> None:
         known = [mesh.derived(voxels) for mesh in meshes]
@@ -34,7 +34,7 @@ class ProofTable:
         self._half = np.stack([(boxes[:, 1] - boxes[:, 0]).T / 2 for boxes in cover], axis=-1)
 
     def contact(self, moving: Indices, still: Indices, maps: AffineMaps, points: slice) -> Booleans:
-        """Whether one of the probing ``points`` of a moving mesh lies in a solid cell of a still one, ``(n,)``.
+        """Return whether one of the probing ``points`` of a moving mesh lies in a solid cell of a still one, ``(n,)``.
 
         Args:
             moving: mesh numbers, ``(n,)``.
@@ -48,14 +48,14 @@ class ProofTable:
         return result
 
     def distance(self, moving: Indices, still: Indices, maps: AffineMaps) -> Booleans:
-        """Whether all boxes that cover a moving mesh lie in empty cells of a still one, ``(n,)``."""
+        """Return whether all boxes that cover a moving mesh lie in empty cells of a still one, ``(n,)``."""
         centre = maps.columns(_gathered(self._middle, moving))
         reach = maps.reaches(_gathered(self._half, moving))
         near: Booleans = np.logical_or.reduce(self.near_filled(still, centre, reach), axis=0)
         return ~near
 
     def in_solid(self, still: Indices, points: Floats) -> Booleans:
-        """Whether points ``(3, ..., n)`` in the frames of still meshes ``(n,)`` lie in solid cells, ``(..., n)``."""
+        """Return whether points ``(3, ..., n)`` in the frames of still meshes ``(n,)`` lie in solid cells, ``(..., n)``."""
         where = np.flatnonzero(_all_axes(np.abs(points) <= 0.5))
         cell = ((points.reshape(3, -1).take(where, axis=1) + 0.5) * RESOLUTION).astype(np.intp)
         x, y, z = np.minimum(cell, RESOLUTION - 1, out=cell)
@@ -63,7 +63,7 @@ class ProofTable:
         return _scattered(self._solid[index], where, points.shape[1:])
 
     def near_filled(self, still: Indices, centre: Floats, reach: Floats) -> Booleans:
-        """Whether boxes reach into cells of still meshes that are not empty, ``(..., n)``.
+        """Return whether boxes reach into cells of still meshes that are not empty, ``(..., n)``.
 
         Args:
             still: mesh numbers, ``(n,)``.

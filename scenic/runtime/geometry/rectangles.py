@@ -43,14 +43,14 @@ class Rectangles:
         )
 
     def hold(self, points: Floats) -> Booleans:
-        """Whether points ``(n | 1, ..., 2)`` lie inside or on the edge."""
+        """Return whether points ``(n | 1, ..., 2)`` lie inside or on the edge."""
         x, y = self.local(points)
         spread = (slice(None), *(np.newaxis,) * (points.ndim - 2))
         inside: Booleans = (np.abs(x) <= self.half[:, 0][spread]) & (np.abs(y) <= self.half[:, 1][spread])
         return inside
 
     def meet(self, other: "Rectangles") -> Booleans:
-        """Whether two rectangles share a point, ``(n,)``: whether no axis of either separates them."""
+        """Return whether two rectangles share a point, ``(n,)``: whether no axis of either separates them."""
         one, two = self._overlap_along(other), other._overlap_along(self)
         met: Booleans = one & two
         return met

@@ -40,7 +40,7 @@ class Placed(NamedTuple):
         return math.sqrt(a * a + b * b + c * c) + self.slack
 
     def reach(self, x: float, y: float, z: float) -> float:
-        """How far its box extends from the centre along a direction of length 1."""
+        """The distance to which its box extends from the centre along a direction of length 1."""
         (ax, ay, az), (bx, by, bz), (cx, cy, cz) = self.axes
         a, b, c = self.half
         return (
@@ -108,7 +108,7 @@ def axes_of(orientation: tuple[float, float, float, float]) -> Rows:
 
 
 def is_near_way(start: Triple, end: Triple, middle: Triple, radius: float) -> bool:
-    """Whether a ball is near the straight way between two points; never wrongly no."""
+    """Return whether a ball is near the straight way between two points; never wrongly no."""
     wx, wy, wz = end[0] - start[0], end[1] - start[1], end[2] - start[2]
     ox, oy, oz = middle[0] - start[0], middle[1] - start[1], middle[2] - start[2]
     length = wx * wx + wy * wy + wz * wz
@@ -119,7 +119,7 @@ def is_near_way(start: Triple, end: Triple, middle: Triple, radius: float) -> bo
 
 
 def meet(one: Placed, other: Placed) -> bool | None:
-    """Whether two bodies share a point; ``None`` where that takes a closer look."""
+    """Return whether two bodies share a point; ``None`` where that takes a closer look."""
     gap, slack = _separation(one, other), one.slack + other.slack
     if gap > slack:
         return False
@@ -142,7 +142,7 @@ def gap(one: Placed, other: Placed) -> float | None:
 
 
 def overlap(one: Placed, other: Placed) -> float:
-    """How far one of two boxes that meet has to be moved, in metres, until they only touch; 0 if they are apart.
+    """The distance, in metres, by which one of two boxes that meet has to be moved until they only touch; 0 if they are apart.
 
     Exact for boxes: the least way out of a body that is the sum of two boxes is across one of its faces, whose normals are the
     axes of the separation.

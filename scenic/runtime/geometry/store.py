@@ -1,4 +1,4 @@
-"""What is dear to compute, kept on disk from one run to the next: arrays by the content that they follow from.
+"""Store on disk of arrays that are expensive to compute, by the content that they follow from.
 
 The store only saves time: where it cannot be read or written, things are computed. Files hold arrays alone (nothing
 is ever unpickled), appear whole or not at all, so that any number of processes may share a store, and the ones used
@@ -35,7 +35,7 @@ _KEPT: Final = 0.75
 
 
 def digest_of(*arrays: npt.NDArray[Any]) -> bytes:
-    """What stands for the content of arrays, their types and shapes included."""
+    """The digest of the content of arrays, their types and shapes included."""
     digest = hashlib.sha256()
     for array in arrays:
         digest.update(f"{array.dtype.str}{array.shape}\0".encode())
@@ -69,7 +69,7 @@ def kept(
 
 
 def is_kept(kind: str, content: bytes) -> bool:
-    """Whether an earlier run left what `kept` would otherwise compute."""
+    """Return whether an earlier run left what `kept` would otherwise compute."""
     folder = store_folder()
     return folder is not None and (folder / f"{_key(kind, content)}{_SUFFIX}").exists()
 

@@ -188,7 +188,7 @@ def _grouped(kind_of: Indices, kinds: int) -> Iterator[Indices]:
 def side_contains(
     mesh: Mesh, poses: Poses, side: Side, threshold: float, entries: Indices, faces: Indices
 ) -> Booleans:
-    """Whether faces ``(m,)`` belong to the side of the mesh in the poses of ``entries`` ``(m,)``; none without area does."""
+    """Return whether faces ``(m,)`` belong to the side of the mesh in the poses of ``entries`` ``(m,)``; none without area does."""
     proper: Booleans = mesh.areas[faces] > 0
     if side is None:
         return proper

@@ -1,4 +1,4 @@
-"""How the triangles of a mesh hang together: edges, components, closedness."""
+"""Connections of the triangles of a mesh: edges, components, closedness."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from scenic.runtime.geometry.ragged import distinct, first_of_each
 
 @dataclass(frozen=True, slots=True)
 class EdgeCensus:
-    """What the edges of a mesh say about the solid it may bound.
+    """Counts of the edges of a mesh, which tell whether it bounds a solid.
 
     Attributes:
         open_edges: edges with a face on one side only (an odd number of faces).
@@ -23,7 +23,7 @@ class EdgeCensus:
 
     @property
     def is_closed(self) -> bool:
-        """Whether the faces form closed surfaces with consistent winding."""
+        """Return whether the faces form closed surfaces with consistent winding."""
         return self.open_edges == 0 and self.inconsistent_edges == 0
 
 

@@ -1,4 +1,4 @@
-"""Whether triangles of space share a point, for many pairs at once, in double precision.
+"""Contacts of triangles of space, for many pairs at once, in double precision.
 
 By separating axes: two triangles are apart exactly if their projections are apart on a normal of one of them, on
 the cross product of an edge of each, or, where they lie in one plane, on the normal of an edge in that plane.
@@ -23,7 +23,7 @@ _PARALLEL: Final = 1e-9
 
 
 def separated_by_edges(first: Corners, second: Corners) -> Booleans:
-    """Which triangles ``(m,)`` are apart, given that each meets the plane of the other."""
+    """The mask of triangles ``(m,)`` that are apart, given that each meets the plane of the other."""
     # Near the origin, so that rounding is relative to the triangles' extent. From here on coordinates come first.
     a, b = ((corners - first[0]).swapaxes(0, 1) for corners in (first, second))
     edges_a, edges_b = _edges(a), _edges(b)

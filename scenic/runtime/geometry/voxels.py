@@ -36,7 +36,7 @@ _CANDIDATES: Final = 4096
 
 @dataclass(frozen=True, slots=True)
 class Voxels:
-    """What is known of the cells of a mesh.
+    """Facts about the cells of a mesh.
 
     Attributes:
         solid: whether a cell lies wholly inside, ``(r, r, r)``.

@@ -1,4 +1,4 @@
-"""What adds noise to mutated instances (section 10.5 of the specification)."""
+"""Mutators, which add noise to mutated instances (section 10.5 of the specification)."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -23,7 +23,7 @@ class Mutator:
 
 
 def applied(mutator: Any, instance: Any) -> tuple[Any, bool]:
-    """What a mutator makes of an instance; raises `ScenicTypeError` where it gives something else."""
+    """The result of a mutator for an instance; raises `ScenicTypeError` where it gives something else."""
     result = mutator.appliedTo(instance)
     if isinstance(result, tuple) and len(result) == 2:
         return result
@@ -95,7 +95,7 @@ def active(instance: Any) -> list[Any]:
 
 
 def is_built_in(mutators: Iterable[Any]) -> bool:
-    """Whether all mutators are those of the language."""
+    """Return whether all mutators are those of the language."""
     return all(type(mutator) in BUILT_IN for mutator in mutators)
 
 

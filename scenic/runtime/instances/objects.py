@@ -73,7 +73,7 @@ def _combine_properties(cls: type["Point"]) -> None:
 
 
 PLACEMENT = ("position", "yaw", "pitch", "roll", "heading", "width", "length", "height")
-"""What every object of a scene is sure to be asked for, in the order in which `put` unpacks it."""
+"""Properties that every object of a scene is sure to be asked for, in the order in which `put` unpacks them."""
 
 
 def put(thing: Any, row: tuple[Any, ...]) -> None:
@@ -227,7 +227,7 @@ class Point:
         return sample_of(self)
 
     def canSee(self, other: Any, occludingObjects: Any = (), *, certain: bool = False) -> Any:
-        """Whether it sees a vector, a point or an object past some objects.
+        """Return whether it sees a vector, a point or an object past some objects.
 
         Rays may miss what shows between them. With ``certain`` they are not used: an object counts as seen if that is
         proved, however little of it shows.
@@ -304,7 +304,7 @@ class OrientedPoint(Point):
         return oriented_point(self.relativePosition(offset), self.orientation)
 
     def distancePast(self, point: Any) -> Any:
-        """How far this point is past ``point``, measured along its heading (metres)."""
+        """The distance of this point past ``point``, measured along its heading (metres)."""
         back = operate("from euler", operate("negative", self.heading), 0, 0)
         return operate("rotate", back, operate("subtract", self.position, to_vector(point))).y
 
@@ -405,11 +405,11 @@ class Object(OrientedPoint):
         return self.occupiedSpace.distanceTo(point)
 
     def containsPoint(self, point: Any) -> Any:
-        """Whether the shape holds a point."""
+        """Return whether the shape holds a point."""
         return self.occupiedSpace.containsPoint(point)
 
     def intersects(self, other: Any) -> Any:
-        """Whether the shape shares a point with another object or region."""
+        """Return whether the shape shares a point with another object or region."""
         body = placed_of(self)
         if body is not None:
             met = None

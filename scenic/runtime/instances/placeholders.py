@@ -1,4 +1,4 @@
-"""What stands for an instance where a choice draws it.
+"""Stand-ins for instances where a choice draws them.
 
 Mutation is part of drawing an instance, so that ``Uniform(a, b).position`` is a place after it, while ``a.position`` is the
 value that was there when it was read (sections 8.3 and 10.5 of the specification). The noise is known only when the program has
@@ -25,14 +25,14 @@ __all__ = ["complete", "may_mutate", "stand_in"]
 
 
 def may_mutate(code: CodeType) -> bool:
-    """Whether the code of a module says ``mutate``, or gives a scale of mutation."""
+    """Return whether the code of a module says ``mutate``, or gives a scale of mutation."""
     if "mutate" in code.co_names or "mutationScale" in code.co_names or "mutationScale" in code.co_consts:
         return True
     return any(may_mutate(item) for item in code.co_consts if isinstance(item, CodeType))
 
 
 def stand_in(instance: Any) -> Any:
-    """What has the values of an instance after mutation; the instance itself where nothing is mutated."""
+    """An instance with the values of another after mutation; the instance itself where nothing is mutated."""
     context = current.get()
     if context is None or not context.is_symbolic or context.sample is not None:
         return instance

@@ -58,7 +58,7 @@ class Populations:
 
     @property
     def linked(self) -> bool:
-        """Whether something in a scene leads to an object of it, so that samples have to know the objects.
+        """Return whether something in a scene leads to an object of it, so that samples have to know the objects.
 
         Otherwise they do not, and scenes are freed as soon as nobody holds them: there are no circles.
         """

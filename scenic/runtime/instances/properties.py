@@ -402,4 +402,4 @@ NORMAL: Mapping[str, Callable[[str, Any], Any]] = MappingProxyType(
         "regionContainedIn": _container,
     }
 )
-"""What becomes of the values that properties of the language are given, by name."""
+"""Functions that check and convert the values that properties of the language are given, by name."""

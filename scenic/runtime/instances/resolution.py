@@ -1,4 +1,4 @@
-"""Which specifier decides which property, and the building of an instance (section 6.1 of the specification)."""
+"""The choice of the specifier that decides each property, and the building of an instance (section 6.1 of the specification)."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -53,16 +53,16 @@ class Resolution:
     constants: Mapping[str, Any]
     """Properties whose defaults are the same for every instance, as instances store them."""
     providers: Mapping[str, Step]
-    """Whose value of a property the others read: its modifier if it has one, else its owner."""
+    """The specifier whose value of a property the others read: its modifier if it has one, else its owner."""
     names: tuple[str, ...]
     """All properties, those of the class first."""
     given: tuple[str, ...]
     """Those that the program gives, by a specifier or in a class of its own."""
     is_doubtful: bool
-    """Whether a name looks misspelt, which is told each time."""
+    """True if a name looks misspelt, which is told each time."""
 
     def provider(self, name: str, reader: Specifier) -> Step:
-        """Who provides a property that ``reader`` reads."""
+        """The specifier that provides a property which ``reader`` reads."""
         provider = self.providers.get(name)
         if provider is None:
             raise SpecifierError(

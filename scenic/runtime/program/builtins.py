@@ -83,7 +83,7 @@ def language_names() -> Mapping[str, Any]:
 
 
 def provided(name: str) -> Any:
-    """What a name means where the program does not bind it itself; ``None`` for unknown names."""
+    """The meaning of a name where the program does not bind it itself; ``None`` for unknown names."""
     return _NAMES.get(name, getattr(builtins, name, None))
 
 

@@ -110,7 +110,7 @@ def in_time(operator: str, parts: Sequence[Condition]) -> Condition:
 def leaf(
     symbolic: Callable[..., Any] | None, concrete: Callable[..., Any], captured: Sequence[Any]
 ) -> Callable[[], Node]:
-    """What builds the node of one leaf of a condition."""
+    """A function that builds the node of one leaf of a condition."""
     names: Globals | None = None
 
     def build() -> Node:

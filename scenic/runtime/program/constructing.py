@@ -16,7 +16,7 @@ _SIZES: Final = ("radius", "width", "length", "angle", "dimensions")
 
 
 def constructed(constructor: Callable[..., Any], *args: Any, **keywords: Any) -> Any:
-    """What a constructor of the language makes of values that may be random."""
+    """The result of a constructor of the language for values that may be random."""
     made = constructor(*args, **keywords)
     for name in _SIZES:
         size = getattr(made, name, None)

@@ -1,4 +1,4 @@
-"""What is being compiled or simulated right now, as an explicit object.
+"""The program that is being compiled or simulated right now, as an explicit object.
 
 Generated code reaches its context through the prelude that it was given. Functions that programs call like any Python
 function (``Range(0, 1)``) find it in a context variable, so that several scenarios can be compiled side by side.
@@ -30,7 +30,7 @@ Locator = Callable[[FrameType | TracebackType], Span | None]
 in, since the runtime knows nothing of source text."""
 
 Namer = Callable[[FrameType], Hashable]
-"""What names the place of a frame whatever is added before it: the text of its line, not the number."""
+"""A name of the place of a frame whatever is added before it: the text of its line, not the number."""
 
 
 @dataclass(slots=True)
@@ -82,7 +82,7 @@ class Record:
 
 
 class Context:
-    """How the program is being read.
+    """The way in which the program is being read.
 
     Args:
         locate: finds the place of a frame of generated code.
@@ -109,9 +109,9 @@ class Context:
         self.objects: list[Any] = []
         """The objects of the scenario so far, in order of creation: what may stand in the way of a look."""
         self.evaluating = False
-        """Whether a requirement's condition is being evaluated: nothing may be created then."""
+        """True if a requirement's condition is being evaluated: nothing may be created then."""
         self.judging = False
-        """Whether the node of a requirement's condition is being made."""
+        """True if the node of a requirement's condition is being made."""
         self.sample: Any = None
         """The sample on which Python code is being called."""
         self.concerns: Span | None = None
@@ -133,12 +133,12 @@ class Context:
 
     @property
     def is_symbolic(self) -> bool:
-        """Whether distributions stand for values to be drawn later."""
+        """Return whether distributions stand for values to be drawn later."""
         return self.generator is None
 
     @property
     def locator(self) -> Locator:
-        """What finds places, for a context of the same program."""
+        """The function that finds places, for a context of the same program."""
         return self._locate
 
     def place_of(self, traceback: TracebackType) -> Span | None:
@@ -163,11 +163,11 @@ class Context:
 
     @property
     def namer(self) -> Namer:
-        """What names places, for a context of the same program."""
+        """The function that names places, for a context of the same program."""
         return self._name
 
     def place_name(self) -> Hashable:
-        """What names the place in the program of whoever called the runtime."""
+        """The name of the place in the program of whoever called the runtime."""
         return self._name(sys._getframe(1))
 
     def next_address(self) -> int:
@@ -178,7 +178,7 @@ class Context:
 
 
 verbosity: ContextVar[int] = ContextVar("scenic verbosity", default=0)
-"""How much programs and simulations tell: 0 nothing, 1 main steps, 2 details, 3 every action."""
+"""Amount that programs and simulations print: 0 nothing, 1 main steps, 2 details, 3 every action."""
 
 current: ContextVar[Context | None] = ContextVar("scenic context", default=None)
 

@@ -1,4 +1,4 @@
-"""What of a program an external sampler may choose."""
+"""Values of a program that an external sampler may choose."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What running a program produces: the raw material of a scenario."""
+"""The results of running a program: the raw material of a scenario."""
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -58,7 +58,7 @@ class Program:
     """Parameters that the program has asked for by name."""
     simulator: Callable[[], Any] | None = None
     declared: Declared = field(default_factory=Declared)
-    """What the program asks of simulations, beside requirements."""
+    """Declarations of the program about simulations, beside requirements."""
     invocables: list[type[Invocable]] = field(default_factory=list)
     """The behaviors, monitors and scenarios that it defines."""
     top: ModularScenario | None = None
@@ -68,7 +68,7 @@ class Program:
     places: dict[int, tuple[Span | None, str | None]] = field(default_factory=dict)
     """Where each instance was created, by its identity: span and file."""
     external_names: Mapping[int, str] = field(default_factory=dict)
-    """What the program calls its external parameters, by address."""
+    """Names of the program's external parameters, by address."""
     variables: Mapping[int, str] = field(default_factory=dict)
     """Variables that hold instances, by the instance's identity."""
     names: Globals = field(default_factory=Globals)

@@ -78,7 +78,7 @@ class Modules(Protocol):
 
 
 class Prelude(Symbolic, Dynamics):
-    """What one module of generated code can do. Method names are fixed by the compiler."""
+    """The object that one module of generated code calls. Method names are fixed by the compiler."""
 
     Object = Object
 
@@ -110,7 +110,7 @@ class Prelude(Symbolic, Dynamics):
         return Prelude(self._compilation, self._program, module, self._modules)
 
     def __eq__(self, other: object) -> bool:
-        """Whether two preludes are of the same module in the same state."""
+        """Return whether two preludes are of the same module in the same state."""
         if not isinstance(other, Prelude):
             return NotImplemented
         mine, theirs = self._module, other._module

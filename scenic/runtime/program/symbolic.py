@@ -1,4 +1,4 @@
-"""What generated code calls to build the nodes of a condition."""
+"""Methods that generated code calls to build the nodes of a condition."""
 
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
@@ -120,7 +120,7 @@ class Symbolic:
         return as_value(connect(operation, nodes))
 
     def iterated(self, name: str, function: Any, *sequences: Any) -> Any:
-        """What one of Python's own functions gives to iterate over, of fixed sequences."""
+        """The sequence over which one of Python's own functions iterates, of fixed sequences."""
         return unrolling.iterated(self.provided(name, function), sequences)
 
     def each(self, sequence: Any, function: Callable[..., list[Any]], spread: bool) -> list[Any]:

@@ -23,7 +23,7 @@ _COMPENSATES: Final = sys.version_info >= (3, 12)
 
 
 def iterated(function: Callable[..., Any], sequences: Sequence[Any]) -> list[Any]:
-    """What ``range``, ``zip``, ``enumerate`` or ``reversed`` gives, of fixed arguments."""
+    """The elements of ``range``, ``zip``, ``enumerate`` or ``reversed``, of fixed arguments."""
     given = [item if isinstance(item, int) else _fixed(item) for item in sequences]
     return _fixed(list(_few(function(*given))))
 
@@ -37,7 +37,7 @@ def each(sequence: Any, function: Callable[..., list[Any]], *, spread: bool) -> 
 
 
 def given(test: Any, make: Callable[[], list[Any]]) -> list[Any]:
-    """What ``make`` gives where a condition holds, which has to be fixed, and nothing elsewhere."""
+    """The result of ``make`` where a condition holds, which has to be fixed, and nothing elsewhere."""
     node = truth(test)
     if not node.is_constant:
         raise NotSymbolicError

@@ -1,4 +1,4 @@
-"""What analysis is told of Python code by those who wrote it: bounds of results of functions, of draws, and of regions."""
+"""Bounds of Python code, given to analysis by those who wrote it: of results of functions, of draws, and of regions."""
 
 import math
 from collections.abc import Callable, Sequence

@@ -115,7 +115,7 @@ generic.call_later.register(object, call_later)
 
 
 def is_later(*values: Any) -> bool:
-    """Whether a call with these values has to wait for samples: something random is in their reach."""
+    """Return whether a call with these values has to wait for samples: something random is in their reach."""
     context = current.get()
     if context is not None and (context.sample is not None or not context.is_symbolic):
         return False
@@ -135,7 +135,7 @@ def evaluated(call: Call, columns: Sequence[Column], absent: Any = None) -> list
 def together(
     call: Call, columns: Sequence[Column], compute: Callable[["Calls", Rows], Column]
 ) -> Column | None:
-    """What ``compute`` gives from the arguments of the code by lane; it may make calls of its own, in many lanes at once.
+    """The result of ``compute`` from the arguments of the code by lane; it may make calls of its own, in many lanes at once.
 
     ``None`` where the code draws random numbers, or is not the same in every lane: then only one lane after the other will do.
     """
@@ -174,7 +174,7 @@ class Calls:
         self.seeding = False
 
     def made(self, compute: Callable[["Calls"], Any], *, again: bool = True) -> Any:
-        """What ``compute`` gives, where code of the program may run.
+        """The result of ``compute``, where code of the program may run.
 
         Setting the generators takes longer than most calls, and most draw nothing: then their states are afterwards as they
         were. Otherwise all calls are made ``again``, each with its own seed, now and later.

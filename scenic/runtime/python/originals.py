@@ -44,7 +44,7 @@ class Originals:
         return id(item) in self._kept
 
     def contents(self, container: Any) -> Any:
-        """What a container held when the program had run; what it holds now if it is none of these."""
+        """The contents of a container when the program had run; the present ones if it is none of these."""
         kept = self._kept.get(id(container))
         return _contents(container)[0] if kept is None else kept[1][0]
 

@@ -35,7 +35,7 @@ PRELUDE = "__scenic__"
 """The global name by which generated code finds the prelude, through which functions read the ego."""
 
 EGOLESS: Final = frozenset({"convert", "spread"})
-"""What functions call of the prelude without reading the ego or the workspace."""
+"""Methods of the prelude that functions call without reading the ego or the workspace."""
 
 EGOLESS_OPERATORS: Final = frozenset(
     name for name, each in OPERATORS.items() if not (each.may_read_ego or each.reads_scene)
@@ -46,22 +46,22 @@ SAMPLE = "__sample__"
 """The global name by which functions over sampled names find their sample, weakly referenced."""
 
 CACHED: Final[type[Any]] = type(lru_cache(lambda: None))
-"""What ``functools.cache`` and ``lru_cache`` make."""
+"""The type of functions that ``functools.cache`` and ``lru_cache`` make."""
 
 DECORATED: Final = (staticmethod, classmethod, property, cached_property, CACHED)
-"""What Python's own decorators make of functions."""
+"""The types of objects that Python's own decorators make of functions."""
 
 CONTAINERS: Final = frozenset({list, dict, set, deque, defaultdict, OrderedDict, Counter})
 """Containers that a program may change in place; each has ``copy`` and ``clear``."""
 
 
 def is_own_function(value: Any) -> bool:
-    """Whether a value is a function of a program."""
+    """Return whether a value is a function of a program."""
     return isinstance(value, FunctionType) and PRELUDE in value.__globals__
 
 
 def leads_back(function: Any) -> bool:
-    """Whether a function, or one that it wraps, is a program's: a library's decorator makes such functions."""
+    """Return whether a function, or one that it wraps, is a program's: a library's decorator makes such functions."""
     seen: set[int] = set()
     stack: list[Any] = [function]
     while stack:
@@ -77,7 +77,7 @@ def leads_back(function: Any) -> bool:
 
 
 def content(cell: CellType) -> Any:
-    """What a variable of an enclosing function holds; ``None`` before it is bound."""
+    """The value of a variable of an enclosing function; ``None`` before it is bound."""
     try:
         return cell.cell_contents
     except ValueError:
@@ -85,7 +85,7 @@ def content(cell: CellType) -> Any:
 
 
 def is_own(cls: type, root: type) -> bool:
-    """Whether a class is a plain Python class of a program, with methods that read the program's names.
+    """Return whether a class is a plain Python class of a program, with methods that read the program's names.
 
     Classes that derive from ``root``, and those from which such ones derive, have one identity everywhere.
     """

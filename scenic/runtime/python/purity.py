@@ -1,4 +1,4 @@
-"""Which functions depend on nothing but their arguments, and change nothing.
+"""Functions that depend on nothing but their arguments, and change nothing.
 
 Such a function need not be called on each sample where its arguments have few values. Only what is certain counts: Python's
 own functions on data, and functions of a program whose code calls only those, assigns only local names, and reads no
@@ -63,7 +63,7 @@ _CHANGING: Final = frozenset(
 
 
 def is_pure(function: Any, given: Collection[str] = ()) -> bool:
-    """Whether the result of a call with data, or objects that never change, follows from the arguments alone.
+    """Return whether the result of a call with data, or objects that never change, follows from the arguments alone.
 
     Global names that are ``given`` count as arguments.
     """

@@ -27,7 +27,7 @@ def states() -> Any:
 
 
 def is_as(before: Any) -> bool:
-    """Whether both generators are in the states of another moment: then nothing has been drawn since."""
+    """Return whether both generators are in the states of another moment: then nothing has been drawn since."""
     (python_before, numpy_before), (python_now, numpy_now) = before, states()
     return bool(
         python_before == python_now

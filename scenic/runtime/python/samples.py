@@ -71,7 +71,7 @@ class Globals:
         self._owned: dict[type, bool] = {}
         self._placements: dict[int, tuple[Point, Placement]] = {}
         self.contents: Callable[[Any], Any] | None = None
-        """What a container held when the program had run, once simulations may have changed it."""
+        """The contents of a container when the program had run, once simulations may have changed it."""
 
     def of(self, function: FunctionType) -> list[tuple[str, Any]]:
         """Global names of the program that a function of the program, or code nested in it, may read."""
@@ -117,7 +117,7 @@ class Globals:
         return [module for module in prelude.modules if module.__name__.rpartition(".")[2] in words]
 
     def is_fixed(self, item: Any) -> bool:
-        """Whether a function or class does the same in every sample: nothing that it reaches is random or bound anew."""
+        """Return whether a function or class does the same in every sample: nothing that it reaches is random or bound anew."""
         known = self._fixed.get(id(item))
         if known is None:
             fixed = all(self._is_plain(value) for value in reachable([item], self))
@@ -125,14 +125,14 @@ class Globals:
         return known[1]
 
     def owns(self, cls: type) -> bool:
-        """Whether a class is a plain Python class of the program (`is_own`)."""
+        """Return whether a class is a plain Python class of the program (`is_own`)."""
         known = self._owned.get(cls)
         if known is None:
             known = self._owned[cls] = is_own(cls, Point)
         return known
 
     def copies(self, cls: type) -> bool:
-        """Whether plain instances of a class are others in each sample; the class may be one, as a base of objects is."""
+        """Return whether plain instances of a class are others in each sample; the class may be one, as a base of objects is."""
         return self.owns(cls) or bool(self.members(cls))
 
     def _is_plain(self, value: Any) -> bool:
@@ -153,13 +153,13 @@ class Globals:
         return self._members[cls]
 
     def varies(self, cls: type) -> bool:
-        """Whether some of the `members` of a class are not the same in every sample."""
+        """Return whether some of the `members` of a class are not the same in every sample."""
         if cls not in self._varying:
             self._varying[cls] = not all(map(self.is_fixed, self.members(cls)))
         return self._varying[cls]
 
     def placement(self, instance: Point) -> Placement:
-        """What is known of the values that are asked of every object."""
+        """The known values of the properties that every object is asked for."""
         known = self._placements.get(id(instance))
         if known is None:
             values = {name: instance.__dict__.get(name) for name in PLACEMENT}
@@ -183,7 +183,7 @@ class Reach:
 
 
 def may_return_instances(value: Any) -> bool:
-    """Whether a value comes from code of the program that has instances in reach: each call has copies of its own."""
+    """Return whether a value comes from code of the program that has instances in reach: each call has copies of its own."""
     if not isinstance(value, Random) or not value.node.kind.is_boxed:
         return False
     calls = (node.payload for node in Graph([value.node]).nodes if isinstance(node.payload, Reach))
@@ -197,7 +197,7 @@ def dependencies(values: Iterable[Any], names: Globals | None = None) -> list[No
 
 
 def mention(values: Iterable[Any], names: Globals, word: str) -> bool:
-    """Whether functions of the program among the values, or reached by them, hold a text among their constants and names."""
+    """Return whether functions of the program among the values, or reached by them, hold a text among their constants and names."""
     return any(mentions(value.__code__, word) for value in reachable(values, names) if is_own_function(value))
 
 
@@ -223,7 +223,7 @@ def _imported_names(code: CodeType) -> Iterator[str]:
 
 
 def mentions(code: CodeType, word: str) -> bool:
-    """Whether code, or code nested in it, holds a text among its constants and names."""
+    """Return whether code, or code nested in it, holds a text among its constants and names."""
     return word in code.co_names or any(
         item == word or (isinstance(item, CodeType) and mentions(item, word)) for item in code.co_consts
     )
@@ -273,7 +273,7 @@ def _boxed_constants(root: Node, seen: dict[int, Any]) -> list[Any]:
 
 
 def parts(value: Any, names: Globals) -> Iterator[Any]:
-    """What a value is made of, as far as sampling goes."""
+    """The parts of a value, as far as sampling goes."""
     if isinstance(value, Point):
         yield from value.__dict__.get("_source", value).__dict__.values()
         yield from names.members(type(value))
@@ -350,7 +350,7 @@ _MISSING: Final = object()
 
 
 def kind_of_container(cls: type) -> Any:
-    """Which of Python's containers that are changed in place a class is or derives from; ``None`` if it is none."""
+    """The one of Python's containers, which are changed in place, that a class is or derives from; ``None`` if there is none."""
     kinds = (list, deque, set, OrderedDict, defaultdict, dict)
     return next((kind for kind in kinds if issubclass(cls, kind)), None)
 

@@ -9,10 +9,10 @@ __all__ = ["Carrier"]
 
 
 class Carrier:
-    """What a program may make of random values or instances, or of functions that read some."""
+    """A holder that a program may make of random values or instances, or of functions that read some."""
 
     def random_parts(self) -> list[Any]:
-        """What may be random in it, for sampling."""
+        """Values in it that may be random, for sampling."""
         return [type(self), *_held(self).values()]
 
     def sampled(self, sample: Any) -> Any:

@@ -1,4 +1,4 @@
-"""What regions have in common: intersection, union, difference, and whether they meet (section 9.4 of the specification).
+"""Operations on regions: intersection, union, difference, and whether they meet (section 9.4 of the specification).
 
 Fixed regions are combined in closed form where there is one: polygons and lines of the plane by shapely, solids by
 manifold3d. Everything else, and everything random, becomes a composite region.
@@ -279,7 +279,7 @@ def difference(first: Any, second: Any) -> Region:
 
 @generic.intersects.register(Region)
 def intersects(first: Any, second: Any) -> Any:
-    """Whether two regions or objects share a point; random where one of them is."""
+    """Return whether two regions or objects share a point; random where one of them is."""
     if is_open(second):
         return call_later(intersects, first, second)
     if options_of(second) and as_region(second) is None and not is_body(second):
@@ -371,7 +371,7 @@ _MEET = Operation(
 
 @generic.contains_region.register(Region)
 def contains_region(first: Any, second: Any, tolerance: float = 0) -> bool:
-    """Whether a fixed region holds another; raises `UnknownPairError` where that is not known."""
+    """Return whether a fixed region holds another; raises `UnknownPairError` where that is not known."""
     a, b = _operand(first, "`containsRegion`"), _operand(second, "`containsRegion`")
     if isinstance(a, Everywhere) or isinstance(b, Nowhere):
         return True

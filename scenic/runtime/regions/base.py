@@ -1,4 +1,4 @@
-"""What every region can do.
+"""The operations of every region.
 
 A region is a fixed kind of shape with parameters (a centre, a radius), each definite or random. Its geometry is written
 once, over columns of those parameters; from that come the answers to programs (`containsPoint` on values), the
@@ -91,17 +91,17 @@ class Region(metaclass=_RegionType):
     dimension: float
     """0 for points to 3 for volumes; infinite for all of space."""
     draws: int = 3
-    """How many uniform numbers a point of the region takes."""
+    """Number of uniform numbers that a point of the region takes."""
     may_find_none: bool = False
-    """Whether `draw_points` may find no point."""
+    """True if `draw_points` may find no point."""
     has_orientation: bool = False
-    """Whether every point has a preferred orientation."""
+    """True if every point has a preferred orientation."""
     orientation: Any = None
     """The vector field of the preferred orientations, where there is one."""
     tolerance: float = 0.0
     """Metres by which a point may lie outside and count as in the region."""
     has_closed_form: bool = True
-    """Whether it can be combined with others as a fixed geometry; surfaces that are not level cannot."""
+    """True if it can be combined with others as a fixed geometry; surfaces that are not level cannot."""
     kindred: ClassVar[tuple[str, ...]] = ()
     """Names of further classes whose instances are, to a program that asks with ``isinstance``, of this class."""
 
@@ -124,7 +124,7 @@ class Region(metaclass=_RegionType):
     # Of fixed regions, on plain floats
 
     def single(self) -> Single | None:
-        """What answers for one point or body at a time; ``None`` where nothing does. Not for random regions."""
+        """The object that answers for one point or body at a time; ``None`` if there is none. Not for random regions."""
         return None
 
     @property
@@ -139,7 +139,7 @@ class Region(metaclass=_RegionType):
 
     @abstractmethod
     def contains_points(self, points: Points, *columns: Column) -> Mask:
-        """Which points ``(n, 3)`` lie in the region, shape ``(n,)``."""
+        """The mask ``(n,)`` of points ``(n, 3)`` that lie in the region."""
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         """In which lanes the whole body lies in the region, shape ``(lanes,)``."""
@@ -163,7 +163,7 @@ class Region(metaclass=_RegionType):
         return None
 
     def is_surely_convex(self) -> bool:
-        """Whether the region is known to be convex whatever its parameters."""
+        """Return whether the region is known to be convex whatever its parameters."""
         return False
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
@@ -197,11 +197,11 @@ class Region(metaclass=_RegionType):
         return None
 
     def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        """How far points ``(n, 3)`` are at least from the region as a container, shape ``(n,)``; 0 where unknown."""
+        """Lower bounds of the distances ``(n,)`` of points ``(n, 3)`` from the region as a container; 0 where unknown."""
         return np.zeros(len(points))
 
     def depths(self, points: Points, *columns: Column) -> NDArray[np.float64]:
-        """How far points ``(n, 3)`` are at most from what lies outside of the region as a container, shape ``(n,)``.
+        """Upper bounds of the distances ``(n,)`` of points ``(n, 3)`` from the outside of the region as a container.
 
         0 outside, infinite where nothing is known. Of a region in the plane, seen from above.
         """
@@ -328,7 +328,7 @@ class Region(metaclass=_RegionType):
 
     @property
     def is_random(self) -> bool:
-        """Whether some parameter is random."""
+        """Return whether some parameter is random."""
         return is_random(self.parameters)
 
     @property
@@ -337,7 +337,7 @@ class Region(metaclass=_RegionType):
         return self
 
     def containsPoint(self, point: Any) -> Any:
-        """Whether a point lies in the region: true or false, or a random truth value."""
+        """Return whether a point lies in the region: true or false, or a random truth value."""
         if type(point) is Vector and (single := self.at_once) is not None:
             held = single.holds_point(point.row)
             if held is not None:
@@ -345,7 +345,7 @@ class Region(metaclass=_RegionType):
         return apply(CONTAINS_POINT, to_vector(point), *self.parameters, payload=self)
 
     def containsObject(self, thing: Any) -> Any:
-        """Whether the region holds the whole of an object."""
+        """Return whether the region holds the whole of an object."""
         if not is_body(thing):
             if is_open(thing):
                 return call_later(self.containsObject, thing)
@@ -378,7 +378,7 @@ class Region(metaclass=_RegionType):
         return Vector.of(found[0].tolist())
 
     def intersects(self, other: Any) -> Any:
-        """Whether the region shares a point with another, or with an object."""
+        """Return whether the region shares a point with another, or with an object."""
         if is_body(other) and (single := self.at_once) is not None:
             body = placed_of(other)
             met = None if body is None else single.meets_body(body)
@@ -387,7 +387,7 @@ class Region(metaclass=_RegionType):
         return generic.intersects(self, other)
 
     def containsRegion(self, other: Any, tolerance: float = 0) -> Any:
-        """Whether the region holds another, up to ``tolerance`` metres; of fixed regions."""
+        """Return whether the region holds another, up to ``tolerance`` metres; of fixed regions."""
         return generic.contains_region(self, other, tolerance)
 
     def intersect(self, other: Any) -> "Region":

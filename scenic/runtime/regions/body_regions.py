@@ -133,7 +133,7 @@ class OccupiedSpace(Region):
 
     @property
     def isConvex(self) -> bool:
-        """Whether the volume is convex."""
+        """Return whether the volume is convex."""
         return bool(self.parameters[3].mesh.is_convex)
 
     def getSurfaceRegion(self) -> Region:
@@ -151,7 +151,7 @@ class OccupiedSpace(Region):
         return region
 
     def intersects(self, other: Any) -> Any:
-        """Whether another object's space, or a region, shares a point with this one."""
+        """Return whether another object's space, or a region, shares a point with this one."""
         if is_body(other):
             return apply(_INTERSECT, *self.parameters, *body_operands(other))
         return super().intersects(other)
@@ -294,7 +294,7 @@ _INTERSECT = Operation(
 
 @dataclass(frozen=True, slots=True)
 class Facing:
-    """Which faces of a surface are meant: all, or those whose unit normal passes the threshold on a side's axis."""
+    """The faces of a surface that are meant: all, or those whose unit normal passes the threshold on a side's axis."""
 
     side: Side = None
     threshold: float = 0.0
@@ -431,7 +431,7 @@ class SideSurface(Region):
 
     @property
     def isConvex(self) -> bool:
-        """Whether the faces bound a convex volume."""
+        """Return whether the faces bound a convex volume."""
         return self.facing.side is None and bool(self.parameters[3].mesh.is_convex)
 
     @property

@@ -70,7 +70,7 @@ class RegionChoice(VaryingRegion):
 
     @property
     def is_alike(self) -> bool:
-        """Whether all options are of the same dimension."""
+        """Return whether all options are of the same dimension."""
         return all(option.dimension == self.dimension for option in self.options)
 
     @property

@@ -189,7 +189,7 @@ class Composite(Region):
         return result
 
     def meets_polytopes(self, planes: Column, lanes: int, columns: Sequence[Column]) -> Mask | None:
-        """Which polytopes ``(n | 1, k, 4)`` meet the region; ``None`` unless its members are convex and have few faces."""
+        """The mask of polytopes ``(n | 1, k, 4)`` that meet the region; ``None`` unless its members are convex and have few faces."""
         return None
 
     def extent(self, *parameters: Bounds | None) -> Bounds | None:
@@ -213,7 +213,7 @@ class Composite(Region):
 
     @abstractmethod
     def joined(self, inside: Sequence[Mask]) -> Mask:
-        """Which points lie in the region, from which lie in its members."""
+        """The mask of points that lie in the region, from those of its members."""
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         return self.joined([member.contains_points(points, *mine) for member, mine in self._parts(columns)])
@@ -333,7 +333,7 @@ def any_of(masks: Sequence[Mask]) -> Mask:
 
 
 def exactly_contains(region: Region, points: Points, columns: Sequence[Column]) -> Mask:
-    """Which points lie in a region, with their heights where it lies in a plane, or is made of such as do."""
+    """The mask of points that lie in a region, with their heights where it lies in a plane, or is made of such as do."""
     if isinstance(region, Workspace):
         return exactly_contains(region.region, points, columns)
     if isinstance(region, Composite):
@@ -359,7 +359,7 @@ def _leaves(region: Region, columns: Sequence[_Part]) -> Iterator[tuple[Region, 
 
 
 def is_flat(region: Region) -> bool:
-    """Whether all leaves lie in planes or are columns."""
+    """Return whether all leaves lie in planes or are columns."""
     return all(
         isinstance(leaf, PlanarRegion | Footprint) and leaf.has_closed_form
         for leaf, _ in _leaves(region, region.parameters)

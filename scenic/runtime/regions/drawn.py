@@ -34,12 +34,12 @@ class DrawnRegion(VaryingRegion):
 
     @classmethod
     def made(cls, make: Callable[..., Region], /, *args: Any, **keywords: Any) -> Self:
-        """What a function makes of values once they are drawn."""
+        """The region that a function makes of values once they are drawn."""
         return cls(call_later(make, *args, **keywords))
 
     @classmethod
     def of(cls, value: Random, what: str) -> Self:
-        """What a random value of unknown type is where the language wants a region; where it is none, that is a fault."""
+        """The region that a random value of unknown type stands for; the draw of anything else is a fault."""
         return cls.made(_wanted, value, what)
 
     @property
@@ -74,7 +74,7 @@ class DrawnRegion(VaryingRegion):
             yield region, np.flatnonzero(numbers == number), region.fixed_columns("what it holds")
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
-        """How many numbers a point takes is known only now: they follow from the keys, and so do further keys."""
+        """Draw points; how many numbers they take is known only now: these follow from the keys, and so do further keys."""
         lanes = uniforms.shape[1]
         keys = np.broadcast_to(keys, lanes)
         points, known = np.zeros((lanes, 3)), np.ones(lanes, dtype=np.bool_)

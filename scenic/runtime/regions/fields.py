@@ -155,7 +155,7 @@ class TabulatedField(VectorField):
     _is_table: bool = True
     """Whether `headings` answers for every point."""
     divides_backward: bool = False
-    """Whether a way against the field is divided by its length, as one along it is; else it takes the least number of steps."""
+    """True if a way against the field is divided by its length, as one along it is; else it takes the least number of steps."""
 
     @abstractmethod
     def headings(self, points: Points) -> tuple[Headings, Mask]:
@@ -407,12 +407,12 @@ class FieldChoice(VectorField):
 
 
 def is_field(value: Any) -> bool:
-    """Whether a value is a field, or a random choice of which some option is one."""
+    """Return whether a value is a field, or a random choice of which some option is one."""
     return isinstance(value, VectorField) or any(map(is_field, options_of(value)))
 
 
 def is_certainly_field(value: Any) -> bool:
-    """Whether a value is a field, or a random choice among fields."""
+    """Return whether a value is a field, or a random choice among fields."""
     options = options_of(value)
     return isinstance(value, VectorField) or (bool(options) and all(map(is_certainly_field, options)))
 

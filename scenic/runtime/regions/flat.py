@@ -21,7 +21,7 @@ _SLACK = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Flat:
-    """What lies in a level plane, or above and below it, in each lane.
+    """The geometry in a level plane, or above and below it, in each lane.
 
     Attributes:
         geometries: shapely geometries, ``(n | 1,)``.
@@ -33,7 +33,7 @@ class Flat:
     heights: Column | None
 
     def intersection(self, other: "Flat") -> "Flat":
-        """What lies in both."""
+        """The geometry that lies in both."""
         import shapely
 
         shared = shapely.intersection(self.geometries, other.geometries)
@@ -42,7 +42,7 @@ class Flat:
         return Flat(np.where(self.heights == other.heights, shared, shapely.Polygon()), self.heights)
 
     def difference(self, other: "Flat") -> "Flat | None":
-        """What lies in the first alone; ``None`` for a column without a plane."""
+        """The geometry that lies in the first alone; ``None`` for a column without a plane."""
         import shapely
 
         rest = shapely.difference(self.geometries, other.geometries)
@@ -53,7 +53,7 @@ class Flat:
         return Flat(np.where(self.heights == other.heights, rest, self.geometries), self.heights)
 
     def union(self, other: "Flat") -> "Flat | None":
-        """What lies in either; ``None`` unless all heights are the same."""
+        """The geometry that lies in either; ``None`` unless all heights are the same."""
         import shapely
 
         if self.heights is None or other.heights is None:
@@ -71,13 +71,13 @@ class Flat:
         return np.asarray(shapely.intersects(self.geometries, cuts(body, lanes, self.heights)))
 
     def meets_geometries(self, geometries: Geometries, rows: NDArray[np.intp]) -> Mask:
-        """Whether shapely geometries ``(k,)`` meet those of the lanes with the numbers ``rows``, ``(k,)``."""
+        """Return whether shapely geometries ``(k,)`` meet those of the lanes with the numbers ``rows``, ``(k,)``."""
         import shapely
 
         return np.asarray(shapely.intersects(rows_of([self.geometries], rows)[0], geometries))
 
     def meets_points(self, points: NDArray[np.float64], rows: NDArray[np.intp]) -> Mask:
-        """Whether some of the points ``(k, m, 2)`` lie in the geometries of the lanes with the numbers ``rows``, ``(k,)``."""
+        """Return whether some of the points ``(k, m, 2)`` lie in the geometries of the lanes with the numbers ``rows``, ``(k,)``."""
         return some_inside(rows_of([self.geometries], rows)[0], points)
 
     def holds(self, body: Body, lanes: NDArray[np.intp]) -> Mask:
@@ -102,7 +102,7 @@ def load_library() -> None:
 
 
 def some_inside(geometries: Geometries, points: NDArray[np.float64]) -> Mask:
-    """Whether some of the points ``(k, m, 2)`` lie in shapely geometries ``(k | 1,)`` or on their edges, ``(k,)``."""
+    """Return whether some of the points ``(k, m, 2)`` lie in shapely geometries ``(k | 1,)`` or on their edges, ``(k,)``."""
     import shapely
 
     held = shapely.intersects_xy(geometries[:, np.newaxis], points[..., 0], points[..., 1])
@@ -116,10 +116,10 @@ class MeetingFlat(Protocol):
         """Lower and upper corners ``(n | 1, 3)``."""
 
     def meets_rectangles(self, rectangles: Rectangles, *columns: Column) -> tuple[Mask, Mask]:
-        """Which rectangles ``(n,)`` meet the region, and of which this is left open."""
+        """The masks of rectangles ``(n,)`` that meet the region, and of those for which this is left open."""
 
     def meets_outlines(self, outlines: Geometries, *columns: Column) -> Mask:
-        """Which geometries ``(n,)`` meet the region."""
+        """The mask of geometries ``(n,)`` that meet the region."""
 
     def meets_places(self, points: Column, *columns: Column) -> Mask:
         """Of which rows of points ``(n, m, 2)`` some lie in the region."""

@@ -1,4 +1,4 @@
-"""Whether a fixed region holds another: the cells of the kinds."""
+"""Containment of a fixed region in another: the cells of the kinds."""
 
 from typing import Final
 
@@ -97,6 +97,6 @@ HOLDS: Final = PairTable(
     ),
     symmetric=False,
 )
-"""Which rule says of two kinds whether the first holds the second; rules that answer ``None`` leave it to those below."""
+"""Rules by which a region of one kind holds one of another; rules that answer ``None`` leave it to those below."""
 
 __all__ = ["HOLDS"]

@@ -1,4 +1,4 @@
-"""What is known of regions without sampling: bounds and inverse readings of "a region holds a body", "holds a point", "is so far".
+"""Bounds and inverse readings, without sampling, of "a region holds a body", "holds a point", "is so far".
 
 A body lies in a region only if each of its extreme corners does. Intervals say where a corner, or a point, can be; it is
 certainly outside where that box lies beside the box in which the region lies, or farther from the region than it is large.
@@ -93,7 +93,7 @@ def point_inverse(
 
 
 def distance_bounds(region: "Region", point: Bounds | None, *parameters: Bounds | None) -> Bounds | None:
-    """How far a point is from a region: as far as its box from the region's, and what a distance can change within its box."""
+    """Bounds of the distance of a point from a region: that of its box from the region's, and what a distance can change within its box."""
     extent = region.extent(*parameters)
     if point is None:
         return None

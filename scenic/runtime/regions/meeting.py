@@ -1,4 +1,4 @@
-"""Whether two fixed regions share a point: the cells of the kinds that are not made of others."""
+"""Meeting of two fixed regions: the cells of the kinds that are not made of others."""
 
 from collections.abc import Iterable
 from typing import Any, Final
@@ -144,6 +144,6 @@ MEETING: Final = (
     Cell(SideSurface, LineRegion, None),
     Cell(LineRegion, LineRegion, None),
 )
-"""What the kinds know of each other, the special cells first; ``None`` where it is not known."""
+"""Rules by which two kinds meet, the special cells first; ``None`` where it is not known."""
 
 __all__ = ["MEETING", "cells_near"]

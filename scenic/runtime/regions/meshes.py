@@ -92,7 +92,7 @@ def _loaded(cls: type[Region], path: Any, unit: str, scale: float, **how: bool) 
 
 
 class MeshRegion(Region):
-    """What volumes and surfaces are, for programs that ask for either."""
+    """A volume or surface, for programs that ask for either."""
 
     kindred = ("OccupiedSpace", "PlacedVolume", "SideSurface", "ViewRegion")
 

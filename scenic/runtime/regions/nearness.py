@@ -1,4 +1,4 @@
-"""What is known, without sampling, of things that hold only between places near each other: boxes in which things lie.
+"""Facts, without sampling, about relations that hold only between places near each other: boxes in which things lie.
 
 Bounds are those of a node over many boxes of the cube (`scenic.graph.bounds`): rows ``(m | 1, 3)``, in metres.
 """

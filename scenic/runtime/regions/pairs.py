@@ -14,7 +14,7 @@ Rule = Callable[..., Any]
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """What is known of two kinds of regions.
+    """The rule for two kinds of regions.
 
     Attributes:
         first: a kind; its subclasses are meant, too.

@@ -150,11 +150,11 @@ class PlanarRegion(Region):
         return meets_flat(self, body, lanes, columns, self.heights(*columns))
 
     def meets_rectangles(self, rectangles: Rectangles, *columns: Column) -> tuple[Mask, Mask]:
-        """Which rectangles ``(n,)`` meet the region, and for which of the others this is left open: here all."""
+        """The masks of rectangles ``(n,)`` that meet the region, and of the others for which this is left open: here all."""
         return np.zeros(1, dtype=np.bool_), np.ones(1, dtype=np.bool_)
 
     def meets_outlines(self, outlines: Geometries, *columns: Column) -> Mask:
-        """Which shapely geometries ``(n,)`` meet the region."""
+        """The mask of shapely geometries ``(n,)`` that meet the region."""
         import shapely
 
         return np.asarray(shapely.intersects(self.geometries(*columns), outlines))
@@ -385,7 +385,7 @@ class Footprint(Region):
 
     @property
     def isConvex(self) -> bool:
-        """Whether the region seen from above is convex."""
+        """Return whether the region seen from above is convex."""
         return bool(self.polygons.convex_hull.area <= self.polygons.area * (1 + 1e-9))
 
     def boundFootprint(self, centerZ: float, height: float) -> Region:

@@ -18,16 +18,16 @@ __all__ = ["Ball", "Box", "Disc", "Polygon", "Rectangle", "Single"]
 
 
 class Single(Protocol):
-    """What can be asked of a region."""
+    """The questions to a region about one point or body."""
 
     def holds_point(self, point: Triple) -> bool | None:
-        """Whether it holds a point."""
+        """Return whether it holds a point."""
 
     def holds_body(self, body: Placed) -> bool | None:
-        """Whether it holds the whole of a body."""
+        """Return whether it holds the whole of a body."""
 
     def meets_body(self, body: Placed) -> bool | None:
-        """Whether it shares a point with a body."""
+        """Return whether it shares a point with a body."""
 
     def distance(self, point: Triple) -> float | None:
         """The distance of a point, in metres; 0 inside. Equal in every bit to that over lanes."""
@@ -41,7 +41,7 @@ class Flat:
         self._box = box
 
     def holds_point(self, point: Triple) -> bool | None:
-        """Whether it holds what is above or below it, or in it."""
+        """Return whether it holds what is above or below it, or in it."""
         raise NotImplementedError
 
     def distance(self, point: Triple) -> float | None:
@@ -110,7 +110,7 @@ class Outline:
         ]
 
     def holds(self, body: Placed) -> bool | None:
-        """Whether the column above and below it holds a body."""
+        """Return whether the column above and below it holds a body."""
         if len(self._edges) < 3:
             return None
         least = math.inf

@@ -22,7 +22,7 @@ from scenic.runtime.values.values import Orientation, Random, Vector, options_of
 
 
 def is_body(value: Any) -> bool:
-    """Whether a value certainly is an object, something with a shape: for a choice, every option."""
+    """Return whether a value certainly is an object, something with a shape: for a choice, every option."""
     options = options_of(value)
     if options:
         return all(map(is_body, options))

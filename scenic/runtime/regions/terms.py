@@ -76,14 +76,14 @@ def crossings(start: Any, end: Any, solid: Mesh) -> list[float]:
 
 
 def are_inside(solid: Mesh, points: Floats) -> Booleans:
-    """Whether a solid of the world holds points ``(n, 3)``, one by one, ``(n,)``."""
+    """Return whether a solid of the world holds points ``(n, 3)``, one by one, ``(n,)``."""
     unit, centre, extents = solid.normalized()
     body = Body((unit,), None, Poses.fixed(centre, size=extents))
     return contains_points(body, points)
 
 
 def holds(region: Region, point: Any) -> bool:
-    """Whether a fixed region holds a point; one of the plane only what is at its height."""
+    """Return whether a fixed region holds a point; one of the plane only what is at its height."""
     place = np.asarray(point, dtype=np.float64).reshape(1, 3)
     return bool(exactly_contains(region, place, region.fixed_columns("containment"))[0])
 

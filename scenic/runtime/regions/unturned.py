@@ -1,4 +1,4 @@
-"""What is said of a turned or random rectangle, said again in its own frame: for analysis.
+"""Readings of a turned or random rectangle in its own frame, for analysis.
 
 Bounds of a place in a turned corridor are a box about all of it. In the corridor's frame, where many such places are drawn, they are
 two numbers that do not depend on each other.

@@ -1,4 +1,4 @@
-"""What observers have in view, as regions: `visibleRegion`, and the parts of other regions that are in view or are not.
+"""Views of observers as regions: `visibleRegion`, and the parts of other regions that are in view or are not.
 
 Occlusion is ignored here (section 11.2 of the specification).
 """
@@ -95,7 +95,7 @@ class ViewRegion(Region):
 
     @classmethod
     def of(cls, observer: Any) -> Self:
-        """What an observer has in view."""
+        """The view of an observer."""
         region = object.__new__(cls)
         Region.__init__(region, *view_operands(observer)[:VIEW_PARAMETERS])
         return region
@@ -164,7 +164,7 @@ class ViewRegion(Region):
 
     @property
     def isConvex(self) -> bool:
-        """Whether its mesh is convex."""
+        """Return whether its mesh is convex."""
         return bool(generic.meshed(self).isConvex)
 
     @property

@@ -1,4 +1,4 @@
-"""What a candidate has to pass to become a scene, each check over many lanes at a time."""
+"""Checks that a candidate has to pass to become a scene, each over many lanes at a time."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -27,7 +27,7 @@ BUILT_IN = 0
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What a check says of each lane: does it hold, and did evaluating it fail (shape ``(n,)`` each).
+    """The verdict of a check on each lane: does it hold, and did evaluating it fail (shape ``(n,)`` each).
 
     In lanes that failed, ``holds`` means nothing. ``failed`` is ``None`` where none did.
     """
@@ -80,7 +80,7 @@ class Part:
     span: Span | None
     holds: Mask
     note: str = ""
-    """What helps to understand that it never holds."""
+    """A note that helps to understand why it never holds."""
 
 
 def _only_part(check: Check, batch: Batch, note: str = "") -> Sequence[Part]:
@@ -159,7 +159,7 @@ class ObjectNodes:
     shape: Node
     allow_collisions: Node
     label: str
-    """What the object is called in reports."""
+    """The name of the object in reports."""
     span: Span | None
 
     def body(self, batch: Batch) -> Body:
@@ -174,12 +174,12 @@ class ObjectNodes:
 
     @property
     def is_fixed(self) -> bool:
-        """Whether the object is the same in every scene."""
+        """Return whether the object is the same in every scene."""
         return all(node.is_constant for node in self.all)
 
     @property
     def has_one_shape(self) -> bool:
-        """Whether its shape is the same in every scene, and whether it may collide a plain truth value."""
+        """Return whether its shape is the same in every scene, and whether it may collide a plain truth value."""
         return self.shape.is_constant and self.allow_collisions.kind is Kind.BOOLEAN
 
     @property

@@ -73,7 +73,7 @@ def _keep_freed_memory() -> None:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What to sample: the graph, where in the cube, what must hold, and the nodes that a scene is made of."""
+    """The plan of sampling: the graph, where in the cube, what must hold, and the nodes that a scene is made of."""
 
     graph: Graph
     domain: Domain
@@ -91,7 +91,7 @@ class Plan:
 
     @property
     def draws(self) -> int:
-        """How many random numbers a candidate takes."""
+        """Number of random numbers that a candidate takes."""
         nodes = self.graph.nodes if self.evaluated is None else self.evaluated
         return sum(node.is_drawn for node in nodes)
 
@@ -124,7 +124,7 @@ class Found:
     shared: dict[object, Any] = field(default_factory=dict)
 
     def task(self, lane: int) -> Task:
-        """Which scene that is."""
+        """The scene's seed and number."""
         return Task(self.seeds[lane], self.numbers[lane])
 
     def again(self, lane: int) -> Batch:
@@ -132,7 +132,7 @@ class Found:
         return self.alone(lane)
 
     def is_active(self, lane: int, place: int, probability: float) -> bool:
-        """Whether a soft requirement, number ``place`` among those that are checked, had to hold in the scene."""
+        """Return whether a soft requirement, number ``place`` among those that are checked, had to hold in the scene."""
         seeds = np.array([seed_word(self.seeds[lane])], dtype=np.uint64)
         keys = scene_keys(seeds, np.array([self.numbers[lane]], dtype=np.int64))
         where = np.array([soft_address(place)], dtype=np.uint64)
@@ -184,7 +184,7 @@ class Engine:
         self.seconds = 0.0
         """Processor time of all rounds so far."""
         self.rehearsed: int | None = None
-        """How many candidates of the rehearsal passed; `None` where no rehearsal went through all checks."""
+        """Number of candidates of the rehearsal that passed; `None` where no rehearsal went through all checks."""
         self._pace = Pace(max(64, min(DEFAULT_LANES, BATCH_BYTES // max(1, plan.lane_bytes))))
         self._scheduler = Scheduler(plan.graph, grouped=grouped)
         self._single = Scheduler(plan.graph, grouped=False)
@@ -339,7 +339,7 @@ class Engine:
         return other
 
     def profile(self, scenes: int) -> Profile:
-        """What the meter of this engine has measured while it found so many scenes."""
+        """The measurements of this engine's meter while it found so many scenes."""
         assert self._meter is not None
         return self._meter.profile(scenes, self.plan.checks, self._scheduler)
 
@@ -442,7 +442,7 @@ class Engine:
         return self._pace.most
 
     def trial(self, tasks: Sequence[tuple[int, int]]) -> int:
-        """How many of the first candidates for some scenes meet every requirement."""
+        """Number of the first candidates for some scenes that meet every requirement."""
         pending = self.pending(tasks)
         batch = self.attempts_at(pending, np.arange(len(tasks)), pending.attempts)
         *stages, _ = self._stages.order(len(batch))
@@ -492,7 +492,7 @@ class Engine:
         self._scheduler.after(self._scheduler.start, tuple(self.plan.outputs))
 
     def given_up(self, seed: int, k: int, attempts: int) -> Exhausted:
-        """What is said of a scene that was not found among so many candidates."""
+        """The report on a scene that was not found among so many candidates."""
         return Exhausted(seed, k, attempts, "attempts", self.report(Task(seed, k), attempts))
 
     def batch(self, source: Source, *, grouped: bool = True) -> Batch:

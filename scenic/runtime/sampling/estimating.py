@@ -1,4 +1,4 @@
-"""How many candidates pass, component by component, and what each requirement has to do with it: estimated on candidates."""
+"""Estimates, component by component, of how many candidates pass, and of the share of each requirement in it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ _REPORTED = 1_000
 
 @dataclass(frozen=True, slots=True)
 class RequirementEstimate:
-    """What a requirement does to the candidates of its component.
+    """The effect of a requirement on the candidates of its component.
 
     Attributes:
         label: what it is called in reports.
@@ -38,7 +38,7 @@ class RequirementEstimate:
 
 @dataclass(frozen=True, slots=True)
 class ComponentEstimate:
-    """What was found about one independent component of the scenes.
+    """The findings about one independent component of the scenes.
 
     Attributes:
         draws: how many random numbers it has.
@@ -60,7 +60,7 @@ class ComponentEstimate:
 
 
 def estimate(engines: Sequence[Engine], *, seed: int, candidates: int) -> tuple[ComponentEstimate, ...]:
-    """What can be said of components after so many candidates of each, at most. The result depends on the arguments alone."""
+    """Estimates for components from so many candidates of each, at most. The result depends on the arguments alone."""
     return tuple(_estimated(engine, seed, candidates) for engine in engines)
 
 

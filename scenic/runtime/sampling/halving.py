@@ -33,10 +33,10 @@ RARE: Final = 1e-3
 """A component is divided if fewer candidates pass, as far as estimates tell."""
 
 GAIN: Final = 5
-"""How many times fewer draws it must take then."""
+"""The factor by which draws must become fewer then."""
 
 OVERHEAD: Final = 0.5
-"""What a candidate for a part costs beside its draws, in blocks of draws."""
+"""The cost of a candidate for a part beside its draws, in blocks of draws."""
 
 MOST_BLOCKS: Final = 256
 """Blocks of draws of a component, at most."""
@@ -95,7 +95,7 @@ class Tree:
 
 
 def divide(engine: Engine, plans: Sequence[Plan], *, always: bool = False) -> list[Tree | None]:
-    """How components are divided, ``None`` where that does not pay; leaves are numbered throughout.
+    """The division of components, ``None`` where that does not pay; leaves are numbered throughout.
 
     Args:
         engine: of the whole plan.
@@ -123,7 +123,7 @@ def divide(engine: Engine, plans: Sequence[Plan], *, always: bool = False) -> li
 
 
 def any_passes(engine: Engine) -> bool:
-    """Whether any of some candidates passes all checks of a plan; if so, it is not worth to be divided."""
+    """Return whether any of some candidates passes all checks of a plan; if so, it is not worth to be divided."""
     return engine.trial([(0, k) for k in range(min(TRIED, engine.most_lanes))]) > 0
 
 

@@ -31,7 +31,7 @@ _FAITH: Final = 20
 
 @dataclass(frozen=True, slots=True)
 class Joined:
-    """What was found of a component.
+    """The findings about a component.
 
     Attributes:
         attempts: of each scene the accepted attempts at the leaves, from 1, ``(n, leaves)``; 0 where none was found.

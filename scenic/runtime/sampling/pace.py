@@ -1,4 +1,4 @@
-"""How many candidates to try at a time: measured, and without influence on what comes out."""
+"""Number of candidates to try at a time: measured, and without influence on the results."""
 
 import math
 from dataclasses import dataclass
@@ -101,7 +101,7 @@ class Pace:
         return max(mean_y - slope * mean_x, 1e-6), slope
 
     def scenes_within(self, seconds: float) -> int:
-        """How many scenes are found in about that time together; at least one."""
+        """Number of scenes that are found in about that time together; at least one."""
         fixed, lane = self.cost()
         return max(1, int((seconds - fixed) * self.acceptance / lane))
 

@@ -10,7 +10,7 @@ from scenic.graph.draws import Counter, Words, address, scene_keys, seed_words
 
 
 class Task(NamedTuple):
-    """Which scene to find: scene ``k`` of a seed."""
+    """The task to find a scene: scene ``k`` of a seed."""
 
     seed: int
     k: int
@@ -57,7 +57,7 @@ class Pending:
         return len(self.number)
 
     def task(self, row: int) -> Task:
-        """Which scene that is."""
+        """The scene's seed and number."""
         return Task(self.given[row], int(self.k[row]))
 
     def add(self, tasks: Sequence[tuple[int, int]]) -> None:

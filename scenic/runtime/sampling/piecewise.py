@@ -122,7 +122,7 @@ class PiecewiseEngine:
         return other
 
     def profile(self, scenes: int) -> Profile:
-        """What the meter has measured while so many scenes were found; candidates are those of all components together."""
+        """The measurements of the meter while so many scenes were found; candidates are those of all components together."""
         return self._whole.profile(scenes)
 
     def scenes(

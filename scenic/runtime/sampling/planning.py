@@ -54,7 +54,7 @@ class Outline:
     graph: Graph
     checks: tuple[Check, ...]
     outputs: tuple[Node, ...]
-    """What scenes show. Of the rest, as points, what somebody asks for is evaluated then."""
+    """Values that scenes show. Of the rest, as points, those that somebody asks for are evaluated then."""
     requirements: tuple[Requirement, ...]
     """The hard requirements of the program, for analysis."""
     built_in: tuple[NodeCheck, ...]

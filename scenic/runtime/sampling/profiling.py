@@ -15,7 +15,7 @@ from scenic.runtime.sampling.checks import Check
 
 @dataclass(frozen=True, slots=True)
 class OperationRow:
-    """What an operation cost on a line.
+    """The cost of an operation on a line.
 
     Attributes:
         operation: what was computed.
@@ -35,7 +35,7 @@ class OperationRow:
 
 @dataclass(frozen=True, slots=True)
 class CheckRow:
-    """What a requirement did, and what it cost beside the operations below it.
+    """The effect of a requirement, and its cost beside the operations below it.
 
     Attributes:
         label: what it is called in reports.
@@ -166,7 +166,7 @@ class Meter:
         self.seconds += seconds
 
     def profile(self, scenes: int, checks: Sequence[Check], scheduler: Scheduler) -> Profile:
-        """What was added up; ``checks`` are those of the engine's plan."""
+        """The sums that were measured; ``checks`` are those of the engine's plan."""
         operations = [
             OperationRow(operation, line, seconds, self._values[operation, line, in_python], in_python)
             for (operation, line, in_python), seconds in sorted(

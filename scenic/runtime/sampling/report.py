@@ -75,7 +75,7 @@ class Exhausted:
 
 @dataclass(frozen=True, slots=True)
 class Approximation:
-    """How a block of approximate scenes came about.
+    """The making of a block of approximate scenes.
 
     Attributes:
         lanes: scenes made together.

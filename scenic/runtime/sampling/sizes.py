@@ -27,7 +27,7 @@ def size_in_words(size: Node) -> str:
 
 
 def outgrows(size: Node, container: Region) -> bool:
-    """Whether a body is larger than a region, however it is turned.
+    """Return whether a body is larger than a region, however it is turned.
 
     Its longest side is compared with the diagonal of the region's bounding box. A body may stand upright in a region
     without bounds upwards, so that there its middle side counts.

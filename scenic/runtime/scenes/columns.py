@@ -38,7 +38,7 @@ class ValueColumn:
 
     @property
     def is_fixed(self) -> bool:
-        """Whether the value is the same in all scenes."""
+        """Return whether the value is the same in all scenes."""
         return not dependencies([self.value])
 
     @property

@@ -47,14 +47,14 @@ _COERCIONS: Mapping[type, Callable[[Any], Any]] = MappingProxyType(
 
 
 def needsSampling(thing: Any) -> bool:
-    """Whether a value is random, or holds something random."""
+    """Return whether a value is random, or holds something random."""
     if isinstance(thing, Point):
         return any(is_random(value) for value in thing.__dict__.values())
     return is_random(thing) or is_random(getattr(thing, "parameters", None))
 
 
 def needsLazyEvaluation(thing: Any) -> bool:
-    """Whether a value depends on the object being specified."""
+    """Return whether a value depends on the object being specified."""
     return is_lazy(thing)
 
 
@@ -82,12 +82,12 @@ def underlyingType(thing: Any) -> type:
 
 
 def isA(thing: Any, ty: type) -> bool:
-    """Whether a value is certainly of a type: also a random value, if it is known."""
+    """Return whether a value is certainly of a type: also a random value, if it is known."""
     return issubclass(underlyingType(thing), ty)
 
 
 def canCoerce(thing: Any, ty: type, exact: bool = False) -> bool:
-    """Whether a value can be read as a type."""
+    """Return whether a value can be read as a type."""
     if exact or ty not in _COERCIONS:
         return isA(thing, ty)
     try:
@@ -98,7 +98,7 @@ def canCoerce(thing: Any, ty: type, exact: bool = False) -> bool:
 
 
 def canCoerceType(typeA: type, typeB: type) -> bool:
-    """Whether values of one type can be taken as another: numbers as ``float``, pairs, triples and points as vectors."""
+    """Return whether values of one type can be taken as another: numbers as ``float``, pairs, triples and points as vectors."""
     if issubclass(typeA, typeB) or (typeB is float and issubclass(typeA, int | float | np.number)):
         return True
     return typeB is Vector and issubclass(typeA, tuple | list | Vector | Point)
@@ -185,7 +185,7 @@ def rotateVector(vector: Any, angle: float) -> Any:
 
 
 def pointIsInCone(point: Any, base: Any, heading: float, angle: float) -> bool:
-    """Whether a point of the plane lies within ``angle / 2`` of ``heading`` seen from ``base`` (radians)."""
+    """Return whether a point of the plane lies within ``angle / 2`` of ``heading`` seen from ``base`` (radians)."""
     return bool(abs(viewAngleToPoint(point, base, heading)) <= angle / 2)
 
 
@@ -328,7 +328,7 @@ class SimulatorInterfaceWarning(UserWarning):
 
 
 class SampleChecker:
-    """How requirements are ordered there; here their order follows what was measured, and never changes results."""
+    """An order of requirements; here their order follows measurements, and never changes results."""
 
     def __init__(self, *_arguments: Any, **_options: Any) -> None:
         pass
@@ -364,7 +364,7 @@ def cached(function: Callable[[], Any]) -> Callable[[], Any]:
 
 
 def alwaysGlobalOrientation(thing: Any) -> bool:
-    """Whether an orientation is certainly that of the world."""
+    """Return whether an orientation is certainly that of the world."""
     return isinstance(thing, Orientation) and thing == Orientation()
 
 

@@ -118,7 +118,7 @@ def fixed_draws(numbers: Mapping[int, float], words: Mapping[int, int], rest: So
 
 
 def program_digest(text: str, options: Mapping[str, Any]) -> str:
-    """What a saved scene remembers of its program: a digest of the text and of how it was compiled."""
+    """The digest of a program in its saved scenes: of the text and of how it was compiled."""
     digest = hashlib.sha256(text.encode("utf-8", "surrogatepass"))
     digest.update(repr(sorted(options.items())).encode("utf-8", "surrogatepass"))
     return digest.hexdigest()

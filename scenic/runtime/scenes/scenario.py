@@ -84,7 +84,7 @@ class Scenario(Generating):
         self.text = text
         """The program's text."""
         self.digest = digest
-        """What a saved scene remembers of the program."""
+        """The digest of the program in saved scenes."""
         self.workspace = workspace
         self.egoObject = ego
         self.outline: Outline = outline
@@ -194,7 +194,7 @@ class Scenario(Generating):
 
     @property
     def program(self) -> Program:
-        """What running the program has produced."""
+        """The results of running the program."""
         return self._program
 
     @property
@@ -209,7 +209,7 @@ class Scenario(Generating):
 
     @property
     def approximation(self) -> Approximation | None:
-        """How the approximate scenes that were sampled last came about, if there were any."""
+        """The making of the approximate scenes that were sampled last, if there were any."""
         return self._approximation
 
     @property
@@ -218,7 +218,7 @@ class Scenario(Generating):
         return self._sampler.impossible
 
     def estimates(self, *, seed: int, candidates: int) -> tuple[ComponentEstimate, ...]:
-        """How often candidates pass, for each independent component of the scenes, from so many of each at most."""
+        """Estimates of how often candidates pass, for each independent component of the scenes, from so many of each at most."""
         with self._program.undisturbed():
             return estimate(self._sampler.engines, seed=seed, candidates=candidates)
 
@@ -503,11 +503,11 @@ class Scenario(Generating):
 
     @property
     def has_simulator(self) -> bool:
-        """Whether the program says which simulator runs it."""
+        """Return whether the program says which simulator runs it."""
         return self._program.simulator is not None
 
     def getSimulator(self) -> Any:
-        """What the program's ``simulator`` statement says; raises ``RuntimeError`` if it has none."""
+        """The simulator of the program's ``simulator`` statement; raises ``RuntimeError`` if it has none."""
         if self._program.simulator is None:
             raise RuntimeError("the program has no `simulator` statement, so no simulator is known")
         return self._program.simulator()

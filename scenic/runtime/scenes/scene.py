@@ -23,7 +23,7 @@ from scenic.runtime.scenes.files import whole
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """What an object is in all scenes of its program.
+    """The description of an object in all scenes of its program.
 
     ``names`` are its properties, ``given`` those that the program gives, ``fixed`` those that are the same in every scene.
     """
@@ -50,7 +50,7 @@ class Origin:
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """What all scenes of a scenario have in common.
+    """The common ground of all scenes of a scenario.
 
     ``populations`` makes their objects, ``names`` are the variables that hold these, by the identities of the program's.
     ``keep`` gives a scene as data, ``view`` shows it.
@@ -108,7 +108,7 @@ class Scene:
 
     @property
     def approximation(self) -> Approximation | None:
-        """How the scene came about together with others, if it is an approximate one (`Scenario.stream`)."""
+        """The making of the scene together with others, if it is an approximate one (`Scenario.stream`)."""
         return self.found.approximation
 
     @property
@@ -123,7 +123,7 @@ class Scene:
 
     @property
     def digest(self) -> str:
-        """What a saved scene remembers of the program."""
+        """The digest of the program in saved scenes."""
         return self._family.digest
 
     def lookup(self, node: Node) -> Any:
@@ -132,7 +132,7 @@ class Scene:
 
     @property
     def dimension(self) -> int:
-        """How many axes the unit cube has that scenes of the program are drawn from."""
+        """Number of axes of the unit cube that scenes of the program are drawn from."""
         return self.found.batch.graph.dimension
 
     @property
@@ -142,11 +142,11 @@ class Scene:
 
     @property
     def program(self) -> Program:
-        """What the scene is a sample of."""
+        """The program that the scene is a sample of."""
         return self._family.program
 
     def enforces(self, requirement: Requirement) -> bool:
-        """Whether a requirement of the program is among those that the scene has to meet: soft ones may not be."""
+        """Return whether a requirement of the program is among those that the scene has to meet: soft ones may not be."""
         if requirement.probability == 1:
             return True
         soft = [item for item in self.program.requirements if item.probability < 1 and not _always(item)]
@@ -229,7 +229,7 @@ class Scene:
         return {name: sample.value(region) for name, region in self._family.regions.items()}
 
     def origin(self, thing: Any) -> Origin:
-        """What an object of the scene is in all scenes of the program."""
+        """The description of an object of the scene in all scenes of the program."""
         source = thing.__dict__.get("_source", thing)
         known = source.__dict__.get("_origin")
         if known is None:

@@ -1,4 +1,4 @@
-"""What a scenario offers that layers above the runtime compute, handed to it when it is made."""
+"""Services of a scenario that layers above the runtime compute, handed to it when it is made."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ __all__ = ["Services"]
 
 @dataclass(frozen=True, slots=True)
 class Services:
-    """What a scenario offers that is computed above the runtime."""
+    """Services of a scenario that are computed above the runtime."""
 
     view: Callable[[Scene], Any] | None = None
     """Shows a scene (`Scene.show`)."""

@@ -20,7 +20,7 @@ __all__ = ["Monitor", "Verdict"]
 
 
 class Verdict(IntEnum):
-    """What is known of a formula after a finite trace; true if it holds as far as the trace goes."""
+    """The verdict on a formula after a finite trace; true if it holds as far as the trace goes."""
 
     FALSE = 1
     PRESUMABLY_FALSE = 2
@@ -32,7 +32,7 @@ class Verdict(IntEnum):
 
     @property
     def is_certain(self) -> bool:
-        """Whether no further state can change it."""
+        """Return whether no further state can change it."""
         return self in (Verdict.FALSE, Verdict.TRUE)
 
 
@@ -89,7 +89,7 @@ class Monitor:
 
     @property
     def left(self) -> Hashable:
-        """What is left to hold, with the verdict: monitors of one formula that are equal in it go on alike."""
+        """The formula that is left to hold, with the verdict: monitors of one formula that are equal in it go on alike."""
         return self.verdict, self._left
 
     def add(self, evaluate: Callable[[int], bool]) -> Verdict:

@@ -87,7 +87,7 @@ def element_at(node: Node, index: Any) -> Any:
 
 
 def element(value: RandomBase, index: Any) -> Any:
-    """What a random container, or a choice among containers, has at an index."""
+    """The element of a random container, or of a choice among containers, at an index."""
     if is_lazy(index):
         return defer(element, value, index)
     if holds_instances(value.node):
@@ -228,7 +228,7 @@ def _is_computed(cls: type, name: str) -> bool:
 
 
 def holds_instances(node: Node) -> bool:
-    """Whether instances of the program are among the constants that a node is made of, or in containers there."""
+    """Return whether instances of the program are among the constants that a node is made of, or in containers there."""
     stack, seen = [node], {node}
     while stack:
         below = stack.pop()

@@ -57,7 +57,7 @@ def _is_choice_of_data(node: Node) -> bool:
 
 
 def is_choice_of_frozen(node: Node) -> bool:
-    """Whether a node is an object that never changes or ``None``, or a choice among such constants."""
+    """Return whether a node is an object that never changes or ``None``, or a choice among such constants."""
     options = node.operands[1:] if node.operation is TABLE["select"] else (node,)
     return all(each.is_constant and (each.value is None or is_frozen(each.value)) for each in options)
 
@@ -86,7 +86,7 @@ def _is_data(value: Any) -> bool:
 
 
 def is_answered_by_code(value: Any, methods: Sequence[str]) -> bool:
-    """Whether methods of the program's classes answer for a value: they have to be asked of the sampled one."""
+    """Return whether methods of the program's classes answer for a value: they have to be asked of the sampled one."""
     if not isinstance(value, RandomBase):
         return _has_own(value, methods)
     stack, seen = [value.node], {value.node}
@@ -137,7 +137,7 @@ MISSING = Operation(
 
 
 def rejection(error: RejectionException) -> Node:
-    """What an option gives that rejects the samples which draw it."""
+    """A value that rejects the samples which draw it, for an option."""
     return construction.make_node(REJECTED, (), str(error), here())
 
 
@@ -189,7 +189,7 @@ def options_of(value: Any) -> tuple[Any, ...]:
 
 
 def is_open(value: Any) -> bool:
-    """Whether a random value, or some option of it, can be of any type until it is drawn (section 4.3)."""
+    """Return whether a random value, or some option of it, can be of any type until it is drawn (section 4.3)."""
     if not isinstance(value, RandomBase) or not value.node.kind.is_boxed:
         return False
     options = options_of(value)

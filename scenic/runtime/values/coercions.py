@@ -1,4 +1,4 @@
-"""What operators and specifiers take for a number, a vector, a heading or an orientation (section 4.3 of the specification)."""
+"""Readings of values as numbers, vectors, headings and orientations for operators and specifiers (section 4.3 of the specification)."""
 
 import math
 from collections.abc import Callable

@@ -93,7 +93,7 @@ class Vector(VectorRow, VectorMethods, length=3):
         return self._row.index(value)
 
     def count(self, value: Any) -> int:
-        """How many coordinates are equal to a number."""
+        """Number of coordinates that are equal to a number."""
         return self._row.count(value)
 
     def __repr__(self) -> str:
@@ -205,7 +205,7 @@ class Orientation(OrientationRow, OrientationMethods, length=4):
         return self.r
 
     def approxEq(self, other: "Orientation", tol: float = 1e-10) -> bool:
-        """Whether the two differ by a rotation of at most about ``tol`` (up to the sign of the quaternion)."""
+        """Return whether the two differ by a rotation of at most about ``tol`` (up to the sign of the quaternion)."""
         product = sum(a * b for a, b in zip(self._row, other._row, strict=True))
         return bool(abs(product) >= 1 - tol)
 

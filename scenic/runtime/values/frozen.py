@@ -16,5 +16,5 @@ class Frozen:
 
 
 def is_frozen(value: object) -> bool:
-    """Whether a value is an object that never changes, or a member of an enumeration."""
+    """Return whether a value is an object that never changes, or a member of an enumeration."""
     return isinstance(value, Frozen | Enum)

@@ -38,7 +38,7 @@ class Lazy:
         return known[id(self)][1]
 
     def random_parts(self) -> list[Any]:
-        """What may be random in it, for sampling."""
+        """Values in it that may be random, for sampling."""
         return [self._compute]
 
     def sampled(self, sample: Any) -> "Lazy":
@@ -156,7 +156,7 @@ def reads_of(value: Any, within: tuple[int, ...] = ()) -> frozenset[str]:
 
 
 def is_lazy(value: Any) -> bool:
-    """Whether a value is lazy, or a container or slice with lazy parts."""
+    """Return whether a value is lazy, or a container or slice with lazy parts."""
     return isinstance(value, Lazy) or (type(value) in (tuple, list, dict, slice) and bool(reads_of(value)))
 
 

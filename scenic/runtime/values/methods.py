@@ -1,4 +1,4 @@
-"""What random values, vectors and orientations can do: the methods are written once for definite and random values alike."""
+"""Methods of random values, vectors and orientations, written once for definite and random values alike."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -78,7 +78,7 @@ class Arithmetic:
 
 
 class VectorMethods:
-    """What a vector can do, definite or random."""
+    """Methods of vectors, definite or random."""
 
     __slots__ = ()
 
@@ -220,7 +220,7 @@ class VectorMethods:
 
 
 class OrientationMethods:
-    """What an orientation can do, definite or random."""
+    """Methods of orientations, definite or random."""
 
     __slots__ = ()
 

@@ -27,12 +27,12 @@ ROWS = (tuple, list, np.ndarray)
 
 
 def is_number(value: Any) -> TypeGuard[float]:
-    """Whether a definite value is a real number."""
+    """Return whether a definite value is a real number."""
     return isinstance(value, _NUMBERS)
 
 
 def is_vector(value: Any) -> bool:
-    """Whether a value is a vector, or a pair or triple that stands for one."""
+    """Return whether a value is a vector, or a pair or triple that stands for one."""
     if isinstance(value, RandomBase):
         return value.node.kind is Kind.VECTOR
     if isinstance(value, tuple | list):
@@ -41,7 +41,7 @@ def is_vector(value: Any) -> bool:
 
 
 def is_orientation(value: Any) -> bool:
-    """Whether a value is an orientation."""
+    """Return whether a value is an orientation."""
     if isinstance(value, RandomBase):
         return value.node.kind is Kind.ORIENTATION
     return isinstance(value, OrientationRow)

@@ -37,7 +37,7 @@ class RandomBase:
 
     @property
     def isPrimitive(self) -> bool:
-        """Whether it is drawn itself, not computed from what is drawn."""
+        """Return whether it is drawn itself, not computed from what is drawn."""
         return self._again is not None
 
     def clone(self) -> Any:
@@ -124,7 +124,7 @@ def random_value(node: Node, again: Callable[[], Any] | None = None) -> Any:
 
 
 def is_random(value: Any, within: tuple[int, ...] = ()) -> bool:
-    """Whether a value is random or a container with random parts; ``within``: the identities of those that hold it."""
+    """Return whether a value is random or a container with random parts; ``within``: the identities of those that hold it."""
     if isinstance(value, RandomBase):
         return True
     parts: Iterable[Any]

@@ -1,4 +1,4 @@
-"""What is known, without sampling, of what observers see: bounds and inverse readings for analysis.
+"""Bounds and inverse readings, without sampling, of what observers see, for analysis.
 
 Nothing is seen beyond the visible distance, or beside the window of directions that the view angles leave. What hides things
 is left to sampling.

@@ -1,4 +1,4 @@
-"""What an object sees in 2D mode (section 5.5 of the specification): whether its view touches another's outline."""
+"""Visibility in 2D mode (section 5.5 of the specification): whether an object's view touches another's outline."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -19,7 +19,7 @@ FULL_ANGLE = 2 * np.pi - 0.017
 
 
 def sees_in_plane(observer: Any, target: Any, occluders: Iterable[Any] = ()) -> Any:
-    """Whether the disc or sector that an observer sees meets the bounding polygon of an object, or holds a point.
+    """Return whether the disc or sector that an observer sees meets the bounding polygon of an object, or holds a point.
 
     Where something may hide others, which in 2D mode has to be asked for, rays decide as in space.
     """
@@ -43,7 +43,7 @@ def sees_in_plane(observer: Any, target: Any, occluders: Iterable[Any] = ()) -> 
 
 
 def sees_in_mode(observer: Any, target: Any, occluders: Iterable[Any], *, mode_2d: bool) -> Any:
-    """Whether an observer sees something: in the plane where the program is in 2D mode, otherwise in space."""
+    """Return whether an observer sees something: in the plane where the program is in 2D mode, otherwise in space."""
     return (sees_in_plane if mode_2d else sees)(observer, target, occluders)
 
 

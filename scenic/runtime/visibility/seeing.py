@@ -1,4 +1,4 @@
-"""Whether observers see things, as values: nodes of the graph over everything that decides it (section 11.3).
+"""Visibility of things for observers, as values: nodes of the graph over everything that decides it (section 11.3).
 
 Observers and targets are known by what they have, so that classes of objects can offer `canSee` themselves.
 """
@@ -43,11 +43,11 @@ from scenic.runtime.values.values import (
 from scenic.runtime.visibility.bounds import TARGET, sees_bounds, sees_inverse, sees_looks_at
 
 VIEW_OPERANDS: Final = TARGET
-"""How many values describe an observer."""
+"""Number of values that describe an observer."""
 
 
 def sees(observer: Any, target: Any, occluders: Iterable[Any], *, certain: bool = False) -> Any:
-    """Whether an observer sees a vector, a point or an object past others: true or false, or a random truth value.
+    """Return whether an observer sees a vector, a point or an object past others: true or false, or a random truth value.
 
     The observer and the target hide nothing, even if they are among the occluders. With ``certain``, no rays are sampled:
     an object is seen if that is proved by dividing the directions in which it lies.
@@ -236,7 +236,7 @@ SEES = Operation(
 
 
 def looks(root: Node) -> bool:
-    """Whether a condition asks what is seen, as far as that is not hidden in Python code."""
+    """Return whether a condition asks what is seen, as far as that is not hidden in Python code."""
     return any(node.operation is SEES for node in Graph([root]).nodes if not node.is_axis)
 
 

@@ -65,10 +65,10 @@ def getClosestTrafficLightStatus(vehicle: Any, distance: float = 100) -> str:
 
 
 def withinDistanceToRedYellowTrafficLight(vehicle: Any, thresholdDistance: float) -> bool:
-    """Whether a red or yellow traffic light is ahead of a vehicle, nearer than the threshold in metres."""
+    """Return whether a red or yellow traffic light is ahead of a vehicle, nearer than the threshold in metres."""
     return getClosestTrafficLightStatus(vehicle, thresholdDistance) in ("red", "yellow")
 
 
 def withinDistanceToTrafficLight(vehicle: Any, thresholdDistance: float) -> bool:
-    """Whether a traffic light is ahead of a vehicle, nearer than the threshold in metres."""
+    """Return whether a traffic light is ahead of a vehicle, nearer than the threshold in metres."""
     return getClosestTrafficLightStatus(vehicle, thresholdDistance) != "none"

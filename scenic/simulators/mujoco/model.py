@@ -62,7 +62,7 @@ class Part:
 
     @property
     def moves(self) -> bool:
-        """Whether it is more than a part of the world."""
+        """Return whether it is more than a part of the world."""
         return self.model != "static"
 
     @property

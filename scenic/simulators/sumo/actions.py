@@ -21,7 +21,7 @@ class SumoDrivingAction(Action):
         self.speedFactor = float(speedFactor)
 
     def canBeTakenBy(self, agent: Any) -> bool:
-        """Whether the agent is a vehicle."""
+        """Return whether the agent is a vehicle."""
         return bool(getattr(agent, "isVehicle", False))
 
     def applyTo(self, agent: Any, simulation: Any) -> None:

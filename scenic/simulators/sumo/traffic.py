@@ -1,4 +1,4 @@
-"""What is in a running SUMO: bodies that are put to places, or driven by SUMO along routes."""
+"""Bodies in a running SUMO: put to places, or driven by SUMO along routes."""
 
 import math
 import random

@@ -1,4 +1,4 @@
-"""What readers return, and what they share."""
+"""Results of readers, and functions that they share."""
 
 from collections.abc import Iterable
 from typing import NamedTuple

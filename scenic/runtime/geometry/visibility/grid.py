@@ -43,7 +43,7 @@ class Rows:
         return Rows(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
     def totals(self, lanes: int) -> Indices:
-        """How many rays each lane has, ``(lanes,)``."""
+        """Numbers of rays of the lanes, ``(lanes,)``."""
         return np.bincount(self.lane, self.count, lanes).astype(np.intp)
 
     def thinned(self, across: int, lanes: int) -> "Rows":

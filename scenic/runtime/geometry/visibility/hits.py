@@ -1,4 +1,4 @@
-"""What rays meet first on bodies: closed form for boxes, Embree and double precision for other meshes.
+"""First hits of rays on bodies: closed form for boxes, Embree and double precision for other meshes.
 
 Rays are taken into the unit frame of the mesh, where the parameter along the ray stays the same; so one index
 serves every lane, pose and size. Embree names the face in single precision; where the ray meets it is decided again
@@ -160,7 +160,7 @@ def exact_first(mesh: Mesh, origins: Floats, directions: Floats, near: Floats) -
 def face_crossings(
     mesh: Mesh, origins: Floats, directions: Floats, faces: Indices
 ) -> tuple[Booleans, Floats]:
-    """Whether lines ``(r, 3)`` cross faces ``(r,)``, closed at the edges, and at what parameter.
+    """Return whether lines ``(r, 3)`` cross faces ``(r,)``, closed at the edges, and at what parameter.
 
     Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", J. Graphics Tools 2(1), 1997.
     """

@@ -76,7 +76,7 @@ class Obstacles:
         return known
 
     def block(self, lane: Indices, directions: Floats, limits: Floats, *, exact: bool = False) -> Booleans:
-        """Whether rays meet an occluder no farther than their limits, ``(r,)``.
+        """Return whether rays meet an occluder no farther than their limits, ``(r,)``.
 
         Args:
             lane: number of each ray's lane among those given at the start, ``(r,)``.

@@ -1,4 +1,4 @@
-"""Whether observers see points (section 11.3)."""
+"""Visibility of points (section 11.3)."""
 
 from collections.abc import Sequence
 
@@ -10,7 +10,7 @@ from scenic.runtime.geometry.visibility.views import Views
 
 
 def sees_points(views: Views, points: Floats, occluders: Sequence[Occluder], lanes: int) -> Booleans:
-    """Whether each observer sees its point, ``(lanes,)``.
+    """Return whether each observer sees its point, ``(lanes,)``.
 
     Args:
         views: the observers.
@@ -29,7 +29,7 @@ def sees_points(views: Views, points: Floats, occluders: Sequence[Occluder], lan
 
 
 def hidden_points(views: Views, points: Floats, occluders: Sequence[Occluder], lanes: Indices) -> Booleans:
-    """Whether an occluder's surface meets the way from the camera to a point, ``(n,)``; never for one at the camera.
+    """Return whether an occluder's surface meets the way from the camera to a point, ``(n,)``; never for one at the camera.
 
     Args:
         views: with a row for each of the lanes.

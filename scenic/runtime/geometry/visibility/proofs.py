@@ -27,7 +27,7 @@ _LEAST_CELLS: Final = 64
 
 
 def boxes_hidden(corners: Floats, obstacles: Obstacles) -> Booleans:
-    """Whether one occluder is proved to hide boxes with corners ``(n, 8, 3)`` in the views' frames, ``(n,)``."""
+    """Return whether one occluder is proved to hide boxes with corners ``(n, 8, 3)`` in the views' frames, ``(n,)``."""
     hidden = np.zeros(len(corners), dtype=np.bool_)
     limits = np.ones((len(corners), 8))
     for number, near in enumerate(obstacles.lanes):
@@ -38,7 +38,7 @@ def boxes_hidden(corners: Floats, obstacles: Obstacles) -> Booleans:
 
 
 def shadowed(placed: Placed, lanes: Indices, directions: Floats, limits: Floats) -> Booleans:
-    """Whether one convex part of a body is met by all rays of each lane before their limits, ``(m,)``.
+    """Return whether one convex part of a body is met by all rays of each lane before their limits, ``(m,)``.
 
     Args:
         placed: the body.

@@ -33,7 +33,7 @@ _WIDEST: Final = 0.35
 
 
 class Proof(IntEnum):
-    """What is proved of a lane."""
+    """The facts that are proved of a lane."""
 
     HIDDEN = -1
     OPEN = 0
@@ -86,7 +86,7 @@ class _Cells:
 def prove(
     views: Views, target: Body, occluders: Sequence[Occluder], lanes: int, *, most_cells: int = 4096
 ) -> npt.NDArray[np.int8]:
-    """What is certain about each observer's sight of the target: a `Proof` for each lane, ``(lanes,)``.
+    """Proofs about each observer's sight of the target: a `Proof` for each lane, ``(lanes,)``.
 
     Unlike `sees_bodies` this does not depend on the observers' ray numbers.
 

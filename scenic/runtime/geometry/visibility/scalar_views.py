@@ -1,4 +1,4 @@
-"""Whether one observer sees something, on plain floats: what a running simulation asks step by step.
+"""Visibility for one observer, on plain floats: what a running simulation asks step by step.
 
 Answers are certain, by more than rounding can change, or ``None``: then rays decide (`scenic.runtime.geometry.visibility.seen_bodies`).
 The middle of a body shows that it is seen, a box before all corners of its box that it is not.
@@ -30,7 +30,7 @@ class View(NamedTuple):
     distance: float
 
     def contains(self, point: Triple) -> bool | None:
-        """Whether a point is within range and angles."""
+        """Return whether a point is within range and angles."""
         return self._holds(point, 0.0, 0.0)
 
     def meets_ball(self, point: Triple, radius: float) -> bool | None:
@@ -70,7 +70,7 @@ def _angular(radius: float, distance: float) -> float:
 
 
 def sees_point(view: View, point: Triple, occluders: Iterable[Placed]) -> bool | None:
-    """Whether a view shows a point past others."""
+    """Return whether a view shows a point past others."""
     inside = view.contains(point)
     if not inside:
         return inside
@@ -84,7 +84,7 @@ def sees_point(view: View, point: Triple, occluders: Iterable[Placed]) -> bool |
 
 
 def sees_body(view: View, target: Placed, occluders: Sequence[Placed]) -> bool | None:
-    """Whether a view shows a body past others."""
+    """Return whether a view shows a body past others."""
     if target.mesh.derived(contains_own_centre) and sees_point(view, target.position, occluders):
         return True
     if view.meets_ball(target.position, target.radius) is False:

@@ -1,4 +1,4 @@
-"""Whether observers see bodies (section 11.3): the answer of casting every ray, found with as few as possible.
+"""Visibility of bodies (section 11.3): the answer of casting every ray, found with as few as possible.
 
 What is cheap decides first: a camera inside, the middle of the body, its range and directions, occluders that
 hide its whole box. Then rays are cast: a few spread over the body, more, all. A ray that seems to get through is
@@ -40,7 +40,7 @@ _STAGES: Final = (8, 40)
 
 
 def sees_bodies(views: Views, target: Body, occluders: Sequence[Occluder], lanes: int) -> Booleans:
-    """Whether each observer sees the target, ``(lanes,)``.
+    """Return whether each observer sees the target, ``(lanes,)``.
 
     Args:
         views: the observers.
@@ -68,7 +68,7 @@ def _sees(views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indi
 
 @dataclass(frozen=True)
 class Bounds:
-    """What is known before rays are cast.
+    """Facts that are known before rays are cast.
 
     Attributes:
         seen: the lanes whose observer is in the target or sees its middle, ``(n,)``.
@@ -94,7 +94,7 @@ class Bounds:
 
 
 def bounded(views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indices) -> Bounds:
-    """What bounds and the middle of the target decide; the views have a row for each of the lanes."""
+    """The decisions by bounds and the middle of the target; the views have a row for each of the lanes."""
     poses = target.poses.take(lanes)
     position = np.broadcast_to(poses.position, (len(lanes), 3))
     placed = place(target, views, lanes)
@@ -112,7 +112,7 @@ def bounded(views: Views, target: Body, occluders: Sequence[Occluder], lanes: In
 
 
 def inside_body(placed: Placed) -> Booleans:
-    """Whether the camera is inside the body, ``(n,)``."""
+    """Return whether the camera is inside the body, ``(n,)``."""
     result = np.zeros(len(placed.mesh), dtype=np.bool_)
     near = (np.abs(placed.origin) <= 0.5).all(axis=1)
     for number, mesh in enumerate(placed.meshes):
@@ -123,7 +123,7 @@ def inside_body(placed: Placed) -> Booleans:
 
 
 def box_distance(origin: Floats, size: Floats) -> Floats:
-    """How far points ``(n, 3)`` in the unit frame are from the box of a size, in metres, ``(n,)``."""
+    """Distances of points ``(n, 3)`` in the unit frame from the box of a size, in metres, ``(n,)``."""
     gap = (origin - np.clip(origin, -0.5, 0.5)) * size
     return np.sqrt(gap[:, 0] * gap[:, 0] + gap[:, 1] * gap[:, 1] + gap[:, 2] * gap[:, 2])
 
@@ -134,7 +134,7 @@ def _holds_centre(placed: Placed) -> Booleans:
 
 
 def contains_own_centre(mesh: Mesh) -> bool:
-    """Whether the solid of a mesh holds the middle of its box."""
+    """Return whether the solid of a mesh holds the middle of its box."""
     return mesh.is_box or bool(inside.contains_points(mesh, np.zeros((1, 3)))[0])
 
 
@@ -155,7 +155,7 @@ class RaySearch:
         self._rows = rows_towards(self._views, bounds.directions, distance)
 
     def found(self) -> Booleans:
-        """Whether there is such a ray among those of the view's grid, ``(n,)``."""
+        """Return whether there is such a ray among those of the view's grid, ``(n,)``."""
         seen = np.zeros(self._count, dtype=np.bool_)
         left = ~boxes_hidden(self._corners, self._obstacles)
         for across in _STAGES:

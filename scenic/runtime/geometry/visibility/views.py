@@ -119,7 +119,7 @@ class Views:
         )
 
     def contain(self, points: Floats) -> Booleans:
-        """Whether world points ``(n | 1, 3)`` are within the view's range and angles, borders included, ``(n,)``.
+        """Return whether world points ``(n | 1, 3)`` are within the view's range and angles, borders included, ``(n,)``.
 
         The camera itself is in every view; straight up and down are of every azimuth.
         """
@@ -155,7 +155,7 @@ class Extents:
     altitude: Floats
 
     def meet(self, window: Floats) -> Booleans:
-        """Whether some direction of the box is in view windows ``(n, 2)``, ``(n,)``; never wrongly no."""
+        """Return whether some direction of the box is in view windows ``(n, 2)``, ``(n,)``; never wrongly no."""
         half = 0.5 * window + 2 * ANGLE_SLACK
         turns = np.zeros(len(half), dtype=np.bool_)
         for shift in (-2 * np.pi, 0.0, 2 * np.pi):
