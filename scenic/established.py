@@ -187,6 +187,7 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
                 _language(NameKind.REGION),
             ),
             ("scenic.runtime.regions.base", "Region"),
+            ("scenic.runtime.regions.promises", "orientedRegion unorientedRegion"),
             ("scenic.runtime.regions.spaces", "AllRegion=Everywhere EmptyRegion=Nowhere"),
             ("scenic.runtime.regions.combinations", "IntersectionRegion UnionRegion DifferenceRegion"),
             ("scenic.runtime.regions.voxels", "VoxelRegion"),

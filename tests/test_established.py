@@ -27,6 +27,7 @@ from scenic.core.regions import (
     RectangularRegion,
     SectorRegion,
     SpheroidRegion,
+    UndefinedSamplingException,
     everywhere,
 )
 
@@ -207,6 +208,7 @@ def test_pruning_can_be_switched_off_as_before(monkeypatch: pytest.MonkeyPatch) 
     [
         ("x = foo", NameError),
         ("ego = new Foo", NameError),
+        ("A = 3; ego = new A", TypeError),
         ("mutate foo", NameError),
         ("x = Object at 3", TypeError),
     ],
@@ -216,6 +218,15 @@ def test_what_is_found_early_has_the_type_that_python_would_raise(text: str, kin
         scenic.scenarioFromString(text)
     assert isinstance(caught.value, scenic.language.errors.ScenicSyntaxError)
     assert caught.value.lineno == 1
+
+
+def test_faults_have_the_types_that_scripts_expect() -> None:
+    for text, kind in (
+        ("x = globalParameters.foo", KeyError),
+        ("ego = new Object in CircularRegion((0, 0), 1).footprint", UndefinedSamplingException),
+    ):
+        with pytest.raises(kind):
+            scenic.scenarioFromString(text)
 
 
 def test_values_are_shown_as_programs_write_them() -> None:

@@ -125,12 +125,16 @@ class UndefinedNameError(ScenicSyntaxError, NameError):
     """A name that nothing defines: found before the program runs."""
 
 
+class NoClassError(UndefinedNameError, TypeError):
+    """A name after ``new`` that nothing defines, or that is something else than a class."""
+
+
 class MissingNewError(ScenicSyntaxError, TypeError):
     """A class used like an instance, where ``new`` is missing."""
 
 
 _BY_CODE: Mapping[str, type[ScenicSyntaxError]] = MappingProxyType(
-    {"SC111": MissingNewError, "SC202": UndefinedNameError, "SC203": UndefinedNameError}
+    {"SC111": MissingNewError, "SC202": UndefinedNameError, "SC203": NoClassError}
 )
 
 
@@ -145,8 +149,8 @@ class InvalidScenarioError(ScenicError):
     code = "SC401"
 
 
-class UnknownParameterError(InvalidScenarioError, AttributeError):
-    """A global parameter that the program does not set; also what ``hasattr`` asks for."""
+class UnknownParameterError(InvalidScenarioError, AttributeError, KeyError):
+    """A global parameter that the program does not set; also what ``hasattr`` and mappings ask for."""
 
 
 class UndefinedSamplingException(InvalidScenarioError):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from scenic.language.errors import RejectionException, ScenicTypeError
+from scenic.language.errors import InvalidScenarioError, RejectionException, ScenicTypeError
 from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
@@ -229,3 +229,38 @@ def test_primitives_are_those_of_the_region_of_each_lane() -> None:
         np.testing.assert_array_equal(
             region.contains_bodies(body, 8, column), option.contains_bodies(body, 8, *fixed)
         )
+
+
+PROMISED = """
+from scenic.core.regions import orientedRegion, unorientedRegion
+field = VectorField("f", lambda place: 1)
+oriented, line = PolygonalRegion([(0, 0), (1, 0), (1, 1)], orientation=field), PolylineRegion([(0, 0), (5, 5)])
+plain, box = CircularRegion((0, 0), 3), RectangularRegion((9, 0), 0, 1, 1)
+@distributionFunction
+def pick(x, first, second):
+    return first if x < 0.5 else second
+x = Range(0, 1)
+class Turned:
+    parentOrientation: 0.25
+ego = new Turned in {}
+param heading = round(ego.heading, 3)
+"""
+
+
+def test_programs_promise_whether_drawn_regions_give_orientations() -> None:
+    def headings(region: str) -> set[float]:
+        found = scenario(PROMISED.format(region)).sample(6, seed=1)
+        return {item.params["heading"] for item in found}
+
+    assert headings("orientedRegion(oriented)") == {1}
+    assert headings("unorientedRegion(oriented)") == {0.25}
+    assert headings("orientedRegion(Uniform(oriented, line))") == {1, -0.785}
+    assert headings("unorientedRegion(Uniform(oriented, line))") == {0.25}
+    assert headings("orientedRegion(pick(x, oriented, line))") == {1, -0.785}
+    assert headings("unorientedRegion(pick(x, oriented, line))") == {0.25}
+    for region in ("plain", "pick(x, plain, box)"):
+        with pytest.raises(InvalidScenarioError, match="has no preferred orientations"):
+            headings(f"orientedRegion({region})")
+    for function in ("orientedRegion", "unorientedRegion"):
+        with pytest.raises(ScenicTypeError, match="expected a region"):
+            headings(f"{function}(3)")

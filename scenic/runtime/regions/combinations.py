@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column
-from scenic.language.errors import InvalidScenarioError, ScenicTypeError
+from scenic.language.errors import ScenicTypeError, UndefinedSamplingException
 from scenic.runtime.geometry import polytopes
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.program.context import here
@@ -41,7 +41,7 @@ class IntersectionRegion(Composite):
 
     def uniform_placement(self) -> tuple[Any, Any]:
         if all(isinstance(member, Footprint) for member in self.members):
-            raise InvalidScenarioError(
+            raise UndefinedSamplingException(
                 "no point can be drawn from an intersection of unbounded regions",
                 span=here(),
                 help="intersect them with a bounded region, too",

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scenic.graph.bounds import Bounds
 from scenic.graph.draws import mix, open_unit
 from scenic.graph.kinds import Column
-from scenic.language.errors import InvalidScenarioError
+from scenic.language.errors import UndefinedSamplingException
 from scenic.runtime.geometry import polytopes
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.geometry.containment import extreme_corners
@@ -291,7 +291,7 @@ class Composite(Region):
 
     def uniform_placement(self) -> tuple[Any, Any]:
         if not any(np.isfinite(member.dimension) and member.dimension >= 0 for member in self.members):
-            raise InvalidScenarioError("no point can be drawn from an unbounded region", span=here())
+            raise UndefinedSamplingException("no point can be drawn from an unbounded region", span=here())
         return super().uniform_placement()
 
     def orientation_at(self, point: Any) -> Any:

@@ -12,7 +12,7 @@ import numpy as np
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
-from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
+from scenic.language.errors import ScenicTypeError, ScenicValueError, UndefinedSamplingException
 from scenic.runtime.geometry import containment
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.geometry.outlines import Geometries
@@ -372,7 +372,7 @@ class Footprint(Region):
         return np.full(1, np.inf)
 
     def uniform_placement(self) -> tuple[Any, Any]:
-        raise InvalidScenarioError(
+        raise UndefinedSamplingException(
             "no point can be drawn from a footprint, which is not bounded",
             span=here(),
             help="draw from the region itself, or intersect the footprint with a bounded region",
