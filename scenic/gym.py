@@ -293,7 +293,7 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
             return None
         if self._present is None:
             raise gymnasium.error.ResetNeeded("call reset() before render()")
-        return render(picture([self._present]), 0, self._image_size)
+        return render(picture([self._present], ground=True), 0, self._image_size)
 
     def close(self) -> None:
         """End the simulation."""

@@ -81,6 +81,9 @@ def ground_height(points: Array) -> float:
 def framed(scene: Scene, instances: Sequence[Instance], outlook: Outlook) -> Array:
     """The points that a picture of a scene has to show, ``(n, 3)``: corners of objects, and of the workspace."""
     points = corners(instances)
+    if (least := getattr(scene.workspace, "minimumZoomSize", 0.0)) > 0:
+        middle = (points.min(axis=0) + points.max(axis=0)) / 2
+        points = np.concatenate([points, middle + _UNIT_CORNERS * [least, least, 0.0]])
     bounds = workspace_bounds(scene.workspace) if outlook.workspace else None
     if bounds is None:
         return points

@@ -53,12 +53,15 @@ class _Shown:
 def course_data(course: Course, tape: PoseTape) -> dict[str, Any]:
     """The data that the page needs of a simulation, all of whose states are on the tape, as plain data."""
     page = Page("")
-    instances = page.add(_Shown(course))
+    poses = tape.poses()
+    places = poses[..., :3].reshape(-1, 3).astype(np.float64)
+    # A few metres make no difference to the ground that is drawn.
+    near = np.unique(np.round(places[np.isfinite(places).all(axis=1)] / 5.0), axis=0) * 5.0
+    instances = page.add(_Shown(course), near)
     data = page.data()
     (scene,) = data["scenes"]
     indices = {id(thing): index for index, thing in enumerate(course.objects)}
     drawn = [indices[id(instance.thing)] for instance in instances]
-    poses = tape.poses()
     result = course.result
     scene["course"] = {
         "timestep": number(course.timestep),
@@ -81,14 +84,16 @@ def course_data(course: Course, tape: PoseTape) -> dict[str, Any]:
 
 def course_page(title: str, courses: Sequence[Mapping[str, Any]]) -> str:
     """The page of simulations, each as `course_data` gives it; at least one."""
-    together: dict[str, Any] = {"meshes": [], "outlines": [], "scenes": []}
-    numbers: dict[str, dict[str, int]] = {"meshes": {}, "outlines": {}}
+    together: dict[str, Any] = {"meshes": [], "outlines": [], "grounds": [], "scenes": []}
+    numbers: dict[str, dict[str, int]] = {"meshes": {}, "outlines": {}, "grounds": {}}
     for data in courses:
         # Most meshes and regions are the same in all simulations: they are on the page once.
         place: dict[str, list[int]] = {}
         for kind, known in numbers.items():
             place[kind] = []
-            for item in data[kind]:
+            for item in data.get(kind, ()):
+                if kind == "grounds":
+                    item = {**item, "mesh": place["meshes"][item["mesh"]]}
                 text = json.dumps(item)
                 if text not in known:
                     known[text] = len(known)
@@ -104,6 +109,13 @@ def course_page(title: str, courses: Sequence[Mapping[str, Any]]) -> str:
                     ],
                     "workspace": None if workspace is None else place["outlines"][workspace],
                     "regions": {name: place["outlines"][k] for name, k in scene["regions"].items()},
+                    **(
+                        {"ground": [place["grounds"][k] for k in scene["ground"]]}
+                        if "ground" in scene
+                        else {}
+                    ),
                 }
             )
+    if not together["grounds"]:
+        del together["grounds"]
     return page_text(title, together)

@@ -7,19 +7,23 @@ this module.
 import base64
 import html as markup
 import json
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from importlib import resources
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
-from scenic.formats.instances import Array, Gallery, Instance, Surface
+from scenic.formats.instances import Array, Gallery, Instance, Piece, Surface, places_of, resting
 from scenic.formats.json_lines import plain
 from scenic.formats.poses import euler_angles, rotation_matrix
 from scenic.formats.regions import outlines, view_outline
 from scenic.formats.scenes import Scene
 from scenic.language.properties import properties_of
+
+_MOST_POINTS: Final = 1000
+"""So many points the lines of a region may have where a map is drawn, which shows whole road networks better."""
 
 
 class Page:
@@ -31,13 +35,23 @@ class Page:
         self._scenes: list[dict[str, Any]] = []
         # Most regions are the same in all scenes: their lines are on the page once.
         self._outlines: dict[str, int] = {}
+        self._pieces: dict[int, tuple[int, Piece]] = {}
 
     def __len__(self) -> int:
         return len(self._scenes)
 
-    def add(self, scene: Scene) -> tuple[Instance, ...]:
-        """Put a scene on the page, after the others; gives what is drawn of it."""
+    def add(self, scene: Scene, places: Array | None = None) -> tuple[Instance, ...]:
+        """Put a scene on the page, after the others; gives what is drawn of it.
+
+        Args:
+            scene: the scene.
+            places: where objects are or will be, ``(n, 3)``, if not only where the scene has them: the ground is drawn there.
+
+        """
         instances = self._gallery.add(scene)
+        pieces = self._gallery.ground(scene.workspace, places_of(instances) if places is None else places)
+        if pieces:
+            instances = resting(instances)
         self._scenes.append(
             {
                 "seed": str(scene.seed),  # may be larger than JavaScript's numbers
@@ -46,23 +60,31 @@ class Page:
                 "params": {str(name): _brief(value) for name, value in scene.params.items()},
                 "objects": [_object(instance) for instance in instances],
                 "workspace": self._outline(scene.workspace),
-                "regions": self._regions(scene),
+                "regions": self._regions(scene, _MOST_POINTS if pieces else math.inf),
+                **self._ground(scene, pieces),
             }
         )
         return instances
 
-    def _regions(self, scene: Scene) -> dict[str, int]:
-        """Numbers of the lines of named regions; those without lines, and the workspace, are left out."""
+    def _ground(self, scene: Scene, pieces: Sequence[Piece]) -> dict[str, Any]:
+        """What the page says of the ground, where the workspace shows any."""
+        if not pieces:
+            return {}
+        numbers = [self._pieces.setdefault(piece.surface, (len(self._pieces), piece))[0] for piece in pieces]
+        return {"ground": numbers, "least": getattr(scene.workspace, "minimumZoomSize", 0.0)}
+
+    def _regions(self, scene: Scene, most: float) -> dict[str, int]:
+        """Numbers of the lines of named regions; those without lines, with too many, and the workspace, are left out."""
         workspace = getattr(scene.workspace, "region", scene.workspace)
         # Scenes that were read from a file have no regions.
         named = getattr(scene, "regions", {}).items()
-        numbers = {name: self._outline(region) for name, region in named if region is not workspace}
+        numbers = {name: self._outline(region, most) for name, region in named if region is not workspace}
         return {name: number for name, number in numbers.items() if number is not None}
 
-    def _outline(self, region: object) -> int | None:
-        """The number of a region's lines on the page; ``None`` if it has none."""
+    def _outline(self, region: object, most: float = math.inf) -> int | None:
+        """The number of a region's lines on the page; ``None`` if it has none, or more points than ``most``."""
         lines = [_points(line) for line in outlines(region)]
-        if not lines:
+        if not lines or sum(map(len, lines)) > most:
             return None
         text = json.dumps(lines, allow_nan=False, separators=(",", ":"))
         return self._outlines.setdefault(text, len(self._outlines))
@@ -73,6 +95,17 @@ class Page:
             "meshes": [_mesh(surface) for surface in self._gallery.surfaces],
             "scenes": self._scenes,
             "outlines": [json.loads(text) for text in self._outlines],
+            **self._grounds(),
+        }
+
+    def _grounds(self) -> dict[str, Any]:
+        if not self._pieces:
+            return {}
+        return {
+            "grounds": [
+                {"mesh": piece.surface, "color": piece.color, "layer": piece.layer, "flat": piece.is_flat}
+                for _, piece in self._pieces.values()
+            ]
         }
 
     def text(self) -> str:

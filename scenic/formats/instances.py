@@ -5,8 +5,8 @@ look round and edges stay sharp.
 """
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -14,6 +14,8 @@ import numpy.typing as npt
 
 from scenic.formats.poses import Four, Triple, quaternion_of, rotation_matrix
 from scenic.formats.scenes import Scene, SceneObject, UnitMesh
+from scenic.runtime.geometry.patches import Patch
+from scenic.runtime.regions.spaces import Workspace
 
 Array = npt.NDArray[np.float64]
 
@@ -36,6 +38,9 @@ _SHADES = (1.0, 0.72, 1.12, 0.86, 0.6)
 
 _PLAIN: Final = "Object"
 """The class of objects that have no class of their own."""
+
+_LOW: Final = 0.75
+"""Height of objects on maps, in parts of their shorter side: that of a car."""
 
 CREASE = np.cos(np.radians(35))
 """Faces that meet at a smaller angle are shaded as one smooth surface."""
@@ -81,12 +86,27 @@ class Instance:
 
 
 @dataclass(frozen=True, slots=True)
+class Piece:
+    """A part of the ground as it is drawn, in the place where it is: a surface and a colour.
+
+    Of pieces that overlap, the one with the largest ``layer`` is on top. ``is_flat`` tells whether it lies wherever the ground of
+    the picture is.
+    """
+
+    surface: int
+    color: Four
+    layer: int
+    is_flat: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Picture:
-    """Scenes as drawn: the surfaces they share, the instances of each scene, and its parameters."""
+    """Scenes as drawn: the surfaces they share, the instances of each scene, its parameters, and the ground under them."""
 
     surfaces: tuple[Surface, ...]
     scenes: tuple[tuple[Instance, ...], ...]
     params: tuple[Mapping[str, object], ...]
+    grounds: tuple[tuple[Piece, ...], ...]
 
 
 class Surfaces:
@@ -121,6 +141,7 @@ class Gallery:
         self._surfaces: list[Surface] = []
         # The mesh is kept beside its number: its identity stays taken while the table lives.
         self._known: dict[int, tuple[UnitMesh, int]] = {}
+        self._patches: dict[int, tuple[Patch, Piece]] = {}
         self._colors: dict[str, Triple] = {}
         for name in classes:
             if name != _PLAIN:
@@ -164,6 +185,21 @@ class Gallery:
             )
         return tuple(instances)
 
+    def ground(self, workspace: object, places: Array) -> tuple[Piece, ...]:
+        """The pieces that a workspace shows under objects at places ``(n, 3)``."""
+        if not isinstance(workspace, Workspace) or not len(places):
+            return ()
+        return tuple(self._piece(patch) for patch in workspace.patches(places))
+
+    def _piece(self, patch: Patch) -> Piece:
+        known = self._patches.get(id(patch))
+        if known is None:
+            normals = np.tile([0.0, 0.0, 1.0], (len(patch.vertices), 1))
+            self._surfaces.append(Surface(patch.vertices, normals, patch.faces))
+            piece = Piece(len(self._surfaces) - 1, (*patch.color, 1.0), patch.layer, patch.is_flat)
+            known = self._patches[id(patch)] = (patch, piece)
+        return known[1]
+
     def _default_color(self, class_name: str, number: int) -> Triple:
         """The colour of an object that has none, by its number among those of its class in the scene.
 
@@ -188,11 +224,36 @@ class Gallery:
         return self._known[id(mesh)][1]
 
 
-def picture(scenes: Iterable[Scene]) -> Picture:
-    """The picture of the scenes."""
+def picture(scenes: Iterable[Scene], *, ground: bool = False) -> Picture:
+    """The picture of the scenes; with what their workspaces show under the objects if ``ground``."""
     gallery = Gallery()
-    drawn = [(gallery.add(scene), scene.params) for scene in scenes]
-    return Picture(gallery.surfaces, tuple(item for item, _ in drawn), tuple(params for _, params in drawn))
+    drawn, params, grounds = [], [], []
+    for scene in scenes:
+        drawn.append(gallery.add(scene))
+        params.append(scene.params)
+        grounds.append(gallery.ground(scene.workspace, places_of(drawn[-1])) if ground else ())
+    return Picture(gallery.surfaces, tuple(drawn), tuple(params), tuple(grounds))
+
+
+def resting(instances: Sequence[Instance]) -> tuple[Instance, ...]:
+    """Objects of the 2D mode as they are shown on a map: no higher than cars are, and on the ground.
+
+    That mode gives objects the height of their longest side, and puts their middles on the plane.
+    """
+    return tuple(
+        replace(instance, size=(width, length, shown), position=(x, y, z + shown / 2))
+        if getattr(instance.thing, "_planar", False)
+        else instance
+        for instance in instances
+        for width, length, height in [instance.size]
+        for x, y, z in [instance.position]
+        for shown in [min(height, _LOW * min(width, length))]
+    )
+
+
+def places_of(instances: Iterable[Instance]) -> Array:
+    """Where instances are, ``(n, 3)``."""
+    return np.array([instance.position for instance in instances], dtype=np.float64).reshape(-1, 3)
 
 
 def distinct_labels(instances: Iterable[Instance]) -> list[str]:

@@ -1,6 +1,7 @@
 """Images of scenes as PNG files."""
 
 import io
+from dataclasses import replace
 from types import ModuleType
 from typing import Final
 
@@ -8,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.formats.camera import STANDARD, Outlook, framed, framing
-from scenic.formats.instances import picture
+from scenic.formats.instances import picture, resting
 from scenic.formats.render import SIZE, render
 from scenic.formats.scenes import Scene
 from scenic.language.errors import Located
@@ -43,7 +44,9 @@ def png(scene: Scene, size: tuple[int, int] = SIZE, outlook: Outlook = STANDARD)
     Raises ``MissingLibraryError`` if Pillow is not installed.
     """
     require_pillow()
-    drawn = picture([scene])
+    drawn = picture([scene], ground=True)
+    if any(drawn.grounds):
+        drawn = replace(drawn, scenes=(resting(drawn.scenes[0]),))
     camera = framing(framed(scene, drawn.scenes[0], outlook), size[0] / size[1], outlook)
     return encoded(render(drawn, 0, size, camera=camera))
 

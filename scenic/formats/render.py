@@ -45,7 +45,7 @@ def render(
     """
     width, height = size
     instances = picture.scenes[number]
-    stage = Stage(picture.surfaces, instances, scenery_of(picture.params[number]))
+    stage = Stage(picture.surfaces, instances, scenery_of(picture.params[number]), picture.grounds[number])
     return paint(stage, Lens(camera or framing(corners(instances), width / height), stage.center, size))
 
 

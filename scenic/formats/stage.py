@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from scenic.formats.camera import corners, ground_height
 from scenic.formats.colors import linear
-from scenic.formats.instances import Array, Instance, Surface
+from scenic.formats.instances import Array, Instance, Piece, Surface
 from scenic.formats.poses import rotation_matrix
 from scenic.formats.scenery import USUAL, Scenery
 from scenic.formats.textures import texture_of
@@ -38,6 +38,7 @@ class Stage:
         surfaces: the meshes.
         instances: the objects.
         scenery: where light comes from.
+        pieces: parts of the ground with colours of their own.
 
     Attributes:
         scenery: the same.
@@ -57,7 +58,11 @@ class Stage:
     """
 
     def __init__(
-        self, surfaces: Sequence[Surface], instances: Sequence[Instance], scenery: Scenery = USUAL
+        self,
+        surfaces: Sequence[Surface],
+        instances: Sequence[Instance],
+        scenery: Scenery = USUAL,
+        pieces: Sequence[Piece] = (),
     ) -> None:
         self.scenery = scenery
         self._instances = instances
@@ -69,7 +74,16 @@ class Stage:
         points = corners(instances)
         self.center = (points.min(axis=0) + points.max(axis=0)) / 2
         self.reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
-        self.ground = float(ground_height(points) - self.center[2])
+        low = [surfaces[piece.surface].vertices[:, 2].min() for piece in pieces if not piece.is_flat]
+        # The ground lies below roads that have heights.
+        self.ground = (
+            float(
+                min(ground_height(points), *(height - 0.1 for height in low))
+                if low
+                else ground_height(points)
+            )
+            - self.center[2]
+        )
         triangles, normals, owners = [], [], []
         for index, instance in enumerate(instances):
             surface = surfaces[instance.surface]
@@ -80,9 +94,18 @@ class Stage:
             triangles.append(world.astype(np.float32)[surface.faces])
             normals.append(turned.astype(np.float32)[surface.faces])
             owners.append(np.full(len(surface.faces), index, np.int32))
+        for index, piece in enumerate(pieces, len(instances)):
+            surface = surfaces[piece.surface]
+            world = surface.vertices - self.center
+            if piece.is_flat:
+                world[:, 2] = surface.vertices[:, 2] + self.ground
+            triangles.append(world.astype(np.float32)[surface.faces])
+            normals.append(surface.normals.astype(np.float32)[surface.faces])
+            owners.append(np.full(len(surface.faces), index, np.int32))
         self.owner = np.concatenate([*owners, np.zeros(0, np.int32)])
         corner_normals = np.concatenate([*normals, np.zeros((0, 3, 3), np.float32)])
-        rgba = np.array([instance.color for instance in instances]).reshape(-1, 4)
+        colors = [instance.color for instance in instances] + [piece.color for piece in pieces]
+        rgba = np.array(colors).reshape(-1, 4)
         self.alphas = rgba[:, 3].astype(np.float32)
         mean = corner_normals[:, 0] + corner_normals[:, 1] + corner_normals[:, 2]
         mean /= np.maximum(np.sqrt(np.einsum("ij,ij->i", mean, mean)), np.float32(1e-9))[:, None]

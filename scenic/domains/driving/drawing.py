@@ -12,13 +12,13 @@ if TYPE_CHECKING:
     from scenic.domains.driving.elements import NetworkElement
     from scenic.domains.driving.network import RoadNetwork
 
-__all__ = ["png", "show", "svg"]
+__all__ = ["COLORS", "png", "show", "svg"]
 
 _MARGIN: Final = 5.0
 """Metres."""
 
 _GROUND: Final = "#e4ebdd"
-_COLORS: Final = MappingProxyType(
+COLORS: Final = MappingProxyType(
     {
         "road": "#5b6068",
         "intersection": "#6d737c",
@@ -29,6 +29,7 @@ _COLORS: Final = MappingProxyType(
         "way": "#ffd166",
     }
 )
+"""Colours of kinds of areas and lines."""
 
 
 def svg(network: "RoadNetwork", width: int = 1200) -> str:
@@ -55,9 +56,9 @@ def svg(network: "RoadNetwork", width: int = 1200) -> str:
 
 
 def _style() -> str:
-    areas = " ".join(f".{word} {{ fill: {color} }}" for word, color in _COLORS.items())
+    areas = " ".join(f".{word} {{ fill: {color} }}" for word, color in COLORS.items())
     lines = " ".join(
-        f".{word} {{ fill: none; stroke: {_COLORS[word]}; stroke-width: .13 }}" for word in ("lane", "way")
+        f".{word} {{ fill: none; stroke: {COLORS[word]}; stroke-width: .13 }}" for word in ("lane", "way")
     )
     return f"{areas} {lines} .way {{ stroke-dasharray: 1.5 1.5; stroke-opacity: .7 }}"
 
@@ -102,13 +103,13 @@ def png(network: "RoadNetwork", width: int = 1600) -> bytes:
     for word, some in _areas(network):
         for element in some:
             for part in shapely.get_parts(element.polygon):
-                draw.polygon(pixels(part.exterior.coords), fill=_COLORS[word])
+                draw.polygon(pixels(part.exterior.coords), fill=COLORS[word])
                 for ring in part.interiors:
                     draw.polygon(pixels(ring.coords), fill=_GROUND)
     for road in network.roads:
         for lane in road.lanes:
             for edge in (lane.left, lane.right):
-                draw.line(pixels(edge), fill=_COLORS["lane"], width=2)
+                draw.line(pixels(edge), fill=COLORS["lane"], width=2)
     stream = io.BytesIO()
     image.resize((size[0] // 2, size[1] // 2), library.Resampling.LANCZOS).save(stream, "PNG")
     return stream.getvalue()

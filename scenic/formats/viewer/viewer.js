@@ -307,6 +307,14 @@
       settleAll(scene, 0);
     }
     if (!scene.objects.length) { low.fill(-0.5); high.fill(0.5); }
+    if (scene.least) {
+      // So much of the ground is shown at least.
+      for (const axis of [0, 1]) {
+        const missing = Math.max(0, scene.least - (high[axis] - low[axis])) / 2;
+        low[axis] -= missing;
+        high[axis] += missing;
+      }
+    }
     scene.middle = times(add(low, high), 0.5);
     scene.radius = Math.max(Math.hypot(...sub(high, low)) / 2, 1e-3);
     scene.low = low;
@@ -334,7 +342,15 @@
   const reach = Math.max(...data.scenes.map((scene) => scene.radius));
   const groundWidth = Math.max(...data.scenes.map((scene) => scene.width));
   const lowest = Math.min(...data.scenes.map((scene) => scene.low[2]));
-  const groundHeight = lowest < 0 || lowest > 8 * reach ? lowest : 0;
+  // Parts of the ground with colours: those that are flat lie on it, others where they are, and the ground below them.
+  const grounds = (data.grounds ?? []).map((piece) => ({
+    ...piece, light: [...piece.color.slice(0, 3).map(linear), 1],
+    low: piece.flat ? Infinity : meshes[piece.mesh].points.reduce((low, value, i) => (i % 3 === 2 ? Math.min(low, value) : low), Infinity),
+  }));
+  const groundHeight = Math.min(lowest < 0 || lowest > 8 * reach ? lowest : 0, ...grounds.map((piece) => piece.low - 0.1));
+  for (const piece of grounds) {
+    piece.model = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, piece.flat ? groundHeight : 0, 1]);
+  }
   const power = 10 ** Math.floor(Math.log10(reach / 6));
   const spacing = [1, 2, 5, 10].map((step) => step * power)
     .reduce((best, step) => (Math.abs(Math.log((step * 6) / reach)) < Math.abs(Math.log((best * 6) / reach)) ? step : best));
@@ -343,10 +359,10 @@
 
   const state = {
     scene: 0, step: 0, near: -1, chosen: -1, following: false, running: 0, playing: 0, dark: false, flat: false, measuring: false, measured: [],
-    layers: { grid: true, workspace: true, regions: true, views: false, headings: false, labels: false, trails: true },
+    layers: { ground: true, grid: true, workspace: true, regions: true, views: false, headings: false, labels: false, trails: true },
   };
-  /** Regions not shown. Those of a whole road network would only hide each other. */
-  const hiddenRegions = new Set(regionNames.slice(12));
+  /** Regions not shown. Those of a whole road network would only hide each other, and the map shows them better. */
+  const hiddenRegions = new Set(data.grounds ? regionNames : regionNames.slice(12));
   /** Objects not shown, by their place in the list and their name, so that they stay hidden from scene to scene. */
   const hidden = new Set();
   const keyOf = (thing, index) => `${index} ${thing.label}`;
@@ -385,7 +401,7 @@
   }
 
   /** Corners of the objects, of a simulation those of the box in which it takes place. */
-  const cornersOf = (scene) => (scene.course
+  const cornersOf = (scene) => (scene.course || scene.least
     ? [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [0, 1, 2].map((axis) => ((i >> axis) & 1 ? scene.high : scene.low)[axis]))
     : scene.objects.flatMap((thing) => thing.corners));
 
@@ -520,6 +536,15 @@
     const glow = (index) => (index === state.chosen ? 1 : index === state.near ? 0.5 : 0);
     const shown = scene.objects.map((thing, index) => ({ thing, index })).filter(({ index }) => !isHidden(index));
     for (const { thing, index } of shown) if (thing.light[3] >= 1) drawObject(thing, glow(index));
+    if (state.layers.ground && eye()[2] > groundHeight) {
+      gl.enable(gl.POLYGON_OFFSET_FILL);
+      for (const number of scene.ground ?? []) {
+        // From far away, a few centimetres do not tell what is on top.
+        gl.polygonOffset(-grounds[number].layer / 2, -4 * grounds[number].layer);
+        drawObject({ ...grounds[number], size: [1, 1, 1] }, 0);
+      }
+      gl.disable(gl.POLYGON_OFFSET_FILL);
+    }
 
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
@@ -807,6 +832,7 @@
     const { course } = scene;
     byId("clock").hidden = !course;
     document.querySelector('[data-layer="trails"]').parentElement.hidden = !course;
+    document.querySelector('[data-layer="ground"]').parentElement.hidden = !data.grounds;
     byId("follow").hidden = !course;
     byId("verdicts").replaceChildren(...(course ? course.requirements : []).map(({ label, verdict, robustness }) => {
       const row = element("li", "", { className: verdict.replaceAll(" ", "-") });

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scenic.graph.kinds import Column
 from scenic.language.errors import InvalidScenarioError, RejectionException, ScenicTypeError
 from scenic.runtime.geometry.collision import Body
+from scenic.runtime.geometry.patches import Patch
 from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.flat import Flat
@@ -119,6 +120,10 @@ class Workspace(Region):
         self.has_orientation, self.orientation = region.has_orientation, region.orientation
         self.dimension = region.dimension
         self.draws, self.may_find_none, self.tolerance = region.draws, region.may_find_none, region.tolerance
+
+    def patches(self, places: Points) -> tuple[Patch, ...]:
+        """The areas that pictures show under objects at places ``(n, 3)``: here none."""
+        return ()
 
     def single(self) -> Single | None:
         return self.region.at_once
