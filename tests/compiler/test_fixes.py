@@ -130,3 +130,13 @@ def test_repairs_that_undo_each_other_end(monkeypatch: pytest.MonkeyPatch) -> No
 )
 def test_an_unused_import_is_removed_with_its_line_if_that_is_its_own(text: str, expected: str) -> None:
     assert repair(text, filename="f", shown=lambda found: found).text == expected
+
+
+def test_a_condition_that_binds_less_is_negated_as_a_whole() -> None:
+    text = "behavior B():\n    do B() while {}\n"
+    for condition, negated in (("b", "b"), ("b.x > 1", "b.x > 1"), ("b and c", "(b and c)")):
+        found = check_text(text.format(condition), filename="a.scenic")
+        (repaired, _) = apply_fixes(
+            text.format(condition), [each.fix for each in found if each.code == "SC129" and each.fix]
+        )
+        assert repaired == text.format(condition).replace(f"while {condition}", f"until not {negated}")

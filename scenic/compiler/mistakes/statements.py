@@ -129,7 +129,7 @@ def target_first(at: Situation) -> Problem | None:
         changes = [Change(at.token, at.token + 1, ("until", "not"))]
         if not _BINDING_LESS.isdisjoint(map(at.word, range(at.token, at.end))):
             # `until not a and b` would end it for other reasons.
-            changes = [Change(at.token, at.token + 1, ("until", "not", "(")), insertion(at.end, ")")]
+            changes += [insertion(at.token + 1, "("), insertion(at.end, ")")]
         return at.problem(
             "SC129",
             at.here(),
