@@ -29,6 +29,7 @@ LIBRARIES: Final = frozenset(
         "scenic.simulators.carla.model",
         "scenic.simulators.carla.simulator",
         "scenic.simulators.gta",
+        "scenic.simulators.gta.interface",
         "scenic.simulators.gta.model",
         "scenic.simulators.lgsvl",
         "scenic.simulators.lgsvl.actions",

@@ -78,11 +78,11 @@ new Truck at 3, with behavior Drive
     ("model", "advice"),
     [
         (
-            "scenic.simulators.lgsvl.model",
-            r"; .*copy its files to `scenic/simulators/lgsvl` beside the program",
+            "scenic.simulators.webots.mars.model",
+            r"; .*copy its files to `scenic/simulators/webots/mars` beside the program",
         ),
         (
-            "scenic.simulators.metadrive.model",
+            "scenic.simulators.webots.road.model",
             r"take another model \(`--model scenic\.simulators\.newtonian\.model`\)",
         ),
         ("scenic.simulators.airsim.model", r"there is no \.scenic file of that name"),
@@ -104,8 +104,8 @@ def test_a_world_model_that_is_not_here_is_one_piece_of_information(
 
 
 def test_a_world_model_may_lie_beside_the_program_under_its_established_name(tmp_path: Path) -> None:
-    write(tmp_path, {"scenic/simulators/lgsvl/model.scenic": "class Car:\n    wheels: 4\n"})
-    text = "model scenic.simulators.lgsvl.model\nego = new Carr\n"
+    write(tmp_path, {"scenic/simulators/webots/mars/model.scenic": "class Car:\n    wheels: 4\n"})
+    text = "model scenic.simulators.webots.mars.model\nego = new Carr\n"
     [found] = findings(tmp_path / "main.scenic", text)
     assert found.help == "did you mean `Car`?"
 

@@ -1,0 +1,45 @@
+"""The actions of LGSVL's actors; that simulator is discontinued, so that they do nothing anywhere."""
+
+from typing import Any
+
+from scenic.domains.driving.actions import *  # noqa: F403 - programs import them from here
+from scenic.simulators.actions import Action
+
+__all__ = ["CancelWaypointsAction", "FollowWaypointsAction", "SetDestinationAction", "TrackWaypointsAction"]
+
+
+class _ActorAction(Action):
+    """An action of an actor of LGSVL."""
+
+    def canBeTakenBy(self, agent: Any) -> bool:
+        """Whether the agent is an actor of LGSVL."""
+        return hasattr(agent, "lgsvlObject")
+
+    def applyTo(self, agent: Any, simulation: Any) -> None:
+        """Raises `NotImplementedError`: nothing runs LGSVL."""
+        raise NotImplementedError("LGSVL is discontinued: its actions cannot be taken")
+
+
+class SetDestinationAction(_ActorAction):
+    """Drive to a destination."""
+
+    def __init__(self, dest: Any) -> None:
+        self.dest = dest
+
+
+class FollowWaypointsAction(_ActorAction):
+    """Follow waypoints."""
+
+    def __init__(self, waypoints: Any) -> None:
+        self.waypoints = waypoints
+
+
+class CancelWaypointsAction(_ActorAction):
+    """Follow waypoints no more."""
+
+
+class TrackWaypointsAction(_ActorAction):
+    """Steer along waypoints at a cruising speed in m/s."""
+
+    def __init__(self, waypoints: Any, cruising_speed: float = 10) -> None:
+        self.waypoints, self.cruising_speed = waypoints, cruising_speed

@@ -1,0 +1,1 @@
+"""Traffic simulated by MetaDrive: ``from scenic.simulators.metadrive.simulator import MetaDriveSimulator``."""

@@ -1,0 +1,1 @@
+"""X-Plane: its world model, so that programs for it can be sampled."""
