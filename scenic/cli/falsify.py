@@ -14,11 +14,12 @@ from scenic.cli.options import (
     jobs_option,
     named_values,
     program_argument,
-    program_options,
     seconds,
     seed_option,
+    settings_of,
     simulator_option,
     steps_option,
+    swept_program_options,
     timestep_option,
 )
 from scenic.cli.output import CLEAN
@@ -96,7 +97,7 @@ __all__ = ["falsify"]
 @simulator_option
 @steps_option
 @timestep_option
-@program_options
+@swept_program_options
 @jobs_option("Processes.")
 @dask_option("Simulate")
 @click.option(
@@ -127,7 +128,7 @@ def falsify(
     simulator: str | None,
     max_steps: int,
     timestep: float | None,
-    parameters: Mapping[str, Any],
+    swept: Mapping[str, tuple[Any, ...]],
     scenario: str | None,
     model: str | None,
     mode_2d: bool,
@@ -143,25 +144,31 @@ def falsify(
 
     A run is a counterexample if its value is at most the threshold; of a requirement the value is its robustness.
 
+    Where parameters have several values (-p toys=0,4,16), one search is made for each, in a folder of its own.
+
     Exit codes: 0 counterexamples were found, 1 the program has errors, 2 wrong usage, 3 none was found, 130 interrupted.
     """
     if resume and output is None:
         raise click.UsageError("--resume needs the folder of the search: -o DIR")
     if Path(file).is_dir():
-        from scenic.falsification.report import load_result
+        from scenic.falsification.report import load_results
 
         page = report or Path(file) / "report.html"
-        _write_report(load_result(Path(file)), Path(file).name, page)
+        _write_report(load_results(Path(file)), Path(file).name, page)
         print(f"wrote {page}")
         return CLEAN
     from scenic.falsification.objectives import Objective
     from scenic.falsification.search import Limits, Plan, search
-    from scenic.falsification.store import SearchFolder, manifest_of
+    from scenic.falsification.store import SearchFolder, folders_of, manifest_of
     from scenic.pipeline import load
 
-    if resume and seed is None and output is not None and (output / "manifest.json").exists():
-        seed = int(manifest_of(output)["seed"])
-    loaded = load(Path(file), params=parameters, model=model, scenario=scenario, mode2D=mode_2d)
+    if resume and seed is None and output is not None:
+        seed = next((int(manifest_of(folder)["seed"]) for folder in folders_of(output)), None)
+    settings = settings_of(swept)
+    programs = [
+        load(Path(file), params=parameters, model=model, scenario=scenario, mode2D=mode_2d)
+        for parameters, _ in settings
+    ]
     if seed is None:
         seed = secrets.randbits(32)
         sys.stderr.write(f"seed {seed} (the same search again: --seed {seed})\n")
@@ -182,17 +189,32 @@ def falsify(
         max_steps,
         timestep,
     )
-    folder = None if output is None else SearchFolder(output, plan.settings(loaded), resume=resume)
+    results: dict[str, FalsificationResult] = {}
     with (
         ended_by_signals(),
-        progress_bar(count, "searching", shown=not sys.stdout.isatty()) as advance,
+        progress_bar(count * len(settings), "searching", shown=not sys.stdout.isatty()) as advance,
         engine_of(jobs, dask) as engine,
     ):
         limits = Limits(count, stop_after, time_limit, lambda _row: advance(1, 1))
-        result = search(loaded, plan, limits, engine=engine, folder=folder)
+        for loaded, (_, different) in zip(programs, settings, strict=True):
+            label = ", ".join(f"{name}={value}" for name, value in different.items())
+            place = output if output is None or not label else output / label.replace("/", "_")
+            folder = None if place is None else SearchFolder(place, plan.settings(loaded), resume=resume)
+            results[label] = search(loaded, plan, limits, engine=engine, folder=folder)
+            _show(label, results[label])
+    if report is not None:
+        _write_report(results, Path(file).name, report)
+    return CLEAN if any(result.counterexamples for result in results.values()) else NOT_ALL
+
+
+def _show(label: str, result: "FalsificationResult") -> None:
+    """Print what a search has found; ``label`` tells it from others."""
+    if label:
+        print(f"{label}:")
     share, low, high = result.share()
-    failed = result.counterexamples
-    print(f"{len(result.rows)} runs, {result.evaluated} with a value, {len(failed)} counterexamples")
+    print(
+        f"{len(result.rows)} runs, {result.evaluated} with a value, {len(result.counterexamples)} counterexamples"
+    )
     if result.evaluated:
         print(f"share of counterexamples {share:.3g} (95% interval {low:.3g} to {high:.3g})")
     worst = result.best
@@ -200,13 +222,13 @@ def falsify(
         print(f"least value {min(map(float, worst['values'])):.6g} in run {worst['run']}")
         for name, value in list(worst["point"].items())[:12]:
             print(f"  {name} = {value:.6g}")
-    if report is not None:
-        _write_report(result, Path(file).name, report)
-    return CLEAN if failed else NOT_ALL
+    if result.is_blind:
+        print("all values are plus or minus infinity: nothing guides the search")
+    sys.stdout.flush()
 
 
-def _write_report(result: "FalsificationResult", title: str, page: Path) -> None:
+def _write_report(results: "Mapping[str, FalsificationResult]", title: str, page: Path) -> None:
     from scenic.falsification.report import report_page
     from scenic.formats.files import write
 
-    write(page, report_page(result, title, links_from=page.parent).encode())
+    write(page, report_page(results, title, links_from=page.parent).encode())

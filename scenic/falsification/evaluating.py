@@ -13,6 +13,7 @@ from scenic.batch.keeping import Kept
 from scenic.falsification.objectives import Objective, ObjectiveError
 from scenic.falsification.space import Floats, Space
 from scenic.falsification.store import number
+from scenic.formats.files import OutputError, make_folder, refusing, write
 from scenic.formats.trajectories import course_document
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scene import Scene
@@ -80,14 +81,17 @@ class Evaluation:
             yield self._row(run, values, result.attempts)
 
     def __call__(self, task: Task) -> dict[str, Any]:
-        """The row of one simulation. Raises nothing but interruptions and `ObjectiveError`."""
+        """The row of one simulation. Raises nothing but interruptions.
+
+        The status is ``objective`` or ``unwritable`` where the search cannot go on: no objective, or no room for a counterexample.
+        """
         begun = time.perf_counter()
         try:
             row = self._simulated(task)
-        except ObjectiveError as error:
+        except (ObjectiveError, OutputError) as error:
             row = {
                 "run": task.run,
-                "status": "objective",
+                "status": "objective" if isinstance(error, ObjectiveError) else "unwritable",
                 "values": None,
                 "error": error.message,
                 "help": error.help,
@@ -153,7 +157,7 @@ class Evaluation:
     def _folder_of(self, run: int) -> Path:
         assert self.folder is not None
         folder = self.folder / "counterexamples" / f"{run:04d}"
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         return folder
 
     def _keep_scene(self, scene: Scene, folder: Path) -> None:
@@ -163,12 +167,12 @@ class Evaluation:
         self, scene: Scene, kept: Kept, done: Any, about: Mapping[str, Any], run: int, waiting: Path
     ) -> None:
         from scenic.formats.course_page import course_page
-        from scenic.formats.files import write
 
         folder = self._folder_of(run)
         self._keep_scene(scene, folder)
         page = kept.finish(done, about)
-        waiting.replace(folder / "simulation.jsonl")
+        with refusing(waiting):
+            waiting.replace(folder / "simulation.jsonl")
         if page is not None:
             write(folder / "play.html", course_page(f"run {run}", [page]).encode())
 

@@ -3,16 +3,16 @@
 import html
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
 from scenic.falsification.search import FalsificationResult
-from scenic.falsification.store import manifest_of, read_rows
+from scenic.falsification.store import folders_of, manifest_of, read_rows
 
-__all__ = ["importances", "load_result", "report_page"]
+__all__ = ["importances", "load_result", "load_results", "report_page"]
 
 _WIDTH: Final = 860
 _HEIGHT: Final = 260
@@ -32,6 +32,17 @@ def load_result(folder: Path) -> FalsificationResult:
     """The result of the search that a folder keeps; raises `SearchFolderError` if there is none."""
     about = manifest_of(folder)
     return FalsificationResult(read_rows(folder), tuple(about.get("objectives", ())), folder)
+
+
+def load_results(folder: Path) -> dict[str, FalsificationResult]:
+    """The results that a folder keeps, by the settings of a sweep; of a single search by the empty text.
+
+    Raises `SearchFolderError` if there is none.
+    """
+    found = folders_of(folder)
+    if found in ([], [folder]):
+        return {"": load_result(folder)}
+    return {item.name: load_result(item) for item in found}
 
 
 def importances(result: FalsificationResult) -> list[tuple[str, float]]:
@@ -59,27 +70,52 @@ def _value(row: Any) -> float:
     return min(map(float, row["values"]))
 
 
-def report_page(result: FalsificationResult, title: str, *, links_from: Path | None = None) -> str:
-    """The text of a page about a search.
+def report_page(
+    results: Mapping[str, FalsificationResult], title: str, *, links_from: Path | None = None
+) -> str:
+    """The text of a page about a search, or about those of a sweep.
 
     Args:
-        result: the search.
+        results: the searches, by the settings of a sweep.
         title: the name of the program.
         links_from: the folder of the page, for links to the pages that play counterexamples.
 
     """
+    parts = [f"<h1>Search of {html.escape(title)}</h1>"]
+    if len(results) > 1:
+        parts.append(
+            _table(
+                ("setting", "runs", "counterexamples", "share", "95% interval", "least value"),
+                [_total(label, result) for label, result in results.items()],
+            )
+        )
+    for label, result in results.items():
+        if label:
+            parts.append(f"<h1>{html.escape(label)}</h1>")
+        parts += _section(result, links_from)
+    return f"<!doctype html><html lang='en'><meta charset='utf-8'><title>{html.escape(title)}</title><style>{_STYLE}</style>{''.join(parts)}</html>"
+
+
+def _total(label: str, result: FalsificationResult) -> tuple[str, ...]:
+    share, low, high = result.share()
+    worst = "" if result.best is None else f"{_value(result.best):.6g}"
+    counts = (str(len(result.rows)), str(len(result.counterexamples)))
+    return label, *counts, f"{100 * share:.3g}%", f"{100 * low:.3g}% to {100 * high:.3g}%", worst
+
+
+def _section(result: FalsificationResult, links_from: Path | None) -> list[str]:
+    """The parts of the page about one search."""
     share, low, high = result.share()
     failed = len(result.counterexamples)
     known = [row for row in result.rows if row["values"] is not None]
     parts = [
-        f"<h1>Search of {html.escape(title)}</h1>",
         f"<p>Made small: {html.escape(', '.join(result.objectives))}.</p>",
         f"<p>{len(result.rows)} runs, {len(known)} with a value, {failed} counterexamples",
         f": {100 * share:.3g}% (95% interval {100 * low:.3g}% to {100 * high:.3g}%, Clopper-Pearson).</p>"
         if known
         else ".</p>",
     ]
-    if known and not any(math.isfinite(_value(row)) for row in known):
+    if result.is_blind:
         parts.append(
             "<p>All values are plus or minus infinity: of this objective only the truth is known, so nothing guides a search.</p>"
         )
@@ -106,7 +142,7 @@ def report_page(result: FalsificationResult, title: str, *, links_from: Path | N
             raw=True,
         ),
     ]
-    return f"<!doctype html><html lang='en'><meta charset='utf-8'><title>{html.escape(title)}</title><style>{_STYLE}</style>{''.join(parts)}</html>"
+    return parts
 
 
 def _described(row: Any, result: FalsificationResult, links_from: Path | None) -> tuple[str, ...]:

@@ -3,7 +3,8 @@
 import math
 import random
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -18,6 +19,7 @@ from scenic.falsification.samplers import make_sampler
 from scenic.falsification.samplers.protocol import Exhausted
 from scenic.falsification.space import Floats, Space, space_of
 from scenic.falsification.store import SearchFolder
+from scenic.formats.files import OutputError
 from scenic.language.errors import InvalidScenarioError, Located
 
 if TYPE_CHECKING:
@@ -114,6 +116,12 @@ class FalsificationResult:
         known = [row for row in self.rows if row["values"] is not None]
         return min(known, key=lambda row: min(map(float, row["values"])), default=None)
 
+    @property
+    def is_blind(self) -> bool:
+        """Lack of guidance: all values are plus or minus infinity, so that only the truth is known."""
+        known = [min(map(float, row["values"])) for row in self.rows if row["values"] is not None]
+        return bool(known) and not any(map(math.isfinite, known))
+
     def share(self, confidence: float = 0.95) -> tuple[float, float, float]:
         """The share of counterexamples, and the ends of its interval (Clopper and Pearson, 1934)."""
         from scipy.stats import beta
@@ -164,6 +172,7 @@ def search(
 
     Raises:
         ObjectiveError: the objective cannot be evaluated.
+        OutputError: the folder cannot be written; what has finished is kept.
         SamplerError: there is no such sampler.
         SearchError: ten runs in a row failed.
 
@@ -208,9 +217,12 @@ def search(
         first = len(result.rows)
         wanted = min(len(points), limits.runs - first)
         known = kept[first : first + wanted]
-        rows = [*known, *_evaluated(evaluation, points, first, len(known), wanted, engine)]
-        if folder is not None and len(rows) > len(known):
-            folder.add(rows[len(known) :])
+        rows = list(known)
+        with closing(_evaluated(evaluation, points, first, len(known), wanted, engine)) as parts:
+            for part in parts:
+                if folder is not None:
+                    folder.add(part)
+                rows.extend(part)
         for row in rows:
             failures = failures + 1 if row["status"] == "failed" else 0
             if failures == _FAILURES:
@@ -231,34 +243,50 @@ def _told(row: Mapping[str, Any]) -> float:
 
 def _evaluated(
     evaluation: Evaluation, points: Floats, first: int, done: int, wanted: int, engine: Engine | None
-) -> list[dict[str, Any]]:
-    """The rows of points ``done`` to ``wanted`` of a generation whose first run has the number ``first``."""
+) -> Generator[list[dict[str, Any]]]:
+    """The rows of points ``done`` to ``wanted`` of a generation whose first run has the number ``first``.
+
+    They come in order, some at a time, as soon as those before them are there.
+    """
     if done >= wanted:
-        return []
+        return
     space, numbers = evaluation.space, evaluation.space.numbers(points)
-    if evaluation.simulations is None:
-        rows = list(evaluation.together(first + done, numbers[done:wanted]))
-    else:
-        tasks = [
-            Task(
-                first + place,
-                {item.address: float(numbers[place, k]) for k, item in enumerate(space.coordinates)},
-            )
-            for place in range(done, wanted)
-        ]
-        if engine is None or len(tasks) < 2:
-            rows = [evaluation(task) for task in tasks]
-        else:
-            by_place = dict(engine.run(evaluation, tasks, lost=_lost))
-            rows = [by_place[place] for place in range(len(tasks))]
-    for place, row in enumerate(rows, done):
+
+    def whole(row: dict[str, Any], place: int) -> dict[str, Any]:
         if row["status"] == "objective":
             raise ObjectiveError(row["error"], help=row["help"])
+        if row["status"] == "unwritable":
+            raise OutputError(
+                row["error"], help=row["help"] or "make room; finished runs are kept, and --resume goes on"
+            )
         row["point"] = _point(space, points[place])
         row["numbers"] = {
             f"{item.address:016x}": float(numbers[place, k]) for k, item in enumerate(space.coordinates)
         }
-    return rows
+        return row
+
+    if evaluation.simulations is None:
+        together = evaluation.together(first + done, numbers[done:wanted])
+        yield [whole(row, place) for place, row in enumerate(together, done)]
+        return
+    tasks = [
+        Task(
+            first + place,
+            {item.address: float(numbers[place, k]) for k, item in enumerate(space.coordinates)},
+        )
+        for place in range(done, wanted)
+    ]
+    if engine is None or len(tasks) < 2:
+        finished: Iterable[tuple[int, dict[str, Any]]] = enumerate(map(evaluation, tasks))
+    else:
+        finished = engine.run(evaluation, tasks, lost=_lost)
+    waiting: dict[int, dict[str, Any]] = {}
+    due = 0
+    for number, row in finished:
+        waiting[number] = row
+        while due in waiting:
+            yield [whole(waiting.pop(due), done + due)]
+            due += 1
 
 
 def _point(space: Space, point: Floats) -> dict[str, float]:

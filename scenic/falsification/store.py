@@ -10,7 +10,7 @@ from typing import Any, Final
 from scenic.formats.files import make_folder, refusing, write
 from scenic.language.errors import Located
 
-__all__ = ["SearchFolder", "SearchFolderError", "manifest_of", "number", "read_rows"]
+__all__ = ["SearchFolder", "SearchFolderError", "folders_of", "manifest_of", "number", "read_rows"]
 
 _FORMAT: Final = "scenic-falsification"
 _VERSION: Final = 1
@@ -92,6 +92,15 @@ def _manifest(path: Path) -> dict[str, Any]:
 def manifest_of(folder: Path) -> dict[str, Any]:
     """The manifest of a search; raises `SearchFolderError` if there is none."""
     return _manifest(folder / "manifest.json")
+
+
+def folders_of(folder: Path) -> list[Path]:
+    """The folder of a search itself, or those of the searches of a sweep that it holds."""
+    if (folder / "manifest.json").exists():
+        return [folder]
+    found = [manifest.parent for manifest in folder.glob("*/manifest.json")]
+    # So that n=9 comes before n=16.
+    return sorted(found, key=lambda item: (len(item.name), item.name))
 
 
 def read_rows(folder: Path) -> list[dict[str, Any]]:

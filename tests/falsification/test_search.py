@@ -11,10 +11,11 @@ from click.testing import CliRunner, Result
 import scenic
 from scenic.cli.falsify import falsify as command
 from scenic.falsification.objectives import Objective, ObjectiveError
-from scenic.falsification.report import importances, load_result, report_page
+from scenic.falsification.report import importances, load_result, load_results, report_page
 from scenic.falsification.sampling import sampled_by
 from scenic.falsification.search import FalsificationResult, SearchError
 from scenic.falsification.store import SearchFolderError, read_rows
+from scenic.formats.files import OutputError
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.scenes.scene import Scene
 from tests.cli.commands import run_here
@@ -201,11 +202,62 @@ def test_the_command(tmp_path: Path) -> None:
     assert "The worst runs" in page
     kept = load_result(tmp_path / "out")
     assert importances(kept)[0][1] > importances(kept)[-1][1]
-    assert report_page(kept, "static.scenic", links_from=tmp_path) == page
+    assert report_page({"": kept}, "static.scenic", links_from=tmp_path) == page
     assert run(str(tmp_path / "out")).return_value == 0
     assert (tmp_path / "out" / "report.html").exists()
     rare = run(*common, "--threshold", "-2.999")
     assert rare.return_value == 3
+
+
+def test_a_sweep_makes_a_search_for_each_setting(tmp_path: Path) -> None:
+    program = tmp_path / "swept.scenic"
+    program.write_text(
+        "param n = 0, side = 1\nx = Range(0, globalParameters.side)\nparam far = x - 0.1 * globalParameters.n\nego = new Object at x @ 0\n"
+    )
+    folder, page = tmp_path / "out", tmp_path / "report.html"
+    arguments = [str(program), "--static", "--objective", "far", "--sampler", "random", "-n", "20"]
+    done = run(*arguments, "-p", "n=0,9,10", "--seed", "1", "-o", str(folder), "--report", str(page))
+    assert done.return_value == 0, done.output
+    results = load_results(folder)
+    assert list(results) == ["n=0", "n=9", "n=10"]
+    assert [len(result.counterexamples) for result in results.values()][::2] == [0, 20]
+    assert all(f"<td>{label}</td>" in page.read_text() for label in results)
+    # Without its last runs, the same search goes on to the same rows, with the seed that it has kept.
+    rows = (folder / "n=9" / "runs.jsonl").read_bytes()
+    (folder / "n=9" / "runs.jsonl").write_bytes(rows[: len(rows) // 2])
+    assert run(*arguments, "-p", "n=0,9,10", "-o", str(folder), "--resume").return_value == 0
+    assert (folder / "n=9" / "runs.jsonl").read_bytes() == rows
+    assert run(str(folder)).return_value == 0
+    assert (folder / "report.html").read_text() == page.read_text().replace("swept.scenic", "out")
+
+
+def test_a_full_disk_loses_no_finished_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = rows_of(braking(n=16, sampler="random"))
+    failing = next(row["run"] for row in whole if row["status"] == "counterexample" and row["run"] > 9)
+    keep = Scene.save
+
+    def full(scene: Scene, path: Path) -> None:
+        if path.parent.name == f"{failing:04d}":
+            raise OutputError(f"cannot write '{path}': no space left on device")
+        keep(scene, path)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Scene, "save", full)
+        with pytest.raises(OutputError, match="no space left"):
+            braking(n=16, sampler="random", folder=tmp_path / "a")
+    assert len(read_rows(tmp_path / "a")) == failing
+    assert rows_of(braking(n=16, sampler="random", folder=tmp_path / "a", resume=True)) == whole
+    assert not list((tmp_path / "a").glob(".run*"))
+
+
+def test_an_objective_that_is_true_or_false_is_said_to_guide_nothing(tmp_path: Path) -> None:
+    program = tmp_path / "blind.scenic"
+    program.write_text("x = Range(0, 1)\nego = new Object at x @ 0\nrequire always bool(x > 0.5) == True\n")
+    done = run(
+        str(program), "--simulator", "dummy", "-n", "4", "--seed", "1", "--report", str(tmp_path / "r.html")
+    )
+    assert "nothing guides the search" in done.output
+    assert "nothing guides a search" in (tmp_path / "r.html").read_text()
 
 
 def test_sampling_by_a_sampler(tmp_path: Path) -> None:
