@@ -92,7 +92,7 @@ ERRORS: list[tuple[type[Exception], str, str, str]] = [
     # RandomControlFlowError
     (RandomControlFlowError, "SC403", "x = Range(0, 1)\ny = 1 if «x > 0.5» else 2", "its value is known only in a sampled"),
     (RandomControlFlowError, "SC403", "x = Range(0, 1)\n«if x: pass»", "its value is known only in a sampled"),
-    (RandomControlFlowError, "SC403", "n = DiscreteRange(1, 3)\nfor i in «range(n)»: pass", "for a random integer write"),
+    (RandomControlFlowError, "SC403", "n = DiscreteRange(1, 3)\nfor i in «range(n)»: pass", "for a random number of objects make the most"),
     (RandomControlFlowError, "SC403", "xs = Uniform([1], [2])\n«for x in xs: pass»", "its value is known only in a sampled"),
     (RandomControlFlowError, "SC403", "xs = Uniform([1], [2])\n«a,» = xs", "its value is known only in a sampled"),
     (RandomControlFlowError, 'SC403', "d = Uniform({'a': 1}, {'a': 2})\ndef f(**k): pass\n«f(**d)»", 'its value is known only in a sampled'),
