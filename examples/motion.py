@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from examples import program
 from scenic.formats.camera import Outlook, corners, framing
-from scenic.formats.files import write
+from scenic.formats.files import make_folder, write
 from scenic.formats.instances import Instance, Picture, picture
 from scenic.formats.png import encoded
 from scenic.formats.render import render
@@ -78,7 +78,7 @@ def exposed(simulation: Any, moments: Sequence[float]) -> Picture:
                     color=(red, green, blue, opacity),
                 )
             )
-    return Picture(drawn.surfaces, (tuple(instances),))
+    return dataclasses.replace(drawn, scenes=(tuple(instances),))
 
 
 def shown(name: str) -> bytes:
@@ -108,6 +108,7 @@ def main(arguments: Sequence[str]) -> None:
     if not arguments:
         raise SystemExit(__doc__)
     folder, *names = arguments
+    make_folder(Path(folder))
     for name in names or SHOTS:
         write(Path(folder) / f"{name}.png", shown(name))
         print(f"{folder}/{name}.png")

@@ -126,9 +126,26 @@ JUDGES: Final[Mapping[str, Callable[[Trajectory], dict[str, Judgement]]]] = Mapp
 )
 
 
+def judgements(example: str, run: Trajectory) -> dict[str, Judgement] | None:
+    """What the judge of an example says of a simulation; for other names that of the example with its requirements, if any."""
+    if example in JUDGES:
+        return JUDGES[example](run)
+    told = {item["label"] for item in run.about["requirements"]}
+    for judge in JUDGES.values():
+        try:
+            judged = judge(run)
+        except (KeyError, ValueError):
+            continue  # it has other objects or records
+        if judged.keys() == told:
+            return judged
+    return None
+
+
 def disagreements(example: str, run: Trajectory) -> list[str]:
     """Where the simulation's verdicts and margins are not those that follow from its trajectory."""
-    judged = JUDGES[example](run)
+    judged = judgements(example, run)
+    if judged is None:
+        return [f"a simulation of none of {', '.join(JUDGES)}"]
     told = {item["label"]: item for item in run.about["requirements"]}
     found = [f"{label}: not judged by both" for label in judged.keys() ^ told.keys()]
     for label in judged.keys() & told.keys():
@@ -142,10 +159,14 @@ def disagreements(example: str, run: Trajectory) -> list[str]:
 
 
 def main(folders: Sequence[str]) -> int:
-    """Judge the files of folders that are named as the examples are."""
+    """Judge the files of folders; the exit code is 1 if some do not hold, 2 if a folder has none."""
     wrong = 0
     for folder in map(Path, folders):
-        for file in sorted((*folder.glob("*.jsonl"), *folder.glob("*.parquet"))):
+        files = sorted((*folder.glob("*.jsonl"), *folder.glob("*.parquet")))
+        if not files:
+            print(f"{folder}: there are no simulations here", file=sys.stderr)
+            return 2
+        for file in files:
             found = disagreements(folder.name, read_trajectory(file))
             wrong += bool(found)
             print(f"{file}: {'; '.join(found) or 'holds'}")

@@ -282,7 +282,8 @@ def _show(row: "SimulationRow") -> int:
     if row.about is None:
         print(f"simulation {row.k}: {row.missing}")
         for reason, times in row.rejections:
-            print(f"  {reason}: {times} {'try' if times == 1 else 'tries'}")
+            more = "; --time gives more" if "; reached time limit (" in reason else ""
+            print(f"  {reason}: {times} {'try' if times == 1 else 'tries'}{more}")
         return NOT_ALL
     more = "; --time gives more" if _is_late(row.about) else ""
     print(f"simulation {row.k}: {row.about['steps']} steps, {row.about['reason']}{more}")

@@ -7,7 +7,9 @@ import pytest
 
 from examples import program
 from examples.motion import SHOTS, exposed
+from examples.motion import main as motion
 from examples.recheck import JUDGES, disagreements
+from examples.recheck import main as recheck
 from scenic.formats.trajectory_reading import read_trajectory
 from scenic.pipeline import load
 from scenic.simulators.batch import choose_simulator, simulate_number
@@ -42,6 +44,22 @@ def test_simulations_hold_what_they_say(name: str, tmp_path: Path) -> None:
 def test_physical_simulations_hold_what_they_say(name: str, tmp_path: Path) -> None:
     (file,) = simulated(name, tmp_path, 1)
     assert disagreements(name, read_trajectory(file)) == []
+
+
+def test_folders_may_have_any_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    files = simulated("overtaking", tmp_path / "runs", 1)
+    assert recheck([str(tmp_path / "runs")]) == 0
+    assert capsys.readouterr().out.endswith(f"{files[0]}: holds\n")
+    (tmp_path / "x.scenic").write_text("ego = new Object\n")
+    assert run_here(["simulate", "x.scenic", "--time", "1", "-o", "others"], folder=tmp_path).returncode == 0
+    assert recheck([str(tmp_path / "others")]) == 1
+    assert "a simulation of none of overtaking" in capsys.readouterr().out
+    assert recheck([str(tmp_path / "missing")]) == 2
+
+
+def test_pictures_are_put_into_a_new_folder(tmp_path: Path) -> None:
+    motion([str(tmp_path / "new"), "overtaking"])
+    assert (tmp_path / "new" / "overtaking.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_other_trajectories_are_found_out(tmp_path: Path) -> None:

@@ -1223,7 +1223,10 @@ SUB_WAITS = "scenario Sub():\n    setup:\n        pass\n    compose:\n        wa
 
 @pytest.mark.parametrize(
     ("condition", "told"),
-    [("always ego.y < 1.5", "is violated"), ("eventually ego.y > 9", "does not hold at the end")],
+    [
+        ("always ego.y < 1.5", "is violated"),
+        ("eventually ego.y > 9", "does not hold at the end; reached time limit (3 steps)"),
+    ],
 )
 @pytest.mark.parametrize("depth", [0, 1, 2])
 def test_a_requirement_is_told_to_be_violated_or_not_to_hold_whichever_scenario_asks_for_it(

@@ -74,8 +74,11 @@ class Followed:
         verdict = self._monitor.verdict
         if verdict is not None and not verdict and not self._run.keeps_violations:
             # One that is violated ends its scenario while that is told.
-            how = "is violated" if verdict is Verdict.FALSE else "does not hold at the end"
-            raise RejectSimulationException(f"{self._words} {how}")
+            if verdict is Verdict.FALSE:
+                raise RejectSimulationException(f"{self._words} is violated")
+            ending = self._run.ending
+            late = f"; {ending.reason}" if ending is not None and ending.kind == "timeLimit" else ""
+            raise RejectSimulationException(f"{self._words} does not hold at the end{late}")
         self._outcome = self.outcome
         # A simulation may start very many scenarios.
         del self._monitor, self._required, self._robustness, self._run
