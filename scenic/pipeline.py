@@ -291,8 +291,8 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
     """Run a program once, which makes its graph."""
     locator = Locator()
 
-    def span_of(where: FrameType | TracebackType) -> Span | None:
-        place = locator.place(where)
+    def span_of(where: FrameType | TracebackType, instruction: int | None = None) -> Span | None:
+        place = locator.place(where, instruction)
         return None if place is None else place.span
 
     context = Context(locate=span_of, name=locator.name, mode_2d=options.mode_2d)

@@ -48,9 +48,13 @@ class Locator:
         self._places: dict[tuple[int, int], Place | None] = {}
         self._names: dict[tuple[int, int], tuple[str, int]] = {}
 
-    def place(self, where: TracebackType | FrameType) -> Place | None:
-        """As `locate`."""
-        found = _innermost(where)
+    def place(self, where: TracebackType | FrameType, instruction: int | None = None) -> Place | None:
+        """As `locate`; of a frame of generated code at an earlier ``instruction``."""
+        found = (
+            _innermost(where)
+            if instruction is None or not isinstance(where, FrameType)
+            else (where, instruction)
+        )
         if found is None:
             return None
         frame, instruction = found

@@ -6,11 +6,11 @@ a function from the partially built instance to values. Priorities, needs and th
 which of the offered values are taken.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Final
 
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.language.spans import Span
@@ -18,7 +18,7 @@ from scenic.language.specifiers import SPECIFIERS, SpecifierDeclaration
 from scenic.language.types import OBJECT, REGION, VECTOR
 from scenic.runtime.elements.operands import Ego, Read, converter, is_kind, region_of
 from scenic.runtime.instances.objects import Object, OrientedPoint
-from scenic.runtime.program.context import current, here
+from scenic.runtime.program.context import Site, current, here
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import as_region
 from scenic.runtime.regions.drawn import DrawnRegion
@@ -69,12 +69,29 @@ class Specifier:
     evaluate: Evaluate
     modifiable: frozenset[str] = frozenset()
     modify: Evaluate | None = None
-    span: Span | None = None
+    site: Span | Site | None = None
     is_default: bool = False
     sighting: Sighting | None = None
+    kind: Hashable = None
+    """The key by which a class keeps how it is resolved; ``None`` if it has to be made."""
+
+    @property
+    def span(self) -> Span | None:
+        """The place in the program."""
+        if isinstance(self.site, Site):
+            context = current.get()
+            self.site = None if context is None else context.place_at(self.site)
+        return self.site
 
     def __str__(self) -> str:
         return f"`{self.name}`"
+
+
+def kind_of_specifier(
+    name: str, priorities: Mapping[str, int], dependencies: frozenset[str], modifiable: frozenset[str]
+) -> Hashable:
+    """The key by which a class keeps how a specifier is resolved (`Specifier.kind`)."""
+    return name, tuple(priorities.items()), dependencies, modifiable
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,16 +113,21 @@ class _Declared:
     """The conversion of the operand where there is one only, which is never left out."""
     is_plain: bool
     """Whether the operands are all that it is built from, as they are."""
+    kinds: tuple[Hashable, Hashable]
+    """The kinds of specifiers (`Specifier.kind`) that need no more than declared: without what has a condition, and with it."""
 
     @classmethod
     def of(cls, declared: SpecifierDeclaration) -> "_Declared":
         reads = [converter(each.types, declared.label(each)) for each in declared.operands]
         reads_more = declared.may_read_ego or declared.reads_workspace
+        always = {item.property: item.priority for item in declared.specifies if not item.when}
+        under_condition = {item.property: item.priority for item in declared.specifies}
+        needs, modifies = frozenset(declared.needs), frozenset(declared.modifies)
         return cls(
-            MappingProxyType({item.property: item.priority for item in declared.specifies if not item.when}),
-            MappingProxyType({item.property: item.priority for item in declared.specifies}),
-            frozenset(declared.needs),
-            frozenset(declared.modifies),
+            MappingProxyType(always),
+            MappingProxyType(under_condition),
+            needs,
+            modifies,
             tuple((i, read) for i, read in enumerate(reads) if read is not None),
             MappingProxyType(
                 {i: reads[i] or _same for i, each in enumerate(declared.operands) if each.may_be_ego}
@@ -114,6 +136,10 @@ class _Declared:
             declared.reads_workspace,
             reads[0] if len(reads) == 1 and declared.operands[0].default is None and not reads_more else None,
             not (any(reads) or reads_more),
+            (
+                kind_of_specifier(declared.name, always, needs, modifies),
+                kind_of_specifier(declared.name, under_condition, needs, modifies),
+            ),
         )
 
 
@@ -139,7 +165,7 @@ def _specifier(
         declared.needs.union(reads) if reads else declared.needs,
         evaluate,
         declared.modifies,
-        span=here(),
+        kind=None if reads else declared.kinds[conditional],
         **options,
     )
 
@@ -149,7 +175,17 @@ def _specifier(
 
 def with_(property: str, value: Any) -> Specifier:
     """The one specifier that declares no priority: giving a property by name is the strongest way."""
-    return Specifier(f"with {property}", {property: 1}, frozenset(), lambda _: {property: value}, span=here())
+    name, priorities, kind = _giving(property)
+    return Specifier(name, priorities, _NOTHING, lambda _: {property: value}, kind=kind)
+
+
+@lru_cache(maxsize=1024)
+def _giving(property: str) -> tuple[str, Mapping[str, int], Hashable]:
+    name, priorities = f"with {property}", MappingProxyType({property: 1})
+    return name, priorities, kind_of_specifier(name, priorities, _NOTHING, _NOTHING)
+
+
+_NOTHING: Final[frozenset[str]] = frozenset()
 
 
 def at(position: Any) -> Specifier:
@@ -446,7 +482,7 @@ class UserSpecifier:
 
         reads = frozenset(self.reads) | reads_of(arguments)
         modifiable = frozenset(self.modifies)
-        return Specifier(self.__name__, self.priorities, reads, evaluate, modifiable, span=here())
+        return Specifier(self.__name__, self.priorities, reads, evaluate, modifiable, site=here())
 
 
 def specifier(
@@ -491,11 +527,12 @@ def _converted(declared: _Declared, ego: Ego, workspace: Space, operands: Sequen
     return given
 
 
-def specify(name: str, ego: Ego, workspace: Space, *operands: Any) -> Specifier:
+def specify(name: str, ego: Ego, workspace: Space, *operands: Any, site: Site | None = None) -> Specifier:
     """One specifier; what lazy operands read, it depends on.
 
     ``ego`` and ``workspace`` are functions: a program without an ego fails only where one is needed. They stand in for
-    the operands that the text leaves out (``None``), as declared. A wrong operand is told before a missing ego.
+    the operands that the text leaves out (``None``), as declared. A wrong operand is told before a missing ego. ``site`` is the call
+    in generated code, if that is known.
     """
     declared = _DECLARED[name]
     if declared.only is not None:
@@ -505,8 +542,9 @@ def specify(name: str, ego: Ego, workspace: Space, *operands: Any) -> Specifier:
     else:
         given = _converted(declared, ego, workspace, operands)
     found = BUILDERS[name](*given)
+    found.site = here() if site is None else site
     reads = reads_of(operands)
-    return replace(found, dependencies=found.dependencies | reads) if reads else found
+    return replace(found, dependencies=found.dependencies | reads, kind=None) if reads else found
 
 
 __all__ = [

@@ -9,7 +9,7 @@ from scenic.language.errors import InvalidScenarioError, Located, ScenicValueErr
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest_property
 from scenic.runtime.elements.shapes import BoxShape
-from scenic.runtime.elements.specifiers import Specifier
+from scenic.runtime.elements.specifiers import Specifier, kind_of_specifier
 from scenic.runtime.instances.objects import TWO_D_DEFAULTS, Object, Point
 from scenic.runtime.instances.properties import Property, normalised
 from scenic.runtime.program.context import here, warn
@@ -144,7 +144,10 @@ def _reads(offered: Mapping[str, Any], names: Sequence[str]) -> frozenset[str]:
 def resolution_of(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool) -> Resolution:
     """As `resolve`; what has been resolved for the class before is not resolved again."""
     kinds = tuple(
-        (item.name, tuple(item.priorities.items()), item.dependencies, item.modifiable) for item in specifiers
+        [
+            item.kind or kind_of_specifier(item.name, item.priorities, item.dependencies, item.modifiable)
+            for item in specifiers
+        ]
     )
     known = cls._resolutions
     resolution = known.get((mode_2d, kinds))
@@ -303,7 +306,7 @@ def _default_specifier(name: str, entry: Property) -> Specifier:
         {name: 10},
         entry.dependencies,
         lambda instance: {name: entry.default(instance)},
-        span=entry.definitions[0].span,
+        site=entry.definitions[0].span,
         is_default=True,
     )
 

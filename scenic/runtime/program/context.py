@@ -13,7 +13,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType, TracebackType
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -25,12 +25,19 @@ from scenic.runtime.program.external import Choosable
 _PACKAGE: Final = f"{Path(__file__).parents[1]}{os.sep}"
 """Where the code of this package lies."""
 
-Locator = Callable[[FrameType | TracebackType], Span | None]
+Locator = Callable[..., Span | None]
 """Where in the Scenic source a Python frame or the failure of a traceback is (`scenic.compiler.tracebacks`); passed
 in, since the runtime knows nothing of source text."""
 
 Namer = Callable[[FrameType], Hashable]
 """A name of the place of a frame whatever is added before it: the text of its line, not the number."""
+
+
+class Site(NamedTuple):
+    """A call in generated code, the place of which is looked up only when somebody asks."""
+
+    frame: FrameType
+    instruction: int
 
 
 @dataclass(slots=True)
@@ -96,7 +103,7 @@ class Context:
     def __init__(
         self,
         *,
-        locate: Locator = lambda _frame: None,
+        locate: Locator = lambda *_: None,
         name: Namer = lambda _frame: None,
         generator: np.random.Generator | None = None,
         mode_2d: bool = False,
@@ -144,6 +151,10 @@ class Context:
     def place_of(self, traceback: TracebackType) -> Span | None:
         """Place in the program where an exception comes from."""
         return self._locate(traceback)
+
+    def place_at(self, site: "Site") -> Span | None:
+        """Place in the program of a call that was made earlier."""
+        return self._locate(site.frame, site.instruction)
 
     def place(self) -> Span | None:
         """Place in the program of whoever called the runtime."""

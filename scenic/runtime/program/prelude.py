@@ -46,7 +46,7 @@ from scenic.runtime.instances.resolution import build
 from scenic.runtime.program import builtins as names
 from scenic.runtime.program import conditions
 from scenic.runtime.program.conditions import Condition
-from scenic.runtime.program.context import Context, current, here
+from scenic.runtime.program.context import Context, Site, current, here
 from scenic.runtime.program.outcome import Module, Program, Requirement
 from scenic.runtime.program.symbolic import Symbolic
 from scenic.runtime.python.class_members import sample_of
@@ -199,17 +199,20 @@ class Prelude(Symbolic, Dynamics):
 
     def specifier(self, name: str, *operands: Any, property: str | None = None) -> Specifier:
         """One specifier of ``new``."""
+        caller = sys._getframe(1)
+        # Functions of the established API call this, too: then the place is further up.
+        site = Site(caller, caller.f_lasti) if PRELUDE in caller.f_globals else None
         if name not in BUILDERS:
             raise UnsupportedError(f"the specifier `{name}` is not supported yet", span=here())
         if property is not None:
             if property == "heading" and self._context.mode_2d:
-                return specify("facing", self._ego, self._space, *operands)
+                return specify("facing", self._ego, self._space, *operands, site=site)
             own = self._module.scope.get(property)
             if isinstance(own, UserSpecifier):
                 (value,) = operands
                 return own(*value) if type(value) is tuple else own(value)
             operands = (property, *operands)
-        return specify(name, self._ego, self._space, *operands)
+        return specify(name, self._ego, self._space, *operands, site=site)
 
     def new(self, cls: Any, *specifiers: Specifier) -> Any:
         """A new instance of a Scenic class."""
