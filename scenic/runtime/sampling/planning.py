@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.graph.bounding import forward, overall
-from scenic.graph.bounds import Bounds
+from scenic.graph.bounds import Bounds, Floats
 from scenic.graph.domain import Domain
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph, Node
@@ -38,7 +38,7 @@ from scenic.runtime.sampling.checks import (
     ObjectNodes,
 )
 from scenic.runtime.sampling.engine import Plan
-from scenic.runtime.sampling.sizes import outgrows, size_in_words
+from scenic.runtime.sampling.sizes import extents, outgrows, size_in_words
 from scenic.runtime.values.values import CODEC, Random, as_node, fixed_batch, is_random, operate
 from scenic.runtime.visibility.flat import sees_in_mode
 from scenic.runtime.visibility.seeing import looks
@@ -220,6 +220,7 @@ def _sizes(program: Program) -> list[Check]:
 def _containment(program: Program, workspace: Workspace) -> list[NodeCheck]:
     checks: list[NodeCheck] = []
     footprints: dict[Region, Region] = {}  # one for each region, so that alike checks are made together
+    reaches: dict[Region, Floats | None] = {}
     for item in program.objects:
         container = item.regionContainedIn
         region = as_region(workspace if container is None else container)
@@ -241,6 +242,7 @@ def _containment(program: Program, workspace: Workspace) -> list[NodeCheck]:
             )
         if region not in footprints:
             footprints[region] = region.footprint
+            reaches[region] = extents(footprints[region])
         held = _if_present(item, truth(footprints[region].containsObject(item)))
         node = as_node(body_operands(item)[2])
         size = size_in_words(node)
@@ -252,7 +254,7 @@ def _containment(program: Program, workspace: Workspace) -> list[NodeCheck]:
             "move or shrink it, or enlarge the workspace or its `regionContainedIn`",
             f"{_called(program, item)} is {size}" if size else "",
         )
-        if found and outgrows(node, footprints[region]):
+        if found and size and outgrows(node, reaches[region]):
             _warn_of_size(program, item, size, "the workspace" if container is None else "its container")
         checks += found
     return checks

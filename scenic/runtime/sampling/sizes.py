@@ -1,15 +1,14 @@
 """Sizes of bodies: in words for reports, and whether a body fits into its container at all."""
 
-from typing import Any
-
 import numpy as np
 
 from scenic.graph.bounding import overall
+from scenic.graph.bounds import Floats
 from scenic.graph.node import Node
 from scenic.runtime.regions.base import Region
 from scenic.runtime.values.values import as_node
 
-__all__ = ["outgrows", "size_in_words"]
+__all__ = ["extents", "outgrows", "size_in_words"]
 
 
 def size_in_words(size: Node) -> str:
@@ -26,22 +25,25 @@ def size_in_words(size: Node) -> str:
     return " x ".join(_side(low, high) for low, high in sides) + " m"
 
 
-def outgrows(size: Node, container: Region) -> bool:
-    """Return whether a body is larger than a region, however it is turned.
+def extents(container: Region) -> Floats | None:
+    """Width, length and height ``(3,)`` of a region's bounding box, the largest where they are random; ``None`` if unknown."""
+    extent = container.container_extent(*(overall(as_node(value)) for value in container.parameters))
+    return None if extent is None else np.asarray((extent.upper - extent.lower).max(axis=0))
+
+
+def outgrows(size: Node, extents: Floats | None) -> bool:
+    """Return whether a body is larger than a region of these `extents`, however it is turned.
 
     Its longest side is compared with the diagonal of the region's bounding box. A body may stand upright in a region
     without bounds upwards, so that there its middle side counts.
     """
     bounds = overall(size)
-    parameters: list[Any] = [overall(as_node(value)) for value in container.parameters]
-    extent = container.container_extent(*parameters)
-    if bounds is None or extent is None:
+    if bounds is None or extents is None:
         return False
     sides = np.sort(bounds.lower[0])
-    across = (extent.upper - extent.lower).max(axis=0)
-    if np.isfinite(across).all():
-        return bool(sides[2] > np.linalg.norm(across))
-    return bool(np.isfinite(across[:2]).all() and sides[1] > np.linalg.norm(across[:2]))
+    if np.isfinite(extents).all():
+        return bool(sides[2] > np.linalg.norm(extents))
+    return bool(np.isfinite(extents[:2]).all() and sides[1] > np.linalg.norm(extents[:2]))
 
 
 def _side(low: float, high: float) -> str:
