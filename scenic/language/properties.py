@@ -3,10 +3,11 @@
 Defaults are given as text for readers; the runtime computes them.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Final
+from typing import Any, Final
 
 from scenic.language.types import BOOLEAN, NONE, ORIENTATION, REGION, SCALAR, SHAPE, VECTOR, Type, listed
 
@@ -16,22 +17,32 @@ __all__ = [
     "Attribute",
     "BuiltinClass",
     "BuiltinProperty",
+    "Constant",
     "attributes_of",
     "properties_of",
 ]
 
 
 @dataclass(frozen=True, slots=True)
+class Constant:
+    """A default that is the same for every instance; ``text`` is how a program writes it, where that is not ``repr``."""
+
+    value: Any
+    text: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class BuiltinProperty:
     """One property as one built-in class defines it.
 
-    Its value has any of ``types``. ``default`` is in the words of the manual. ``needs`` are the properties that the
-    default reads. ``angle`` tells whether numbers in the value are angles in radians.
+    Its value has any of ``types``. ``given`` is the default: a constant, or the words of the manual for one that the runtime
+    computes. ``needs`` are the properties that the default reads. ``angle`` tells whether numbers in the value are angles in
+    radians.
     """
 
     name: str
     types: tuple[Type, ...]
-    default: str
+    given: Constant | str
     documentation: str
     needs: tuple[str, ...] = ()
     dynamic: bool = False
@@ -43,6 +54,13 @@ class BuiltinProperty:
     def type(self) -> str:
         """The types in words, for documentation."""
         return listed(self.types)
+
+    @property
+    def default(self) -> str:
+        """The default in the words of the manual."""
+        if isinstance(self.given, str):
+            return self.given
+        return self.given.text or repr(self.given.value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,65 +107,65 @@ _POINT = BuiltinClass(
     None,
     "A position in space.",
     (
-        _P("position", (VECTOR,), "(0, 0, 0)", "Global position, in metres.", dynamic=True),
-        _P("width", (SCALAR,), "0", "Extent along the local X axis; points have none."),
-        _P("length", (SCALAR,), "0", "Extent along the local Y axis; points have none."),
-        _P("height", (SCALAR,), "0", "Extent along the local Z axis; points have none."),
+        _P("position", (VECTOR,), Constant((0, 0, 0)), "Global position, in metres.", dynamic=True),
+        _P("width", (SCALAR,), Constant(0), "Extent along the local X axis; points have none."),
+        _P("length", (SCALAR,), Constant(0), "Extent along the local Y axis; points have none."),
+        _P("height", (SCALAR,), Constant(0), "Extent along the local Z axis; points have none."),
         _P(
             "baseOffset",
             (VECTOR,),
-            "(0, 0, 0)",
+            Constant((0, 0, 0)),
             "The base point, relative to the position, that `on` puts on a surface.",
         ),
         _P(
             "contactTolerance",
             (SCALAR,),
-            "0",
+            Constant(0),
             "The small gap that `on` and the directional specifiers leave, in metres.",
         ),
         _P(
             "onDirection",
             (VECTOR, NONE),
-            "None",
+            Constant(None),
             "The direction in which `on` projects a position onto a surface.",
         ),
         _P(
             "viewAngles",
             (_words("pair of scalars"),),
-            "(360 deg, 180 deg)",
+            Constant((2 * math.pi, math.pi), "(360 deg, 180 deg)"),
             "Horizontal and vertical angle of view.",
             angle=True,
         ),
-        _P("visibleDistance", (SCALAR,), "50", "How far it sees, in metres."),
+        _P("visibleDistance", (SCALAR,), Constant(50), "How far it sees, in metres."),
         _P(
             "viewRayDensity",
             (SCALAR,),
-            "5",
+            Constant(5),
             "Rays per degree, in each dimension, with which visibility is tested.",
         ),
         _P(
             "viewRayCount",
             (_words("pair of integers"), NONE),
-            "None",
+            Constant(None),
             "Numbers of rays, instead of a density.",
         ),
         _P(
             "viewRayDistanceScaling",
             (BOOLEAN,),
-            "False",
+            Constant(False),
             "Whether more rays are sent to things farther away.",
         ),
         _P(
             "regionContainedIn",
             (REGION, NONE),
-            "None",
+            Constant(None),
             "The region that must contain it; `None` means the workspace.",
         ),
-        _P("mutationScale", (SCALAR,), "0", "Factor of the noise that mutation adds; 0 means none."),
+        _P("mutationScale", (SCALAR,), Constant(0), "Factor of the noise that mutation adds; 0 means none."),
         _P(
             "positionStdDev",
             (VECTOR,),
-            "(1, 1, 0)",
+            Constant((1, 1, 0)),
             "Standard deviation of the noise on the position, per axis.",
         ),
         _P(
@@ -170,7 +188,7 @@ _ORIENTED_POINT = BuiltinClass(
         _P(
             "yaw",
             (SCALAR,),
-            "0",
+            Constant(0),
             "Rotation about the Z axis of the parent orientation, in radians.",
             dynamic=True,
             angle=True,
@@ -178,7 +196,7 @@ _ORIENTED_POINT = BuiltinClass(
         _P(
             "pitch",
             (SCALAR,),
-            "0",
+            Constant(0),
             "Rotation about the X axis after the yaw, in radians.",
             dynamic=True,
             angle=True,
@@ -186,7 +204,7 @@ _ORIENTED_POINT = BuiltinClass(
         _P(
             "roll",
             (SCALAR,),
-            "0",
+            Constant(0),
             "Rotation about the Y axis after yaw and pitch, in radians.",
             dynamic=True,
             angle=True,
@@ -219,7 +237,7 @@ _ORIENTED_POINT = BuiltinClass(
         _P(
             "viewAngle",
             (SCALAR,),
-            "360 deg",
+            Constant(2 * math.pi, "360 deg"),
             "Horizontal angle of view; the older form of `viewAngles`.",
             angle=True,
         ),
@@ -231,7 +249,13 @@ _ORIENTED_POINT = BuiltinClass(
             ("viewAngle",),
             angle=True,
         ),
-        _P("headingStdDev", (SCALAR,), "5 deg", "Standard deviation of the noise on the yaw.", angle=True),
+        _P(
+            "headingStdDev",
+            (SCALAR,),
+            Constant(math.radians(5), "5 deg"),
+            "Standard deviation of the noise on the yaw.",
+            angle=True,
+        ),
         _P(
             "orientationStdDev",
             (VECTOR,),
@@ -312,14 +336,14 @@ _OBJECT = BuiltinClass(
         _P(
             "present",
             (BOOLEAN,),
-            "True",
+            Constant(True),
             "Whether it takes part in the scene at all; random for a random number of objects.",
         ),
-        _P("allowCollisions", (BOOLEAN,), "False", "Whether it may overlap other objects."),
+        _P("allowCollisions", (BOOLEAN,), Constant(False), "Whether it may overlap other objects."),
         _P(
             "regionContainedIn",
             (REGION, NONE),
-            "None",
+            Constant(None),
             "The region that must contain it; `None` means the workspace.",
         ),
         _P(
@@ -332,16 +356,16 @@ _OBJECT = BuiltinClass(
         _P(
             "contactTolerance",
             (SCALAR,),
-            "1e-4",
+            Constant(1e-4, "1e-4"),
             "The small gap that `on` and the directional specifiers leave.",
         ),
         _P(
             "sideComponentThresholds",
             (_words("three pairs of scalars"),),
-            "((-0.5, 0.5),) * 3",
+            Constant(((-0.5, 0.5),) * 3, "((-0.5, 0.5),) * 3"),
             "How steep a face may be and still belong to the surface of a side, per axis.",
         ),
-        _P("cameraOffset", (VECTOR,), "(0, 0, 0)", "Where it sees from, in its own frame."),
+        _P("cameraOffset", (VECTOR,), Constant((0, 0, 0)), "Where it sees from, in its own frame."),
         _P(
             "visionSensorOffset",
             (VECTOR,),
@@ -349,16 +373,16 @@ _OBJECT = BuiltinClass(
             "Where vision sensors are mounted.",
             ("length",),
         ),
-        _P("requireVisible", (BOOLEAN,), "False", "Whether the ego must see it."),
-        _P("occluding", (BOOLEAN,), "True", "Whether it hides what is behind it."),
-        _P("showVisibleRegion", (BOOLEAN,), "False", "Whether pictures show its view volume."),
+        _P("requireVisible", (BOOLEAN,), Constant(False), "Whether the ego must see it."),
+        _P("occluding", (BOOLEAN,), Constant(True), "Whether it hides what is behind it."),
+        _P("showVisibleRegion", (BOOLEAN,), Constant(False), "Whether pictures show its view volume."),
         _P(
             "color",
             (_words("3 or 4 numbers in [0, 1]"), NONE),
-            "None",
+            Constant(None),
             "Colour in pictures: red, green, blue, opacity.",
         ),
-        _P("render", (BOOLEAN,), "True", "Whether pictures show it."),
+        _P("render", (BOOLEAN,), Constant(True), "Whether pictures show it."),
         _P(
             "velocity",
             (VECTOR,),
@@ -367,32 +391,38 @@ _OBJECT = BuiltinClass(
             ("speed", "orientation"),
             dynamic=True,
         ),
-        _P("speed", (SCALAR,), "0", "Speed at the start of a simulation.", dynamic=True),
+        _P("speed", (SCALAR,), Constant(0), "Speed at the start of a simulation.", dynamic=True),
         _P(
             "angularVelocity",
             (VECTOR,),
-            "(0, 0, 0)",
+            Constant((0, 0, 0)),
             "Angular velocity at the start of a simulation.",
             dynamic=True,
         ),
-        _P("angularSpeed", (SCALAR,), "0", "Angular speed at the start of a simulation.", dynamic=True),
+        _P(
+            "angularSpeed",
+            (SCALAR,),
+            Constant(0),
+            "Angular speed at the start of a simulation.",
+            dynamic=True,
+        ),
         _P(
             "behavior",
             (_words("behavior"), NONE),
-            "None",
+            Constant(None),
             "What it does during a simulation.",
         ),
         _P(
             "lastActions",
             (_words("tuple of actions"),),
-            "()",
+            Constant(()),
             "The actions that it took last; none while it decides.",
         ),
-        _P("sensors", (_words("dictionary of sensors"),), "{}", "Its sensors by name."),
+        _P("sensors", (_words("dictionary of sensors"),), Constant({}), "Its sensors by name."),
         _P(
             "observations",
             (_words("dictionary"),),
-            "{}",
+            Constant({}),
             "The latest observation of each sensor.",
             final=True,
         ),

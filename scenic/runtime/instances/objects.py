@@ -14,7 +14,8 @@ from typing import Any, ClassVar, Self
 
 from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError
-from scenic.language.properties import CLASSES
+from scenic.language.properties import CLASSES, BuiltinProperty, Constant
+from scenic.language.types import VECTOR
 from scenic.runtime.elements.shapes import BoxShape
 from scenic.runtime.geometry.scalar_bodies import meet
 from scenic.runtime.instances.mutators import OrientationMutator, PositionMutator
@@ -46,18 +47,27 @@ from scenic.runtime.visibility.flat import sees_in_plane
 from scenic.runtime.visibility.seeing import occluders_of, sees
 
 
-def _definitions(name: str, defaults: Mapping[str, Callable[[Any], Any]]) -> dict[str, PropertyDefinition]:
-    """The properties of a built-in class as declared in `scenic.language.properties`, with the functions of their defaults."""
+def _definitions(name: str, computed: Mapping[str, Callable[[Any], Any]]) -> dict[str, PropertyDefinition]:
+    """The properties of a built-in class as declared in `scenic.language.properties`; ``computed`` are the defaults that vary."""
     return {
         each.name: PropertyDefinition(
             each.name,
             frozenset(word for word in ATTRIBUTES if getattr(each, word)),
-            defaults[each.name],
+            _constant(each) if isinstance(each.given, Constant) else computed[each.name],
             each.needs,
             is_builtin=True,
         )
         for each in CLASSES[name].properties
     }
+
+
+def _constant(declared: BuiltinProperty) -> Callable[[Any], Any]:
+    """The function of a constant default: a new object for each instance where it can be changed."""
+    assert isinstance(declared.given, Constant)
+    value = declared.given.value
+    if declared.types == (VECTOR,):
+        return lambda _: vector(*value)
+    return (lambda _: dict(value)) if isinstance(value, dict) else lambda _: value
 
 
 def _combine_properties(cls: type["Point"]) -> None:
@@ -101,21 +111,6 @@ class Point:
     _definitions: ClassVar[Mapping[str, PropertyDefinition]] = _definitions(
         "Point",
         {
-            "position": lambda _: vector(0, 0, 0),
-            "width": lambda _: 0,
-            "length": lambda _: 0,
-            "height": lambda _: 0,
-            "baseOffset": lambda _: vector(0, 0, 0),
-            "contactTolerance": lambda _: 0,
-            "onDirection": lambda _: None,
-            "viewAngles": lambda _: (2 * math.pi, math.pi),
-            "visibleDistance": lambda _: 50,
-            "viewRayDensity": lambda _: 5,
-            "viewRayCount": lambda _: None,
-            "viewRayDistanceScaling": lambda _: False,
-            "regionContainedIn": lambda _: None,
-            "mutationScale": lambda _: 0,
-            "positionStdDev": lambda _: vector(1, 1, 0),
             "mutator": lambda self: PositionMutator(self.positionStdDev),
         },
     )
@@ -269,9 +264,6 @@ class OrientedPoint(Point):
     _definitions = _definitions(
         "OrientedPoint",
         {
-            "yaw": lambda _: 0,
-            "pitch": lambda _: 0,
-            "roll": lambda _: 0,
             "parentOrientation": lambda _: Orientation(),
             "orientation": lambda self: operate(
                 "compose",
@@ -279,9 +271,7 @@ class OrientedPoint(Point):
                 Orientation.fromEuler(self.yaw, self.pitch, self.roll),
             ),
             "heading": lambda self: self.orientation.yaw,
-            "viewAngle": lambda _: 2 * math.pi,
             "viewAngles": lambda self: (self.viewAngle, math.pi),
-            "headingStdDev": lambda _: math.radians(5),
             "orientationStdDev": lambda self: vector(self.headingStdDev, 0, 0),
             "mutator": lambda self: OrientationMutator(self.orientationStdDev),
         },
@@ -332,27 +322,9 @@ class Object(OrientedPoint):
             "width": lambda self: self.shape.width,
             "length": lambda self: self.shape.length,
             "height": lambda self: self.shape.height,
-            "present": lambda _: True,
-            "allowCollisions": lambda _: False,
-            "regionContainedIn": lambda _: None,
             "baseOffset": lambda self: vector(0, 0, operate("divide", operate("negative", self.height), 2)),
-            "contactTolerance": lambda _: 1e-4,
-            "sideComponentThresholds": lambda _: ((-0.5, 0.5),) * 3,
-            "cameraOffset": lambda _: vector(0, 0, 0),
             "visionSensorOffset": lambda self: vector(0, operate("divide", self.length, 2), 0),
-            "requireVisible": lambda _: False,
-            "occluding": lambda _: True,
-            "showVisibleRegion": lambda _: False,
-            "color": lambda _: None,
-            "render": lambda _: True,
             "velocity": lambda self: operate("rotate", self.orientation, vector(0, self.speed, 0)),
-            "speed": lambda _: 0,
-            "angularVelocity": lambda _: vector(0, 0, 0),
-            "angularSpeed": lambda _: 0,
-            "behavior": lambda _: None,
-            "lastActions": lambda _: (),
-            "sensors": lambda _: {},
-            "observations": lambda _: {},
         },
     )
 

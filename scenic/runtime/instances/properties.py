@@ -14,8 +14,9 @@ import numpy as np
 
 from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError, ScenicValueError
+from scenic.language.properties import CLASSES
 from scenic.language.spans import Span
-from scenic.language.types import REGION, SHAPE, VIEW_ANGLES
+from scenic.language.types import BOOLEAN, REGION, SCALAR, SHAPE, VECTOR, VIEW_ANGLES, Type
 from scenic.runtime.elements.shapes import Shape
 from scenic.runtime.program.context import current, here, warn
 from scenic.runtime.regions.base import Region
@@ -153,43 +154,6 @@ def _combine(name: str, definitions: Sequence[PropertyDefinition]) -> Property:
 
 
 # Values as they are stored
-
-_VECTORS = frozenset(
-    {
-        "position",
-        "velocity",
-        "angularVelocity",
-        "cameraOffset",
-        "visionSensorOffset",
-        "positionStdDev",
-        "orientationStdDev",
-        "baseOffset",
-    }
-)
-_SCALARS = frozenset(
-    {
-        "width",
-        "length",
-        "height",
-        "viewAngle",
-        "speed",
-        "angularSpeed",
-        "mutationScale",
-        "contactTolerance",
-    }
-)
-_TRUTHS = frozenset(
-    {
-        "allowCollisions",
-        "occluding",
-        "present",
-        "requireVisible",
-        "showVisibleRegion",
-        "render",
-        "viewRayDistanceScaling",
-    }
-)
-_ANGLES = frozenset({"yaw", "pitch", "roll"})
 
 
 def normalised(name: str, value: Any) -> Any:
@@ -385,15 +349,27 @@ def update(instance: Any, changes: Mapping[str, Any]) -> None:
         settle(name)
 
 
+_BY_TYPE: Mapping[tuple[Type, ...], Callable[[str, Any], Any]] = MappingProxyType(
+    {
+        (VECTOR,): _vector,
+        (SCALAR,): _scalar,
+        (BOOLEAN,): _per_drawn(_truth, Kind.BOOLEAN),
+    }
+)
+"""Conversions of the values of properties by their declared types, where the type decides."""
+
 NORMAL: Mapping[str, Callable[[str, Any], Any]] = MappingProxyType(
     {
-        **dict.fromkeys(_VECTORS, _vector),
+        **{
+            each.name: _BY_TYPE[each.types]
+            for cls in CLASSES.values()
+            for each in cls.properties
+            if each.types in _BY_TYPE and not each.final
+        },
         "position": _position,
-        **dict.fromkeys(_SCALARS, _scalar),
-        **dict.fromkeys(_ANGLES, _angle),
+        **dict.fromkeys(("yaw", "pitch", "roll"), _angle),
         "visibleDistance": _distance,
         "parentOrientation": _orientation,
-        **dict.fromkeys(_TRUTHS, _per_drawn(_truth, Kind.BOOLEAN)),
         "viewAngles": _per_drawn(_view_angles),
         "viewRayDensity": _density,
         "viewRayCount": _per_drawn(_ray_count),
