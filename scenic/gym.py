@@ -327,6 +327,12 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
             if id(thing) in originals
         }
         self._objects = _named(names, simulation.objects, simulation.scene.egoObject)
+        missing = {owner for owner, _ in self._watched} | {self._name}
+        for owner in sorted(missing - self._objects.keys()):
+            raise InvalidScenarioError(
+                f"{owner!r} takes no part in scene {self._k} of seed {self._seed}",
+                help="observe what is in every scene: `present` must be True for it",
+            )
         self._present = Present(simulation)
         return simulation.advanceOnce()
 

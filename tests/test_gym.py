@@ -282,6 +282,17 @@ def test_without_the_library_the_extra_is_named(monkeypatch: pytest.MonkeyPatch)
     assert "scenic-lang[gym]" in str(caught.value.help)
 
 
+def test_what_is_observed_must_be_present() -> None:
+    text = "ego = new Object\nother = new Object at (5, 0), with present n > 0\nrecord ego.y as reward\n"
+    text = f"n = DiscreteRange(0, 9)\nparam n = n\n{text}"
+    scenes = scenic.scenarioFromString(text).sample(100, seed=0)
+    absent = next(scene.k for scene in scenes if scene.params["n"] == 0)
+    env = environment(text, observations={"ego": ["position"], "other": ["position"]})
+    env.reset(seed=0)
+    with pytest.raises(InvalidScenarioError, match=f"'other' takes no part in scene {absent} of seed 0"):
+        env.reset(seed=0, options={"k": absent})
+
+
 def test_environments_in_processes_play_the_episodes_of_the_seed() -> None:
     """Each has episodes of its own, which are those of one environment; and again after it is reset."""
     options: dict[str, Any] = {
