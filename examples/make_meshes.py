@@ -119,6 +119,28 @@ def sofa() -> Manifold:
     return joined(base, core, back, mirrored(arm), *seats, feet)
 
 
+def couch() -> Manifold:
+    """A couch for three on blocks, so low that a robot vacuum does not fit beneath it."""
+    base = box((-1.0, -0.375, 0.05), (1.0, 0.375, 0.42))
+    back = cushion((-1.0, -0.375, 0.3), (1.0, -0.15, 0.75), 0.05)
+    arm = cushion((0.82, -0.37, 0.3), (1.0, 0.37, 0.58), 0.05)
+    feet = mirrored(
+        joined(box((0.76, 0.13, 0), (0.98, 0.33, 0.1)), box((0.76, -0.33, 0), (0.98, -0.13, 0.1)))
+    )
+    return joined(base, back, mirrored(arm), feet)
+
+
+def trestle_table() -> Manifold:
+    """A low table on two trestles, which a beam near the floor joins."""
+    top = box((-0.6, -0.25, 0.36), (0.6, 0.25, 0.4))
+    foot = wedge(
+        *((x, y, 0) for x in (0.4, 0.51) for y in (-0.14, 0.14)),
+        *((x, y, 0.08) for x in (0.4, 0.51) for y in (-0.05, 0.05)),
+    )
+    beam = box((-0.45, -0.015, 0.05), (0.45, 0.015, 0.12))
+    return joined(top, mirrored(joined(foot, box((0.42, -0.05, 0.07), (0.49, 0.05, 0.37)))), beam)
+
+
 def shelf() -> Manifold:
     """A book case, open ahead, with its books."""
     case = box((-0.45, -0.15, 0), (0.45, 0.15, 1.8))
@@ -295,8 +317,8 @@ def hillside() -> Manifold:
 MESHES: dict[str, Callable[[], Manifold]] = {
     maker.__name__: maker
     for maker in (
-        dining_table, coffee_table, chair, sofa, shelf, floor_lamp, plant, cabinet, plane, toy_car, toy_rocket, toy_duck,
-        sea_floor, crater, hillside,
+        dining_table, coffee_table, trestle_table, chair, sofa, couch, shelf, floor_lamp, plant, cabinet, plane, toy_car,
+        toy_rocket, toy_duck, sea_floor, crater, hillside,
     )
 }  # fmt: skip
 """What makes each file, by the file's name."""

@@ -4,16 +4,18 @@ scenic simulate examples/vacuum/vacuum.scenic -n 25 -p numToys=0,1,2,4,8,16 --ke
 """
 
 import random
-from math import ceil
+from math import atan2, ceil
 from sweeping import Sweep
 
 model scenic.simulators.mujoco.model
-simulator MujocoSimulator(timestep=0.25, physics_step=0.005)
+simulator MujocoSimulator(timestep=0.25, physics_step=0.005, sleep=True)
 
 param numToys = 0
 param duration = 300
+param bumper = 60  # so far to each side of straight ahead the bumper feels, degrees
 toys = globalParameters.numToys
 duration = globalParameters.duration
+bumper = globalParameters.bumper * 1 deg
 
 SIDE = 5
 GAP = 0.0001
@@ -46,15 +48,15 @@ class DiningTable(Furniture):
 
 class Chair(Furniture):
     shape: mesh("chair")
-    width: 0.42
-    length: 0.45
+    width: 0.4
+    length: 0.4
     height: 0.9
     color: (0.7, 0.55, 0.4)
     positionStdDev: (0.05, 0.05, 0)
     orientationStdDev: (10 deg, 0, 0)
 
 class Couch(Furniture):
-    shape: mesh("sofa")
+    shape: mesh("couch")
     width: 2
     length: 0.75
     height: 0.75
@@ -63,7 +65,7 @@ class Couch(Furniture):
     orientationStdDev: (5 deg, 0, 0)
 
 class CoffeeTable(Furniture):
-    shape: mesh("coffee_table")
+    shape: mesh("trestle_table")
     width: 1.2
     length: 0.5
     height: 0.4
@@ -97,12 +99,12 @@ behavior Turn(angle):
     do Drive(-pace, pace, steps)
 
 behavior Clean():
-    """Ahead until something touches the front; then back, and away from that side by a random angle."""
+    """Ahead until the bumper feels something; then back, and away from that side by a random angle."""
     draws = random.Random(self.controllerSeed)
     half_second = ceil(0.5 / simulation().timestep)
     do Drive(0, 0, half_second)
     while True:
-        front = [place for place in self.touches if place.y > 0]
+        front = [place for place in self.touches if abs(atan2(place.x, place.y)) <= bumper]
         if not front:
             do Drive(SPEED, SPEED, 1)
             continue
@@ -149,7 +151,8 @@ behind_it = new Chair behind table by -0.1, on floor, facing toward table, with 
 ahead_of_it = new Chair ahead of table by -0.1, on floor, facing toward table, with regionContainedIn dining
 beside_it = new Chair left of table by -0.1, on floor, facing toward table, with regionContainedIn dining
 mutate behind_it, ahead_of_it, beside_it
-fallen = new Chair contained in dining, on floor, facing (Range(0, 360) deg, Uniform(90, -90) deg, 0)
+lean = Uniform((90 deg, 0), (-90 deg, 0), (0, 90 deg), (0, -90 deg))
+fallen = new Chair contained in dining, on floor, facing (Range(0, 360) deg, lean[0], lean[1]), with baseOffset (0, 0, -0.2)
 
 couch = new Couch ahead of left by 0.335, on floor, facing away from left, with regionContainedIn living
 coffee = new CoffeeTable ahead of couch by 0.336, on floor, facing away from couch, with regionContainedIn living

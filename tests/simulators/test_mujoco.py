@@ -887,3 +887,25 @@ def test_a_robot_feels_what_touches_its_sides_and_not_the_floor() -> None:
     for place in felt[first]:
         assert -0.1751 < place.x < 0.01
         assert place.y == pytest.approx(0.175, abs=0.01)
+
+
+def test_bodies_at_rest_sleep_until_something_touches_them() -> None:
+    scene = scene_of(
+        "behavior Push():\n    while True:\n        take SetWheelSpeeds(0.5, 0.5)\n"
+        "ego = new Robot at (0, -1, 0.06), with behavior Push()\n"
+        "box = new Body at (0, 0, 0.1), with width 0.2, with length 0.2, with height 0.2, with density 50\n"
+        "far = new Body at (3, 0, 0.1), with width 0.2, with length 0.2, with height 0.2\n"
+        "record (box.position.y, far.position) as places\n"
+    )
+    asleep: list[int] = []
+
+    def look(simulation: Any, _poses: Any, _actions: Any) -> None:
+        asleep.append(int((simulation.data.tree_asleep >= 0).sum()))
+
+    done = MujocoSimulator(sleep=True).simulate(scene, maxSteps=80, on_state=look)
+    places = [value for _, value in done.result.records["places"]]
+    assert max(asleep) == 2
+    assert asleep[-1] == 1  # the box has woken
+    assert places[20][0] == pytest.approx(0, abs=1e-3)
+    assert places[-1][0] > 0.5
+    assert tuple(places[-1][1]) == pytest.approx((3, 0, 0.1), abs=1e-3)

@@ -77,10 +77,11 @@ class Builder:
     Args:
         step: seconds of a step of the physics.
         gravity: metres per second squared, downwards.
+        sleep: whether bodies at rest are left out of the computation.
 
     """
 
-    def __init__(self, step: float, gravity: float) -> None:
+    def __init__(self, step: float, gravity: float, *, sleep: bool = False) -> None:
         mujoco = library()
         self._mj = mujoco
         self.spec = mujoco.MjSpec()
@@ -93,6 +94,8 @@ class Builder:
         option.impratio = 10.0
         # What has gone wrong is to be told, not undone by a fresh start.
         option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+        if sleep:
+            option.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
         self.spec.visual.headlight.ambient = [0.5, 0.5, 0.5]
         self.spec.worldbody.add_light(pos=[0, 0, 20], dir=[0.3, 0.2, -1.0], castshadow=True)
         self.parts: list[Part] = []

@@ -48,10 +48,11 @@ class MujocoSimulation(Simulation):
         gravity: float = GRAVITY,
         ground: float | str | None = "auto",
         images: str = "rays",
+        sleep: bool = False,
         **options: Any,
     ) -> None:
         self._substeps = max(1, math.ceil(timestep / physics_step - 1e-9))
-        self._builder = Builder(timestep / self._substeps, gravity)
+        self._builder = Builder(timestep / self._substeps, gravity, sleep=sleep)
         self._gravity = gravity
         self._ground = ground
         self._images = Images(images)

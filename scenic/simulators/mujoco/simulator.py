@@ -25,6 +25,8 @@ class MujocoSimulator(Simulator):
             reaches lower.
         images: what makes the images of cameras: ``"rays"``, the same on every machine; ``"gl"``, MuJoCo's own renderer, which
             needs an OpenGL library and pays with a graphics card; ``"auto"``, the latter where it is possible.
+        sleep: whether bodies that have come to rest are left out of the computation until something touches them; many things that
+            lie about then cost little.
 
     """
 
@@ -36,6 +38,7 @@ class MujocoSimulator(Simulator):
         gravity: float = GRAVITY,
         ground: float | str | None = "auto",
         images: str = "rays",
+        sleep: bool = False,
     ) -> None:
         super().__init__()
         for name, value in (("timestep", timestep), ("physics_step", physics_step)):
@@ -51,6 +54,7 @@ class MujocoSimulator(Simulator):
         self.gravity = gravity
         self.ground = ground
         self.images = images
+        self.sleep = sleep
 
     def createSimulation(self, scene: Scene, **options: Any) -> MujocoSimulation:
         """A simulation that has run."""
@@ -62,5 +66,6 @@ class MujocoSimulator(Simulator):
             gravity=self.gravity,
             ground=self.ground,
             images=self.images,
+            sleep=self.sleep,
             **options,
         )
