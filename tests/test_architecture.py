@@ -21,7 +21,7 @@ LAYERS = {
     "batch": {"simulators", "formats", "runtime", "graph", "language"},
     "falsification": {"batch", "simulators", "formats", "runtime", "graph", "language"},
     "configuration": {"language"},
-    "project": {"language", "compiler", "configuration"},
+    "project": {"language", "compiler", "configuration", "formats"},  # of formats, the reader of maps alone
     "ide": {"compiler", "language", "project"},
     "lsp": {"ide", "language", "configuration", "project"},
     "playground": {"ide"},

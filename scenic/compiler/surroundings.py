@@ -79,7 +79,7 @@ class Surroundings(Protocol):
         """Return whether an import may bring an ego along."""
 
     def findings(self) -> Iterator[Diagnostic]:
-        """The faults of the imports themselves."""
+        """The faults of the imports themselves, and of road maps that the program names."""
 
 
 SurroundingsOf = Callable[[ast.Module, Source, Resolution], Surroundings]

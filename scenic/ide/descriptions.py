@@ -7,7 +7,7 @@ import os
 from typing import Final
 
 from scenic.ide import documentation
-from scenic.project.classes import class_of_symbol
+from scenic.project.classes import class_of, class_of_symbol
 from scenic.project.index import Project
 from scenic.project.signatures import signature_of
 from scenic.project.symbols import Symbol, SymbolKind
@@ -35,6 +35,13 @@ def describe(project: Project, symbol: Symbol) -> str:
     text = _of_module(project, symbol) if symbol.kind is SymbolKind.MODULE else symbol.documentation
     if text:
         parts.append(text)
+    elif (
+        symbol.kind is SymbolKind.VARIABLE and symbol.module is not None and isinstance(symbol.node, ast.Name)
+    ):
+        cls = class_of(project, symbol.module, symbol.node)
+        if cls is not None:
+            summary = (cls.documentation or "").split("\n")[0]
+            parts.append(f"`{cls.name}`: {summary}" if summary else f"`{cls.name}`")
     if symbol.kind is SymbolKind.CLASS:
         parts += _members(project, symbol)
     if symbol.kind in (SymbolKind.PROPERTY, SymbolKind.ATTRIBUTE) and not text:

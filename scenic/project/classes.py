@@ -280,26 +280,126 @@ def module_behind(project: Project, module: Module, node: ast.expr) -> Found | N
 
 
 def class_of(project: Project, module: Module, node: ast.expr) -> Symbol | None:
-    """The class of the value of an expression, where the text tells it: ``new C``, ``C(...)``, names of such values."""
+    """The class of the value of an expression, where the text tells it.
+
+    That is so of ``new C`` and ``C(...)``, of what is annotated, of elements of sequences, and of names of such values.
+    """
     return _class_of(project, module, node, 0)
 
 
 def _class_of(project: Project, module: Module, node: ast.expr, depth: int) -> Symbol | None:
+    found = _value_of(project, module, node, depth)
+    return None if found is None or found.is_sequence else found.cls
+
+
+@dataclass(frozen=True, slots=True)
+class _Value:
+    """A value: an object of a class, or a sequence of them."""
+
+    cls: Symbol
+    is_sequence: bool = False
+
+
+_SEQUENCES: Final = frozenset(
+    {"tuple", "list", "Sequence", "Iterable", "Iterator", "Collection", "frozenset", "set"}
+)
+"""Types whose values hold others of one type."""
+_SAME_SEQUENCE: Final = frozenset({"list", "tuple", "sorted", "reversed", "set"})
+"""Functions that give the elements of their first argument again."""
+
+
+def _value_of(project: Project, module: Module, node: ast.expr, depth: int) -> _Value | None:
     if depth > _DEEPEST:
         return None
     match node:
         case scenic.New(cls=cls):
             meant = _meaning(project, module, cls, depth + 1)
-            return meant if meant is not None and meant.kind is SymbolKind.CLASS else None
+            return _Value(meant) if meant is not None and meant.kind is SymbolKind.CLASS else None
         case ast.Call(func=function):
-            meant = _meaning(project, module, function, depth + 1)
-            return meant if meant is not None and meant.kind is SymbolKind.CLASS else None
+            return _value_of_call(project, module, node, function, depth)
         case ast.Name():
-            return _class_of_name(project, module, node, depth)
+            return _value_of_name(project, module, node, depth)
+        case ast.Attribute():
+            meant = _meaning(project, module, node, depth + 1)
+            return None if meant is None else _annotated_symbol(project, meant, depth, called=False)
+        case ast.Subscript(value=value, slice=index) if not isinstance(index, ast.Slice):
+            return _element(_value_of(project, module, value, depth + 1))
     return None
 
 
-def _class_of_name(project: Project, module: Module, node: ast.Name, depth: int) -> Symbol | None:
+def _element(value: _Value | None) -> _Value | None:
+    return None if value is None or not value.is_sequence else _Value(value.cls)
+
+
+def _value_of_call(
+    project: Project, module: Module, node: ast.Call, function: ast.expr, depth: int
+) -> _Value | None:
+    name = function.id if isinstance(function, ast.Name) else None
+    if name == "Uniform":
+        chosen = {
+            _element(_value_of(project, module, value.value, depth + 1))
+            if isinstance(value, ast.Starred)
+            else _value_of(project, module, value, depth + 1)
+            for value in node.args
+        }
+        return chosen.pop() if len(chosen) == 1 else None
+    if name == "filter" and len(node.args) == 2:
+        return _value_of(project, module, node.args[1], depth + 1)
+    if name in _SAME_SEQUENCE and len(node.args) == 1:
+        return _value_of(project, module, node.args[0], depth + 1)
+    meant = _meaning(project, module, function, depth + 1)
+    if meant is None or meant.kind is SymbolKind.CLASS:
+        return None if meant is None else _Value(meant)
+    return _annotated_symbol(project, meant, depth, called=True)
+
+
+def _annotated_symbol(project: Project, symbol: Symbol, depth: int, *, called: bool) -> _Value | None:
+    """The value of what a symbol means, or of a call of it, by its annotation."""
+    node, home = symbol.node, symbol.module
+    if home is None or node is None:
+        return None
+    if isinstance(node, ast.FunctionDef):
+        is_property = any(_last_word(item) in ("property", "cached_property") for item in node.decorator_list)
+        annotation = node.returns if is_property != called else None
+    else:
+        annotation = None if called else home.annotation_of.get(node)
+    return None if annotation is None else _annotated(project, home, annotation, depth + 1)
+
+
+def _last_word(node: ast.expr) -> str:
+    return node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
+
+
+def _annotated(project: Project, module: Module, annotation: ast.expr, depth: int) -> _Value | None:
+    """The value that an annotation of a module describes; ``None`` beside a class counts for nothing."""
+    if depth > _DEEPEST:
+        return None
+    match annotation:
+        case ast.Constant(value=str() as text):
+            try:
+                inner = ast.parse(text, mode="eval").body
+            except (SyntaxError, ValueError, RecursionError):
+                return None
+            return _annotated(project, module, inner, depth + 1)
+        case ast.BinOp(left=left, op=ast.BitOr(), right=right):
+            sides = [
+                _annotated(project, module, side, depth + 1)
+                for side in (left, right)
+                if not (isinstance(side, ast.Constant) and side.value is None)
+            ]
+            return sides[0] if len(sides) == 1 else None
+        case ast.Subscript(value=value, slice=inner) if _last_word(value) in _SEQUENCES:
+            first = inner.elts[0] if isinstance(inner, ast.Tuple) and inner.elts else inner
+            element = _annotated(project, module, first, depth + 1)
+            return None if element is None or element.is_sequence else _Value(element.cls, is_sequence=True)
+        case ast.Name(id=name):
+            exported = project.exports(module).names.get(name)
+            symbol = None if exported is None else symbol_of_exported(project, exported)
+            return None if symbol is None or symbol.kind is not SymbolKind.CLASS else _Value(symbol)
+    return None
+
+
+def _value_of_name(project: Project, module: Module, node: ast.Name, depth: int) -> _Value | None:
     reference = module.resolution.reference(node)
     if reference is None:
         return None
@@ -316,20 +416,23 @@ def _class_of_name(project: Project, module: Module, node: ast.Name, depth: int)
             return None
         module, binding = target.module, target.binding
     if binding.kinds == {BindingKind.SELF} or binding.kinds == {BindingKind.PARAMETER}:
-        return _class_of_self(module, binding.scope, binding.name)
+        own = _class_of_self(module, binding.scope, binding.name)
+        return None if own is None else _Value(own)
     if binding.kinds == {BindingKind.IMPORTED}:
         followed = project.follow(project.own(module, binding))
         if isinstance(followed, Found) or followed.module is None or followed.binding is None:
             return None
         module, binding = followed.module, followed.binding
+    if len(binding.sites) == 1 and (run := module.loop_of.get(binding.sites[0])) is not None:
+        return _element(_value_of(project, module, run, depth + 1))
     statements = [module.assignment_of.get(site) for site in binding.sites]
     values = [each.value for each in statements if each is not None and each.value is not None]
     return _common(project, module, values, depth) if len(values) == len(binding.sites) else None
 
 
-def _common(project: Project, module: Module, values: list[ast.expr], depth: int) -> Symbol | None:
+def _common(project: Project, module: Module, values: list[ast.expr], depth: int) -> _Value | None:
     """The class that all of the values have."""
-    classes = {_class_of(project, module, value, depth + 1) for value in values}
+    classes = {_value_of(project, module, value, depth + 1) for value in values}
     return classes.pop() if len(classes) == 1 else None
 
 

@@ -61,6 +61,21 @@ class Module:
         return found
 
     @cached_property
+    def annotation_of(self) -> dict[ast.AST, ast.expr]:
+        """The annotation of each name or attribute that is assigned or declared with one."""
+        return {node.target: node.annotation for node, _ in self.resolution.nodes(ast.AnnAssign)}
+
+    @cached_property
+    def loop_of(self) -> dict[ast.AST, ast.expr]:
+        """The values that each name runs through, of loops and comprehensions over one name."""
+        found: dict[ast.AST, ast.expr] = {}
+        for kind in (ast.For, ast.comprehension):
+            for node, _ in self.resolution.nodes(kind):
+                if isinstance(node.target, ast.Name):
+                    found[node.target] = node.iter
+        return found
+
+    @cached_property
     def egos(self) -> tuple[ast.expr, ...]:
         """The values that are assigned to the ego."""
         return tuple(

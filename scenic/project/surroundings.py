@@ -16,6 +16,7 @@ from scenic.language.source import Source
 from scenic.project.classes import Class, class_of_symbol
 from scenic.project.imports import Imports
 from scenic.project.index import Exported, Exports, Project
+from scenic.project.maps import map_findings
 from scenic.project.search import Found, ModuleKind
 from scenic.project.symbols import Symbol, symbol_of_exported
 
@@ -38,6 +39,8 @@ class _Surroundings:
         self, project: Project, tree: ast.Module, source: Source, resolution: Resolution, verbose: bool
     ) -> None:
         self._project = project
+        self._tree = tree
+        self._source = source
         self._imports = Imports(project, tree, source, resolution, verbose)
         self.state = project.state_beside(source.filename)
 
@@ -91,7 +94,8 @@ class _Surroundings:
         return found.is_missing
 
     def findings(self) -> Iterator[Diagnostic]:
-        return self._imports.findings()
+        yield from self._imports.findings()
+        yield from map_findings(self._tree, self._source)
 
 
 def _foreign(project: Project, exported: Exported) -> Foreign | None:

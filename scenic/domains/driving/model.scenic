@@ -49,67 +49,67 @@ class DrivingObject:
         return False
 
     @property
-    def roadNetwork(self):
+    def roadNetwork(self) -> Network:
         return network
 
     @property
-    def lane(self):
+    def lane(self) -> Lane:
         return network.laneAt(self, reject='object is not in a lane')
 
     @property
-    def _lane(self):
+    def _lane(self) -> Lane:
         return network.laneAt(self)
 
     @property
-    def laneSection(self):
+    def laneSection(self) -> LaneSection:
         return network.laneSectionAt(self, reject='object is not in a lane')
 
     @property
-    def _laneSection(self):
+    def _laneSection(self) -> LaneSection:
         return network.laneSectionAt(self)
 
     @property
-    def laneGroup(self):
+    def laneGroup(self) -> LaneGroup:
         return network.laneGroupAt(self, reject='object is not in a lane')
 
     @property
-    def _laneGroup(self):
+    def _laneGroup(self) -> LaneGroup:
         return network.laneGroupAt(self)
 
     @property
-    def oppositeLaneGroup(self):
+    def oppositeLaneGroup(self) -> LaneGroup:
         return self.laneGroup.opposite
 
     @property
-    def road(self):
+    def road(self) -> Road:
         return network.roadAt(self, reject='object is not on a road')
 
     @property
-    def _road(self):
+    def _road(self) -> Road:
         return network.roadAt(self)
 
     @property
-    def intersection(self):
+    def intersection(self) -> Intersection:
         return network.intersectionAt(self, reject='object is not in an intersection')
 
     @property
-    def _intersection(self):
+    def _intersection(self) -> Intersection:
         return network.intersectionAt(self)
 
     @property
-    def crossing(self):
+    def crossing(self) -> PedestrianCrossing:
         return network.crossingAt(self, reject='object is not in a crossing')
 
     @property
-    def _crossing(self):
+    def _crossing(self) -> PedestrianCrossing:
         return network.crossingAt(self)
 
     @property
-    def element(self):
+    def element(self) -> NetworkElement:
         return network.elementAt(self, reject='object is not on any network element')
 
     @property
-    def _element(self):
+    def _element(self) -> NetworkElement:
         return network.elementAt(self)
 
     def distanceToClosest(self, type):

@@ -3,6 +3,7 @@
 from typing import Any
 
 from scenic.domains.driving.roads import Network
+from scenic.formats.opendrive.xml_tree import MapError
 from scenic.language.errors import InvalidScenarioError
 from scenic.language.spans import Span
 from scenic.runtime.instances.objects import OrientedPoint
@@ -45,6 +46,10 @@ def network_of_program(parameters: Any) -> Network:
         raise _wrong("use2DMap", "in the 2D mode a map is flat", "leave `use2DMap` out, or set it to True")
     try:
         return Network.fromFile(parameters["map"], elevated=not flat, **dict(parameters["map_options"]))
+    except MapError as error:
+        # The mistake is in the map; who only sees that needs to know who wants it.
+        error.help = f"{error.help or 'mend the map'}; {_wanted_by('map')} names it"
+        raise
     except TypeError as error:
         name = "map_options" if parameters["map_options"] else "map"
         raise _wrong(name, str(error), "see docs/reference/driving.md for what it takes") from error
@@ -54,6 +59,16 @@ def network_of_program(parameters: Any) -> Network:
             str(error),
             "paths are relative to the working directory; `localPath(...)` makes them relative to the program",
         ) from error
+
+
+def _wanted_by(parameter: str) -> str:
+    """What sets a parameter, in words."""
+    context = current.get()
+    if context is not None and parameter in context.parameters.given:
+        return f"`--param {parameter}=...` (or `params`)"
+    place = None if context is None else context.parameters.places.get(parameter)
+    span = None if place is None else place[0]
+    return f"`param {parameter}`" if span is None else f"`param {parameter}` in line {span.line}"
 
 
 def _wrong(parameter: str, message: str, help: str) -> SettingError:
