@@ -264,6 +264,7 @@ def _scenario(text: str, filename: str, options: _Options) -> Scenario:
         services=Services(
             show_page,
             _bundle,
+            _export,
             (_scenario, (text, filename, options)),
             options.given(),
             _sample,
@@ -357,6 +358,12 @@ def _bundle(scene: Scene) -> Mapping[str, str]:
     from scenic.formats.embedding import scene_bundle
 
     return scene_bundle(scene)
+
+
+def _export(scene: Scene, path: Path) -> None:
+    from scenic.formats.webots import write_world
+
+    write_world(scene, path)
 
 
 def show_page(scene: Any) -> Path:

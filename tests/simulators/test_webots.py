@@ -161,6 +161,30 @@ def test_the_example_programs_compile_sample_and_run() -> None:
     assert crate.forces == [([0, 60, 0], False)] * 3
 
 
+def test_the_case_studies_are_worlds_too(tmp_path: Path) -> None:
+    folder = Path(__file__).parents[2] / "examples" / "webots"
+    (room,) = scenic.load(folder / "vacuum.scenic", params={"numToys": 2}).sample(1, seed=1)
+    room.save(tmp_path / "room.wbt")
+    nodes = nodes_of((tmp_path / "room.wbt").read_text())[5:]
+    assert len(nodes) == len(room.objects)
+    (robot,) = (node for node in nodes if node["DEF"] == "VACUUM")
+    assert robot["type"] == "IRobotCreate"
+    assert robot["customData"] == str(room.egoObject.controllerSeed)
+    assert robot["translation"][2] == pytest.approx(0, abs=1e-3)
+    assert sum("physics" in node for node in nodes) == 10
+    assert (tmp_path / "room_meshes").is_dir()
+    room.save(tmp_path / "room.scene")
+    again = scenic.load(folder / "vacuum.scenic", params={"numToys": 2}).replay(tmp_path / "room.scene")
+    assert again.egoObject.position == room.egoObject.position
+    (crossing,) = scenic.load(folder / "intersection.scenic").sample(1, seed=1)
+    cars = [Node("CAR_0"), Node("CAR_1")]
+    done = WebotsSimulator(Supervisor(*cars)).simulate(
+        crossing, maxSteps=20, timestep=0.16, keep_violations=True
+    )
+    assert cars[0].getPosition()[1] - crossing.egoObject.position.y == pytest.approx(20 * 14 * 0.16)
+    assert done.currentTime == 20
+
+
 # Worlds
 
 

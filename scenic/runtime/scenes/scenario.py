@@ -115,6 +115,7 @@ class Scenario(Generating):
             self,
             self._services.view,
             self._services.bundle,
+            self._services.export,
             self._regions,
         )
         self._unconditioned = {name: value for name, value in vars(self).items() if name not in _KEPT}

@@ -53,7 +53,7 @@ class Family:
     """The common ground of all scenes of a scenario.
 
     ``populations`` makes their objects, ``names`` are the variables that hold these, by the identities of the program's.
-    ``keep`` gives a scene as data, ``view`` shows it.
+    ``keep`` gives a scene as data, ``view`` shows it, ``export`` writes it for another program.
     """
 
     program: Program
@@ -66,6 +66,7 @@ class Family:
     scenario: Any
     view: Callable[["Scene"], Any] | None
     bundle: Callable[["Scene"], Mapping[str, str]] | None
+    export: Callable[["Scene", Path], None] | None
     regions: Mapping[str, Region]
 
 
@@ -274,7 +275,13 @@ class Scene:
         return scene
 
     def save(self, path: str | Path) -> None:
-        """Write the scene to a file, from which `Scenario.replay` takes it up again; the file is complete or absent."""
+        """Write the scene to a file, from which `Scenario.replay` takes it up again; the file is complete or absent.
+
+        Where its name ends in ``.wbt`` it is a world of Webots instead, with its meshes in a folder beside it.
+        """
+        if Path(path).suffix == ".wbt" and self._family.export is not None:
+            self._family.export(self, Path(path))
+            return
         content = self._family.keep(self)
         with whole(Path(path)) as stream:
             stream.write(content)

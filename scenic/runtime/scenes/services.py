@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from scenic.runtime.scenes.scene import Scene
@@ -17,6 +18,8 @@ class Services:
     """Shows a scene (`Scene.show`)."""
     bundle: Callable[[Scene], Mapping[str, str]] | None = None
     """A scene by type of media, for notebooks."""
+    export: Callable[[Scene, Path], None] | None = None
+    """Writes a scene as a world of Webots (`Scene.save` with the ending ``.wbt``)."""
     recipe: tuple[Any, ...] | None = None
     """Compiles the program once more, as ``__reduce__`` returns it."""
     options: Mapping[str, Any] = field(default_factory=dict)
