@@ -128,6 +128,7 @@ def test_an_ego_that_a_module_brings_is_there(tmp_path: Path) -> None:
     ("text", "expected"),
     [
         ("from math import pi\nego = new Object at pie\n", ["SC202 `pie`"]),
+        ("import m\nego = new Object at foo\n", ["SC406 `m`", "SC202 `foo`"]),
         ("from math import pi\nego = new Object at tau\n", ["SC206 `pi`", "SC202 `tau`"]),
         ("from tools import Action\nego = new Object\nnew Action\n", ["SC203 `Action`"]),
         # What has a handler may be meant to fail; interrupts handle no errors.

@@ -105,8 +105,15 @@ def _found(context: Context, value: ast.expr | None, what: str) -> Iterator[Diag
             f"write `{written} deg` if degrees are meant"
             if written
             else "write `deg` after it if degrees are meant",
-            fix=context.insertion("Add `deg`", *((place, " deg") for place in places)),
+            fix=context.insertion("Add `deg`", *((place, _deg_after(place, context)) for place in places)),
         )
+
+
+def _deg_after(place: ast.expr, context: Context) -> str:
+    """The operator, and a blank where a word follows at once: ``(90)by``."""
+    span = context.source.span(place)
+    following = context.source.line(span.end_line)[span.end_column : span.end_column + 1]
+    return " deg " if following.isidentifier() else " deg"
 
 
 def _degrees(value: ast.expr | None, context: Context, depth: int = _DEEPEST) -> Iterator[ast.expr]:

@@ -86,8 +86,9 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             words = {each.id for each in alone}
             compared = compared_names(context)
             meant = {each.id for each in compared}
+            # Only who is still typing may be about to write what would bind the name.
+            missing_imports = _missing_imports(context) if context.typing else []
             importing = any(_is_import(word) for word in words) or _is_import_broken(context)
-            missing_imports = _missing_imports(context)
             half_typed = may_bind_more(context) or any(
                 context.surroundings is not None and context.surroundings.is_begun(site)
                 for binding in missing_imports

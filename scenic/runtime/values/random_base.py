@@ -23,13 +23,13 @@ class RandomBase:
     """
 
     __slots__ = ("_again", "node")
-    registered: ClassVar[dict[Kind | None, type["RandomBase"]]] = {}
+    _registered: ClassVar[dict[Kind | None, type["RandomBase"]]] = {}
     """The class of random values of each kind of nodes, that of all other kinds under ``None``."""
     __array_priority__ = 1000  # NumPy scalars on the left defer to the methods of random values.
 
     def __init_subclass__(cls, *, kinds: Iterable[Kind | None] = (), **options: Any) -> None:
         super().__init_subclass__(**options)
-        RandomBase.registered.update(dict.fromkeys(kinds, cls))
+        RandomBase._registered.update(dict.fromkeys(kinds, cls))
 
     def __init__(self, node: Node, again: "Callable[[], Any] | None" = None) -> None:
         self.node = node
@@ -119,7 +119,7 @@ class RandomBase:
 
 def random_value(node: Node, again: Callable[[], Any] | None = None) -> Any:
     """The random value of a node; ``again`` makes an independent draw of the same law."""
-    classes = RandomBase.registered
+    classes = RandomBase._registered
     return classes.get(node.kind, classes[None])(node, again)
 
 

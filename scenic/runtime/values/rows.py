@@ -19,16 +19,16 @@ class Row:
 
     __slots__ = ("_row",)
     _row: tuple[float, ...]
-    registered: ClassVar[dict[int, type["Row"]]] = {}
+    _registered: ClassVar[dict[int, type["Row"]]] = {}
     """The class of rows of each length."""
-    plain: ClassVar[set[type["Row"]]] = set()
+    _plain: ClassVar[set[type["Row"]]] = set()
     """The registered classes."""
 
     def __init_subclass__(cls, *, length: int | None = None, **options: Any) -> None:
         super().__init_subclass__(**options)
         if length is not None:
-            Row.registered[length] = cls
-            Row.plain.add(cls)
+            Row._registered[length] = cls
+            Row._plain.add(cls)
 
     @classmethod
     def of(cls, row: Iterable[float]) -> Self:
@@ -60,8 +60,8 @@ class OrientationRow(Row):
     _row: tuple[float, float, float, float]
 
 
-_CLASSES: Final[dict[int, type[Row]]] = Row.registered
-EXACT: Final = Row.plain
+_CLASSES: Final[dict[int, type[Row]]] = Row._registered
+EXACT: Final = Row._plain
 """Classes whose instances are nothing but their rows."""
 
 

@@ -335,6 +335,13 @@ def test_large_programs(text: str) -> None:
     assert isinstance(tree, ast.Module)
 
 
+def test_degrees_do_not_run_into_the_next_word() -> None:
+    text = "ego = new Object\nnew Object offset along Range(80, 90)by (1, 2)\n"
+    [found] = [each for each in check_text(text, filename="f") if each.code == "SC302"]
+    assert found.fix is not None
+    assert applied(text, found.fix) == text.replace("90)by", "90) deg by")
+
+
 @pytest.mark.parametrize(
     ("text", "repaired"),
     [
