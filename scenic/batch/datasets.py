@@ -221,6 +221,8 @@ def _progress(
             if any(item.reason == "time" for item in missing):
                 return
             kept = kept.with_part(progress.finish(last), time.monotonic() - begun)
+            if scenario.approximation is not None:
+                kept = replace(kept, approximation=str(scenario.approximation))
         yield kept
         progress.forget()
 

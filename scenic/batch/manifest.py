@@ -62,7 +62,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """The settings of a data set. Everything but ``parts`` and ``seconds`` decides what its rows are.
+    """The settings of a data set. Everything but ``parts``, ``seconds`` and ``approximation`` decides what its rows are.
 
     Attributes:
         program: name of the program's file.
@@ -83,6 +83,7 @@ class Manifest:
         versions: versions of Python and of libraries that may change a scene.
         command: the command line or call, for people.
         seconds: time spent so far.
+        approximation: of approximate scenes, how those made last came about, with a warning where they still depend on each other.
         parts: the complete files, in order.
 
     """
@@ -105,6 +106,7 @@ class Manifest:
     source: str = ""
     command: str = ""
     seconds: float = 0.0
+    approximation: str = ""
     parts: tuple[Part, ...] = ()
 
     @classmethod

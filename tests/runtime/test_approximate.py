@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,8 @@ import pytest
 from scipy import stats
 
 from scenic.language.errors import RejectionException
+from scenic.runtime.sampling.approximate import _correlation as measured
+from scenic.runtime.sampling.report import Approximation
 from tests.cli.commands import run_here
 from tests.runtime.programs import FALSE_ALARM, fingerprint, scenario
 
@@ -114,6 +117,21 @@ def test_the_method_is_told(tmp_path: Path) -> None:
         ["sample", path, "-n", 20, "--seed", 1, "--approximate", 16, "-o", f"{folder}/", "--format", "jsonl"]
     )
     assert done.returncode == 0, done.stderr
-    assert json.loads((folder / "manifest.json").read_text())["points"] == "approximate 16"
+    manifest = json.loads((folder / "manifest.json").read_text())
+    assert manifest["points"] == "approximate 16"
+    assert manifest["approximation"].startswith("approximate: 16 lanes")
     assert run_here(["dataset", "verify", folder]).returncode == 0
     assert run_here(["sample", path, "--approximate", 16, "-j", 2]).returncode == 2
+
+
+def test_chance_is_not_taken_for_dependence_and_dependence_is_seen() -> None:
+    random = np.random.default_rng(0)
+    for lanes in (32, 128, 512):
+        chance = random.normal(0, lanes**-0.5, 200)
+        assert measured(chance.tolist(), lanes) < 0.1
+        assert measured([*chance, 1.0], lanes) > 0.6, "one block stays"
+        assert measured((chance + 0.3).tolist(), lanes) > 0.2, "all blocks move too little"
+    assert measured([], 16) == 0
+    good = Approximation(16, -3.0, 15.0, (1.0,), 4, 0.05)
+    assert "warning" not in str(good)
+    assert "copies have not parted" in str(replace(good, correlation=0.4))

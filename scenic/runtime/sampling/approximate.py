@@ -25,11 +25,12 @@ from scenic.graph.draws import (
     scene_keys,
     seed_word,
 )
+from scenic.graph.node import Node
 from scenic.runtime.sampling.blocks import Reads, blocks, merged, pieces
-from scenic.runtime.sampling.checks import Check
+from scenic.runtime.sampling.checks import Check, CollisionCheck
 from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Found
 from scenic.runtime.sampling.pending import Task
-from scenic.runtime.sampling.report import Approximation, Exhausted
+from scenic.runtime.sampling.report import CORRELATED, Approximation, Exhausted
 
 __all__ = ["approximated"]
 
@@ -42,11 +43,11 @@ _STEPS: Final = (0.5, 0.1, 0.02)
 _OTHERS: Final = 4
 """One in so many sweeps has another step than the one by which lanes have got furthest."""
 
+_OBJECTS: Final = 16
+"""Objects are evaluated in multiples of so many, in the order of the program: then few schedules do for all checks."""
+
 _SWEEPS: Final = (4, 60)
 """Sweeps at the end, at least and at most."""
-
-_CORRELATED: Final = 0.1
-"""Sweeps go on while what some block was before them and what it is now correlate more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +146,7 @@ class _Sampler:
         self._soft = [check for check in plan.checks if check.probability < 1]
         self._reads = Reads(plan.graph, plan.domain.joined_axes())
         self._plans: dict[frozenset[int], _Blocks] = {}
+        self._objects = _Objects(checks)
 
     def group(self, seed: int, group: int, lanes: int) -> Found:
         """The scenes ``group * lanes`` to ``(group + 1) * lanes`` of a seed."""
@@ -232,8 +234,11 @@ class _Sampler:
             self._sweep(random, state, constrained, pace)
             sweeps += 1
             if sweeps >= _SWEEPS[0]:
-                correlation = max(start.correlation(state, block.numbers) for block, _ in constrained)
-                if correlation < _CORRELATED:
+                correlation = _correlation(
+                    [start.correlation(state, place) for block, _ in constrained for place in block.numbers],
+                    lanes,
+                )
+                if correlation < CORRELATED:
                     break
         sizes = np.bincount(roots, minlength=lanes)
         shared = float(np.square(sizes).sum()) / lanes
@@ -288,6 +293,7 @@ class _Sampler:
         if not checks:
             return passes
         batch = self._engine.batch(self._fixing(state.source(np.zeros(len(state), dtype=np.uint64))))
+        batch.need(self._objects.below(checks))
         for check in sorted(checks, key=lambda item: item.cost):
             batch.need(check.nodes)
             alive = check.test(batch).passes
@@ -307,6 +313,24 @@ class _Sampler:
         return plan
 
 
+_EXCESS: Final = 8
+"""By so much, over the number of lanes, the largest of many squares exceeds what chance lets expect in one of fifty cases."""
+
+
+def _correlation(found: Sequence[float], lanes: int) -> float:
+    """How far numbers depend on what they were, from the correlation of each one over so many lanes.
+
+    Numbers that depend on nothing have correlations, too, with a mean square of 1 over the number of lanes. What is left without these is
+    the larger of two: of the mean square, which tells whether lanes move at all, and of the largest, which tells whether some block stays.
+    """
+    if not found:
+        return 0.0
+    squares = np.square(found)
+    mean = float(squares.mean()) - 1 / lanes
+    largest = float(squares.max()) - (2 * math.log(1 + len(found)) + _EXCESS) / lanes
+    return math.sqrt(max(0.0, mean, largest))
+
+
 def _joined(reports: Sequence[Approximation], lanes: int) -> Approximation:
     """The report of lanes that were made apart."""
     if len(reports) == 1:
@@ -323,6 +347,30 @@ def _joined(reports: Sequence[Approximation], lanes: int) -> Approximation:
         max(report.sweeps for report in reports),
         max(report.correlation for report in reports),
     )
+
+
+class _Objects:
+    """The objects of some checks, in order."""
+
+    def __init__(self, checks: Sequence[Check]) -> None:
+        collisions = [check for check in checks if isinstance(check, CollisionCheck)]
+        objects = list({id(item): item for check in collisions for item in check.objects}.values())
+        self._place = {id(item): place for place, item in enumerate(objects)}
+        self._nodes = [item.all for item in objects]
+        self._made: dict[int, tuple[Node, ...]] = {}
+
+    def below(self, checks: Sequence[Check]) -> tuple[Node, ...]:
+        """The nodes of the first objects, up to the last one that some checks of collisions look at, and a few more."""
+        seen = [
+            self._place[id(item)]
+            for check in checks
+            if isinstance(check, CollisionCheck)
+            for item in (check.objects[0], check.objects[-1])
+        ]
+        count = -(-(max(seen, default=-1) + 1) // _OBJECTS)
+        if count not in self._made:
+            self._made[count] = tuple(node for nodes in self._nodes[: count * _OBJECTS] for node in nodes)
+        return self._made[count]
 
 
 class _Steps:
@@ -426,16 +474,13 @@ class _State:
             for place in block.words:
                 self._words[place] = random.integers(0, 2**64, self._lanes, dtype=np.uint64, endpoint=False)
 
-    def correlation(self, other: "_State", places: Sequence[int]) -> float:
-        """The largest correlation of some numbers here and in another state of the same lanes."""
-        largest = 0.0
-        for place in places:
-            here, there = self._numbers[place], other._numbers[place]
-            spread = float(here.std() * there.std())
-            if spread > 0:
-                covariance = float(((here - here.mean()) * (there - there.mean())).mean())
-                largest = max(largest, abs(covariance) / spread)
-        return largest
+    def correlation(self, other: "_State", place: int) -> float:
+        """The correlation of a number here and in another state of the same lanes."""
+        here, there = self._numbers[place], other._numbers[place]
+        spread = float(here.std() * there.std())
+        if spread == 0:
+            return 0.0
+        return float(((here - here.mean()) * (there - there.mean())).mean()) / spread
 
     def source(self, keys: Words) -> Points:
         """The source of the lanes."""

@@ -5,6 +5,9 @@ from typing import Final
 
 from scenic.language.spans import Span
 
+CORRELATED: Final = 0.1
+"""Copies count as parted when what they are and what they were correlate less."""
+
 SHOWN: Final = 20
 """Requirements that a report shows: thirty objects have 435 pairs that may collide."""
 
@@ -83,7 +86,7 @@ class Approximation:
         effective: about how many independent scenes say as much as these.
         survival: the share of lanes that lived at each block, ``1`` where none was lost.
         sweeps: how often all blocks were moved at the end.
-        correlation: between what the blocks were before these sweeps and after, the largest.
+        correlation: between what the blocks were before these sweeps and after, without what chance alone gives.
 
     """
 
@@ -94,8 +97,19 @@ class Approximation:
     sweeps: int
     correlation: float
 
+    @property
+    def is_mixed(self) -> bool:
+        """True if the sweeps went on until copies had parted."""
+        return self.correlation < CORRELATED
+
     def __str__(self) -> str:
-        return (
+        told = (
             f"approximate: {self.lanes} lanes, effective sample size {self.effective:.0f}, "
             f"log-probability {self.log_probability:.2f}, {self.sweeps} sweeps"
+        )
+        if self.is_mixed:
+            return told
+        return (
+            f"{told}; warning: copies have not parted (correlation {self.correlation:.2f}), so that the law may be "
+            f"far from the program's; compare several seeds, or make more scenes together"
         )
