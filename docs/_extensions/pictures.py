@@ -127,7 +127,7 @@ def _drawn(shot: Shot) -> PIL.Image.Image:
             assert colours is not None
             panels.append(PIL.Image.fromarray(colours))
             continue
-        drawn = picture([scene])
+        drawn = picture([scene], ground=True)
         camera = framing(framed(scene, drawn.scenes[0], shot.outlook), size[0] / size[1], shot.outlook)
         panels.append(PIL.Image.fromarray(render(drawn, 0, size, camera=camera)))
     width, height = panels[0].size
