@@ -20,6 +20,13 @@ REPORTED = [
     (EGO + "sofa = new Object at (Range(0, 1), -9), visible", "sofa visible from ego"),
     (EGO + "bed = new Object at (Range(0, 1), 9), not visible", "bed not visible from ego"),
     (EGO + "new Point at (Range(0, 1), -9), visible", "Point visible from ego"),
+    (
+        EGO + "eye = new OrientedPoint with viewAngle 30 deg\n"
+        "cup = new Object at (Range(0, 1), -9), visible from Uniform(eye, ego)",
+        "cup visible from the random observer",
+    ),
+    ("box = new Object with width Range(-2, -1)", "positive width of box"),
+    ("box = new Object at (Normal(0, 1) * 1e400, 0)", "finite position and angles of box"),
     (EGO + "box = new Object at (Range(0, 1), -9), with requireVisible True", "box visible from the ego"),
 ]
 

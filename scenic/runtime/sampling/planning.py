@@ -148,7 +148,9 @@ def _finite(program: Program) -> list[Check]:
                 size = operate("norm" if value is item.position else "absolute", value)
                 # What is undefined is not less than anything.
                 node = _if_present(item, truth(operate("less", size, math.inf)))
-                checks.append(NodeCheck(node, "finite position and angles", span, BUILT_IN))
+                checks.append(
+                    NodeCheck(node, f"finite position and angles of {_called(program, item)}", span, BUILT_IN)
+                )
     return checks
 
 
@@ -210,10 +212,24 @@ def _sizes(program: Program) -> list[Check]:
                 node = truth(operate("less", 0, size))
                 bounds = overall(node)
                 if bounds is None or bounds.lower[0] != 1:
-                    checks.append(NodeCheck(_if_present(item, node), f"positive {name}", span, BUILT_IN))
+                    checks.append(
+                        NodeCheck(
+                            _if_present(item, node),
+                            f"positive {name} of {_called(program, item)}",
+                            span,
+                            BUILT_IN,
+                        )
+                    )
                 if not is_finite(as_node(size)):
                     node = truth(operate("less", size, math.inf))
-                    checks.append(NodeCheck(_if_present(item, node), f"finite {name}", span, BUILT_IN))
+                    checks.append(
+                        NodeCheck(
+                            _if_present(item, node),
+                            f"finite {name} of {_called(program, item)}",
+                            span,
+                            BUILT_IN,
+                        )
+                    )
     return checks
 
 
@@ -427,7 +443,9 @@ def _requirements(program: Program) -> list[Check]:
 
 def _called(program: Program, item: Any, *, article: str = "") -> str:
     """The property `name` of an instance, else the variable that holds it, else its class after ``article``."""
-    given = None if is_random(item) else getattr(item, "name", None)
+    if is_random(item):
+        return f"{article}random observer"
+    given = getattr(item, "name", None)
     if not (isinstance(given, str) and given):
         given = program.variables.get(id(item))
     return given or article + type(item).__name__
