@@ -96,6 +96,7 @@ def test_options_reach_the_pipeline(stub: Stub) -> None:
         "model": "m.n",
         "mode2D": True,
         "prune": False,
+        "extra_params": False,
         "max_attempts": 7,
         "source": None,
     }
