@@ -1,0 +1,35 @@
+"""The table of everything a user waits for."""
+
+import argparse
+from pathlib import Path
+
+import pytest
+
+import benchmarks.__main__ as overview
+from benchmarks.__main__ import Row, Spent
+
+
+def test_the_table_compares_medians_over_turns(monkeypatch: pytest.MonkeyPatch) -> None:
+    turns = iter([Row(1, 2, 100, 0.1), Row(9, 9, 900, 0.9), Row(1, 1, 50, 0.2)] * 2)
+    monkeypatch.setattr(overview, "ours", lambda path: next(turns))
+    monkeypatch.setattr(overview, "theirs", lambda command, path, scenes, turn: Row(4, 8, 400, 2 * turn + 1))
+    options = argparse.Namespace(reference="other", scenes=5, turns=3)
+    lines = overview.table(options, [Path("a.scenic"), Path("b.scenic")])
+    assert lines[2] == "| `a` | 1.00 s | 4.0x | 2.00 s | 4.0x | 100 | 4.0x | 200 ms | 15x |"
+    assert lines[-2:] == [
+        "| geometric mean | | 4.0x | | 4.0x | | 4.0x | | 15x |",
+        "| least | | 4.0x | | 4.0x | | 4.0x | | 15x |",
+    ]
+
+
+def test_a_scene_costs_what_a_longer_run_takes_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    lines = '{"iterations": 1}\n' * 4
+
+    def spent(command: list[str]) -> Spent:
+        return Spent(5.0, 70, lines) if command[-1] == "4" else Spent(2.0, 60, "")
+
+    monkeypatch.setattr(overview, "spent", spent)
+    assert overview.theirs("other", Path("a.scenic"), 3, 1) == Row(2.0, 2.0, 60, 1.0)
+    lines = '{"error": "no scene was found"}\n'
+    with pytest.raises(SystemExit, match=r"a.scenic: .*no scene was found"):
+        overview.theirs("other", Path("a.scenic"), 3, 1)
