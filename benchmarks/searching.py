@@ -19,13 +19,14 @@ def main() -> None:
     options.add_argument(
         "samplers", nargs="*", default=["random", "halton", "ce", "mab", "eg", "sa", "cma", "tpe", "bo"]
     )
+    options.add_argument("--problem", default="*", help="of which name")
     options.add_argument("--seeds", type=int, default=20)
     options.add_argument("--most", type=int, default=2000)
     options.add_argument(
         "--share", action="store_true", help="the share of failing points, of 20,000, instead"
     )
     given = options.parse_args()
-    for path in sorted(FOLDER.glob("*.scenic")):
+    for path in sorted(FOLDER.glob(f"{given.problem}.scenic")):
         scenario = scenic.load(path)
         if given.share:
             result = scenic.falsify(

@@ -25,11 +25,12 @@ def main() -> None:
     """Print a table."""
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("samplers", nargs="*", default=["random", "halton", "ce", "mab"])
+    options.add_argument("--problem", default="*", help="of which name")
     options.add_argument("--seeds", type=int, default=20)
     options.add_argument("--most", type=int, default=2000)
     given = options.parse_args()
     sys.path.append(os.environ["SCENIC_VERIFAI"])
-    for path in sorted(FOLDER.glob("*.scenic")):
+    for path in sorted(FOLDER.glob(f"{given.problem}.scenic")):
         ranges = re.findall(r"VerifaiRange\(([-\d.]+), ([-\d.]+)\)", path.read_text())
         for name in given.samplers:
             counts = [runs(path.stem, ranges, name, seed, given.most) for seed in range(given.seeds)]
