@@ -223,6 +223,27 @@ def _read(conditions: Sequence[Node]) -> list[Node]:
     return list(order)
 
 
+def _evaluated(conditions: Sequence[Node]) -> set[Node]:
+    """The nodes that are evaluated wherever the conditions are: what has no value there has no solution."""
+    found, stack = set(conditions), list(conditions)
+    while stack:
+        node = stack.pop()
+        if node.operation.strict:
+            new = [operand for operand in node.operands if operand not in found]
+            found.update(new)
+            stack.extend(new)
+    return found
+
+
+def _never_empty(bounds: Bounds) -> Bounds:
+    """Bounds of a value that may not be needed: where there is none, nothing is known."""
+    empty = bounds.empty()
+    if not empty.any():
+        return bounds
+    empty = empty if bounds.lower.ndim == 1 else empty[:, np.newaxis]
+    return Bounds(np.where(empty, -np.inf, bounds.lower), np.where(empty, np.inf, bounds.upper))
+
+
 class _Network:
     """The nodes below some conditions that readings of bounds look at, in the order of evaluation."""
 
@@ -231,6 +252,7 @@ class _Network:
         self.order = _read(self.conditions)
         self.axes = {node: graph.axes[node] for node in self.order if node.is_axis}
         self.inner = [node for node in self.order if not node.is_axis and not node.is_constant]
+        self.evaluated = _evaluated(self.conditions)
         self._visits = visits
         self._cuts: dict[int, Floats] = {}
         """Of the axes of discrete distributions, by number: where the value changes."""
@@ -356,7 +378,7 @@ class _State:
             self._forward[node] = operands
             new = bounding.forward(node, operands)
             if new is not None:
-                self._narrow(node, new)
+                self._narrow(node, new if node in self._network.evaluated else _never_empty(new))
         for node in self._network.conditions:
             if node.kind is Kind.BOOLEAN:
                 self._narrow(node, Bounds.exactly(1.0))

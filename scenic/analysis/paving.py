@@ -44,6 +44,9 @@ SECTIONS: Final = 16
 LOSS: Final = 0.01
 """The least share of the volume that counts as lost."""
 
+MUCH: Final = 0.04
+"""The share above which boxes that lose nothing wait, while others lose so much."""
+
 VAIN: Final = 3
 """Rounds without a loss, of many boxes, after which splitting ends."""
 
@@ -156,7 +159,10 @@ def _refined(narrow: Narrow, boxes: Boxes, axes: NDArray[np.intp], every: NDArra
     chosen = np.where(left.min(axis=0) < (1 - LOSS) * volume, left.argmin(axis=0), -1)
     if np.minimum(left.min(axis=0), volume).sum() > (1 - LOSS) * volume.sum():
         return narrow(boxes.divided(_widest(boxes, axes)))[0]
-    found = [boxes.taken(np.flatnonzero(chosen < 0))]
+    others = boxes.taken(np.flatnonzero(chosen < 0))
+    if len(others) and np.minimum(left.min(axis=0), volume).sum() > (1 - MUCH) * volume.sum():
+        others = narrow(others.divided(_widest(others, axes)))[0]
+    found = [others]
     for number, ((parts, _), rows) in enumerate(zip(halves, parents, strict=True)):
         found.append(parts.taken(np.flatnonzero(chosen[rows] == number)))
     return Boxes.joined(found)

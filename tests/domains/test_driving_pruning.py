@@ -86,3 +86,30 @@ def test_what_is_in_view_is_drawn_uniformly(tmp_path: Path, region: str) -> None
     for ego, places in found[0].items():
         for mine, theirs in zip(np.array(places).T, np.array(found[1][ego]).T, strict=True):
             assert ks_2samp(np.round(mine, 6), np.round(theirs, 6)).pvalue > FALSE_ALARM
+
+
+EMPTY = """
+lane = Uniform(*network.lanes)
+turn = Uniform(*filter(lambda m: m.type is ManeuverType.LEFT_TURN, lane.maneuvers))
+ego = new Car on turn.{place}.centerline
+"""
+
+
+def test_elements_without_survivors_are_never_drawn(tmp_path: Path) -> None:
+    """Lanes from which no way leads to the left go together with what is drawn of them; the law is that of the others."""
+    (tmp_path / "cross.xodr").write_text(cross(arm=100, half=15))
+    head = HEAD.replace("MAP", repr(str(tmp_path / "cross.xodr")))
+    narrowed = scenic.scenarioFromString(head + EMPTY.format(place="startLane"), mode2D=True)
+    whole = narrowed.within(Domain.whole(narrowed.outline.graph.dimension))
+    counts = []
+    for scenario in (narrowed, whole):
+        scenes = scenario.sample(400, seed=6)
+        network = scenes[0].egoObject.roadNetwork
+        leading = [lane for lane in network.lanes if any(m.type.name == "LEFT_TURN" for m in lane.maneuvers)]
+        drawn = [network.laneAt(scene.egoObject.position) for scene in scenes]
+        counts.append([drawn.count(lane) for lane in leading])
+        assert sum(counts[-1]) == 400
+        counts[-1].append(statistics.fmean(scene.attempts for scene in scenes))
+    few, many = (row.pop() for row in counts)
+    assert 1.5 * few < many
+    assert chi2_contingency(counts).pvalue > FALSE_ALARM

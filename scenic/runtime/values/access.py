@@ -306,9 +306,11 @@ def _bounds_in_all(lengths: tuple[int, ...], index: Bounds, draw: Bounds) -> Bou
     low = np.floor(draw.lower * counts[first] * (1 + _ROUNDING))
     high = np.ceil(draw.upper * counts[first] * (1 - _ROUNDING)) - 1
     low = np.clip(low, 0, np.maximum(counts[first] - 1, 0))
+    # Where all lists that may be drawn are empty, every sample is rejected: there is no place.
+    none = starts[final] + counts[final] == starts[first]
     return Bounds(
-        np.where(one, starts[first] + low, lower).astype(np.float64),
-        np.where(one, starts[first] + np.clip(high, low, counts[first] - 1), upper).astype(np.float64),
+        np.where(none, np.inf, np.where(one, starts[first] + low, lower)),
+        np.where(none, -np.inf, np.where(one, starts[first] + np.clip(high, low, counts[first] - 1), upper)),
     )
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from scenic.graph import construction
+from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, always
@@ -163,12 +164,23 @@ def _admitted(call: Call, index: Any) -> Any:
     return index
 
 
+def _admitted_bounds(rejects: tuple[bool, ...], index: Bounds) -> Bounds:
+    """From the first admitted option to the last one; nothing where none of them is admitted."""
+    last = len(rejects) - 1
+    admitted = np.flatnonzero(~np.array(rejects))
+    first = np.searchsorted(admitted, np.clip(np.ceil(index.lower), 0, last))
+    final = np.searchsorted(admitted, np.clip(np.floor(index.upper), 0, last), side="right") - 1
+    some = first <= final
+    lower = admitted[np.minimum(first, len(admitted) - 1)]
+    return Bounds(np.where(some, lower, np.inf), np.where(some, admitted[np.maximum(final, 0)], -np.inf))
+
+
 _ADMITTED = Operation(
     "admitted option",
     always(Kind.INTEGER),
     _admitted,
     "An index that rejects samples in which it draws an option which refuses what is asked of it; payload which ones do.",
-    bounds=lambda _payload, index: index,
+    bounds=_admitted_bounds,
     inverse=lambda _payload, result, _index: [result],
     rejects=True,
 )
