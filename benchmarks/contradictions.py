@@ -128,6 +128,11 @@ def main() -> None:
             if found:
                 accused.append(name)
                 print(f"{name}: {'; '.join(str(item.message) for item in found)}", flush=True)
+            if len(times) % 50 == 0:
+                print(
+                    f"{len(times)} programs with scenes so far, {len(accused)} called contradictory",
+                    flush=True,
+                )
     print(
         f"{len(times)} programs have scenes, {len(accused)} of them are called contradictory; {without} others are left out"
     )
