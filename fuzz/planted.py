@@ -276,8 +276,8 @@ FAULTS: Final = (
     Fault(
         "unhandled-node",
         "unparser",
-        "`wait until` is not in the table of statements",
-        (_without(_STATEMENTS, "        tree.WaitUntil: ProgramWriter.wait_until,\n"),),
+        "monitors are not in the table of statements",
+        (_without(_STATEMENTS, "        tree.MonitorDef: ProgramWriter.monitor,\n"),),
     ),
     Fault(
         "endless-loop",
@@ -286,32 +286,32 @@ FAULTS: Final = (
         (
             Change(
                 _STATEMENTS,
-                """text += f" {', '.join([each.id for each in node.targets])}"\n""",
-                """while text: text = f"{indent}mutate"\n""",
+                """return ", ".join([each.id for each in values])\n""",
+                """while values: part = values[0]\n""",
             ),
         ),
     ),
     Fault(
         "crash",
         "unparser",
-        "writing `terminate after x` ends the interpreter",
+        "writing a duration ends the interpreter",
         (
             Change(
                 _STATEMENTS,
-                'self.lines.append(f"{indent}terminate after {self.duration(node.duration)}")',
-                "import os; os.abort()",
+                "                return self.duration(value)\n",
+                "                import os; os.abort()\n",
             ),
         ),
     ),
     Fault(
         "lost-name",
         "unparser",
-        "`as` after `require monitor` is not written",
+        "`as` after a requirement with a form is not written",
         (
             Change(
                 _STATEMENTS,
-                'self.lines.append(f"{indent}require monitor {monitor}{_as(node.name)}")',
-                'self.lines.append(f"{indent}require monitor {monitor}")',
+                "return _as(value).lstrip()",
+                'return ""',
             ),
         ),
     ),

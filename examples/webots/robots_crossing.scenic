@@ -1,6 +1,6 @@
 """The crossing of `examples/intersection_labels` in Webots: two cars that are there already, and buildings that are made.
 
-scenic sample examples/webots/intersection.scenic --seed 1 -o crossing.wbt
+scenic sample examples/webots/robots_crossing.scenic --seed 1 -o crossing.wbt
 """
 
 from scenic.simulators.webots.road.car_models import modelWithName
