@@ -23,15 +23,14 @@ from docs._extensions.blocks import blocks_of
 from fuzz.semantics.programs import Program, programs
 from scenic.deep import deep_check
 from scenic.language.diagnostics import Diagnostic, Severity
-from scenic.language.errors import ScenicError
 from tests.analysis.test_planted import PLANTED
 
 ROOT: Final = Path(__file__).parents[1]
 
-ATTEMPTS: Final = 300_000
+ATTEMPTS: Final = 20_000
 """Candidates among which a program must have a scene to count as one that has scenes."""
 
-SECONDS: Final = 60
+SECONDS: Final = 4
 """Time in which it must be found."""
 
 
@@ -75,7 +74,7 @@ def has_scenes(path: Path) -> bool:
     try:
         scenario = scenic.load(path, prune=False)
         scenario.sample(1, seed=1, max_attempts=ATTEMPTS, time_limit=SECONDS)
-    except (ScenicError, OSError, ImportError, TimeoutError):
+    except Exception:  # noqa: BLE001 - whatever a program raises, it has shown no scene
         return False
     return True
 
