@@ -326,14 +326,14 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
 def _narrowed(outlined: Outline) -> tuple[Domain, tuple[str, ...]]:
     """The part of the cube that the requirements allow, and the labels of those that cannot hold."""
     facts = conditions(outlined)
-    pruning = contract(outlined.graph, [*facts, *_implied(facts)])
+    pruning = contract(outlined.graph, _in_own_frames(facts))
     return pruning.domain, tuple(dict.fromkeys(item.label for item in pruning.impossible))
 
 
-def _implied(facts: Sequence[Fact]) -> list[Fact]:
-    """What follows from some facts, said so that bounds show more."""
+def _in_own_frames(facts: Sequence[Fact]) -> list[Fact]:
+    """The facts, those about turned rectangles said in the frames of these, where bounds show more."""
     seen = ((fact, unturned(fact.node)) for fact in facts)
-    return [replace(fact, node=node) for fact, node in seen if node is not None]
+    return [fact if node is None else replace(fact, node=node) for fact, node in seen]
 
 
 def _sample(scenario: Scenario, n: int, **options: Any) -> Iterator[Scene]:

@@ -65,7 +65,7 @@ LARGEST_GROUP: Final = 32
 FEW_POINTS: Final = 64
 """Points that tell of one of these how often it may hold."""
 
-GAIN: Final = 0.5
+GAIN: Final = 0.7
 """Pavings are used if they leave less than this share of their hull together."""
 
 FACTOR_GAIN: Final = 0.9

@@ -20,7 +20,7 @@ Contract = Callable[[Boxes], Boxes]
 Narrow = Callable[[Boxes], tuple[Boxes, NDArray[np.intp]]]
 """The same, and which of the boxes are left."""
 
-RARE: Final = 0.25
+RARE: Final = 0.5
 """Boxes are split by trial where fewer than this share of their points may meet the conditions."""
 
 POINTS: Final = 256
@@ -46,6 +46,9 @@ LOSS: Final = 0.01
 
 MUCH: Final = 0.04
 """The share above which boxes that lose nothing wait, while others lose so much."""
+
+LOSS_OF_ONE: Final = 0.001
+"""The same for a single box among many: those that lose less are no longer split."""
 
 VAIN: Final = 3
 """Rounds without a loss, of many boxes, after which splitting ends."""
@@ -156,7 +159,7 @@ def _refined(narrow: Narrow, boxes: Boxes, axes: NDArray[np.intp], every: NDArra
             for (parts, _), rows in zip(halves, parents, strict=True)
         ]
     )
-    chosen = np.where(left.min(axis=0) < (1 - LOSS) * volume, left.argmin(axis=0), -1)
+    chosen = np.where(left.min(axis=0) < (1 - LOSS_OF_ONE) * volume, left.argmin(axis=0), -1)
     if np.minimum(left.min(axis=0), volume).sum() > (1 - LOSS) * volume.sum():
         return narrow(boxes.divided(_widest(boxes, axes)))[0]
     others = boxes.taken(np.flatnonzero(chosen < 0))

@@ -216,6 +216,22 @@ def test_mutators_of_equal_deviations_are_equal() -> None:
     assert one != OrientationMutator((1, 2, 3))
 
 
+def test_a_mutator_may_give_a_copy_with_other_values() -> None:
+    text = (
+        "from scenic.simulators.utils.colors import Color, ColorMutator\n"
+        "class Moved(Mutator):\n    def appliedTo(self, thing):\n"
+        "        return thing._copyWith(position=thing.position + (1, 0, 0), width=2), False\n"
+        "class Thing(Object):\n    mutator[additive]: Moved()\nego = new Thing at (Range(4, 5), 0)\nmutate ego\n"
+        "class Painted(Object):\n    color: Color(0.5, 0.5, 0.5)\n    mutator[additive]: ColorMutator()\n"
+        "painted = new Painted at (9, 9)\nmutate painted\n"
+    )
+    for found in scenario(text).sample(5, seed=1):
+        ego, painted = found.objects
+        assert 5 <= ego.position.x <= 6
+        assert (ego.width, ego.occupiedSpace.dimensions.x) == (2, 2)
+        assert tuple(painted.color) != (0.5, 0.5, 0.5)
+
+
 @pytest.mark.parametrize("scale", ["0", "Uniform(0, 2)"])
 def test_a_scale_that_is_drawn_as_zero_asks_no_mutator(scale: str) -> None:
     text = (

@@ -19,7 +19,7 @@ from scenic.language.types import VECTOR
 from scenic.runtime.elements.shapes import BoxShape
 from scenic.runtime.geometry.scalar_bodies import meet
 from scenic.runtime.instances.mutators import OrientationMutator, PositionMutator
-from scenic.runtime.instances.properties import ATTRIBUTES, Property, PropertyDefinition, combine
+from scenic.runtime.instances.properties import ATTRIBUTES, Property, PropertyDefinition, combine, update
 from scenic.runtime.program.context import here
 from scenic.runtime.python.class_members import bind
 from scenic.runtime.regions.base import Region
@@ -147,6 +147,12 @@ class Point:
             values
         )  # not updated, which would add to the names that scenes' objects share
         return instance
+
+    def _copyWith(self, **properties: Any) -> Self:
+        """A copy with other values of some properties: an established way for mutators to give their result."""
+        other = self._make(self.__dict__)
+        update(other, properties)
+        return other
 
     @property
     def properties(self) -> Mapping[str, Any]:

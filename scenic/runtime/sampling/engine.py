@@ -185,7 +185,10 @@ class Engine:
         """Processor time of all rounds so far."""
         self.rehearsed: int | None = None
         """Number of candidates of the rehearsal that passed; `None` where no rehearsal went through all checks."""
-        self._pace = Pace(max(64, min(DEFAULT_LANES, BATCH_BYTES // max(1, plan.lane_bytes))))
+        self._pace = Pace(
+            max(64, min(DEFAULT_LANES, BATCH_BYTES // max(1, plan.lane_bytes))),
+            any(node.runs_python for node in plan.graph.nodes),
+        )
         self._scheduler = Scheduler(plan.graph, grouped=grouped)
         self._single = Scheduler(plan.graph, grouped=False)
         self._stages = Stages(plan.checks, plan.outputs, self._scheduler)

@@ -11,6 +11,9 @@ _LIKELY_FIXED: Final = 1e-3
 _LIKELY_LANE: Final = 5e-6
 """Seconds a round and a lane before anything is measured."""
 
+_LIKELY_PYTHON: Final = 1e-4
+"""The same where code of the program is called in each lane."""
+
 _FIXED_LANES: Final = 200
 """A round costs about what so many lanes cost more, before rounds of several sizes have been measured."""
 
@@ -50,10 +53,12 @@ class Pace:
 
     Args:
         most: lanes of a round, at most.
+        calls_code: whether code of the program is called in each lane.
 
     """
 
     most: int
+    calls_code: bool = False
     lanes: float = 0.0
     passed: float = 0.0
     _rounds: int = 0
@@ -89,7 +94,7 @@ class Pace:
     def cost(self) -> tuple[float, float]:
         """Seconds of a round, and of each of its lanes, by weighted least squares."""
         if self._weight == 0:
-            return _LIKELY_FIXED, _LIKELY_LANE
+            return _LIKELY_FIXED, _LIKELY_PYTHON if self.calls_code else _LIKELY_LANE
         mean_x, mean_y = self._x / self._weight, self._y / self._weight
         variance = self._xx / self._weight - mean_x * mean_x
         if variance > 1e-2 * mean_x * mean_x:
