@@ -6,7 +6,7 @@ model scenic.simulators.newtonian.driving_model
 behavior Cautious(speed):
     try:
         do FollowLaneBehavior(target_speed=speed)
-    interrupt when withinDistanceToObjsInLane(self, 22):
+    interrupt when withinDistanceToObjsInLane(self, 30):
         take SetThrottleAction(0), SetBrakeAction(1)
 
 lane = Uniform(*filter(lambda l: l._laneToRight is None, [s for l in network.lanes for s in l.sections])).lane

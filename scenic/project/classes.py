@@ -1,6 +1,7 @@
 """Members of classes: properties, methods and attributes, their own and inherited ones; and the classes of values."""
 
 import ast
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -232,7 +233,11 @@ def _meaning(project: Project, module: Module, node: ast.expr, depth: int) -> Sy
         return symbol_of_module(target) if isinstance(target, Found) else symbol_of_exported(project, target)
     owner: Symbol | None = _meaning(project, module, node.value, depth + 1)
     if owner is None or owner.kind is not SymbolKind.CLASS:
-        owner = _class_of(project, module, node.value, depth + 1)
+        owner = _single(
+            _of_attribute(project, owner, depth + 1)
+            if isinstance(node.value, ast.Attribute)
+            else _value_of(project, module, node.value, depth + 1)
+        )
     known = None if owner is None else _class(project, owner, depth + 1)
     member = None if known is None else known.member(node.attr)
     if member is None or known is None:
@@ -284,12 +289,7 @@ def class_of(project: Project, module: Module, node: ast.expr) -> Symbol | None:
 
     That is so of ``new C`` and ``C(...)``, of what is annotated, of elements of sequences, and of names of such values.
     """
-    return _class_of(project, module, node, 0)
-
-
-def _class_of(project: Project, module: Module, node: ast.expr, depth: int) -> Symbol | None:
-    found = _value_of(project, module, node, depth)
-    return None if found is None or found.is_sequence else found.cls
+    return _single(_value_of(project, module, node, 0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -320,11 +320,30 @@ def _value_of(project: Project, module: Module, node: ast.expr, depth: int) -> _
         case ast.Name():
             return _value_of_name(project, module, node, depth)
         case ast.Attribute():
-            meant = _meaning(project, module, node, depth + 1)
-            return None if meant is None else _annotated_symbol(project, meant, depth, called=False)
+            return _of_attribute(project, _meaning(project, module, node, depth + 1), depth)
         case ast.Subscript(value=value, slice=index) if not isinstance(index, ast.Slice):
             return _element(_value_of(project, module, value, depth + 1))
     return None
+
+
+def _alike(values: Iterable[_Value | None]) -> _Value | None:
+    """The value that all are; looks no further once that is not to be, since names may lead back to themselves."""
+    common: _Value | None = None
+    for value in values:
+        if value is None or (common is not None and value != common):
+            return None
+        common = value
+    return common
+
+
+def _single(value: _Value | None) -> Symbol | None:
+    """The class of a value that is no sequence."""
+    return None if value is None or value.is_sequence else value.cls
+
+
+def _of_attribute(project: Project, meant: Symbol | None, depth: int) -> _Value | None:
+    """The value of an attribute that means this; long chains of attributes ask for the meaning of each once."""
+    return None if meant is None else _annotated_symbol(project, meant, depth, called=False)
 
 
 def _element(value: _Value | None) -> _Value | None:
@@ -336,13 +355,12 @@ def _value_of_call(
 ) -> _Value | None:
     name = function.id if isinstance(function, ast.Name) else None
     if name == "Uniform":
-        chosen = {
+        return _alike(
             _element(_value_of(project, module, value.value, depth + 1))
             if isinstance(value, ast.Starred)
             else _value_of(project, module, value, depth + 1)
             for value in node.args
-        }
-        return chosen.pop() if len(chosen) == 1 else None
+        )
     if name == "filter" and len(node.args) == 2:
         return _value_of(project, module, node.args[1], depth + 1)
     if name in _SAME_SEQUENCE and len(node.args) == 1:
@@ -432,8 +450,7 @@ def _value_of_name(project: Project, module: Module, node: ast.Name, depth: int)
 
 def _common(project: Project, module: Module, values: list[ast.expr], depth: int) -> _Value | None:
     """The class that all of the values have."""
-    classes = {_value_of(project, module, value, depth + 1) for value in values}
-    return classes.pop() if len(classes) == 1 else None
+    return _alike(_value_of(project, module, value, depth + 1) for value in values)
 
 
 def _class_of_self(module: Module, scope: Scope, name: str) -> Symbol | None:

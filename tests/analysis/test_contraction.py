@@ -450,9 +450,9 @@ def test_a_paving_that_is_as_good_as_its_hull_is_replaced_by_that():
         assert domain.volume < 0.3 * 0.25
 
 
-@pytest.mark.parametrize(("count", "kept"), [(1, False), (3, False), (4, True)])
+@pytest.mark.parametrize(("count", "kept"), [(1, False), (2, True), (4, True)])
 def test_small_gains_count_together(count, kept):
-    """Each leaves 0.8 of its draw: three of them more than half of the cube, four of them less."""
+    """Each leaves 0.8 of its draw: one alone is not worth a union, two are."""
     items = [
         Fact(make("greater", make("absolute", make("subtract", uniform(0, 1), 0.5)), 0.1), "")
         for _ in range(count)
@@ -506,7 +506,7 @@ def test_a_paving_has_so_many_boxes_at_most():
     ring = make("less", make("absolute", make("subtract", radius, 0.8)), 0.01)
     domain = check(ring)
     assert paving.MOST / 4 < domain.boxes <= paving.MOST
-    half = check(make("less", make("absolute", make("subtract", radius, 0.8)), 0.2))
+    half = check(make("less", make("absolute", make("subtract", radius, 0.8)), 0.37))
     assert contraction.LARGEST_PAVING / 4 < half.boxes <= contraction.LARGEST_PAVING
 
 

@@ -17,7 +17,7 @@ from scenic.runtime.sampling.checks import NodeCheck
 from scenic.runtime.sampling.engine import BATCH_BYTES, BODY_BYTES, DEFAULT_LANES, Engine
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.report import Exhausted
-from scenic.runtime.scenes.scenario import DEFAULT_ATTEMPTS
+from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS
 from tests.graph.programs import evaluate, faulty
 from tests.runtime.programs import FALSE_ALARM, fingerprint, scenario
 

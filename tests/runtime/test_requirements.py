@@ -580,7 +580,7 @@ def test_sizes_that_may_be_nothing_are_looked_at() -> None:
         if check.label.startswith("positive")
     }
     assert found == {
-        (f"positive {name}", line): (eval(size, {"x": x}) > 0).tolist()
+        (f"positive {name} of Object", line): (eval(size, {"x": x}) > 0).tolist()
         for line, (name, size) in enumerate(texts)
         if size != "x + 1"
     }

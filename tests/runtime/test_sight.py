@@ -245,7 +245,7 @@ def test_what_cannot_be_proved_to_be_seen_is_not_certainly_seen() -> None:
             "cannot be used while the program runs",
         ),
         ("ego = new Object\nnew Object not visible", "needs to know where"),
-        ("ego = new Object\nnew Object at (0, 90, 0), visible", "cannot be seen from the Object"),
+        ("ego = new Object\nnew Object at (0, 90, 0), visible", "cannot be seen from ego"),
         ("ego = new Object\nnew Object at (0, 9, 0), not visible", "always seen"),
         ("new Object with requireVisible True", "there is no ego"),
         ("ego = new Object with viewAngles (0, 1)\nnew Object at 5 @ 5, visible", "greater than 0"),

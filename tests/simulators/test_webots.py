@@ -176,7 +176,7 @@ def test_the_case_studies_are_worlds_too(tmp_path: Path) -> None:
     room.save(tmp_path / "room.scene")
     again = scenic.load(folder / "vacuum.scenic", params={"numToys": 2}).replay(tmp_path / "room.scene")
     assert again.egoObject.position == room.egoObject.position
-    (crossing,) = scenic.load(folder / "intersection.scenic").sample(1, seed=1)
+    (crossing,) = scenic.load(folder / "robots_crossing.scenic").sample(1, seed=1)
     cars = [Node("CAR_0"), Node("CAR_1")]
     done = WebotsSimulator(Supervisor(*cars)).simulate(
         crossing, maxSteps=20, timestep=0.16, keep_violations=True
