@@ -264,6 +264,15 @@ def _locals(function: ast.AST) -> set[str]:
     return stored | {node.arg for node in ast.walk(function) if isinstance(node, ast.arg)}
 
 
+LONGEST = 700
+"""Lines of a module, at most: a longer one has more than one idea."""
+
+
+def test_modules_are_not_too_long() -> None:
+    lengths = {module: path.read_text(encoding="utf-8").count("\n") for module, path in ALL.items()}
+    assert not {module: length for module, length in lengths.items() if length > LONGEST}
+
+
 INDIRECT = {"What", "Which", "Who", "Whose", "How", "Whether"}
 """Words that no public docstring begins with: it begins with a noun (what it is) or a verb (what it does)."""
 
