@@ -67,11 +67,13 @@ class Programs:
 def workplace(folder: Path, *, examples: bool = False) -> Iterator[None]:
     """Work in a folder in which the meshes and road maps of the examples are found.
 
-    ``examples`` puts copies of all examples there, and of the programs of the pictures, as in the repository.
+    The examples are there, as in the repository; with ``examples`` as copies, with the programs of the pictures.
     """
     if examples:
         for part in ("examples", "docs/pictures"):
             shutil.copytree(ROOT / part, folder / part, ignore=shutil.ignore_patterns("__pycache__", "*.jpg"))
+    else:
+        (folder / "examples").symlink_to(ROOT / "examples")
     for link, target in (("meshes", "meshes"), ("maps", "driving")):
         (folder / link).symlink_to(ROOT / "examples" / target)
     with contextlib.chdir(folder), mock.patch.dict(os.environ, COLUMNS=COLUMNS, NO_COLOR="1"):
