@@ -155,7 +155,11 @@ class SumoSimulator(DrivingSimulator):
         """
         if self._folder is None:
             folder = tempfile.TemporaryDirectory(prefix="scenic-sumo-")
-            convert(self.map_path, Path(folder.name) / "map.net.xml")
+            try:
+                convert(self.map_path, Path(folder.name) / "map.net.xml")
+            except BaseException:
+                folder.cleanup()
+                raise
             self._folder = folder
         return Path(self._folder.name) / "map.net.xml"
 
@@ -163,6 +167,7 @@ class SumoSimulator(DrivingSimulator):
         self, scene: Scene, *, timestep: float | None = None, **options: Any
     ) -> SumoSimulation:
         """A simulation that has run."""
+        library()  # Says that it is missing before a map is converted for nothing.
         return SumoSimulation(
             scene, self.network(), timestep=self.timestep if timestep is None else timestep, **options
         )
