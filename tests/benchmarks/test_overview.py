@@ -22,14 +22,14 @@ def test_the_table_compares_medians_over_turns(monkeypatch: pytest.MonkeyPatch) 
     ]
 
 
-def test_a_scene_costs_what_a_longer_run_takes_more(monkeypatch: pytest.MonkeyPatch) -> None:
-    lines = '{"iterations": 1}\n' * 4
+def test_the_reference_measures_its_scenes_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    lines = "".join(f'{{"iterations": 1, "seconds": {seconds}}}\n' for seconds in (9, 1, 2))
 
     def spent(command: list[str]) -> Spent:
-        return Spent(5.0, 70, lines) if command[-1] == "4" else Spent(2.0, 60, "")
+        return Spent(2.0, 60, lines if command[-1] == "--time" else "")
 
     monkeypatch.setattr(overview, "spent", spent)
-    assert overview.theirs("other", Path("a.scenic"), 3, 1) == Row(2.0, 2.0, 60, 1.0)
+    assert overview.theirs("other", Path("a.scenic"), 2, 1) == Row(2.0, 2.0, 60, 1.5)
     lines = '{"error": "no scene was found"}\n'
     with pytest.raises(SystemExit, match=r"a.scenic: .*no scene was found"):
-        overview.theirs("other", Path("a.scenic"), 3, 1)
+        overview.theirs("other", Path("a.scenic"), 2, 1)
