@@ -1,4 +1,4 @@
-"""What the deep check says of programs: ``python -m benchmarks.contradictions [--generated N] [--slowest N]``.
+"""Run the deep check on planted and satisfiable programs: ``python -m benchmarks.contradictions [--generated N] [--slowest N]``.
 
 - Programs with planted contradictions (those of ``tests/analysis/test_planted.py``): is the error at the right line?
 - Programs that have scenes: is any of them called contradictory? Examples, blocks of the documentation, the programs of
@@ -70,7 +70,7 @@ def generated(count: int) -> list[str]:
 
 
 def has_scenes(path: Path) -> bool:
-    """Whether sampling finds a scene of a program, without analysis."""
+    """Tell whether sampling finds a scene of a program, without analysis."""
     try:
         scenario = scenic.load(path, prune=False)
         scenario.sample(1, seed=1, max_attempts=ATTEMPTS, time_limit=SECONDS)

@@ -206,7 +206,7 @@ def measure(given: argparse.Namespace, programs: list[Path]) -> None:
 
 
 def _least_p(path: Path, mine: Any, other: Any) -> tuple[int, float, str]:
-    """How many tests there are between scenes of two kinds, the least p-value, corrected, and of what it is."""
+    """Return the number of tests between scenes of two kinds, the least corrected p-value, and its observable."""
     import numpy as np
     from scipy.stats import chi2_contingency, ks_2samp
 

@@ -76,7 +76,7 @@ def reference(command: str, sampler: str, scenes: int) -> list[dict[str, Any]]:
 
 
 def p_value(first: list[float], second: list[float]) -> float:
-    """How likely samples of one law differ so much."""
+    """Return the p-value of the difference of two samples, if both have one law."""
     values = sorted({*first, *second})
     if len(values) > 10:
         return float(ks_2samp(first, second).pvalue)

@@ -55,7 +55,7 @@ def rows_of(scenes: Iterable[Scene]) -> NDArray[np.float64]:
 
 
 def outside(engine: Engine, kept: Domain, wanted: int, seconds: float) -> tuple[int, int]:
-    """How many scenes of a plan whose domain is the whole cube lie outside of another domain, and of how many.
+    """Count the scenes of a plan over the whole cube that lie outside of another domain, and all of them.
 
     Args:
         engine: finds the scenes.

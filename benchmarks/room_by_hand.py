@@ -219,7 +219,7 @@ class Room:
 
 
 def overlap(one: Thing, two: Thing) -> Array:
-    """Whether the outlines of the boxes share a point, by the four axes of their sides."""
+    """Tell whether the outlines of the boxes share a point, by the four axes of their sides."""
     dx, dy = two.x - one.x, two.y - one.y
     apart = np.zeros(len(dx), dtype=bool)
     turn = two.yaw - one.yaw
@@ -234,7 +234,7 @@ def overlap(one: Thing, two: Thing) -> Array:
 
 
 def pierces(one: Thing, two: Thing, lanes: Array) -> Array:
-    """Whether some known point of one lies in a cell that is known to be filled by the other."""
+    """Tell whether some known point of one lies in a cell that is known to be filled by the other."""
     x, y, z = (one.shape.probes[:, axis] * one.size[lanes, axis, None] for axis in range(3))
     turn = (one.yaw - two.yaw)[lanes, None]
     dx, dy = (one.x - two.x)[lanes], (one.y - two.y)[lanes]

@@ -198,12 +198,12 @@ class _Values:
 
 
 def _is_settled(value: Any) -> bool:
-    """Whether a value is drawn with the scene, or a constant."""
+    """Tell whether a value is drawn with the scene, or a constant."""
     return isinstance(value, bool | int | float | str) or is_random(value)
 
 
 def _is_used_inside(name: str, tree: ast.Module) -> bool:
-    """Whether code that runs in simulations may start the behavior of a name."""
+    """Tell whether code that runs in simulations may start the behavior of a name."""
     later = (scenic.BehaviorDef, scenic.MonitorDef, scenic.ScenarioDef, *_INNER)
     return any(
         isinstance(part, ast.Name) and part.id == name
@@ -221,7 +221,7 @@ def _is_dead(
     roots: Sequence[Node],
     facts: Sequence[Fact],
 ) -> bool:
-    """Whether no scene meets the requirements and all conditions that lead to a branch."""
+    """Tell whether no scene meets the requirements and all conditions that lead to a branch."""
     parts = []
     for (test, holds), readings in zip(branch.path, told, strict=True):
         if readings:  # conditions that may change say nothing

@@ -29,16 +29,16 @@ class Oracle(Protocol):
 
     @property
     def is_flat(self) -> bool:
-        """Whether it lies in the plane."""
+        """Tell whether it lies in the plane."""
 
     def covers(self, points: Floats) -> NDArray[np.bool_]:
         """Which points ``(n, 3)`` lie in the region, ``(n,)``."""
 
     def holds(self, place: Floats, heading: float) -> bool:
-        """Whether the region holds a whole thing."""
+        """Tell whether the region holds a whole thing."""
 
     def meets(self, place: Floats, heading: float) -> bool:
-        """Whether the region shares a point with a thing."""
+        """Tell whether the region shares a point with a thing."""
 
     def distance(self, point: Floats) -> float:
         """How far a point is from the region."""

@@ -200,7 +200,7 @@ def _impossible_alone(graph: Graph, conditions: Sequence[Fact]) -> tuple[Fact, .
 
 
 def _moved(before: Boxes, after: Boxes, alive: Mask) -> bool:
-    """Whether some axis of a box that is still alive lost enough to go on."""
+    """Tell whether some axis of a box that is still alive lost enough to go on."""
     old = before.upper[alive] - before.lower[alive]
     new = after.upper[alive] - after.lower[alive]
     return bool((new < (1 - PROGRESS) * old).any())
@@ -453,7 +453,7 @@ class _State:
 
 
 def _same(before: Sequence[Bounds | None] | None, now: Sequence[Bounds | None]) -> bool:
-    """Whether bounds are the same objects as when they were last read."""
+    """Tell whether bounds are the same objects as when they were last read."""
     return before is not None and all(a is b for a, b in zip(before, now, strict=True))
 
 

@@ -95,7 +95,7 @@ def _place(condition: Fact) -> tuple[bool, Span]:
 
 
 def _always_holds(condition: Fact) -> bool:
-    """Whether intervals show that a requirement of the program holds in every scene."""
+    """Tell whether intervals show that a requirement of the program holds in every scene."""
     bounds = None if condition.built_in else overall(condition.node)
     return bounds is not None and bounds.lower.shape == (1,) and bool(bounds.lower[0] >= 1)
 

@@ -108,7 +108,7 @@ def _groups(requirements: Sequence[Required]) -> list[list[Required]]:
 
 
 def _is_fixed(atom: Kept) -> bool:
-    """Whether an atom is made of constants alone."""
+    """Tell whether an atom is made of constants alone."""
     function = atom.function
     return isinstance(function, FunctionType) and not atom.captured and not function.__code__.co_names
 

@@ -255,7 +255,7 @@ class Simulations:
         return simulate(keep_course=True)
 
     def _looks_back(self) -> bool:
-        """Whether the program's text names something that needs the whole course."""
+        """Tell whether the program's text names something that needs the whole course."""
         if self._looking_back is None:
             self._looking_back = any(name in self._scenario.text for name in ("trajectory", "actionSequence"))
         return self._looking_back

@@ -259,7 +259,7 @@ def _results(tasks: Sequence[Task], jobs: int | None) -> Iterator[tuple[int, Out
 
 
 def _pays(tasks: Sequence[Task]) -> bool:
-    """Whether the tasks take longer than to start other processes."""
+    """Tell whether the tasks take longer than to start other processes."""
     total = 0
     for task in tasks:
         try:

@@ -269,7 +269,7 @@ def _total(rows: "Sequence[SimulationRow]", max_steps: int) -> str:
 
 
 def _is_late(about: Mapping[str, Any]) -> bool:
-    """Whether the limit of the command ended a simulation, rather than one of the program."""
+    """Tell whether the limit of the command ended a simulation, rather than one of the program."""
     return bool(about["reason"] == f"reached time limit ({about['steps']} steps)")
 
 
@@ -313,6 +313,6 @@ def _show_records(row: "SimulationRow") -> None:
 
 
 def _is_series(value: Any) -> bool:
-    """Whether a recorded value is a list of steps with what was recorded then."""
+    """Tell whether a recorded value is a list of steps with what was recorded then."""
     pairs = isinstance(value, list) and all(isinstance(item, list) and len(item) == 2 for item in value)
     return pairs and all(isinstance(step, int) for step, _ in value)

@@ -169,7 +169,7 @@ class _CarefulLexer(Lexer):
             pos = self.conflict(marker)
 
     def is_afresh(self) -> bool:
-        """Whether the lexer has nothing in mind at the beginning of a line."""
+        """Tell whether the lexer has nothing in mind at the beginning of a line."""
         return (
             len(self.indents) == 1
             and self.shifted is None
@@ -250,7 +250,7 @@ class _CarefulLexer(Lexer):
         self.indents.pop()
 
     def block_begins(self, end: int) -> bool:
-        """Whether the logical line before begins a block, or the line at ``end`` looks like one of specifiers."""
+        """Tell whether the logical line before begins a block, or the line at ``end`` looks like one of specifiers."""
         kinds = self.tokens.kinds
         if len(kinds) < 2 or kinds[-1] != NEWLINE:
             return False
@@ -418,7 +418,7 @@ class _CarefulLexer(Lexer):
         return stop
 
     def text_is_open(self, start: int, end: int) -> bool:
-        """Whether the quotes that end a text of several lines look like those that begin the next one."""
+        """Tell whether the quotes that end a text of several lines look like those that begin the next one."""
         text = self.text
         if text[end - 3 : end] not in ('"""', "'''"):
             return False
@@ -429,7 +429,7 @@ class _CarefulLexer(Lexer):
         return before[-1:] in ("=", "(", ",", "[") and _STATEMENT.match(before + "\n") is not None
 
     def is_code_again(self, line_start: int, first: int) -> bool:
-        """Whether a line in a text that is never closed looks like a statement that follows it."""
+        """Tell whether a line in a text that is never closed looks like a statement that follows it."""
         text = self.text
         if not _STATEMENT.match(text, first):
             return False

@@ -67,7 +67,7 @@ def suspects(resolution: Resolution, source: Source, *, longest_line: int) -> li
 
 
 def _is_suspect_anywhere(stretch: Stretch, source: Source) -> bool:
-    """Whether something may be said of a stretch, wherever it stands."""
+    """Tell whether something may be said of a stretch, wherever it stands."""
     return (
         not stretch.contents.classes <= _HARMLESS
         or _is_suspect(stretch)
@@ -77,7 +77,7 @@ def _is_suspect_anywhere(stretch: Stretch, source: Source) -> bool:
 
 
 def _joins(stretch: Stretch) -> bool:
-    """Whether what Python says of one statement of the top level depends on others."""
+    """Tell whether what Python says of one statement of the top level depends on others."""
     return any(
         isinstance(node, ast.Global) or (isinstance(node, ast.ImportFrom) and node.module == "__future__")
         for node in stretch.statements
@@ -85,7 +85,7 @@ def _joins(stretch: Stretch) -> bool:
 
 
 def _is_suspect(stretch: Stretch) -> bool:
-    """Whether there is a node of which something may be said."""
+    """Tell whether there is a node of which something may be said."""
     for cls, test in _TESTS.items():
         if any(test(node) for node, _ in stretch.nodes(cls)):
             return True
@@ -100,7 +100,7 @@ _PARAMETERS: Final = frozenset({BindingKind.PARAMETER})
 
 
 def _is_repeated(sites: Iterable[ast.AST]) -> bool:
-    """Whether two parameters have a name; behaviors and monitors bind theirs, by their own node, to ``self``."""
+    """Tell whether two parameters have a name; behaviors and monitors bind theirs, by their own node, to ``self``."""
     return sum(isinstance(site, ast.arg | scenic.BehaviorDef | scenic.MonitorDef) for site in sites) > 1
 
 
@@ -113,7 +113,7 @@ def _class(node: Any) -> bool:
 
 
 def _repeats(keywords: Sequence[ast.keyword]) -> bool:
-    """Whether a keyword is given twice."""
+    """Tell whether a keyword is given twice."""
     return len(keywords) > 1 and len({each.arg for each in keywords if each.arg is not None}) < sum(
         each.arg is not None for each in keywords
     )
@@ -139,7 +139,7 @@ _TESTS: Final[Mapping[type[ast.AST], Callable[[Any], bool]]] = {
 
 
 def _has_suspect_words(statements: Sequence[ast.stmt], source: Source) -> bool:
-    """Whether there are comprehensions that wait, indentation that is hidden, or special names, however spelt."""
+    """Tell whether there are comprehensions that wait, indentation that is hidden, or special names, however spelt."""
     if not statements:
         return False
     first, last = statements[0], statements[-1]
@@ -155,7 +155,7 @@ def _has_suspect_words(statements: Sequence[ast.stmt], source: Source) -> bool:
 
 
 def _is_deep(statements: Iterable[ast.stmt]) -> bool:
-    """Whether blocks are nested deeply, those of ``elif`` included."""
+    """Tell whether blocks are nested deeply, those of ``elif`` included."""
     level: list[Any] = list(statements)
     for _ in range(_DEEPEST):
         level = [

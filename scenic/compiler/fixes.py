@@ -120,7 +120,7 @@ def apply_fixes(text: str, fixes: Iterable[Fix]) -> tuple[str, int]:
 
 
 def _clash(edit: tuple[int, int, str], taken: Sequence[tuple[int, int, str]]) -> bool:
-    """Whether an edit touches one of those taken, which are in order; two insertions at one place do."""
+    """Tell whether an edit touches one of those taken, which are in order; two insertions at one place do."""
     start, end, _ = edit
     index = bisect_right(taken, start, key=lambda each: each[0])
     before = taken[index - 1] if index else None

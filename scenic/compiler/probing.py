@@ -114,7 +114,7 @@ def _indentation(text: str) -> int:
 
 
 def _goes_on(text: str) -> bool:
-    """Whether a line goes on with the statement before it."""
+    """Tell whether a line goes on with the statement before it."""
     return text.lstrip().startswith(_GOING_ON)
 
 

@@ -468,7 +468,7 @@ def _kind_of_binding(project: Project, module: Module, binding: Binding) -> tupl
 def _is_scenic(
     project: Project, module: Module, snapshot: Snapshot, item: Completion, line: int, column: int
 ) -> bool:
-    """Whether ``new`` can make instances of a class."""
+    """Tell whether ``new`` can make instances of a class."""
     if item.key[:1] == ("provided",):
         return item.label in CLASSES
     symbol = _symbol_named(project, module, snapshot, item.label, [str(line), str(column)])
@@ -582,7 +582,7 @@ def _modules(project: Project, snapshot: Snapshot, before: tuple[str, ...]) -> I
 
 
 def _leads_to_models(found: Found, *, beside: bool) -> bool:
-    """Whether a module is one of Scenic, or a folder with such modules: for installed packages, right in it."""
+    """Tell whether a module is one of Scenic, or a folder with such modules: for installed packages, right in it."""
     if found.kind is ModuleKind.SCENIC or found.filename is None:
         return found.kind is ModuleKind.SCENIC
     is_package = os.path.basename(found.filename).startswith("__init__.")

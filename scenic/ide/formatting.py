@@ -404,7 +404,7 @@ class _Layout:
         return min(levels, key=lambda level: (abs(len(_INDENTATION) * level - column), -level))
 
     def _ended_definition(self, depth: int) -> bool:
-        """Whether the block that has just ended, at this depth, was a definition."""
+        """Tell whether the block that has just ended, at this depth, was a definition."""
         for line in reversed(self._lines):
             if line.strip() and not line.lstrip().startswith("#"):
                 indentation = len(line) - len(line.lstrip())
@@ -491,7 +491,7 @@ def _lines_in_strings(tokens: Tokens) -> Iterator[int]:
 
 
 def _same(tree: ast.Module, tokens: Tokens, result: str) -> bool:
-    """Whether a text has this tree, and the comments of these tokens."""
+    """Tell whether a text has this tree, and the comments of these tokens."""
     again = revise(result)
     if again.result.diagnostics:
         return False
@@ -501,7 +501,7 @@ def _same(tree: ast.Module, tokens: Tokens, result: str) -> bool:
 
 
 def _equal(one: ast.AST, other: ast.AST) -> bool:
-    """Whether two trees say the same, wherever their nodes stand."""
+    """Tell whether two trees say the same, wherever their nodes stand."""
     pairs: list[tuple[Any, Any]] = [(one, other)]
     while pairs:
         left, right = pairs.pop()

@@ -168,7 +168,7 @@ def _priorities(snapshot: Snapshot, node: scenic.New) -> Iterator[Hint]:
 
 
 def _is_number(node: ast.expr) -> bool:
-    """Whether a value is a number that is written out, maybe with a sign."""
+    """Tell whether a value is a number that is written out, maybe with a sign."""
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
         node = node.operand
     return isinstance(node, ast.Constant) and type(node.value) in (int, float) and node.value != 0

@@ -130,7 +130,7 @@ def _holds(outer: Span, inner: Span) -> bool:
 
 
 def _own_names(snapshot: Snapshot, expression: ast.AST) -> bool:
-    """Whether an expression reads ``self`` of the object that a specifier is about, or binds a name."""
+    """Tell whether an expression reads ``self`` of the object that a specifier is about, or binds a name."""
     for node in walk(expression):
         if isinstance(node, ast.NamedExpr):
             return True

@@ -286,7 +286,7 @@ class Imports:
             yield self._without(home.name, node.attr, exports, place)
 
     def _is_stored(self, node: ast.Attribute) -> bool:
-        """Whether the program gives a module such an attribute somewhere."""
+        """Tell whether the program gives a module such an attribute somewhere."""
         return any(
             other.attr == node.attr and not isinstance(other.ctx, ast.Load)
             for other, _ in self._resolution.nodes(ast.Attribute)
@@ -325,7 +325,7 @@ class Imports:
         return Fix(f"Write `{near}`", tuple(edits), is_slip(name, near))
 
     def _is_guarded(self, node: ast.AST) -> bool:
-        """Whether a node stands in a ``try`` that catches errors, so that its failure may be provided for."""
+        """Tell whether a node stands in a ``try`` that catches errors, so that its failure may be provided for."""
         return any(first <= position(node) <= last for first, last in self._guards)
 
     @cached_property

@@ -337,7 +337,7 @@ class Project:
         return exported if inner.is_missing else inner
 
     def _is_own_module(self, exported: Exported, found: Found) -> bool:
-        """Whether ``from . import name`` in a package itself binds a name: it can only bring the module of that name."""
+        """Tell whether ``from . import name`` in a package itself binds a name: it can only bring the module of that name."""
         module, binding = exported.module, exported.binding
         if module is None or binding is None or module.filename != found.filename:
             return False
@@ -414,7 +414,7 @@ def _compiled(found: Found) -> Exports:
 
 
 def _is_foreign(found: Found) -> bool:
-    """Whether a compiled module lies outside of Python's own library, whatever its name."""
+    """Tell whether a compiled module lies outside of Python's own library, whatever its name."""
     library = os.path.dirname(os.path.abspath(os.__file__))
     inside = found.filename is None or found.filename.startswith(library + os.sep)
     return not inside or "site-packages" in (found.filename or "")

@@ -116,7 +116,7 @@ def _loop(node: ast.While, _scope: Scope, context: Context) -> Iterator[Diagnost
 
 
 def _makes_generator(body: list[ast.stmt]) -> bool:
-    """Whether a block holds a lone ``yield``: it may be there to make a generator of a function."""
+    """Tell whether a block holds a lone ``yield``: it may be there to make a generator of a function."""
     return len(body) == 1 and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Yield)
 
 
@@ -166,7 +166,7 @@ def _comparison(node: ast.Compare, _scope: Scope, context: Context) -> Iterator[
 
 
 def _same(first: ast.expr, second: ast.expr) -> bool:
-    """Whether two expressions are the same name, or the same attribute of the same name."""
+    """Tell whether two expressions are the same name, or the same attribute of the same name."""
     while isinstance(first, ast.Attribute) and isinstance(second, ast.Attribute):
         if first.attr != second.attr:
             return False

@@ -270,7 +270,7 @@ class Context:
         return site if self._stands(name.id, site) else None
 
     def _stands(self, name: str, site: ast.AST) -> bool:
-        """Whether no names that the text does not show may replace what is bound to a name there."""
+        """Tell whether no names that the text does not show may replace what is bound to a name there."""
         if position(site) >= self._last_wildcard:
             return True
         return not self.resolution.wildcard and name not in self.brought

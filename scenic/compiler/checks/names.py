@@ -185,17 +185,17 @@ def _last_words(context: Context) -> set[str]:
 
 
 def _may_become(word: str, name: str) -> bool:
-    """Whether a word that binds nothing, where something should be bound, was meant to bind a name."""
+    """Tell whether a word that binds nothing, where something should be bound, was meant to bind a name."""
     return name.startswith(word) or (len(word) > 2 and distance(word, name, limit=2) <= 2)
 
 
 def _is_import(word: str) -> bool:
-    """Whether a word is the beginning of an import."""
+    """Tell whether a word is the beginning of an import."""
     return any(keyword.startswith(word) for keyword in _IMPORTS)
 
 
 def _is_import_broken(context: Context) -> bool:
-    """Whether an import could not be parsed, which may bind anything."""
+    """Tell whether an import could not be parsed, which may bind anything."""
     lines = (context.source.line(node.lineno).split() for node, _ in context.nodes(scenic.ErrorStatement))
     return any(words and words[0] in _IMPORTS for words in lines)
 
@@ -260,7 +260,7 @@ def _out_of_reach(context: Context, reference: Reference, binding: Binding) -> D
 
 
 def _names_property(context: Context, reference: Reference) -> bool:
-    """Whether a name in the default of a property can only mean another property of the same object."""
+    """Tell whether a name in the default of a property can only mean another property of the same object."""
     for scope in reference.scope.ancestors():
         if scope.kind is ScopeKind.PROPERTY and scope.parent is not None:
             properties = context.classes.of(scope.parent.node)

@@ -212,7 +212,7 @@ def _ego_of(
 
 
 def _in_scenario(scope: Scope) -> bool:
-    """Whether code in a scope sets the ego of a scenario of its own, not that of the module."""
+    """Tell whether code in a scope sets the ego of a scenario of its own, not that of the module."""
     own = (ScopeKind.SCENARIO, ScopeKind.BEHAVIOR, ScopeKind.MONITOR)
     return any(outer.kind in own for outer in scope.ancestors())
 
@@ -253,7 +253,7 @@ def _title(node: Any) -> str:
 
 
 def _in_value(statement: ast.stmt, node: ast.AST) -> bool:
-    """Whether a node stands in the value of an assignment, which is computed before the ego is set."""
+    """Tell whether a node stands in the value of an assignment, which is computed before the ego is set."""
     return isinstance(statement, ast.Assign) and position(node) >= position(statement.value)
 
 

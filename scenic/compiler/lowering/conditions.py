@@ -165,7 +165,7 @@ class Conditions:
                 yield part
 
     def _may_be_bound(self, identifier: str) -> bool:
-        """Whether a name that the text does not bind may come from a module."""
+        """Tell whether a name that the text does not bind may come from a module."""
         return self._resolution.wildcard and identifier not in PROVIDED
 
 
@@ -193,7 +193,7 @@ def assigns(node: ast.expr) -> bool:
 
 
 def _is_temporal(node: ast.expr) -> bool:
-    """Whether a condition is about more than one state."""
+    """Tell whether a condition is about more than one state."""
     return any(isinstance(part, scenic.Temporal) and part.operator != "implies" for part in walk(node))
 
 

@@ -428,7 +428,7 @@ def _attributes(node: ast.expr) -> Iterator[ast.Attribute]:
 
 
 def _is_kept(binding: Binding | None) -> bool:
-    """Whether a name is local to a scenario, behavior or monitor, and so an attribute of the running instance.
+    """Tell whether a name is local to a scenario, behavior or monitor, and so an attribute of the running instance.
 
     The names of exceptions, which Python deletes again, stay what they are.
     """

@@ -64,7 +64,7 @@ def missing_colon(at: Situation) -> Problem | None:
 
 
 def _has_colon(at: Situation) -> bool:
-    """Whether the header has its colon, and the mistake is after it, in ``if a: b c``; of lambdas come others."""
+    """Tell whether the header has its colon, and the mistake is after it, in ``if a: b c``; of lambdas come others."""
     depth = colons = 0
     for word in at.tokens.texts[at.first : at.token]:
         if word in ("(", "[", "{"):

@@ -216,7 +216,7 @@ def missing_word(at: Situation) -> Problem | None:
 
 
 def _fits(at: Situation, word: str) -> bool:
-    """Whether a word that has several uses can be meant."""
+    """Tell whether a word that has several uses can be meant."""
     first = at.word(at.first)
     if word == "as":
         return first in ("with", "except")

@@ -255,7 +255,7 @@ def _extreme_solver(better: Callable[[Any, Any], Any]) -> SolverReading:
 
 
 def _orders_vectors(operands: Sequence[Node], _payload: Any) -> bool:
-    """Whether an operand is no number, so that Python knows no order."""
+    """Tell whether an operand is no number, so that Python knows no order."""
     return any(operand.kind.trailing for operand in operands)
 
 

@@ -237,7 +237,7 @@ def on(target: Any) -> Specifier:
 
 
 def _may_be_surface(value: Any) -> bool:
-    """Whether some option of a choice is a region or an object."""
+    """Tell whether some option of a choice is a region or an object."""
     return any(isinstance(option, Region | Object) or _may_be_surface(option) for option in options_of(value))
 
 

@@ -62,7 +62,7 @@ def in_convex_polygon(body: Body, corners: Floats, lanes: int) -> Booleans:
     has_area: Booleans = np.logical_or.reduce(doubled > 0, axis=1)
 
     def beside(images: Columns, chosen: Indices, numbers: Indices | int) -> Booleans:
-        """Whether all points are on the inner side of an edge, the same for all lanes or one for each."""
+        """Tell whether all points are on the inner side of an edge, the same for all lanes or one for each."""
         edge, corner, length = (
             part[0 if len(part) == 1 else chosen, numbers] for part in (edges, corners, lengths)
         )

@@ -83,7 +83,7 @@ class Solids:
 
     @property
     def _can_prove(self) -> bool:
-        """Whether the cells pay, as far as can be told: exact tests have taken as long as making them does."""
+        """Tell whether the cells pay, as far as can be told: exact tests have taken as long as making them does."""
         if self._patience is None:
             self._patience = sum(seconds_to_make(mesh) for mesh in self.meshes)
         return self._spent >= self._patience

@@ -56,7 +56,7 @@ class Rectangles:
         return met
 
     def _overlap_along(self, other: "Rectangles") -> Booleans:
-        """Whether the shadows on both axes of the first overlap."""
+        """Tell whether the shadows on both axes of the first overlap."""
         x, y = self.local(other.centre)
         cos = np.abs(self.axis[:, 0] * other.axis[:, 0] + self.axis[:, 1] * other.axis[:, 1])
         sin = np.abs(self.axis[:, 0] * other.axis[:, 1] - self.axis[:, 1] * other.axis[:, 0])

@@ -499,11 +499,11 @@ class Sample:
         return value
 
     def _stays(self, item: Any) -> bool:
-        """Whether a function or class is the same in this sample."""
+        """Tell whether a function or class is the same in this sample."""
         return self._names.is_fixed(item)
 
     def _varies(self, cls: type) -> bool:
-        """Whether members of a class of objects are not the same in this sample."""
+        """Tell whether members of a class of objects are not the same in this sample."""
         return self._names.varies(cls)
 
     def _container(self, container: Any, kind: Any, cls: type) -> Any:

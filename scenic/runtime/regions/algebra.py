@@ -299,7 +299,7 @@ def intersects(first: Any, second: Any) -> Any:
 
 
 def _meet(a: Region, b: Region) -> bool:
-    """Whether two fixed regions share a point; raises `UnknownPairError` where that is not known."""
+    """Tell whether two fixed regions share a point; raises `UnknownPairError` where that is not known."""
     return bool(_MEETS.ask(_unwrapped(a), _unwrapped(b)))
 
 

@@ -75,7 +75,7 @@ class RegionChoice(VaryingRegion):
 
     @property
     def _has_no_field(self) -> bool:
-        """Whether the options tell orientations by themselves, so that they can be asked over lanes."""
+        """Tell whether the options tell orientations by themselves, so that they can be asked over lanes."""
         return all(
             option._has_no_field
             if isinstance(option, RegionChoice)

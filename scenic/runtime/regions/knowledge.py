@@ -156,7 +156,7 @@ def _is_near_the_edge(
 
 
 def _is_column(container: Bounds) -> bool:
-    """Whether a container reaches to every height."""
+    """Tell whether a container reaches to every height."""
     return bool(np.isinf(container.lower[:, 2]).all() and np.isinf(container.upper[:, 2]).all())
 
 

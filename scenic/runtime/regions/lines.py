@@ -43,7 +43,7 @@ class LineRegion(Region):
 
     @property
     def _follows_segments(self) -> bool:
-        """Whether the orientations are the directions of its own segments, not those of a field or of another region."""
+        """Tell whether the orientations are the directions of its own segments, not those of a field or of another region."""
         return isinstance(self.orientation, RegionField) and self.orientation.region is self
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:

@@ -164,7 +164,7 @@ def _part(plan: Plan, group: Sequence[tuple[int, Check]], places: Mapping[int, i
 
 
 def _always_holds(check: Check, bounds: Bounds | None) -> bool:
-    """Whether bounds of its node show that a check passes in every lane, and nothing below it may fail."""
+    """Tell whether bounds of its node show that a check passes in every lane, and nothing below it may fail."""
     if (
         not isinstance(check, NodeCheck)
         or bounds is None
@@ -256,7 +256,7 @@ class _Joins:
         return member
 
     def would_join(self, nodes: Iterable[Node]) -> bool:
-        """Whether adding a set of nodes would join draws that are apart yet."""
+        """Tell whether adding a set of nodes would join draws that are apart yet."""
         met: set[int | Node] = set()
         seen: set[Node] = set()
         stack = list(nodes)
@@ -274,7 +274,7 @@ class _Joins:
         return len(met) > 1
 
     def has_draws(self, member: int) -> bool:
-        """Whether any draw is below a set."""
+        """Tell whether any draw is below a set."""
         return self._drawing[member]
 
     def leader(self, member: int) -> int:

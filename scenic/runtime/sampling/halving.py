@@ -201,7 +201,7 @@ def _joints(own: Sequence[Piece], numbers: Sequence[int], soft_places: dict[int,
 
 
 def _may_fault(plan: Plan) -> bool:
-    """Whether a value that a check reads may fail to be computed: then no part of a scene can be judged alone."""
+    """Tell whether a value that a check reads may fail to be computed: then no part of a scene can be judged alone."""
     nodes = Graph(node for check in plan.checks for node in check.nodes).nodes
     return any(node.operation.may_fault(node.operands, node.payload, node.kind) for node in nodes)
 

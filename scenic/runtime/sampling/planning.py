@@ -120,7 +120,7 @@ def _drawing(outputs: Sequence[Node]) -> list[Check]:
 
 
 def _may_mark(node: Node) -> bool:
-    """Whether a lane may fail at a node, or have no value there."""
+    """Tell whether a lane may fail at a node, or have no value there."""
     if node.is_constant or node.is_drawn:
         return False
     operation = node.operation
@@ -155,7 +155,7 @@ def _finite(program: Program) -> list[Check]:
 
 
 def _may_be_infinite(root: Node, known: dict[Node, Bounds | None]) -> bool:
-    """Whether numbers below a node may overflow or be undefined; ``known`` keeps what has been found out.
+    """Tell whether numbers below a node may overflow or be undefined; ``known`` keeps what has been found out.
 
     Operations that say nothing of their results are those of geometry, whose results are places.
     """
@@ -187,7 +187,7 @@ def _may_be_infinite(root: Node, known: dict[Node, Bounds | None]) -> bool:
 
 
 def _may_be_no_turn(node: Node, operands: Sequence[Bounds | None]) -> bool:
-    """Whether it is a rotation, or an angle of one, by what may be infinite: bounds of its parts do not tell."""
+    """Tell whether it is a rotation, or an angle of one, by what may be infinite: bounds of its parts do not tell."""
     if node.kind is not Kind.ORIENTATION and node.operation.name != "euler":
         return False
     return any(bounds is not None and not _is_bounded(bounds) for bounds in operands)

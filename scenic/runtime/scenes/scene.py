@@ -299,7 +299,7 @@ class Scene:
 
 
 def _always(requirement: Requirement) -> bool:
-    """Whether a requirement needs no check, since it holds in every scene."""
+    """Tell whether a requirement needs no check, since it holds in every scene."""
     return requirement.condition.is_constant and bool(requirement.condition.value)
 
 

@@ -69,7 +69,7 @@ def _sees(observer: Any, target: Any, occluders: Sequence[Any], certain: bool) -
 
 
 def _at_once(observer: Any, target: Any, occluders: Sequence[Any]) -> bool | None:
-    """Whether it is seen, if that needs no closer look; ``None`` also where something is random."""
+    """Tell whether it is seen, if that needs no closer look; ``None`` also where something is random."""
     camera, orientation = camera_of(observer)
     angles = observer.viewAngles if _is_turned(observer) else (2 * np.pi, np.pi)
     distance = observer.visibleDistance

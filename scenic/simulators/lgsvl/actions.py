@@ -12,7 +12,7 @@ class _ActorAction(Action):
     """An action of an actor of LGSVL."""
 
     def canBeTakenBy(self, agent: Any) -> bool:
-        """Whether the agent is an actor of LGSVL."""
+        """Tell whether the agent is an actor of LGSVL."""
         return hasattr(agent, "lgsvlObject")
 
     def applyTo(self, agent: Any, simulation: Any) -> None:

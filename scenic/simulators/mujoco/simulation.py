@@ -181,7 +181,7 @@ class MujocoSimulation(Simulation):
         return [int(self.model.geom(name).id) for name in part.geoms or [part.name]]
 
     def _within(self, reach: float, first: int, second: int) -> bool:
-        """Whether two geoms are at most so many metres apart."""
+        """Tell whether two geoms are at most so many metres apart."""
         ends = np.zeros(6)
         found: float = library().mj_geomDistance(self.model, self.data, first, second, reach + 1e-6, ends)
         return found <= reach

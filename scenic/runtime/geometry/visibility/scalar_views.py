@@ -97,7 +97,7 @@ def sees_body(view: View, target: Placed, occluders: Sequence[Placed]) -> bool |
 
 
 def _blocks(occluder: Placed, start: Triple, end: Triple) -> bool | None:
-    """Whether the way from one point to another meets the surface of a body; ``None`` if its box leaves that open."""
+    """Tell whether the way from one point to another meets the surface of a body; ``None`` if its box leaves that open."""
     if not is_near_way(start, end, occluder.position, occluder.radius):
         return False
     wx, wy, wz = end[0] - start[0], end[1] - start[1], end[2] - start[2]
