@@ -116,6 +116,10 @@ class ParseCompileError(ScenicError):
         )
         self.diagnostics = tuple(diagnostics)
 
+    def __reduce__(self) -> tuple[object, ...]:
+        # Exceptions are made again from `args`, which is the message alone.
+        return type(self), (self.diagnostics,), self.__dict__
+
 
 class ScenicSyntaxError(ParseCompileError):
     """Lexical, grammatical and placement errors."""
@@ -259,6 +263,10 @@ class GuardViolation(Exception):
         super().__init__(f"violated {self.violationType} of {self.behaviorName} on line {lineno}")
         self.behavior = behavior
         self.lineno = lineno
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # Behaviors are classes of the program, which no other process can import: the name goes in place of the behavior.
+        return type(self), (self.behaviorName, self.lineno)
 
 
 class PreconditionViolation(GuardViolation):
