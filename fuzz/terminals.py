@@ -57,14 +57,16 @@ _NEVER_EXPRESSIONS: Final = frozenset(
     if form.ladder is Ladder.ORDINARY and isinstance(form.parts[0], Word) and isinstance(form.parts[1], Slot)
 )
 """As expressions these can be read as operators of a longer text than what was meant."""
+_DIRECTIONS: Final = frozenset({"top", "bottom", "front", "back"})
+"""Before ``left of`` these are refused as halves of a corner (`ExpressionActions.is_direction`), though they could be names."""
 _BLOCK_WORDS: Final = frozenset(
     form.start for form in STATEMENT_FORMS if form.is_soft and form.row[1:2] == (syntax.Word(":"),)
 )
 
 NAMES_WITHOUT: Final[Mapping[str, frozenset[str]]] = {
     "NAME": frozenset(),
-    "EXPRESSION_NAME": _NEVER_EXPRESSIONS,
-    "PLAIN_NAME": _NEVER_EXPRESSIONS | _BLOCK_WORDS,
+    "EXPRESSION_NAME": _NEVER_EXPRESSIONS | _DIRECTIONS,
+    "PLAIN_NAME": _NEVER_EXPRESSIONS | _DIRECTIONS | _BLOCK_WORDS,
     "CAPTURED_NAME": frozenset({"_"}),
     "TRACKED_NAME": frozenset(),
     "RUNNABLE_NAME": _NEVER_EXPRESSIONS,

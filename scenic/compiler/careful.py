@@ -425,6 +425,8 @@ class _CarefulLexer(Lexer):
         if text[end].isalnum():
             return True
         line_start = text.rfind("\n", start, end) + 1
+        if not line_start:
+            return False  # Opened and closed on one line.
         before = text[line_start : end - 3].strip()
         return before[-1:] in ("=", "(", ",", "[") and _STATEMENT.match(before + "\n") is not None
 

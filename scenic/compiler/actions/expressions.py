@@ -15,6 +15,8 @@ class ExpressionActions(CommonActions):
         """Return whether the token ``left`` or ``right`` is not the end of ``front left of`` and the like."""
         words = self._tokens.texts
         before = words[side - 1]
+        if words[side - 2 : side - 1] == ["."]:
+            return True  # an attribute of that name
         if before in ("front", "back"):
             self.fail(
                 (*self.place_of_token(side - 1)[:2], *self.place_of_token(side)[2:]),

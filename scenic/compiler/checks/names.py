@@ -12,6 +12,7 @@ from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.unfinished import (
+    alone_names,
     begun_names,
     begun_word,
     compared_names,
@@ -82,8 +83,8 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             continue
         if skipped is None:
             skipped = _skipped_words(context)
-            alone = begun_names(context)
-            words = {each.id for each in alone}
+            alone = alone_names(context)
+            words = {each.id for each in begun_names(context)}
             compared = compared_names(context)
             meant = {each.id for each in compared}
             # Only who is still typing may be about to write what would bind the name.

@@ -1,15 +1,23 @@
 """Places of words that have no node of their own in the tree."""
 
 import ast
+import re
+from typing import Final
+from unicodedata import normalize
 
 from scenic.language.source import Source
 from scenic.language.spans import Span
 
 __all__ = ["header_span", "word_span"]
 
+_WORD: Final = re.compile(r"\w+")
+
 
 def word_span(source: Source, node: ast.AST, word: str) -> Span:
-    """The first place of ``word``, as a whole word, in the text of ``node``; else the beginning of the node."""
+    """The first place of ``word``, as a whole word, in the text of ``node``; else the beginning of the node.
+
+    A name may be written in other characters that Python takes for the same (NFKC).
+    """
     whole = source.span(node)
     lines = source.lines
     for line in range(whole.line, min(whole.end_line, len(lines)) + 1):
@@ -19,6 +27,10 @@ def word_span(source: Source, node: ast.AST, word: str) -> Span:
         found = _whole_word(text, word, start, end)
         if found >= 0:
             return Span(line, found, line, found + len(word))
+        if not text.isascii():
+            for each in _WORD.finditer(text, start, end):
+                if normalize("NFKC", each[0]) == word:
+                    return Span(line, each.start(), line, each.end())
     return header_span(source, node)
 
 

@@ -1,0 +1,5 @@
+requirerequire 
+Range for Range(
+     )
+[
+    Range] in Range for x in Range)
