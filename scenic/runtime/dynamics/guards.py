@@ -75,4 +75,4 @@ class Guarded(ABC):
 
     @abstractmethod
     def _ask(self, guard: Guard) -> Any:
-        """What a guard says."""
+        """Call a guard, a condition of the behavior or monitor, and return its value."""

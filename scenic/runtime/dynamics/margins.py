@@ -122,14 +122,17 @@ def _signed_distance(point: Vector, region: Region) -> float:
 
 
 def _distances(points: Floats, region: Region) -> Floats:
-    """How far points ``(n, 3)`` are from the region, in metres; from one of the plane as it contains them, seen from above."""
+    """Return the distances ``(n,)`` of points ``(n, 3)`` from the region, in metres.
+
+    A region of the plane is seen from above, as it is for containment.
+    """
     if isinstance(region, PlanarRegion):
         points = np.column_stack([points[:, :2], np.full(len(points), float(region.z))])
     return region.distances(points, *region.fixed_columns("the distance"))
 
 
 def _depths(points: Floats, region: Region) -> Floats:
-    """How far points ``(n, 3)`` of the region are from its boundary, in metres."""
+    """Return the distances ``(n,)`` of points ``(n, 3)`` in the region from its boundary, in metres."""
     if isinstance(region, PlanarRegion):
         # Its outline is a line of the ground, whatever the height of the region is.
         ground: Floats = region.boundary.distances(np.column_stack([points[:, :2], np.zeros(len(points))]))
@@ -139,7 +142,11 @@ def _depths(points: Floats, region: Region) -> Floats:
 
 
 def _overlap(left: Any, right: Any) -> float | None:
-    """How deep one of two objects is in the other, or the gap between them, negative; no depth is known of concave shapes."""
+    """Return the depth, in metres, to which two objects overlap, or the gap between them as a negative
+    number.
+
+    The depth of concave shapes is unknown and counts as infinite; values other than objects give ``None``.
+    """
     if not (isinstance(left, Object) and isinstance(right, Object)):
         return None
     if not left.intersects(right):

@@ -85,7 +85,7 @@ def refresh(obj: Any) -> None:
 
 
 def _values(target: Any, specifiers: Sequence[Specifier], *, mode_2d: bool) -> dict[str, Any]:
-    """What the specifiers give the properties that they claim."""
+    """Return the values, by property, that the specifiers of an `override` give to the object ``target``."""
     if not isinstance(target, Object):
         raise ScenicTypeError(f"`override`: expected an object, not {describe(target)}", span=here())
     properties = type(target).scenic_properties

@@ -1,4 +1,4 @@
-"""Where recorded values go: files by their extension, one for a series or one for each value."""
+"""Files that store recorded values: the extension selects the format, and a file holds either a series or one value."""
 
 import json
 import string

@@ -38,7 +38,7 @@ class Simulated(Protocol):
         """Create an object in the simulator."""
 
     def place_of(self, obj: Any) -> Any:
-        """Where the program creates an object: span and file, as far as they are known."""
+        """Return where the program creates an object: span and file, each ``None`` if unknown."""
 
     def sense(self) -> None:
         """Let every object observe."""
@@ -57,7 +57,7 @@ class Simulated(Protocol):
 
 
 class Ending:
-    """Why a simulation ends: a member of ``TerminationType`` by name, and a text."""
+    """The reason for which a simulation ends: the name of a member of ``TerminationType``, and a text."""
 
     __slots__ = ("kind", "reason")
 
@@ -128,10 +128,10 @@ class Run:
         self.keeps_violations = keep_violations
         self.keeps_files = keep_files
         self.scenarios: list[ScenarioActivation] = []
-        """Those that run, in the order in which they started."""
+        """The scenarios that run, in the order in which they started."""
         self.followed: list[Followed] = []
         self.modules: dict[Path, ModuleType] = {}
-        """Those of the language that it is the first to import."""
+        """Modules of Scenic code that this simulation was the first to import, by path."""
         self.parameters: dict[str, Any] = {
             name: copies.value(value) for name, value in program.parameters.items()
         }
@@ -139,7 +139,8 @@ class Run:
         """The agent whose behavior is running."""
         self.ending: Ending | None = None
         self.unmet: RejectSimulationException | None = None
-        """That a requirement of a scenario did not hold when an exception stopped it; it rejects once that has been caught."""
+        """The rejection that is due because a requirement of a scenario failed while an exception stopped it;
+        raised once the program has caught that exception."""
         self.in_first_setup = False
         """True if the set-up runs that is the first of the simulation: that of a program which only composes has been none."""
         self._has_set_up = program.top is None or program.top._definition.sets_up
@@ -149,7 +150,7 @@ class Run:
         self._new_agents: list[Any] = []
         self._numbers: dict[int, int] = {}
         self.recordings: list[Recording] = []
-        """Those to files that have begun."""
+        """The recordings to files that have begun."""
         self.top = ScenarioActivation(self, None, None)
         self.current: ScenarioActivation = self.top
 
@@ -422,7 +423,7 @@ class Run:
                     return
 
     def _behaviors(self) -> dict[Any, tuple[Any, ...]] | None:
-        """What each agent does; ``None`` if one of them ends the simulation."""
+        """Return the actions of each agent in this step; ``None`` if a behavior ends the simulation."""
         simulation = self.simulation
         simulation.agents.extend(self._new_agents)
         self._new_agents = []

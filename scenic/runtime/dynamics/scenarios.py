@@ -67,7 +67,7 @@ class ScenarioActivation(Guarded):
         self.direct = True
         self.running = False
         self.reason: str | None = None
-        """Why it stopped."""
+        """The reason why the scenario stopped."""
         self.timed_out = False
         """True if a ``terminate after`` stopped it."""
         self.number = run.number_of(self)

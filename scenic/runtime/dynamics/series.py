@@ -90,7 +90,7 @@ class Arrays:
         self._steps.append(step)
 
     def _convert(self, wanted: np.dtype[Any]) -> None:
-        """What has been written becomes numbers of another kind."""
+        """Convert the values written so far to numbers of the kind ``wanted``, in the file as well."""
         with self._stream:
             values = self._values()
             self._stream = unnamed(self._path)

@@ -56,7 +56,9 @@ def limit_in_steps(value: Any, unit: str, timestep: float, what: str) -> float:
 
 
 def _stop_test(owner: Running, limit: Any, unit: str | None) -> Callable[[], bool] | None:
-    """What tells before each resumption whether to stop."""
+    """Return the test, run before each resumption, of whether a limit (`for`, `until`) has been reached;
+    ``None`` if there is no limit.
+    """
     if unit is None:
         return None
     run = owner.run

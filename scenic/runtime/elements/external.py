@@ -197,7 +197,7 @@ class VerifaiOptions(VerifaiParameter):
 
 
 def _possible(chosen: Choosable, cells: tuple[tuple[float, float], ...]) -> Choosable:
-    """What may be chosen without the cells of weight zero."""
+    """Return a choice without its cells of weight zero."""
     assert chosen.shares is not None
     kept = [place for place, share in enumerate(chosen.shares) if share > 0]
     if len(kept) == len(cells):

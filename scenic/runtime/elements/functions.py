@@ -137,7 +137,7 @@ def _note_empty(result: Any, count: int) -> None:
 
 
 def _kept_of_options(function: Callable[[Any], Any] | None, values: Any) -> Any:
-    """What is kept of each option of a choice, as a choice; ``None`` where only samples can tell.
+    """Filter each option of a random choice; return the kept items as a choice, or ``None`` if only sampling can decide.
 
     Random names that the function reads have to be choices by the same draw.
     """

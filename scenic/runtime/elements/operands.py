@@ -77,7 +77,7 @@ UNDECIDED: Final = _Undecided()
 
 
 class _Reading(NamedTuple):
-    """How values are read as one type.
+    """The test and the conversion for values of one type.
 
     ``fits`` tells whether a value that is no choice is of the type. ``convert`` gives the typed value; its second argument names
     the operand in an error. ``by_some`` is set where a choice is of the type as soon as one of its options is.

@@ -28,7 +28,7 @@ Triple: TypeAlias = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class ShapeSource:
-    """Where the mesh of a shape comes from, so that a written scene can refer to it.
+    """The origin of the mesh of a shape, which a written scene refers to.
 
     Attributes:
         kind: ``box``, ``cylinder``, ``cone``, ``spheroid`` or ``mesh``.

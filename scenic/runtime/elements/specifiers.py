@@ -112,7 +112,7 @@ class _Declared:
     only: Read | None
     """The conversion of the operand where there is one only, which is never left out."""
     is_plain: bool
-    """Whether the operands are all that it is built from, as they are."""
+    """True if the specifier is built from its operands alone, without conversion."""
     kinds: tuple[Hashable, Hashable]
     """The kinds of specifiers (`Specifier.kind`) that need no more than declared: without what has a condition, and with it."""
 
@@ -242,7 +242,9 @@ def _may_be_surface(value: Any) -> bool:
 
 
 def _surface(target: Any) -> Region:
-    """What a drawn value is for `on`."""
+    """Return the surface that the drawn operand of `on` denotes: of an object its ``onSurface``, of a point
+    the region of that point.
+    """
     surface = target.onSurface if isinstance(target, Object) else target
     if isinstance(surface, Region):
         return surface
@@ -512,7 +514,9 @@ def specifier(
 
 
 def _converted(declared: _Declared, ego: Ego, workspace: Space, operands: Sequence[Any]) -> Sequence[Any]:
-    """What a specifier is built from: its operands, converted, after the ego or the workspace where it reads them."""
+    """Return the arguments that a specifier is built from: the ego or the workspace where it reads them, then
+    its converted operands.
+    """
     given = [*operands]
     for index, read in declared.conversions:
         if given[index] is not None or index not in declared.egos:

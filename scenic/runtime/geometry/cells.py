@@ -79,7 +79,7 @@ def _number(index: Indices, resolution: int) -> Indices:
 
 
 def _touching(triangles: Floats, face: Indices, index: Indices, resolution: int) -> Indices:
-    """Which of the cells ``(k, 3)`` touch their faces, numbers ``(k,)`` of ``triangles``."""
+    """Return the indices of the cells ``(k, 3)`` that touch their faces; ``face`` ``(k,)`` numbers rows of ``triangles``."""
     half = 0.5 / resolution + PADDING
     edges = np.roll(triangles, -1, axis=1) - triangles
     normals = np.cross(edges[:, 0], edges[:, 1])

@@ -113,7 +113,7 @@ class Collider:
         return Collisions(free, None if found is None else self._matrix(found, lanes))
 
     def _solids_of(self, crowd: Crowd) -> Solids:
-        """What is known of the meshes, kept as long as they are the same."""
+        """Return the precomputed tables of a crowd's meshes; they are kept while the meshes stay the same."""
         if self._solids is None or self._solids.meshes != crowd.meshes:
             self._solids = Solids(crowd.meshes)
         return self._solids
@@ -131,7 +131,7 @@ class Collider:
         return np.concatenate([np.empty((0, 2), dtype=np.intp), *pairs])
 
     def _matrix(self, found: list["_Entries"], lanes: int) -> Booleans:
-        """Which pairs collide in which lane."""
+        """Return a mask ``(lanes, pairs)`` of the pairs of objects that collide in each lane."""
         count = len(self._order)
         low, high = np.sort(self.pairs, axis=1).T
         keys = low * count + high

@@ -120,7 +120,7 @@ class Surfaces:
     def _touching(
         self, entry: Indices, one: Indices, two: Indices, forth: AffineMaps, back: AffineMaps
     ) -> Indices:
-        """Which of the pairs of faces share a point."""
+        """Return the indices of the pairs of faces that share a point."""
         first, second = (self._forest.corners.take(faces, axis=2) for faces in (one, two))
         left = self._cut_plane(first, two, second, forth, entry)
         entry, first, second = entry[left], first.take(left, axis=2), second.take(left, axis=2)
@@ -155,7 +155,11 @@ class Surfaces:
 
 
 def _near(moving: tuple[Floats, Floats], one: Indices, still: tuple[Floats, Floats], two: Indices) -> Indices:
-    """Which boxes ``one`` of some meet boxes ``two`` of others; of each there are the middles and half the extents, ``(3, k)``."""
+    """Return the indices of pairs of boxes, ``one`` of the moving and ``two`` of the still ones, that
+    overlap.
+
+    Boxes are given by their middles and half extents, ``(3, k)`` each.
+    """
     (centre, reach), (middle, half) = moving, still
     x, y, z = (
         np.abs(centre[axis][one] - middle[axis][two]) <= reach[axis][one] + half[axis][two]

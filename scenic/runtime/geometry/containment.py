@@ -128,7 +128,7 @@ def surely_in_disc(
 
 
 def _box_margins(poses: Poses, corners: Floats, edges: Floats) -> Floats:
-    """How far the world boxes lie inside each edge, times its length, ``(n | 1, k)``."""
+    """Return the distance, times the length of the edge, by which world boxes lie inside each edge: ``(n | 1, k)``."""
     lower, upper = poses.bounds()
     x, y = ((lower[:, axis, None] + upper[:, axis, None]) / 2 for axis in (0, 1))
     reach_x, reach_y = ((upper[:, axis, None] - lower[:, axis, None]) / 2 for axis in (0, 1))

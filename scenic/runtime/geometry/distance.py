@@ -182,7 +182,7 @@ class _Gaps:
 
 
 def _least_of_each(entry: Indices, gap: Floats) -> Indices:
-    """Which pair of each entry has the least gap."""
+    """Return the index of the pair with the least gap, for each entry."""
     order = np.lexsort((gap, entry))
     return order[first_of_each(entry[order])]
 

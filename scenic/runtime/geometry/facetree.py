@@ -123,7 +123,9 @@ def _depth(count: int) -> int:
 
 
 def _starts(count: int, level: int) -> Indices:
-    """Where the parts begin in which ``count`` faces are cut evenly, and the end."""
+    """Return the starts of the parts, and the end of the last one, when ``count`` faces are divided evenly
+    into ``2**level`` parts.
+    """
     return (np.arange((1 << level) + 1) * count) >> level
 
 
@@ -252,14 +254,14 @@ class Meeting:
         self._there, self._here = _Maps(forth), _Maps(back)
 
     def __call__(self, entry: Indices, one: Indices, two: Indices) -> tuple[Indices, Indices, Indices]:
-        """Those of the entries whose boxes, nodes ``one`` and ``two``, meet."""
+        """Filter entries: keep those whose boxes, the nodes ``one`` and ``two`` of the trees, overlap either way."""
         near = self._near(self._there, entry, one, two)
         entry, one, two = entry[near], one[near], two[near]
         near = self._near(self._here, entry, two, one)
         return entry[near], one[near], two[near]
 
     def _near(self, maps: "_Maps", entry: Indices, moving: Indices, still: Indices) -> Indices:
-        """Which boxes around images of moving boxes meet still boxes."""
+        """Return a mask of the entries in which the box around the image of a moving box overlaps the still box."""
         forest = self._forest
         middle, half = taken(forest.middle, moving), taken(forest.half, moving)
         near: Booleans | None = None

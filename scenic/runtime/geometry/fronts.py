@@ -16,7 +16,7 @@ from scenic.runtime.geometry.proofs import ProofTable
 from scenic.runtime.geometry.ragged import Groups, expand, group_starts
 
 _LEVEL: Final = 4
-"""Where the search begins: of the boxes above, one nearly always comes near."""
+"""The level of the trees at which the search begins: among the boxes above it, some pair is nearly always near."""
 
 
 _STEP: Final = 3
@@ -42,7 +42,7 @@ class Front(NamedTuple):
     reach: Floats
 
     def leaves(self) -> tuple[Groups, Groups]:
-        """Where the leaves of the first solid of each pair lie, and those of the second one."""
+        """Return the ranges of leaves of the first solid of each pair, and of the second."""
         count = len(self.touching)
         starts = group_starts(self.entry, 2 * count)
         starts, counts = starts[:-1], np.diff(starts)

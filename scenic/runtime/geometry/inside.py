@@ -46,7 +46,7 @@ class UprightFaces:
 
 
 def upright_faces(mesh: Mesh) -> UprightFaces:
-    """Those of a mesh. Get them as ``mesh.derived(upright_faces)``."""
+    """Compute the upright faces of a mesh. Get them as ``mesh.derived(upright_faces)``, which keeps them."""
     corners = mesh.vertices[np.sort(mesh.faces, axis=1)]
     padding = _PADDING * mesh.extents
     # Written out, since reductions over short axes are slow.
@@ -171,7 +171,8 @@ def _may_cross_above(boxes: Floats, points: Floats) -> Booleans:
 
 
 def _heights(corners: Floats, points: Floats) -> Floats:
-    """Where the vertical through each point ``(m, 3)`` crosses the face with ``corners`` ``(m, 3, 3)``, ``(m,)``.
+    """Return the heights ``(m,)`` at which the vertical through each point ``(m, 3)`` crosses the face with
+    ``corners`` ``(m, 3, 3)``.
 
     Minus infinity where it does not: the horizontal line y = py meets the projected edges in none or two points;
     the vertical crosses the face if px lies between them.

@@ -170,7 +170,7 @@ def _check_format(file_type: str, name: str) -> None:
 
 
 def _loaded(data: bytes, file_type: str, file: Path, name: str, *, packed: bool) -> Soup:
-    """What trimesh reads."""
+    """Read a mesh file with trimesh."""
     import logging  # takes a fortieth of a start, and few files are read by that library
 
     import trimesh

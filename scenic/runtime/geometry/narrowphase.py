@@ -141,7 +141,7 @@ class Solids:
         return together, remains
 
     def _stage(self, points: slice | None, pairs: "_Pairs") -> Booleans:
-        """Which entries a stage decides."""
+        """Return a mask ``(n,)`` of the pairs that a stage decides."""
         moving, still, maps = pairs.ways
         if points is None:
             return _either(self._proofs.distance(moving, still, maps))
@@ -267,7 +267,7 @@ class _Pairs:
 
 
 def _either(ways: Booleans) -> Booleans:
-    """Which of n pairs something holds of, one way or the other, from ``(2 n,)``."""
+    """Return a mask ``(n,)`` of the pairs for which a mask ``(2 n,)`` of both ways is true in either way."""
     first, second = ways.reshape(2, -1)
     return first | second
 

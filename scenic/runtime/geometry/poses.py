@@ -1,4 +1,4 @@
-"""Where the bodies of many entries are: position, orientation and size of a unit mesh."""
+"""Poses of the bodies of many entries: position, orientation and size of a unit mesh."""
 
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,4 +1,4 @@
-"""Where points land on a side of a body's surface (section 9.5 of the specification), in double precision.
+"""Projection of points onto a side of a body's surface (section 9.5 of the specification), in double precision.
 
 Lines are taken into the unit frame of the mesh, where the parameter along the line stays the same. Small
 meshes are compared face by face; for large ones a grid names the few faces a line may meet.
@@ -62,7 +62,7 @@ def project(
 
 
 def landing_points(body: Body, faces: Indices, points: Floats, directions: Floats) -> Floats:
-    """Where lines meet the planes of given faces of the world, ``(n, 3)``: `project`, once the faces are known.
+    """Return the points ``(n, 3)`` at which lines meet the planes of given faces: `project`, once the faces are known.
 
     A point within `TOLERANCE` of its face stays where it is.
     """

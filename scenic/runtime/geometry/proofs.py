@@ -17,7 +17,7 @@ from scenic.runtime.geometry.voxels import COVER_BOXES, RESOLUTION, voxels
 
 _STEP: Final = RESOLUTION + 1
 _WEIGHTS: Final = np.array([[_STEP**2], [_STEP], [1]])
-"""What a step along each axis adds to the place in the table of counts."""
+"""Change of the index into the table of counts for one step along each axis."""
 
 
 class ProofTable:

@@ -27,7 +27,7 @@ def expand(counts: Indices) -> tuple[Indices, Indices]:
 
 
 def first_of_each(keys: Indices) -> Indices:
-    """Where each key comes up first, in the order of the keys."""
+    """Return the index of the first occurrence of each key, in ascending order of the keys."""
     # NumPy's `unique` does it, too, at the price of importing a quarter of NumPy when it is first called.
     order = np.argsort(keys, kind="stable")
     return order[_changes(keys[order])]
@@ -40,14 +40,14 @@ def distinct(numbers: Indices) -> Indices:
 
 
 def _changes(ordered: Indices) -> Indices:
-    """Where another number than the one before begins."""
+    """Return the indices at which a sorted array changes its value, including the first."""
     result = np.ones(len(ordered), dtype=np.bool_)
     np.not_equal(ordered[1:], ordered[:-1], out=result[1:])
     return np.flatnonzero(result)
 
 
 def group_starts(keys: Indices, groups: int) -> Indices:
-    """Where each of the groups 0, 1, ... begins in ascending ``keys``, and the end: ``(groups + 1,)``."""
+    """Return the starts of the groups 0, 1, ... in ascending ``keys``, and the end of the last: ``(groups + 1,)``."""
     return np.searchsorted(keys, np.arange(groups + 1))
 
 

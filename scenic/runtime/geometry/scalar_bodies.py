@@ -35,7 +35,7 @@ class Placed(NamedTuple):
 
     @property
     def radius(self) -> float:
-        """That of a ball about its box, and a little more."""
+        """Radius of the ball around the body's box, slightly enlarged."""
         a, b, c = self.half
         return math.sqrt(a * a + b * b + c * c) + self.slack
 

@@ -138,7 +138,7 @@ def _squared_area_columns(mesh: Mesh) -> Floats:
 
 @dataclass(frozen=True, slots=True)
 class _Stretches:
-    """What decides, for u kinds of lanes, which faces belong to a side and how large they are.
+    """The stretching of the mesh, for u kinds of lanes, that decides which faces belong to a side and how large they are.
 
     Attributes:
         size: ``(u, 3)``.

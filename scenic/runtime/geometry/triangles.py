@@ -52,7 +52,7 @@ def separated_by_edges(first: Corners, second: Corners) -> Booleans:
 
 
 def _separated(axes: Columns, a: Floats, b: Floats, scale: Floats) -> Booleans:
-    """Which pairs ``(m,)`` have projections that are apart by more than rounding on one of the axes ``(k, m)``."""
+    """Return a mask ``(m,)`` of the pairs whose projections on one of the axes ``(k, m)`` are apart by more than rounding."""
     low_a, high_a = _span(axes, a)
     low_b, high_b = _span(axes, b)
     slack = _SLACK * scale * (np.abs(axes[0]) + np.abs(axes[1]) + np.abs(axes[2]))

@@ -63,7 +63,9 @@ def voxels(mesh: Mesh) -> Voxels:
 
 
 def _counts(occupied: Booleans) -> npt.NDArray[np.int32]:
-    """How many cells with smaller index on every axis are occupied, as in `Voxels.filled`."""
+    """Return, for each corner of the grid, the number of occupied cells with smaller index on every axis, as
+    in `Voxels.filled`.
+    """
     # Whole slabs are added: `cumsum` takes three times as long. A row holds few enough cells for one byte.
     rows = np.ascontiguousarray(occupied.transpose(2, 0, 1)).view(np.uint8)
     for index in range(1, RESOLUTION):
@@ -89,7 +91,7 @@ def _unpacked(bits: npt.NDArray[np.uint8]) -> Booleans:
 
 
 def _computed(mesh: Mesh) -> Arrays:
-    """What `voxels` are made of, the cells as bits."""
+    """Compute the arrays that `voxels` stores for a mesh, the cells packed as bits."""
     touched = np.zeros(RESOLUTION**3, dtype=np.bool_)
     for _, cell in touched_cells(mesh.triangles, RESOLUTION):
         touched[cell] = True
@@ -106,7 +108,7 @@ def _computed(mesh: Mesh) -> Arrays:
 
 
 def _box_voxels(mesh: Mesh) -> Voxels:
-    """Those of a box: all of them are solid, its surface included."""
+    """Return the voxels of a box: all cells are solid, including those at its surface."""
     solid = np.ones((RESOLUTION,) * 3, dtype=np.bool_)
     steps = np.arange(RESOLUTION + 1, dtype=np.int32)
     filled = steps[:, None, None] * steps[:, None] * steps
@@ -207,7 +209,7 @@ def _interior(mesh: Mesh, inside: Booleans, solid: Booleans, axis: Floats) -> Fl
 
 
 def _depths(solid: Booleans) -> npt.NDArray[np.float64]:
-    """How many times the solid cells can be peeled before each is gone."""
+    """Return, for each solid cell, the number of times the solid can be peeled before the cell is gone."""
     result = np.zeros(solid.shape)
     left = np.pad(solid, 1)
     while left.any():

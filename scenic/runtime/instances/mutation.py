@@ -105,7 +105,7 @@ def _by_python(instance: Point, mutators: list[Any]) -> Mapping[str, Any]:
 
 
 def _copy(instance: Point) -> Point:
-    """What a mutator of the program may change in place."""
+    """Return a copy of an instance that a mutator of the program may change in place."""
     return type(instance)._make(instance.__dict__)
 
 

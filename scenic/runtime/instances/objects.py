@@ -107,7 +107,7 @@ class Point:
     scenic_properties: ClassVar[Mapping[str, Property]]
     """All properties of the class, with what their definitions combine to."""
     _resolutions: ClassVar[dict[Any, Any]]
-    """What combinations of specifiers come to; see `scenic.runtime.instances.resolution`."""
+    """Cached resolutions of combinations of specifiers; see `scenic.runtime.instances.resolution`."""
     _definitions: ClassVar[Mapping[str, PropertyDefinition]] = _definitions(
         "Point",
         {
@@ -216,7 +216,7 @@ class Point:
         return made
 
     def _copied(self) -> dict[str, Any]:
-        """What a copy holds: the properties, and what is known of the instance beside them."""
+        """Return the content of a copy: the properties, and the attributes named in ``_KNOWN``."""
         return {**self.properties, **{name: self._all()[name] for name in _KNOWN if name in self._all()}}
 
     def toVector(self) -> Any:
@@ -259,7 +259,7 @@ class Point:
         return f"<{self}>"
 
     def _all(self) -> Mapping[str, Any]:
-        """What is stored of the instance, or of what it is a sample of."""
+        """The attributes stored in the instance, or, for a sample, in the instance that it is a sample of."""
         stored: Mapping[str, Any] = self.__dict__.get("_source", self).__dict__
         return stored
 
@@ -412,7 +412,7 @@ class Object(OrientedPoint):
 
     @property
     def onSurface(self) -> Any:
-        """Where things stand that are ``on`` this object: its top surface, unless a class says otherwise."""
+        """The surface for things placed `on` this object: its top surface, unless a class overrides it."""
         return self.topSurface
 
     def startDynamicSimulation(self) -> None:
@@ -425,7 +425,8 @@ class Object(OrientedPoint):
 
 
 _KNOWN = ("_names", "_given", "_planar")
-"""What is known of an instance beside its properties: their names, which of them were given, that it is one of 2D mode."""
+"""Attributes of an instance beside its properties: their names, the names given by the program, and whether
+it belongs to 2D mode."""
 
 _NOT_KEPT = frozenset({"behavior", "mutator", "sensors", "observations", "lastActions"})
 """Properties that belong to the program rather than to a pickled object."""

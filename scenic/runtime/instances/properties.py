@@ -100,7 +100,7 @@ class Finals:
 
     @classmethod
     def of(cls, properties: Mapping[str, Property]) -> "Finals":
-        """Those among the properties of a class."""
+        """Return the final dynamic properties among the properties of a class."""
         found = {name: entry for name, entry in properties.items() if entry.dynamic and entry.final}
         reads = {name: entry.dependencies & found.keys() for name, entry in found.items()}
         ordered = [found[name] for name in TopologicalSorter(reads).static_order()]
@@ -251,7 +251,7 @@ def _density(name: str, value: Any) -> Any:
 
 
 def _ray_count(name: str, value: Any) -> Any:
-    """How many rays go across and upward, or nothing; each number as it is written."""
+    """Check the numbers of rays across and upward; ``None`` stands for the default."""
     if value is None:
         return value
     if not (isinstance(value, tuple | list) and len(value) == 2):

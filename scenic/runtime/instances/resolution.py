@@ -29,7 +29,7 @@ class Step:
     default: Specifier | None
     names: tuple[str, ...]
     modifies: frozenset[str]
-    """Those of ``names`` whose value another specifier has given before."""
+    """The names, among ``names``, whose value another specifier has given before."""
     builtin: Callable[[Any], Any] | None = None
     """The default, where it is the language's own: it is never lazy, and always fits its property."""
 
@@ -57,7 +57,7 @@ class Resolution:
     names: tuple[str, ...]
     """All properties, those of the class first."""
     given: tuple[str, ...]
-    """Those that the program gives, by a specifier or in a class of its own."""
+    """The properties that the program gives, by a specifier or in a class of its own."""
     is_doubtful: bool
     """True if a name looks misspelt, which is told each time."""
 
@@ -312,7 +312,7 @@ def _default_specifier(name: str, entry: Property) -> Specifier:
 
 
 def _builtin_default(properties: Mapping[str, Property], name: str) -> Callable[[Any], Any] | None:
-    """What computes the default of a property, where only the language itself defines it."""
+    """Return the function that computes a property's default, or ``None`` if a class of the program defines the default."""
     entry = properties[name]
     if not all(definition.is_builtin for definition in entry.definitions):
         return None

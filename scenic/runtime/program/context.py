@@ -23,11 +23,11 @@ from scenic.language.spans import Span
 from scenic.runtime.program.external import Choosable
 
 _PACKAGE: Final = f"{Path(__file__).parents[1]}{os.sep}"
-"""Where the code of this package lies."""
+"""The directory of this package, ending in a separator."""
 
 Locator = Callable[..., Span | None]
-"""Where in the Scenic source a Python frame or the failure of a traceback is (`scenic.compiler.tracebacks`); passed
-in, since the runtime knows nothing of source text."""
+"""Finds the place in the Scenic source of a Python frame or of a traceback's failure
+(`scenic.compiler.tracebacks`); passed in, since the runtime knows nothing of source text."""
 
 Namer = Callable[[FrameType], Hashable]
 """A name of the place of a frame whatever is added before it: the text of its line, not the number."""

@@ -66,7 +66,7 @@ class Program:
     ego: Object | None = None
     workspace: Workspace | None = None
     places: dict[int, tuple[Span | None, str | None]] = field(default_factory=dict)
-    """Where each instance was created, by its identity: span and file."""
+    """The span and file where each instance was created, by the identity of the instance."""
     external_names: Mapping[int, str] = field(default_factory=dict)
     """Names of the program's external parameters, by address."""
     variables: Mapping[int, str] = field(default_factory=dict)

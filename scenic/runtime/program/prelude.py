@@ -68,7 +68,7 @@ from scenic.runtime.visibility.flat import sees_in_mode
 
 
 class Modules(Protocol):
-    """Where modules of Scenic code come from (`scenic.compiler.loader`, passed in)."""
+    """Finds and compiles modules of Scenic code (`scenic.compiler.loader`, passed in)."""
 
     def find(self, name: str) -> Path | None:
         """The file of a module, or ``None`` if no Scenic module of that name exists."""
@@ -122,7 +122,7 @@ class Prelude(Symbolic, Dynamics):
 
     @property
     def _context(self) -> Context:
-        """How the program is read: that of the running simulation, if one is."""
+        """The context in which the program runs: the running simulation's, or else the compilation's."""
         active = current.get()
         return active if isinstance(active, RunContext) else self._compilation
 

@@ -19,7 +19,7 @@ MOST: Final = 1000
 
 _EXTREMES: Final = {"min": "minimum", "max": "maximum"}
 _COMPENSATES: Final = sys.version_info >= (3, 12)
-"""Whether Python's ``sum`` adds floats more exactly than one after the other."""
+"""True if Python's ``sum`` compensates rounding, and so differs from adding floats in turn."""
 
 
 def iterated(function: Callable[..., Any], sequences: Sequence[Any]) -> list[Any]:

@@ -85,7 +85,7 @@ def bounds_of_region(kind: type, parameters: Sequence[Bounds | None]) -> Bounds 
 
 
 def _readings(reading: Callable[..., Any], bounds: Sequence[Bounds | None]) -> list[Any]:
-    """What a reading says of each of the boxes for which there are bounds."""
+    """Call a bounding function once for each box of ``bounds``, with an interval for each argument; return the results."""
     boxes = max((len(item.lower) for item in bounds if item is not None), default=1)
     return [reading(*(_interval(item, box) for item in bounds)) for box in range(boxes)]
 

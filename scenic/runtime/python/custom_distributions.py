@@ -20,7 +20,7 @@ from scenic.runtime.values.values import Random, is_random, wrong_type
 
 
 class _AnyLaw(type):
-    """What the class itself does: making a law gives what it draws, where values are drawn at once.
+    """The metaclass of custom distributions: an instance made in a simulation is replaced by the value that it draws.
 
     Every random value counts as a `Distribution` where a program asks with ``isinstance``.
     """
@@ -102,7 +102,7 @@ def _drawn(holder: _Holder, sampled: tuple[Any, ...]) -> Any:
 
 
 def _drawn_now(law: Distribution) -> Any:
-    """What a law draws, with the generators seeded by a draw of the simulation."""
+    """Return a value drawn from a distribution, with Python's and NumPy's generators seeded by a draw of the simulation."""
     with preserved():
         seed_globals(int((uniform_draw() or 0) * 2.0**52))
         value = _drawn(_Holder(law), law._dependencies)

@@ -28,7 +28,10 @@ from scenic.runtime.values.values import CODEC, Random, as_value
 
 
 class _Habit:
-    """What has been seen of code so far: whether it draws from the global generators. Changes speed, never a result."""
+    """A record of whether some code has drawn from the global generators so far.
+
+    It changes speed, never a result.
+    """
 
     __slots__ = ("draws",)
 
@@ -109,7 +112,7 @@ Rows = Sequence[tuple[Any, ...]]
 """Arguments by lane."""
 
 _STATE_READERS = ("getstate", "get_state")
-"""What code calls that looks at the state of a generator without drawing."""
+"""Names of the functions that read the state of a generator without drawing."""
 
 generic.call_later.register(object, call_later)
 
@@ -315,7 +318,7 @@ class _Lanes:
 
 
 def _told_bounds(code: OpaqueCode, *operands: Bounds | None) -> Bounds | None:
-    """What the program says of the results (`scenic.bounded`)."""
+    """Return the bounds that the program declares for the results of some code (`scenic.bounded`), or ``None``."""
     if code.keywords:
         return None
     known = dict(zip(code.operands, operands, strict=False))

@@ -23,7 +23,7 @@ from scenic.runtime.values.values import Random
 __all__ = ["Originals"]
 
 _Contents = tuple[Any, dict[str, Any]]
-"""What a container holds, in a list or another array, and its attributes."""
+"""The items of a container, as a list or an array, and its attributes."""
 
 
 class Originals:

@@ -342,7 +342,7 @@ _KINDS_OF_CONTAINERS = (list, deque, set, dict, tuple, frozenset)
 
 
 def _contents(module: ModuleType) -> dict[str, Any]:
-    """What a module of the language defines."""
+    """Return the names that a module of Scenic code defines, with their values."""
     return {name: item for name, item in vars(module).items() if not name.startswith("__")}
 
 
@@ -570,7 +570,7 @@ class Sample:
         return copy
 
     def _decorated(self, value: Any, copy: Callable[[Any], Any]) -> Any:
-        """What Python's decorators make of functions, made of copies of these."""
+        """Copy a decorated value: copy its functions and decorate the copies in the same way."""
         if isinstance(value, property):
             get, put, delete = map(copy, (value.fget, value.fset, value.fdel))
             return property(get, put, delete, value.__doc__)

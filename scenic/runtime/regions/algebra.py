@@ -322,11 +322,15 @@ _MEETS: Final = PairTable(
     ),
     symmetric=True,
 )
-"""Which rule says of two kinds whether they meet; rules that answer ``None`` leave it to those below."""
+"""Rules that decide whether regions of two kinds intersect; a rule that returns ``None`` passes the pair on
+to the rules after it."""
 
 
 def _shared(one: IntersectionRegion | DifferenceRegion, other: Region) -> Region | None:
-    """What a composite region shares with another, where that has a closed form when views are taken as their meshes."""
+    """Return the closed form of the intersection of a composite region with another, or ``None``.
+
+    Views count as their meshes.
+    """
     first, *rest = (generic.meshed(each) if isinstance(each, ViewRegion) else each for each in one.members)
     shared = intersection(first, generic.meshed(other) if isinstance(other, ViewRegion) else other)
     for member in rest:

@@ -67,7 +67,7 @@ Mask = NDArray[np.bool_]
 
 
 class _RegionType(ABCMeta):
-    """What classes of regions do themselves: a region of what depends on an object is made when that is known."""
+    """The metaclass of regions: a region whose arguments depend on an object is made once these are known."""
 
     def __call__(cls, *args: Any, **keywords: Any) -> Any:
         if is_lazy(args) or is_lazy(keywords):

@@ -209,7 +209,7 @@ def _gap_bounds(_payload: Any, *operands: Bounds | None) -> Bounds:
 
 
 def _near_each_other(result: Bounds, operands: Sequence[Bounds | None]) -> list[Bounds | None]:
-    """Where two bodies can be that are so far from each other at most: bounds of `body_operands` of both."""
+    """Bound two bodies that are at most ``result`` apart: return bounds for the `body_operands` of both."""
     parts: list[Bounds | None] = [None] * 8
     for mine, other in ((0, 4), (4, 0)):
         box, reach = body_box(*operands[other : other + 3]), body_reach(*operands[mine + 1 : mine + 3])

@@ -62,7 +62,7 @@ class RegionChoice(VaryingRegion):
         return select(index, places), select(index, orientations) if self.has_orientation else None
 
     def orientation_at(self, point: Any) -> Any:
-        """That of the option that is drawn; fields that options have are asked each by itself."""
+        """Return the orientation that the drawn option has at a point; an option with a vector field evaluates its own."""
         if not self.has_orientation or self._has_no_field:
             return super().orientation_at(point)
         found = [as_node(option.orientation_at(point)) for option in self.options]

@@ -222,7 +222,9 @@ class UnionRegion(Composite):
         return any_of(inside)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        """Where one member holds the whole body, or several together do whose union has a closed form in that lane."""
+        """Return a mask of the lanes in which the union contains the whole body: within one member, or within
+        several whose union has a closed form in that lane.
+        """
         one = any_of([member.contains_bodies(body, lanes, *mine) for member, mine in self._parts(columns)])
         inside = np.array(np.broadcast_to(one, lanes))
         left = np.flatnonzero(~inside)
@@ -314,7 +316,7 @@ class DifferenceRegion(Composite):
         return np.asarray(first & ~second)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        """Where the first member holds the whole body, and the second touches it nowhere."""
+        """Return a mask of the lanes in which the first member contains the whole body and the second does not touch it."""
         (first, mine), (second, others) = self._parts(columns)
         inside = np.broadcast_to(first.contains_bodies(body, lanes, *mine), lanes).copy()
         held = np.flatnonzero(inside)
@@ -329,7 +331,9 @@ class DifferenceRegion(Composite):
         return first.meets_bodies(body, lanes, *mine)
 
     def meets_polytopes(self, planes: Column, lanes: int, columns: Sequence[Column]) -> Mask | None:
-        """Where a vertex of what the polytope shares with the first member lies outside the second, which is convex."""
+        """Return a mask of the lanes in which the polytope meets the difference: a vertex of its intersection
+        with the first member lies outside the second, which must be convex.
+        """
         (first, mine), (second, others) = self._parts(columns)
         own = first.half_spaces(*mine)
         if own is None or not second.is_surely_convex():

@@ -130,7 +130,9 @@ class Composite(Region):
         return np.full(len(points), np.nan)
 
     def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        """Where probes of the body lie in the region, or what is left of the plane in a lane meets its outline."""
+        """Return a mask of the lanes in which the body meets the region: by probes of the body, or by
+        outlines for regions of the plane.
+        """
         result = np.array(np.broadcast_to(self.may_meet(body, lanes, columns), lanes))
         left = np.flatnonzero(result)
         if not len(left):
@@ -220,7 +222,7 @@ class Composite(Region):
 
     @abstractmethod
     def _accept(self, points: Points, inside: Sequence[Mask], chosen: NDArray[np.intp], dice: Column) -> Mask:
-        """Which draws from members ``chosen`` are kept."""
+        """Return a mask of the draws to keep; draw i comes from member ``chosen[i]``."""
 
     @abstractmethod
     def _sources(self, columns: Sequence[Column]) -> tuple[list[int], NDArray[np.float64]]:

@@ -153,7 +153,7 @@ class TabulatedField(VectorField):
     """
 
     _is_table: bool = True
-    """Whether `headings` answers for every point."""
+    """True if `headings` is defined at every point."""
     divides_backward: bool = False
     """True if a way against the field is divided by its length, as one along it is; else it takes the least number of steps."""
 
@@ -166,7 +166,9 @@ class TabulatedField(VectorField):
         return None
 
     def stepped(self, points: Points, strides: NDArray[np.float64]) -> tuple[Points, Mask]:
-        """Where points ``(n, 3)`` come to along the field by strides ``(n,)`` in metres, and which have a direction, ``(n,)``."""
+        """Move points ``(n, 3)`` along the field by ``strides`` ``(n,)``, in metres; return the new points,
+        and a mask ``(n,)`` of the points at which the field has a direction.
+        """
         headings, known = self.headings(points)
         reached = np.array(points)
         reached[:, 0] -= strides * np.sin(headings)
@@ -626,14 +628,14 @@ def _follow_table(call: Call, points: Column, distance: Column) -> Column:
 
 
 def _follow_bounds(_payload: Any, points: Bounds | None, distance: Bounds | None) -> Bounds | None:
-    """Where a way can end: no further from its start than it is long, at the same height."""
+    """Bound the end of a path along the field: no further from its start than its length, at the same height."""
     return _around(points, distance)
 
 
 def _follow_inverse(
     _payload: Any, result: Bounds, _points: Bounds | None, distance: Bounds | None
 ) -> Sequence[Bounds | None]:
-    """Where a way that ends somewhere can begin."""
+    """Bound the start of a path along the field whose end is known."""
     return _around(result, distance), None
 
 
@@ -646,7 +648,7 @@ def _around(points: Bounds | None, distance: Bounds | None) -> Bounds | None:
 
 
 _ROUNDING: Final = 1e-9
-"""What the steps of a way may add to its length, relative, and in metres."""
+"""Bound of the rounding error in the length of a path, relative, and in metres."""
 
 
 _FOLLOW_TABLE = Operation(

@@ -36,7 +36,10 @@ class Containment:
 
 
 def containment_bounds(payload: Containment, *operands: Bounds | None) -> Bounds | None:
-    """Where a body is certainly outside, from bounds of position, orientation, size, (shape,) and parameters."""
+    """Bound the truth of containment: false where a body is certainly outside.
+
+    The operands are position, orientation, size, (shape,) and parameters.
+    """
     reach, position = _reach(payload, operands), operands[0]
     container = payload.region.container_extent(*operands[4:])
     if reach is None or position is None or container is None:
@@ -57,7 +60,7 @@ def containment_bounds(payload: Containment, *operands: Bounds | None) -> Bounds
 def containment_inverse(
     payload: Containment, result: Bounds, *operands: Bounds | None
 ) -> Sequence[Bounds | None]:
-    """Where the centre of a body that is inside can be."""
+    """Bound the position of a body for which containment is true."""
     nothing: list[Bounds | None] = [None] * len(operands)
     reach, container = _reach(payload, operands), payload.region.container_extent(*operands[4:])
     if reach is None or container is None:
@@ -71,7 +74,7 @@ def containment_inverse(
 
 
 def point_bounds(region: "Region", point: Bounds | None, *parameters: Bounds | None) -> Bounds | None:
-    """Where a point is certainly outside a region."""
+    """Bound the truth of ``point in region``: false where the point is certainly outside."""
     container = region.container_extent(*parameters)
     if point is None or container is None:
         return None
@@ -87,7 +90,7 @@ def point_bounds(region: "Region", point: Bounds | None, *parameters: Bounds | N
 def point_inverse(
     region: "Region", result: Bounds, _point: Bounds | None, *parameters: Bounds | None
 ) -> Sequence[Bounds | None]:
-    """Where a point that a region holds can be."""
+    """Bound the position of a point that lies in a region."""
     container = region.container_extent(*parameters)
     return [near(result, container, np.full(1, region.tolerance)), *(None for _ in parameters)]
 
@@ -124,14 +127,16 @@ def distance_bounds(region: "Region", point: Bounds | None, *parameters: Bounds 
 def distance_inverse(
     region: "Region", result: Bounds, _point: Bounds | None, *parameters: Bounds | None
 ) -> Sequence[Bounds | None]:
-    """Where a point that is so far from a region can be."""
+    """Bound the position of a point whose distance from a region is ``result``."""
     extent = region.extent(*parameters)
     place = None if extent is None else grown(extent, result.upper * (1 + 1e-9))
     return [place, *(None for _ in parameters)]
 
 
 def _is_away(region: "Region", boxes: Bounds, columns: Sequence[Floats], slack: float) -> Mask:
-    """Which boxes ``(m, 3)`` are certainly farther from a container than they are large."""
+    """Return a mask of the boxes ``(m, 3)`` whose centre is certainly farther from a container than any of
+    their points is from the centre.
+    """
     centre, radius, known = _ball(boxes)
     gaps = region.gaps(centre, *columns)
     away: Mask = known & (gaps > radius + slack)
@@ -141,7 +146,9 @@ def _is_away(region: "Region", boxes: Bounds, columns: Sequence[Floats], slack: 
 def _is_near_the_edge(
     payload: Containment, container: Bounds, operands: Sequence[Bounds | None], columns: Sequence[Floats]
 ) -> Mask:
-    """Which bodies are certainly less deep in a container than the balls or discs are large that they hold."""
+    """Return a mask of the bodies that certainly cross the edge of a container, as their centre is less deep
+    in it than the radius of the ball or disc that they contain.
+    """
     position = operands[0]
     assert position is not None
     inradius = _inradius(payload, operands)
@@ -190,7 +197,7 @@ def _ball(boxes: Bounds) -> tuple[Floats, Floats, Mask]:
 
 
 def _reach(payload: Containment, operands: Sequence[Bounds | None]) -> Bounds | None:
-    """Where the body's extreme corners are, seen from its position: bounds ``(m, corners, 3)``.
+    """Return bounds ``(m, corners, 3)`` of the body's extreme corners relative to its position.
 
     Of a mesh that is not fixed nothing is known but that it is not empty; its centre need not be part of it.
     """

@@ -24,7 +24,7 @@ from scenic.runtime.values.values import Orientation, is_number, operate, to_ori
 
 
 class _Placement:
-    """What a mesh and its placement come to: the operands of `body_of`."""
+    """A mesh and its placement, converted to the operands of `body_of`."""
 
     def __init__(
         self,

@@ -69,5 +69,5 @@ def only_within(first: Bounds | None, second: Bounds | None, distance: Floats) -
 
 
 def near(result: Bounds, other: Bounds | None, distance: Floats) -> Bounds | None:
-    """Where a thing can be, if ``result`` is true only within a distance of another one."""
+    """Bound the position of a thing, if ``result`` is true only within a distance of another thing."""
     return None if other is None else where(result.lower > 0, grown(other, distance))

@@ -140,7 +140,9 @@ class GridRegion(PointSetRegion):
         return lower - half, upper + half
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        """Where all corners of the bounding box, seen from above, are in free cells, and no obstacle's point is below."""
+        """Return a mask of the lanes in which the corners of the body's bounding box lie in free cells and no
+        obstacle lies below it.
+        """
         import shapely
 
         rows, cells = np.nonzero(self.grid != 0)

@@ -58,7 +58,7 @@ def prism_about(solid: Mesh, polygon: Any) -> Mesh | None:
 
 
 def crossings(start: Any, end: Any, solid: Mesh) -> list[float]:
-    """Where a segment meets the faces of a solid, as parts of its length (Moeller and Trumbore, 1997)."""
+    """Return the places where a segment meets the faces of a solid, as shares of its length (Moeller and Trumbore, 1997)."""
     along = end - start
     a, b, c = (solid.triangles[:, corner] for corner in range(3))
     ab, ac = b - a, c - a

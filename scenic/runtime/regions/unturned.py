@@ -21,7 +21,8 @@ _UPRIGHT = "from euler"
 
 
 def unturned(condition: Node) -> Node | None:
-    """That a rectangle about the origin, not turned, holds a point or body; ``None`` for what says nothing of a rectangle elsewhere.
+    """Derive from a rectangle's containment of a point or body that the same rectangle, unturned about the
+    origin, contains it in the rectangle's frame; ``None`` for other conditions.
 
     It follows from the condition, up to rounding.
     """

@@ -54,7 +54,7 @@ class VaryingRegion(Region):
         width: tuple[int, ...] = (),
         dtype: type = np.float64,
     ) -> Column:
-        """What a primitive gives for points: rows of a width, by lane."""
+        """Evaluate a method of the drawn options on points; return an array of the given width by lane."""
         lanes = _lanes(points, *columns)
         points = np.broadcast_to(points, (lanes, 3))
         result: Column = np.zeros((lanes, *width), dtype=dtype)

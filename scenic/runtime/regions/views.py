@@ -154,7 +154,7 @@ class ViewRegion(Region):
 
     @property
     def position(self) -> Any:
-        """Where the observer is."""
+        """The position of the observer."""
         return self.parameters[0]
 
     @property

@@ -134,7 +134,7 @@ class VoxelRegion(Region):
             yield BoxRegion(dimensions=self.pitch.tolist(), position=middle)
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        """Where no empty cell, and nothing outside the grid, meets the body."""
+        """Return a mask of the lanes in which the body meets no empty cell and nothing outside the grid."""
         lower, upper = bounds(body)
         first = np.floor((lower - self.corner) / self.pitch).astype(np.int64)
         last = np.ceil((upper - self.corner) / self.pitch).astype(np.int64)
@@ -150,7 +150,7 @@ class VoxelRegion(Region):
         return np.asarray(np.broadcast_to(inside, lanes))
 
     def _filled_cells(self, first: NDArray[np.int64], last: NDArray[np.int64]) -> NDArray[np.int64]:
-        """How many cells are filled from ``first`` (included) to ``last`` (not included), ``(n, 3)`` each."""
+        """Return the numbers of filled cells from ``first`` (included) to ``last`` (excluded), ``(n, 3)`` each."""
         sums = np.zeros(np.array(self.filled.shape) + 1, dtype=np.int64)
         sums[1:, 1:, 1:] = self.filled.cumsum(0).cumsum(1).cumsum(2)
         (a, b, c), (d, e, f) = first.T, last.T
@@ -160,7 +160,7 @@ class VoxelRegion(Region):
         )  # fmt: skip
 
     def _free_of_empty(self, body: Body, first: NDArray[np.int64], last: NDArray[np.int64]) -> Mask:
-        """Where the body meets the inside of no empty cell, of those that its box reaches: ``(n,)``."""
+        """Return a mask ``(n,)`` of the lanes in which the body avoids the inside of every empty cell that its box reaches."""
         free = np.ones(len(first), dtype=np.bool_)
         empty = np.argwhere(~self.filled)
         reached = ((first.min(axis=0) <= empty) & (empty < last.max(axis=0))).all(axis=1)

@@ -38,7 +38,7 @@ _LIVELY: Final = 0.35
 """Blocks are moved once this share of lanes, or less, has lived since they were moved last."""
 
 _STEPS: Final = (0.5, 0.1, 0.02)
-"""How far moves go along an axis of the cube; 0.5 draws anew."""
+"""Step sizes of moves along an axis of the cube; a step of 0.5 draws the coordinate again."""
 
 _OTHERS: Final = 4
 """One in so many sweeps has another step than the one by which lanes have got furthest."""
@@ -288,7 +288,7 @@ class _Sampler:
         pace.learn(step, moved / max(1, len(moves) * len(state)))
 
     def _passes(self, state: "_State", checks: Sequence[Check]) -> NDArray[np.bool_]:
-        """Which lanes none of the checks rejects."""
+        """Return a mask of the lanes that pass all checks."""
         passes = np.ones(len(state), dtype=np.bool_)
         if not checks:
             return passes
@@ -318,7 +318,8 @@ _EXCESS: Final = 8
 
 
 def _correlation(found: Sequence[float], lanes: int) -> float:
-    """How far numbers depend on what they were, from the correlation of each one over so many lanes.
+    """Return a measure of how strongly a sweep's numbers depend on the previous ones, from their correlations
+    over ``lanes`` lanes.
 
     Numbers that depend on nothing have correlations, too, with a mean square of 1 over the number of lanes. What is left without these is
     the larger of two: of the mean square, which tells whether lanes move at all, and of the largest, which tells whether some block stays.
@@ -374,7 +375,9 @@ class _Objects:
 
 
 class _Steps:
-    """How far the next sweep's moves go: by the step with which lanes have got furthest so far, now and then by another."""
+    """Step sizes for the moves of the next sweep: mostly the step that has moved lanes furthest so far, now
+    and then another.
+    """
 
     def __init__(self) -> None:
         self._reached: dict[float, float] = {}

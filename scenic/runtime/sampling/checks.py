@@ -123,7 +123,7 @@ class NodeCheck:
 
 @dataclass(slots=True)
 class DrawingCheck:
-    """That a value of the scene can be drawn: no empty range, no missing attribute, no miss of a surface."""
+    """A check that a value of the scene can be drawn: no empty range, no missing attribute, no miss of a surface."""
 
     node: Node
     label: str
@@ -211,7 +211,7 @@ def _rows(columns: Column, count: int) -> Column:
 
 @dataclass(slots=True)
 class CollisionCheck:
-    """That no two objects share a point, but for those that allow it."""
+    """A check that no two objects share a point, except objects that allow collisions."""
 
     objects: Sequence[ObjectNodes]
     pairs: NDArray[np.intp]

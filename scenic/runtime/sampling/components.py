@@ -192,7 +192,7 @@ class _Known:
 
 
 def _may_meet(check: CollisionCheck, bounds: _Known) -> NDArray[np.bool_]:
-    """Which pairs of objects are not certainly apart: balls about the places where they may be."""
+    """Return a mask of the pairs of objects that may meet, judged by balls around the bounds of their positions."""
     spans = [_span(item, bounds) for item in check.objects]
     lower, upper = np.array([span[0] for span in spans]), np.array([span[1] for span in spans])
     radius = np.array([span[2] for span in spans])
@@ -205,7 +205,9 @@ def _may_meet(check: CollisionCheck, bounds: _Known) -> NDArray[np.bool_]:
 
 
 def _span(item: ObjectNodes, bounds: _Known) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
-    """Where an object's position may be, and how far from it the object may reach: meshes fill their boxes at most."""
+    """Return bounds of an object's position, and the largest distance of its points from there: a mesh does
+    not leave its box.
+    """
     position, size = bounds(item.position), bounds(item.size)
     nowhere = np.full(3, np.inf)
     if position is None or size is None or position.lower.shape != (1, 3) or size.upper.shape != (1, 3):
@@ -215,7 +217,7 @@ def _span(item: ObjectNodes, bounds: _Known) -> tuple[NDArray[np.float64], NDArr
 
 
 class _Joins:
-    """Which draws some sets of nodes join: union and find over the sets, told one after the other."""
+    """Union-find over draws: each set of nodes that is added joins the draws it depends on."""
 
     def __init__(self, plan: Plan) -> None:
         self._owner: dict[Node, int] = {}
@@ -233,7 +235,7 @@ class _Joins:
 
     @property
     def count(self) -> int:
-        """How many sets of draws are not joined."""
+        """The number of separate sets of draws."""
         return len({self.leader(member) for member in range(len(self._leaders)) if self._drawing[member]})
 
     def add(self, nodes: Iterable[Node]) -> int:

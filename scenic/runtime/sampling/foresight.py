@@ -40,7 +40,7 @@ class Foreseen:
         self._expected: deque[int] = deque()
         """The seeds of the scenes that come next in the stream."""
         self._peeked: deque[int] = deque()
-        """Those of them that the stream has not asked for."""
+        """Expected seeds that the stream has not read."""
 
     def take(self, seed: int, limit: int) -> Scene | Exhausted:
         """The scene of a seed that was drawn just now; raises what goes wrong in sampling it."""

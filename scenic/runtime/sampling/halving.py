@@ -1,4 +1,4 @@
-"""Where to divide a component whose checks hardly any candidate passes: into halves, and these again.
+"""Recursive division of a component into halves where hardly any candidate passes its checks.
 
 Candidates for a half that pass the checks within it are found apart from those for the other half. Pairs of them are
 candidates for the whole, of which only the checks between the halves are asked; one that fails loses two halves, not all
@@ -128,7 +128,11 @@ def any_passes(engine: Engine) -> bool:
 
 
 def _divided(plan: Plan, reads: Reads, batch: Batch, leaf: int, always: bool) -> Tree | None:
-    """How a component is divided, as estimated on a batch of candidates; its leaves are numbered from ``leaf``."""
+    """Return the division of a component as a tree of halves, estimated on a batch of candidates, or ``None``
+    if dividing does not pay.
+
+    The leaves are numbered from ``leaf``.
+    """
     found, units = pieces(reads, plan.checks)
     read = frozenset[int]().union(*(piece.read for piece in found))
     news = blocks(unit & read for unit in units)
@@ -216,7 +220,7 @@ def _within(count: int, spans: Sequence[tuple[int, int]], logs: NDArray[np.float
 
 
 def _cheapest(within: NDArray[np.float64], always: bool) -> tuple[float, NDArray[np.intp]]:
-    """What a scene costs at least, in blocks of draws, and where blocks ``i`` to ``j`` are cut (0: nowhere).
+    """Return the least cost of a scene, in blocks of draws, and for blocks ``i`` to ``j`` the place to cut (0: do not cut).
 
     With ``always`` they are cut wherever there are two.
     """

@@ -26,7 +26,7 @@ __all__ = ["Joined", "join"]
 Numbers = NDArray[np.int64]
 
 _FAITH: Final = 20
-"""How many candidates an estimate counts for that was made before any was tried."""
+"""Number of candidates that an estimate counts for that was made before any candidate was tried."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,12 +86,12 @@ class _Queue:
 
     @property
     def count(self) -> Numbers:
-        """How many candidates there are for each scene."""
+        """The number of candidates available for each scene."""
         return self._tail - self._head
 
     @property
     def rate(self) -> float:
-        """How many candidates pass, as far as is known."""
+        """The share of candidates that pass, as estimated so far."""
         return self._passed / self._judged
 
     def learn(self, judged: int, passed: int) -> None:
@@ -209,7 +209,7 @@ class _Search:
         return lanes, candidates
 
     def _passes(self, tree: Tree, lanes: NDArray[np.intp], candidates: Numbers) -> NDArray[np.bool_]:
-        """Which candidates ``(m, leaves)`` for a part of scenes ``(m,)`` pass the checks that are made of it."""
+        """Return a mask of the candidates ``(m, leaves)`` for a part of scenes ``(m,)`` that pass the checks of the part."""
         passes = np.ones(len(lanes), dtype=np.bool_)
         if not tree.joints or not len(lanes):
             return passes

@@ -80,7 +80,7 @@ class Pending:
         self.inactive = np.concatenate([self.inactive, inactive.T])
 
     def leave(self, finished: NDArray[np.bool_]) -> None:
-        """Those scenes ``(n,)`` are found, or given up."""
+        """Remove the scenes ``(n,)`` that are finished: found, or given up."""
         if not finished.any():
             return
         left = np.flatnonzero(~finished)

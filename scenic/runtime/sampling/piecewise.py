@@ -35,10 +35,11 @@ _FORESEEN: Final = (8, 256)
 """Scenes looked for at first, and at most, where nobody knows how many are wanted."""
 
 _FORESIGHT_SECONDS: Final = 0.0125
-"""What takes longer is not followed by four times as much, unless more than four times as much has been spent before."""
+"""Longest time of a block of scenes after which the next block is always four times as large; after that time
+the next block only grows while the earlier blocks together took four times as long."""
 
 _LONGEST_SECONDS: Final = 1.0
-"""What takes longer is not followed by more at all."""
+"""Time of a block of scenes from which later blocks do not grow."""
 
 _TOGETHER: Final = 32
 """Lanes in which all components are tried together."""
@@ -49,7 +50,7 @@ _FAILED: Final = -1
 
 @dataclass(frozen=True, slots=True)
 class _Limits:
-    """What may be spent on a scene; see `Engine.scenes`."""
+    """Limits on the effort for a scene; see `Engine.scenes`."""
 
     attempts: int
     lanes: int | None = None

@@ -58,7 +58,7 @@ class Outline:
     requirements: tuple[Requirement, ...]
     """The hard requirements of the program, for analysis."""
     built_in: tuple[NodeCheck, ...]
-    """That objects are inside their containers, and seen, likewise."""
+    """The built-in checks that objects are inside their containers, and that they are visible where required."""
     bodies: int
     """The number of objects."""
 
@@ -304,7 +304,7 @@ def _warn_of_size(program: Program, item: Object, size: str, container: str) -> 
 
 
 def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[NodeCheck]:
-    """What has to be seen by whom, and what must not be (section 10.1)."""
+    """Return the checks of visibility: each object that has to be seen by an observer, or must not be (section 10.1)."""
 
     def seen(observer: Any, target: Any) -> Node:
         return truth(sees_in_mode(observer, target, program.objects, mode_2d=mode_2d))

@@ -1,4 +1,4 @@
-"""Where the time of sampling goes: by operation and line of the program, and by requirement.
+"""Profiles of sampling: time by operation and line of the program, and by requirement.
 
 A `Meter` is given to an engine (`Engine.metered`), whose batches report each step to it. It changes no scene. Steps that are
 evaluated together for nodes of several lines are divided among the lines.
@@ -62,7 +62,7 @@ class CheckRow:
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """Where the time of sampling some scenes went.
+    """The distribution of time over the work of sampling some scenes.
 
     Attributes:
         scenes: how many were found.
@@ -119,7 +119,7 @@ _Key = tuple[str, int | None, bool]
 
 @dataclass(slots=True)
 class _Checked:
-    """What a check has done so far."""
+    """Counts and time of a check so far."""
 
     candidates: int = 0
     passed: int = 0

@@ -1,4 +1,4 @@
-"""Why candidates were rejected, counted so that the order of checks does not matter."""
+"""Reports of why candidates were rejected, with counts that do not depend on the order of checks."""
 
 from dataclasses import dataclass
 from typing import Final

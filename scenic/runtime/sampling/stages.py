@@ -62,7 +62,9 @@ class Stages:
 
     @cached_property
     def _below(self) -> list[frozenset[Node]]:
-        """What is evaluated for each check. (Of engines that never sample nobody asks for it.)"""
+        """The nodes that are evaluated for each check. (Computed on demand, since engines that never sample
+        do not need them.)
+        """
         return [self._scheduler.below(nodes) for nodes in self._needs]
 
     def measure(self, index: int, lanes: int, seconds: float, passed: int) -> None:

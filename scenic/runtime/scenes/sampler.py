@@ -132,7 +132,7 @@ class Sampler:
         deadline: float | None,
         source: PointSet | None,
     ) -> Profile:
-        """Where the time goes when scenes are looked for; the arguments are those of `find`."""
+        """Find scenes and return the profile of the time that it takes; the arguments are those of `find`."""
         engine = self._engine_of(source).metered(Meter())
         limit = self._limit(max_attempts, source)
         some = () if self.impossible else engine.scenes(tasks, max_attempts=limit, deadline=deadline)
@@ -202,7 +202,7 @@ class Sampler:
             self._finder = self._finder_of(components)
 
     def _finder_of(self, components: Components | None) -> Engine | PiecewiseEngine:
-        """What finds scenes that are put together from components."""
+        """Return the engine that finds scenes, for a program divided into components if any are given."""
         return self.engine if components is None else PiecewiseEngine(self.engine, components)
 
     def _not_found(self, tasks: Iterable[tuple[int, int]]) -> Iterator[Exhausted]:

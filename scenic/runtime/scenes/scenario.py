@@ -373,7 +373,7 @@ class Scenario(Generating):
         time_limit: float | None = None,
         source: PointSet | None = None,
     ) -> Profile:
-        """Where the time of sampling goes: by operation and line of the program, and by requirement.
+        """Sample scenes and return the profile of the time: by operation and line of the program, and by requirement.
 
         The arguments are those of `stream`. Scenes that are not found within the limits are left out.
 

@@ -34,7 +34,7 @@ class Origin:
 
     @classmethod
     def of(cls, instance: Point) -> "Origin":
-        """That of an instance of the program."""
+        """Return the origin of an instance of the program."""
         values = instance.__dict__
         # What is in a scene is present there.
         names = tuple(sorted({*values.get("_names", instance.scenic_properties)} - {"present"}))
@@ -196,7 +196,7 @@ class Scene:
         return self._sample
 
     def place(self, number: int) -> tuple[Span | None, str | None]:
-        """Where the program creates the object of that number: span and file, as far as they are known."""
+        """Return the span and file where the program creates the object of a number, each ``None`` if unknown."""
         missing = self._missing()
         taking_part = [item for place, item in enumerate(self.sources) if place not in missing]
         return self.program.places.get(id(taking_part[number]), (None, None))

@@ -130,7 +130,7 @@ class Monitor:
 def _once(
     part: Normal, evaluate: Callable[[int], bool], known: dict[Normal, "_Clauses | Exception"]
 ) -> _Clauses:
-    """What is left of an obligation, which several clauses may share."""
+    """Progress an obligation by one state, at most once for all clauses that share it."""
     found = known.get(part)
     if found is None:
         try:
@@ -144,7 +144,7 @@ def _once(
 
 
 def _progressed(part: Normal, evaluate: Callable[[int], bool]) -> _Clauses:
-    """What is left to hold after one more state."""
+    """Return the obligations that remain after one more state, in disjunctive clauses."""
     match part:
         case Literal(index, wanted):
             return _TRUE if evaluate(index) is wanted else _FALSE

@@ -93,7 +93,7 @@ class Lazy:
 
 
 MEMO = "_lazy"
-"""Where an instance keeps, while it is built, what its lazy values came to."""
+"""The attribute in which an instance under construction caches the results of its lazy values."""
 
 
 def _called(function: Any, *args: Any, **keywords: Any) -> Any:

@@ -156,7 +156,7 @@ CONTAINERS_MADE: Final = frozenset({TUPLE, LIST, DICTIONARY, _SET, _FROZEN_SET})
 
 
 def _container(value: Any) -> Operation:
-    """What makes a container of the type of ``value`` from its parts."""
+    """Return the operation that makes a container of the type of ``value`` from its parts."""
     if isinstance(value, list):
         return LIST
     if not hasattr(value, "_fields"):

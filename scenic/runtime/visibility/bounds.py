@@ -20,10 +20,10 @@ _LESS_THAN_HALF: Final = np.pi - 2 * FULL_ANGLE_SLACK
 """View angles up to here leave a cone that is convex, and not nearly flat; from higher ones nothing is hidden above or below."""
 
 CAMERA, ORIENTATION, HORIZONTAL, VERTICAL, DISTANCE = range(5)
-"""Where the values are that describe an observer (`scenic.runtime.visibility.seeing.view_operands`)."""
+"""Positions of the operands that describe an observer (`scenic.runtime.visibility.seeing.view_operands`)."""
 
 TARGET: Final = 9
-"""Where what is looked at begins: a place, or the operands of a body."""
+"""Position of the first operand of the target: a point, or the operands of a body."""
 
 
 def sees_looks_at(payload: tuple[bool, bool]) -> slice:
@@ -33,7 +33,7 @@ def sees_looks_at(payload: tuple[bool, bool]) -> slice:
 
 
 def sees_bounds(payload: tuple[bool, bool], *operands: Bounds | None) -> Bounds | None:
-    """Where a target is certainly not seen, from bounds of the operands of "sees"."""
+    """Bound the truth of "sees", from bounds of its operands: false where the target is certainly not seen."""
     camera, place, distance = operands[CAMERA], operands[TARGET], operands[DISTANCE]
     radius = _radius(payload, operands)
     if camera is None or place is None or distance is None or radius is None:
@@ -55,7 +55,7 @@ def sees_bounds(payload: tuple[bool, bool], *operands: Bounds | None) -> Bounds 
 def sees_inverse(
     payload: tuple[bool, bool], result: Bounds, *operands: Bounds | None
 ) -> Sequence[Bounds | None]:
-    """Where an observer, and what it sees, can be."""
+    """Bound the positions of an observer and of the target that it sees."""
     parts: list[Bounds | None] = [None] * len(operands)
     distance, radius = operands[DISTANCE], _radius(payload, operands)
     if distance is not None and radius is not None:
@@ -65,7 +65,10 @@ def sees_inverse(
 
 
 def sees_in_plane_bounds(_payload: Any, *operands: Bounds | None) -> Bounds | None:
-    """Where a target is certainly too far away in 2D mode: bounds of camera, heading, angle, distance, place and body."""
+    """Bound the truth of "sees" in 2D mode: false where the target is certainly too far away.
+
+    The operands are camera, heading, angle, distance, place and body.
+    """
     camera, _, _, distance, place, *_ = operands
     radius = _radius_of(operands[5:])
     if camera is None or place is None or distance is None or radius is None:
@@ -74,7 +77,7 @@ def sees_in_plane_bounds(_payload: Any, *operands: Bounds | None) -> Bounds | No
 
 
 def sees_in_plane_inverse(_payload: Any, result: Bounds, *operands: Bounds | None) -> Sequence[Bounds | None]:
-    """Where an observer, and what it sees in 2D mode, can be."""
+    """Bound the positions of an observer and of the target that it sees in 2D mode."""
     parts: list[Bounds | None] = [None] * len(operands)
     camera, _, _, distance, place, *_ = operands
     radius = _radius_of(operands[5:])
@@ -85,7 +88,7 @@ def sees_in_plane_inverse(_payload: Any, result: Bounds, *operands: Bounds | Non
 
 
 def _radius(payload: tuple[bool, bool], operands: Sequence[Bounds | None]) -> Floats | None:
-    """How far what is looked at reaches from its place, ``(m | 1,)``."""
+    """Return bounds ``(m | 1,)`` of the distance that the target reaches from its place, or ``None``."""
     is_object, _ = payload
     return _radius_of(operands[TARGET + 1 : TARGET + 3] if is_object else ())
 
@@ -99,7 +102,9 @@ def _radius_of(body: Sequence[Bounds | None]) -> Floats | None:
 
 
 def _beside(local: Bounds, angle: Bounds | None) -> Any:
-    """Which boxes in the frame of the view lie left or right of it, or behind; x is to the right, y ahead."""
+    """Return a mask of the boxes, in the frame of the view, that lie left or right of the view or behind it;
+    x is to the right, y ahead.
+    """
     if angle is None:
         return np.zeros(1, dtype=np.bool_)
     slope = np.tan(np.minimum(angle.upper, _LESS_THAN_HALF) / 2)
@@ -110,7 +115,7 @@ def _beside(local: Bounds, angle: Bounds | None) -> Any:
 
 
 def _above_or_below(local: Bounds, angle: Bounds | None) -> Any:
-    """Which boxes in the frame of the view are higher or lower than it shows."""
+    """Return a mask of the boxes, in the frame of the view, that lie above or below the view."""
     if angle is None:
         return np.zeros(1, dtype=np.bool_)
     slope = np.tan(np.minimum(angle.upper, _LESS_THAN_HALF) / 2)

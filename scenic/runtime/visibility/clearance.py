@@ -113,7 +113,7 @@ def _directions(middle: Floats, width: float) -> Floats:
 
 
 def _are_clear(views: Views, directions: Floats, limits: Floats, obstacles: Obstacles) -> Booleans:
-    """Which directions are in the view, with nothing that stops them before their limits (metres)."""
+    """Return a mask of the directions that are in the view and that no obstacle stops before their limits (metres)."""
     x, y, z = directions.T
     half = 0.5 * views.window[0] + 1e-9
     within = (np.abs(np.arctan2(-x, y)) <= half[0]) & (np.abs(np.arcsin(np.clip(z, -1, 1))) <= half[1])

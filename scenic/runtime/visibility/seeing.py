@@ -242,7 +242,7 @@ def looks(root: Node) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """That an observer has to see an instance, or must not: what the specifiers `visible` and `not visible` ask for."""
+    """A demand by the specifiers `visible` and `not visible`: an observer has to see an instance, or must not see it."""
 
     observer: Any
     wanted: bool

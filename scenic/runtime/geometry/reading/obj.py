@@ -40,7 +40,7 @@ def read_obj(data: bytes) -> Soup:
 
 
 def _vertices_before(lines: list[list[bytes]]) -> Indices:
-    """How many vertices come before each face: negative numbers count back from there."""
+    """Return the number of vertices before each face, from which negative vertex numbers count back."""
     kinds = [line[0] for line in lines if len(line) == 2]
     is_face = np.array([kind == b"f" for kind in kinds])
     count: Indices = np.cumsum([kind == b"v" for kind in kinds])[is_face]

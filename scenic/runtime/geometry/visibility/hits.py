@@ -54,7 +54,8 @@ class Placed:
         return self.origin[lane], turned
 
     def first(self, lane: Indices, directions: Floats, *, exact: bool = False) -> Floats:
-        """Where rays first meet the surface, in lengths of their directions, ``(r,)``; infinite where they do not.
+        """Return the distances at which rays first meet the surface, in lengths of their directions,
+        ``(r,)``; infinite where they miss it.
 
         Args:
             lane: whose camera each ray starts from, ``(r,)``.
@@ -102,7 +103,9 @@ def place(body: Body, views: Views, lanes: Indices) -> Placed:
 
 
 def box_span(origins: Floats, directions: Floats) -> tuple[Floats, Floats]:
-    """Where lines ``(r, 3)`` enter and leave the unit box; they miss it where they leave before they enter."""
+    """Return the parameters at which lines ``(r, 3)`` enter and leave the unit box; a line that leaves before
+    it enters misses the box.
+    """
     near, far = np.full(len(origins), -np.inf), np.full(len(origins), np.inf)
     with np.errstate(over="ignore"):
         for axis in range(3):
@@ -137,7 +140,7 @@ def _quick_first(mesh: Mesh, origins: Floats, directions: Floats, near: Floats) 
 
 
 def exact_first(mesh: Mesh, origins: Floats, directions: Floats, near: Floats) -> Floats:
-    """Where rays ``(r, 3)`` in the unit frame first meet a mesh, in double precision, ``(r,)``."""
+    """Return the parameters ``(r,)`` at which rays ``(r, 3)`` in the unit frame first meet a mesh, in double precision."""
     result = np.full(len(origins), np.inf)
     few = len(mesh.faces) <= _FEW_FACES
     step = max(1, _CHUNK // _FEW_FACES)

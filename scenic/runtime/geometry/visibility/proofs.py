@@ -17,7 +17,7 @@ from scenic.runtime.geometry.visibility.obstacles import Obstacles
 from scenic.runtime.geometry.voxels import RESOLUTION, voxels
 
 _MARGIN: Final = 1e-9
-"""What hides must be nearer than what is hidden by this part of the distance, so that rounding proves nothing."""
+"""Share of the distance by which an occluder must be nearer than the target, so that rounding cannot fake a proof."""
 
 _MOST_BOXES: Final = 12
 """Boxes put into a solid that is not convex."""

@@ -15,10 +15,10 @@ from scenic.runtime.geometry.visibility.views import FULL_ANGLE_SLACK
 __all__ = ["View", "sees_body", "sees_point"]
 
 _ANGLE: Final = 1e-6
-"""How near to a border of the view, in radians, a direction may be."""
+"""Margin, in radians, around the border of a view, in which directions count as undecided."""
 
 _PART: Final = 1e-6
-"""How near to its ends, as a share of its length, a way may be blocked."""
+"""The least distance of an occluder from both ends of a line of sight, as a share of its length."""
 
 
 class View(NamedTuple):

@@ -1,4 +1,4 @@
-"""Where observers are and which directions they look in, and the directions in which a box lies."""
+"""Views: the positions and directions of observers, and the range of directions in which they see a box."""
 
 from dataclasses import dataclass
 from functools import cached_property
