@@ -52,7 +52,7 @@ _READABLE: Final = (
     ast.unaryop,
     ast.expr_context,
 )
-"""What a condition may consist of."""
+"""Nodes that a condition may consist of."""
 
 _INNER: Final = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)
 

@@ -1,4 +1,4 @@
-"""Where the names of the established Python API live here: one table, and the modules that it makes.
+"""The names of the established Python API: one table of their places here, and the modules made from it.
 
 ``import scenic.core.regions`` and the like give modules whose attributes are looked up in this table when they are first used.
 A name that the language itself provides (`scenic.runtime.program.builtins`) needs no row of its own.

@@ -121,7 +121,7 @@ def _brief(value: object) -> str:
 
 
 def _exhausted_html(missing: Exhausted) -> str:
-    """Why a scene was not found: the share of each requirement in the rejections."""
+    """Return an HTML table of why a scene was not found: the share of each requirement in the rejections."""
     rows = [
         (row.label, "" if row.span is None else row.span.line, f"{row.rejected:.1%}", f"{row.alone:.1%}")
         for row in sorted(missing.report.rows, key=lambda row: (-row.rejected, -row.alone))

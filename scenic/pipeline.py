@@ -189,7 +189,7 @@ class _Modules:
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """How a program is compiled; see `load`."""
+    """Options of the compilation of a program; see `load`."""
 
     params: Mapping[str, Any] = field(default_factory=dict)
     model: str | None = None
@@ -197,7 +197,7 @@ class _Options:
     mode_2d: bool = False
     prune: bool = True
     strict_params: bool = False
-    """Whether a parameter that the program does not use is an error."""
+    """True if a parameter that the program does not use is an error."""
 
     def digest(self, text: str) -> str:
         """The digest of a program, whatever its comments and blanks, and of all options that change its scenes."""

@@ -316,7 +316,7 @@ class _Network:
         return boxes
 
     def _combinations(self) -> float:
-        """How many combinations of values the axes have, where all are discrete."""
+        """The number of combinations of values of the axes; infinite if an axis is continuous."""
         return math.prod(
             len(self._cuts[axis]) + 1 if axis in self._cuts else math.inf for axis in self.axes.values()
         )
@@ -356,7 +356,8 @@ class _State:
         self.alive: Mask = np.ones(len(boxes.lower), dtype=np.bool_)
         """Boxes in which all conditions may still hold."""
         self._bounds: dict[Node, Bounds] = {}
-        """What is known so far; another object only where it is narrower, so that unchanged nodes are not read again."""
+        """Bounds known so far, by node; an entry is replaced only by narrower bounds, so that unchanged nodes
+        are not read again."""
         self._forward: dict[Node, list[Bounds | None]] = {}
         self._inverse: dict[Node, tuple[list[Bounds | None], Sequence[Bounds | None]]] = {}
         self._told: dict[tuple[Node, int], tuple[Bounds, Mask]] = {}
@@ -404,7 +405,7 @@ class _State:
                 reached[operand] = reached[operand] | here if operand in reached else here
 
     def _inverted(self, node: Node) -> Sequence[Bounds | None]:
-        """What the node's bounds say about its operands, by the operation's inverse reading."""
+        """Return bounds of the node's operands, derived from the node's own bounds by the inverse of its operation."""
         inverse, result = node.operation.inverse, self._bounds.get(node)
         operands = [self._bounds.get(operand) for operand in node.operands]
         nothing = [None] * len(operands)
@@ -458,7 +459,7 @@ def _same(before: Sequence[Bounds | None] | None, now: Sequence[Bounds | None]) 
 
 
 def _speaks(part: Bounds | None) -> Mask:
-    """Where an inverse that is not strict says something of an operand, which is then evaluated."""
+    """Return a mask of the boxes for which a non-strict inverse bounds an operand, so that the operand is evaluated there."""
     if part is None:
         return np.zeros(1, dtype=np.bool_)
     finite = np.isfinite(part.lower) | np.isfinite(part.upper) | (part.lower > part.upper)

@@ -145,7 +145,7 @@ def _ends(bounds: Bounds | None) -> tuple[float, float] | None:
 
 
 def _left(domain: Domain, axis: int) -> float:
-    """How much of an axis the boxes of a domain cover together."""
+    """Return the share of an axis that the boxes of a domain cover together."""
     share = 1.0
     for part in domain.parts:
         order = np.argsort(part.lower[:, axis])

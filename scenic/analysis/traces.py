@@ -122,7 +122,7 @@ def _key(atom: Kept) -> Hashable:
 
 
 def _code_key(code: CodeType) -> Hashable:
-    """What code does, wherever it stands."""
+    """Return a key that is equal for code of equal effect, wherever the code is defined."""
     constants = tuple(
         _code_key(item) if isinstance(item, CodeType) else _value_key(item) for item in code.co_consts
     )

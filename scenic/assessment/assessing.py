@@ -70,7 +70,7 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
 
 
 def _text(program: str, row: DrawnSupport) -> str:
-    """How the program writes a value; what it is called, where the place is in another file."""
+    """Return a value as the program writes it, or its kind if the place is in another file."""
     if row.span is None or row.kind == "place":
         return row.kind
     written = _slice(program, row.span)

@@ -24,7 +24,7 @@ _VIEWS: Final = (("from above", 0, 1), ("from the side", 0, 2))
 
 @dataclass(frozen=True, slots=True)
 class Whereabouts:
-    """Where an object may be.
+    """The possible positions of an object.
 
     Attributes:
         name: what it is called.
@@ -117,7 +117,7 @@ def _size(places: Sequence[Whereabouts]) -> tuple[int, int]:
 
 
 def _marks(places: Sequence[Whereabouts]) -> Iterator[_Mark]:
-    """What is drawn, in order."""
+    """Yield the marks to draw, in order."""
     parts = [part for item in places for part in (item.lower, item.upper, item.seen)]
     corners = np.concatenate([np.empty((0, 3)), *parts])
     known = np.where(np.isfinite(corners), corners, np.nan)

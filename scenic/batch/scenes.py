@@ -29,7 +29,7 @@ _FIRST: Final = 16
 """Scenes of the first piece of a job that a process makes; later ones follow what these took."""
 
 _SECONDS: Final = 0.8
-"""What a piece should take: starting one costs some hundredths, and an interruption loses those under way."""
+"""Intended seconds for a piece: starting a piece costs some hundredths, and an interruption loses the pieces under way."""
 
 _SMALLEST: Final = 6
 """The smallest pieces are such a part of the usual one: more would take longer to start than to make."""

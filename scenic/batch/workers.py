@@ -109,7 +109,7 @@ def run(
 
 
 def _work(function: Callable[[Any], Any], connection: Connection, inherited: Connection | None) -> None:
-    """What a process does: answers until there is nothing left to do, or its parent has gone."""
+    """Serve calls of ``function`` in a worker process until no work is left or the parent is gone."""
     if inherited is not None:
         inherited.close()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends us

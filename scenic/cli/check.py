@@ -239,7 +239,7 @@ def _show_diff(outcomes: Sequence[Outcome], diagnostics: Sequence[Diagnostic], f
 
 
 def _outcomes(tasks: Sequence[Task], jobs: int | None) -> list[Outcome]:
-    """What comes of the tasks, in their order."""
+    """Run the tasks; return their outcomes in the same order."""
     outcomes: dict[int, Outcome] = {}
     with _progress(len(tasks)) as advance:
         for index, outcome in _results(tasks, jobs):
@@ -272,7 +272,7 @@ def _pays(tasks: Sequence[Task]) -> bool:
 
 
 def _lost(task: Task, code: int) -> Outcome:
-    """What is said of a file whose check ended the process that made it."""
+    """Return the outcome for a file whose check ended its process."""
     how = f"by signal {-code}" if code < 0 else f"with code {code}"
     return Outcome((fault(task.filename, f"the process that checked this file ended {how}"),))
 

@@ -124,7 +124,7 @@ def _check(task: Task, surroundings_of: SurroundingsOf) -> tuple[Diagnostic, ...
 
 
 def _check_map(task: Task) -> tuple[Diagnostic, ...]:
-    """What is wrong with a road map."""
+    """Return the problems of a road map."""
     from scenic.domains.driving.loading import (  # bring in NumPy and the geometry libraries
         MapOptions,
         network_of,

@@ -1,4 +1,4 @@
-"""Where the commands write: colours only on a terminal, and exit codes that mean the same everywhere."""
+"""Output of the commands: colours only on a terminal, and exit codes that mean the same everywhere."""
 
 import os
 import sys

@@ -255,7 +255,7 @@ _FORMS: Final[Mapping[str, "Form"]] = MappingProxyType(
 
 
 def _total(rows: "Sequence[SimulationRow]", max_steps: int) -> str:
-    """What came of all simulations, in one line."""
+    """Return a line that sums up the outcomes of all simulations."""
     made = [row.about for row in rows if row.about is not None]
     late = sum(map(_is_late, made))
     parts = [f"{len(made):,} of {len(rows):,} simulations"]

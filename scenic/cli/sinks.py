@@ -1,4 +1,4 @@
-"""Where sampled scenes go: each sink is a context that gives a function to call with every scene.
+"""Destinations of sampled scenes: each sink is a context that gives a function to call with every scene.
 
 A sink's files are complete when its context ends well; when it ends with an error, Ctrl-C included, those begun are absent.
 """

@@ -51,7 +51,9 @@ _TARGET: Final = r"[A-Za-z_][\w.]*+(?:\[[^\]\n]{0,40}+\])?+"
 
 
 def _soft_start(form: StatementForm) -> str:
-    """How a line begins that is a statement by its first word, although this may be a name: a regular expression."""
+    """Return a regular expression for the beginning of a line that is a statement by its first word, although
+    the word may be a name.
+    """
     match form.row[1:]:
         case (Word(text=":"), *_):
             return rf"{form.start}[ \t]*+:"
@@ -314,7 +316,9 @@ class _CarefulLexer(Lexer):
         return bool(looks_new)
 
     def header_goes_on(self, pos: int) -> bool:
-        """Whether the open bracket is closed after ``pos``, and a colon ends the header then; the last colon was in the bracket."""
+        """Return whether the open bracket closes after ``pos`` and a colon then ends the header; the last colon
+        was inside the bracket.
+        """
         rest = self.text[pos : pos + _MOST_CHARACTERS_SEARCHED]
         depth = len(self.brackets)
         for offset, mark in enumerate(rest):
@@ -372,7 +376,7 @@ class _CarefulLexer(Lexer):
         return start + 1
 
     def wanted_closers(self) -> str:
-        """What closes the open brackets, innermost first."""
+        """The characters that close the open brackets, innermost first."""
         return "".join(bracket.closer for bracket in self.brackets[: -_MOST_BRACKETS_COMPARED - 1 : -1])
 
     def closers(self, pos: int, *, in_text: bool = False) -> str:

@@ -63,7 +63,7 @@ def check_again(
 
 
 def _as_shown(diagnostic: Diagnostic) -> Diagnostic:
-    """What this version does not build is no mistake of the program: only running it has to stop there."""
+    """Lower an "unsupported" diagnostic to an information: the program is correct, and only running it fails."""
     return (
         replace(diagnostic, severity=Severity.INFORMATION) if diagnostic.code == UNSUPPORTED else diagnostic
     )

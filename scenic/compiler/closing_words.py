@@ -107,7 +107,7 @@ _Event: TypeAlias = _Open | _Close | Literal["if", "else"]
 
 @dataclass(slots=True)
 class _Frame:
-    """What is between two brackets, or two commas in them.
+    """The state of the text between two brackets, or between two commas in them.
 
     ``regions`` are the events of the expression, and of the first two operands of each `follow` that is not closed. The
     default of a parameter of a lambda has a frame of its own, which ``is_default``.
@@ -144,7 +144,7 @@ def closed_operands(tokens: Tokens) -> list[Operand]:
 
 
 def _places(kinds: list[int], kind: int) -> Iterator[int]:
-    """Where a kind stands."""
+    """Yield the indices at which ``kind`` occurs in ``kinds``."""
     place = -1
     for _ in range(kinds.count(kind)):
         place = kinds.index(kind, place + 1)
@@ -293,9 +293,9 @@ class _Scan:
     def _share(self, events: Sequence[_Event]) -> None:
         """Share out the closing words among operators, each word to the innermost one that may have it."""
         words = dict.fromkeys(_NOT_CLOSING, 0)
-        """How many of each are left, less those that operators to come must have."""
+        """For each closing word, the number left, less the number that later operators need."""
         needed = dict.fromkeys(_NOT_CLOSING, 0)
-        """How many of each the open operators must have."""
+        """For each closing word, the number that the open operators need."""
         for event in events:
             if isinstance(event, _Close):
                 words[event.kind] += 1

@@ -199,7 +199,9 @@ def _checked(
     before: Kept | None = None,
     typing: bool = False,
 ) -> tuple[tuple[Diagnostic, ...], Resolution | None, Kept | None]:
-    """What is wrong with a parsed program; its names, if it has no errors; what to keep for its next version."""
+    """Check a parsed program; return its diagnostics, its names if it has no errors, and the data to keep for
+    its next version.
+    """
     found = list(parsed.diagnostics)
     try:
         with recursion_limit(DEEPEST):
@@ -218,7 +220,7 @@ def _checked(
 def _complaints(
     statements: list[ast.stmt], resolution: Resolution, source: Source
 ) -> tuple[Diagnostic | None, list[tuple[int, str]]]:
-    """What Python says of statements of a program: an error, and warnings by line."""
+    """Return Python's complaints about statements of a program: an error or ``None``, and warnings by line."""
     tree = ast.Module(body=statements, type_ignores=[])
     try:
         with recursion_limit(DEEPEST):

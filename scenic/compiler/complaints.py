@@ -17,7 +17,7 @@ from scenic.language.source import Source
 __all__ = ["suspects"]
 
 _NAMES: Final = re.compile("__(?:class|debug|instance|scenic|value)")
-"""How names begin that cannot be bound, or that lowered code binds."""
+"""Beginnings of names that cannot be bound, or that lowered code binds."""
 
 _LONGEST: Final = 500
 """So many tokens of a logical line cannot be nested too deeply for any compiler: few nodes have less than one token."""
@@ -46,7 +46,8 @@ _HARMLESS: Final = frozenset(
 """Nodes of which nothing is said but what is looked for here; mistakes of placement are found by our own check."""
 
 _VARIABLE: Final = (ast.Attribute, ast.Call, ast.Name, ast.Subscript)
-"""What may be anything: literals in its place are warned of where they are called, indexed or compared by identity."""
+"""Expressions whose value may be anything; Python warns of literals that are called, indexed or compared by
+identity instead."""
 
 
 def suspects(resolution: Resolution, source: Source, *, longest_line: int) -> list[ast.stmt]:

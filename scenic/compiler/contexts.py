@@ -23,7 +23,7 @@ _TARGETS: Final[dict[tuple[type[ast.AST] | None, str], ast.expr_context]] = {
     (ast.Delete, "targets"): ast.Del(),
 }
 _HOLDERS: Final = frozenset({ast.Tuple, ast.List, ast.Starred})
-"""What these hold has their context."""
+"""Nodes that pass their context on to their elements."""
 
 
 def set_contexts(tree: ast.AST, right: Container[ast.AST] = ()) -> None:

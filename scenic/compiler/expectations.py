@@ -56,7 +56,7 @@ _AFTER: Final = {
     ".": "the name of an attribute",
     "!": "`s`, `r` or `a`",
 }
-"""What a name after these words is."""
+"""Descriptions of the name that has to follow a word."""
 
 _SHOWN: Final = {"a target": "a variable"}
 """Labels of rules that are too learned for messages."""

@@ -240,7 +240,7 @@ def _comment(
 
 
 def _bad(comment: _Comment, source: Source) -> Iterator[Diagnostic]:
-    """What cannot be understood of a comment."""
+    """Yield the diagnostics about a comment that cannot be understood."""
     if comment.problem is not None:
         yield comment.problem
     for code in comment.codes:
@@ -261,7 +261,7 @@ def _bad(comment: _Comment, source: Source) -> Iterator[Diagnostic]:
 
 
 def _unused(comment: _Comment, source: Source, concerns: Callable[[str], bool]) -> Iterator[Diagnostic]:
-    """What a comment silences in vain, of the codes that are of concern."""
+    """Yield a diagnostic for each code, among those of concern, that a comment silences in vain."""
     if comment.problem is not None:
         return
     if comment.brackets is None:

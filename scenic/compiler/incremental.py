@@ -103,7 +103,7 @@ def _difference(before: Sequence[str], after: Sequence[str]) -> Change:
 
 
 def _same(agree: Callable[[int, int], bool], most: int) -> int:
-    """How many items are the same, of at most so many: found by halves, each of which is compared at once."""
+    """Return the number of equal items at the beginning, ``most`` at most, by bisection; ``agree`` compares a range at once."""
     found = 0
     while most > found:
         half = (most - found + 1) // 2

@@ -70,7 +70,7 @@ _OF_TYPE: Final[Mapping[str, Kind]] = MappingProxyType(
 """The kinds of declared types; of others nothing is known."""
 
 _DEEPEST: Final = 20
-"""How far values are looked into."""
+"""Depth to which values are examined."""
 
 
 def kind_of_type(declared: str) -> Kind | None:
@@ -251,7 +251,7 @@ class KindOf:
 
 
 def _options(node: ast.Call) -> Iterator[ast.expr]:
-    """What a choice chooses from, as far as it stands in the text; itself, of which nothing is known, otherwise."""
+    """Yield the options of a choice that the text shows; the call itself stands for unknown options."""
     of_sequence = isinstance(node.func, ast.Name) and node.func.id == "Options" and len(node.args) == 1
     for argument in node.args:
         if of_sequence and isinstance(argument, ast.List | ast.Tuple):

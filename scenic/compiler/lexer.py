@@ -282,7 +282,9 @@ class Lexer(LineReader):
         return start + 1
 
     def line_in_brackets(self, start: int, end: int) -> int | None:
-        """Where to go on if the line with its first token at ``end`` does not go on with the open brackets."""
+        """Return the position from which to continue if the line with its first token at ``end`` does not
+        belong to the open brackets; ``None`` if it does.
+        """
         return None
 
     # Strings.

@@ -107,7 +107,7 @@ class ScenicLoader(importlib.abc.ExecutionLoader):
 
 
 def cache_file(filename: str) -> Path | None:
-    """Where the compiled code of a Scenic file is kept; ``None`` if this installation cannot keep any."""
+    """Return the file that stores the compiled code of a Scenic file; ``None`` if this installation cannot store any."""
     fingerprint = _fingerprint()
     tag = sys.implementation.cache_tag
     if fingerprint is None or tag is None:
@@ -136,7 +136,10 @@ def _fingerprint() -> str | None:
 
 
 def _key(source: Source) -> bytes:
-    """What a cache must have been made from. The name belongs to it, since compiled code contains it."""
+    """Return the key of a source, which a cache must match.
+
+    The file name belongs to it, since compiled code contains it.
+    """
     digest = hashlib.sha256(source.filename.encode("utf-8", "surrogateescape"))
     digest.update(b"\0")
     digest.update(source.text.encode())

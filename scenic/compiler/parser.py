@@ -86,7 +86,7 @@ def bare_text(text: str) -> str:
 
 
 _LAYOUT: Final[Mapping[int, str]] = MappingProxyType({NEWLINE: "end", INDENT: "in", DEDENT: "out"})
-"""What stands for tokens that are nothing but layout."""
+"""Symbols for tokens that are only layout."""
 
 
 def result_of(parsed: Parsed, filename: str, longest_line: int | None = None) -> ParseResult:
@@ -152,7 +152,7 @@ def parse_tokens(tokens: Tokens, known: Known = lambda _tokens: {}, reread: Rere
 
 
 def _fast(tokens: Tokens, known: Known) -> Parsed | None:
-    """What is made of the tokens of a text that has no mistake of syntax; ``None`` if it has one."""
+    """Parse the tokens of a text without syntax errors; return ``None`` if the text has an error."""
     if tokens.diagnostics:
         return None
     actions = Actions(tokens)
@@ -194,7 +194,7 @@ def _statements(
 
 
 def _recovered(tokens: Tokens, known: Known) -> Parsed:
-    """What is made of the tokens of a text with mistakes."""
+    """Parse the tokens of a text with syntax errors, recovering from each."""
     # A text without mistakes does not wait for all that explains them.
     from scenic.compiler.recovery import Recovery
 

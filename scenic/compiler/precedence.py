@@ -41,7 +41,9 @@ __all__ = [
 
 
 class Ladder(StrEnum):
-    """Where a form belongs: expressions, conditions of ``require``, specifiers of ``new`` and ``override``."""
+    """The group of forms that a form belongs to: expressions, conditions of ``require``, specifiers of ``new``
+    and ``override``.
+    """
 
     ORDINARY = "ordinary"
     TEMPORAL = "temporal"
@@ -49,7 +51,7 @@ class Ladder(StrEnum):
 
 
 class Fixity(StrEnum):
-    """Where the operands of a form are; ``TERNARY`` has operands at both ends and one inside."""
+    """The position of the operands of a form; ``TERNARY`` has operands at both ends and one inside."""
 
     PREFIX = "prefix"
     POSTFIX = "postfix"
@@ -79,7 +81,7 @@ class Word:
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """Where an operand goes: a field of the node, and the index in it if the field is a list of fixed length."""
+    """The destination of an operand: a field of the node, and the index in it if the field is a list of fixed length."""
 
     field: str
     index: int | None

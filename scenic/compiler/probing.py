@@ -25,9 +25,9 @@ _MOST_LINES: Final = 400
 CLAUSES: Final = frozenset(BLOCK_STARTERS - first_words((Reference("statement"),)))
 """The first words of lines that go on with the statement before them."""
 _GOING_ON: Final = (*sorted(CLAUSES), ")", "]", "}")
-"""What lines begin with that go on with the statement before them."""
+"""Beginnings of lines that continue the statement before them."""
 _ALONE: Final = ("statement", "class_item", "specifier_line")
-"""What a line may be that is read by itself."""
+"""Grammar rules for a line that is read without the lines around it."""
 
 _NAMES: Final = {kind: word for word, kind in WORDS.items()}
 
@@ -132,7 +132,9 @@ def _wanted(tokens: Tokens, mark: int, expected: Iterable[int | str]) -> Wanted:
 
 
 def _expected(tokens: Tokens, mark: int, rule: str) -> set[int | str]:
-    """What the parser wanted at the token ``mark``, reading from the first one on; nothing if it did not get there."""
+    """Return the tokens that the parser expects at the token ``mark``, reading by ``rule`` from the first token
+    on; empty if it fails before.
+    """
     probe = _Probe()
     probe.run = build_recording_parser(*tokens.lists(), Actions(tokens), probe)
     try:

@@ -46,7 +46,7 @@ _SOFT_CLAUSES: Final = frozenset([_CASE, _SETUP, _COMPOSE])
 """Words that start a clause, or a part of a scenario, if a block follows; otherwise they are names."""
 
 _NO_OPERAND: Final = frozenset(OPERATORS[mark] for mark in ("=", ".", ":", ",", ")"))
-"""What follows a word only if that is a name."""
+"""Kinds of tokens after which the preceding word can only be a name."""
 
 _CLOSERS: Final = (")", "]", "}")
 
@@ -441,7 +441,9 @@ class Recovery:
         return node, position, explained
 
     def _error(self, start: int, end: int, body: list[Any]) -> ast.AST:
-        """What stands for the tokens from ``start`` up to ``end``, in which ``body`` was found."""
+        """Make the node for the tokens from ``start`` up to ``end`` that form no statement; ``body`` contains
+        the nodes found in them.
+        """
         kinds = self._kinds
         last = end - 1
         while last > start and (kinds[last] in (NEWLINE, INDENT, DEDENT) or self._is_gap(last)):

@@ -124,7 +124,7 @@ def _module_scope() -> Scope:
 
 
 def _collector(module: Scope) -> Callable[[Stretch], Contents]:
-    """What looks at the statements of a stretch."""
+    """Return a function that collects the scopes, bindings and references of a stretch."""
 
     def collect(stretch: Stretch) -> Contents:
         with no_garbage_collection():
@@ -212,7 +212,7 @@ class _Collector:
                         stack.append(part)
 
     def finish(self) -> Contents:
-        """What has been noted, put together; nodes in the order of the text, however the statements are divided up."""
+        """Return all that has been collected; nodes are in the order of the text, however the statements are divided up."""
         for noted in self._nodes.values():
             if len(noted) > 1:
                 noted.sort(key=lambda item: position(item[0]))

@@ -219,7 +219,7 @@ class Stretch:
         self.statements: Final = tuple(statements)
         self._collect: Final = collect
         self._common: Final = {} if common is None else common
-        """What holds wherever the statements stand."""
+        """Results that are the same wherever the statements are, by key."""
         self._contents: Contents | None = None
         self._lock: Final = threading.Lock()
 
@@ -294,7 +294,7 @@ class Stretch:
 
     @cached_property
     def mentions(self) -> Mapping[str, Sequence[tuple[int, int]]]:
-        """Where each name is read or written: line and column."""
+        """The places, line and column, where each name is read or written."""
         found: dict[str, list[tuple[int, int]]] = {}
         for each in self.references.values():
             found.setdefault(each.node.id, []).append((each.node.lineno, each.node.col_offset))
@@ -345,7 +345,7 @@ class Stretch:
 
     @property
     def read(self) -> frozenset[str]:
-        """Those of them that are read."""
+        """The names among `used` that are read."""
         return self.common(
             "read",
             lambda own: frozenset(
@@ -575,7 +575,7 @@ class Resolution:
                 yield site, self.names[found] if isinstance(found, str) else found
 
     def uses(self, name: str) -> Iterator[Reference]:
-        """Where a name is used that no scope within the module binds, in no particular order; without what it means."""
+        """Yield the uses of a name that no scope within the module binds, in no particular order and without their bindings."""
         for stretch in self.stretches:
             if name in stretch.used:
                 yield from stretch.named[name]
@@ -594,7 +594,7 @@ class Resolution:
     # One of them
 
     def reference(self, node: ast.AST | None) -> Reference | None:
-        """Where a name of the program stands and what it means; ``None`` for all other nodes."""
+        """Return the reference of a node that is a name of the program: its scope and binding; ``None`` for all other nodes."""
         known: Mapping[ast.AST, Reference] | None = self.__dict__.get("references")
         if known is not None:
             return known.get(node)  # type: ignore[arg-type]

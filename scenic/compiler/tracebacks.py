@@ -90,7 +90,7 @@ class Locator:
 
 
 _CODE: Final = re.compile(r"""(?:[^#'"]|"(?:[^"\\]|\\.)*"?|'(?:[^'\\]|\\.)*'?)*""", re.DOTALL)
-"""What precedes a comment on a line: anything but a number sign, which counts only outside of texts."""
+"""The text before a comment on a line: anything but a number sign, which counts only outside of strings."""
 
 
 def _without_comment(line: str) -> str:
@@ -203,7 +203,7 @@ def _user_frames(step: TracebackType | None) -> Iterator[traceback.FrameSummary]
 
 
 def raised_at(error: BaseException) -> Place | None:
-    """Where an exception was raised: the innermost line that is the user's, of the program or of a Python module.
+    """Return the place where an exception was raised: the innermost line of the user's code, in the program or a Python module.
 
     The script that called this library is not meant: its lines stand before all of the library's.
     """

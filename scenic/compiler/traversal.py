@@ -78,5 +78,5 @@ def first_line(statement: ast.stmt) -> int:
 
 
 def position(node: Any) -> tuple[int, int]:
-    """Where a node begins, for comparing; nodes without a place come first."""
+    """Return the line and column at which a node begins, for comparisons; nodes without a place come first."""
     return getattr(node, "lineno", 0), getattr(node, "col_offset", 0)

@@ -176,7 +176,7 @@ def _problem(
 
 
 def _kind(value: object) -> str:
-    """What a value of TOML is called."""
+    """Return the name of a TOML value's type."""
     names = {
         bool: "a boolean",
         int: "an integer",

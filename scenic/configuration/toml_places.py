@@ -1,4 +1,4 @@
-"""Where a key or a value stands in a TOML text; `tomllib` tells what it holds, but not where."""
+"""Places of keys and values in a TOML text: `tomllib` gives their content, but not their places."""
 
 import re
 from collections.abc import Iterator, Sequence

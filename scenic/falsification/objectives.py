@@ -35,7 +35,7 @@ _NAMES: Final[Mapping[str, Any]] = MappingProxyType(
         "int": int,
     }
 )
-"""What an expression finds beside records and parameters."""
+"""Names that an expression may use beside records and parameters."""
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,9 @@ def ground_color(
 
 
 def _lines(stage: Stage, x: Singles, y: Singles, footprint: Singles) -> Singles:
-    """How much of each place lines cover: they are a pixel or two wide at any distance, and fade where they crowd."""
+    """Return the share of each place that grid lines cover: they are a pixel or two wide at any distance, and
+    fade where they crowd.
+    """
     cover = np.zeros(len(x), np.float32)
     spacing = _grid_spacing(stage.reach)
     for step, strength in ((spacing, 0.35), (spacing * 5, 0.7)):

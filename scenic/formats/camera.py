@@ -1,4 +1,4 @@
-"""Where an image is taken from, and the ground that objects are seen above."""
+"""The viewpoint of an image, and the ground below the objects."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ _UNIT_CORNERS = np.array(list(product((-0.5, 0.5), repeat=3)))
 
 @dataclass(frozen=True, slots=True)
 class Outlook:
-    """Where a picture of a scene is taken from.
+    """The viewpoint of a picture of a scene.
 
     Attributes:
         azimuth: in which direction the camera stands, degrees, anticlockwise from due south seen from above: negative

@@ -67,7 +67,7 @@ class Page:
         return instances
 
     def _ground(self, scene: Scene, pieces: Sequence[Piece]) -> dict[str, Any]:
-        """What the page says of the ground, where the workspace shows any."""
+        """Return the page's data of the ground, empty if the workspace shows no ground."""
         if not pieces:
             return {}
         numbers = [self._pieces.setdefault(piece.surface, (len(self._pieces), piece))[0] for piece in pieces]
@@ -151,7 +151,7 @@ def packed(values: npt.NDArray[Any]) -> str:
 
 
 def _object(instance: Instance) -> dict[str, Any]:
-    """What the page says of an object: its place, and the properties that its class adds to the built-in ones."""
+    """Return the page's data of an object: its place, and the properties that its class adds to the built-in ones."""
     builtin = properties_of("Object")
     return {
         "mesh": instance.surface,

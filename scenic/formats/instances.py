@@ -34,7 +34,7 @@ PALETTE: tuple[Triple, ...] = (
 """Colours of objects that have none of their own: one for each class, in order of appearance, or for each plain object."""
 
 _SHADES = (1.0, 0.72, 1.12, 0.86, 0.6)
-"""How bright those of one class are in turn, so that neighbours can be told apart."""
+"""Brightness of successive objects of one class, so that neighbours can be told apart."""
 
 _PLAIN: Final = "Object"
 """The class of objects that have no class of their own."""
@@ -252,7 +252,7 @@ def resting(instances: Sequence[Instance]) -> tuple[Instance, ...]:
 
 
 def places_of(instances: Iterable[Instance]) -> Array:
-    """Where instances are, ``(n, 3)``."""
+    """Return the positions of instances, ``(n, 3)``."""
     return np.array([instance.position for instance in instances], dtype=np.float64).reshape(-1, 3)
 
 

@@ -108,7 +108,7 @@ class SceneLines:
 
 
 class _Template:
-    """What of an object is told alike in all scenes.
+    """The text of an object that is the same in all scenes.
 
     Attributes:
         head: the object's text up to its name.
@@ -211,7 +211,7 @@ def plain(value: object, numbers: Mapping[int, int], within: tuple[int, ...] = (
 
 
 def _text(value: object) -> dict[str, str]:
-    """What Python shows for a value JSON cannot hold, without addresses, which differ from run to run."""
+    """Return Python's representation of a value that JSON cannot contain, without addresses, which differ from run to run."""
     try:
         shown = repr(value)
     except Exception:  # noqa: BLE001 - a broken `__repr__` of the user's must not lose the scene

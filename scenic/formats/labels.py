@@ -204,7 +204,7 @@ def body_of(thing: SceneObject) -> Body:
 
 
 def _alone(views: Views, viewpoint: Viewpoint, body: Body) -> tuple[int, Box | None]:
-    """How many pixels a body alone would have, and the rectangle around them."""
+    """Return the number of pixels that a body would have without other bodies, and the rectangle around them."""
     width, height = viewpoint.size
     points = viewpoint.project(body.poses.to_world(body.meshes[0].vertices))
     if (points[:, 2] <= 0).all():

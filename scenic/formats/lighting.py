@@ -152,7 +152,7 @@ def _sky(stage: Stage, eye: Singles, seen: Seen, pattern: Index, rays: int) -> S
 
 
 def _places(stage: Stage, eye: Singles, seen: Seen) -> tuple[Singles, Singles]:
-    """Where rays end, and the unit normals there towards the eye."""
+    """Return the ends of rays, and the unit normals there, directed towards the eye."""
     normal = stage.normals[seen.triangle]
     away = np.einsum("ij,ij->i", normal, seen.directions) > 0
     normal[away] *= -1

@@ -12,7 +12,7 @@ from scenic.formats.png import require_pillow
 __all__ = ["overlay"]
 
 _TINT: Final = 0.4
-"""How much of a mask is its own colour."""
+"""Share of a mask's own colour in the picture."""
 
 
 def overlay(found: Observation) -> npt.NDArray[np.uint8]:

@@ -1,4 +1,4 @@
-"""Where an object is and how it is turned, as numbers for other programs."""
+"""Positions and rotations of objects, as numbers for other programs."""
 
 import math
 

@@ -30,7 +30,7 @@ Keep = Callable[[Array], npt.NDArray[np.bool_]]
 _CORNERS = np.array(list(product((-0.5, 0.5), repeat=3)))
 _EDGES = [(a, a | bit) for a in range(8) for bit in (1, 2, 4) if not a & bit]
 _AXES: Final = ([2, 0, 1], [0, 2, 1], [0, 1, 2])
-"""Where the coordinates along x, y and z are when an axis has been moved to the end."""
+"""Positions of the coordinates along x, y and z after an axis has been moved to the end."""
 _SIDES = 72
 _CREASE: Final = np.cos(np.radians(25))
 """Edges at which the faces of a mesh turn by more are drawn."""
@@ -103,7 +103,7 @@ def outlines(region: Any) -> list[Array]:
 
 
 def _composed(region: Composite) -> list[Array]:
-    """Those parts of the members' lines that bound an intersection or a difference; hatches where it is in a plane."""
+    """Return the parts of the members' lines that bound an intersection or a difference, or hatches if it lies in a plane."""
     members = [(member, member.fixed_columns("the outline")) for member in region.members]
 
     def within(number: int, points: Array) -> npt.NDArray[np.bool_]:
@@ -241,7 +241,7 @@ def _cell_edges(filled: npt.NDArray[np.bool_]) -> list[Array]:
 
 
 def _section(corners: Array, axis: int) -> list[Array]:
-    """Where triangles ``(n, 3, 3)`` cross the plane through the middle of their box across an axis."""
+    """Return the segments in which triangles ``(n, 3, 3)`` cross the plane through the middle of their box, across an axis."""
     values = corners[..., axis]
     # A little off the middle, where no vertices of symmetric meshes lie.
     height = values - (values.min() + (values.max() - values.min()) * 0.5000012345)

@@ -105,7 +105,7 @@ class _Drawing:
         return _twice(torn, self._group.shape)
 
     def _recall(self, known: Buffer, directions: Singles, pixels: Index) -> Seen:
-        """What pixels show, from what is known."""
+        """Return the surface points that pixels show, from a buffer of known results."""
         return grounded(
             self._stage,
             self._lens.eye,
@@ -300,7 +300,7 @@ def _twice(values: Mask, shape: tuple[int, int]) -> Mask:
 
 
 def _jumps(near: Singles) -> Mask:
-    """Where one over the depth is not on a line with that of the neighbours, as it is on planes."""
+    """Return a mask of the pixels whose inverse depth is not collinear with the neighbours', as it is on planes."""
     result = np.zeros(near.shape, np.bool_)
     for axis in (0, 1):
         values, marks = (near, result) if axis == 0 else (near.T, result.T)

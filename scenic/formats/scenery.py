@@ -134,4 +134,4 @@ _READERS: Final[Mapping[str, Mapping[str, Callable[[Any], Any]]]] = {
     "lighting": {"sun": _sun, "sunlight": _strength, "skylight": _strength, "exposure": _exposure},
     "backdrop": {"ground": _color, "horizon": _color, "zenith": _color, "grid": _truth},
 }
-"""How the values of the keys of each parameter are read."""
+"""Readers of the values of each parameter's keys."""

@@ -20,7 +20,7 @@ class UnitMesh(Protocol):
 
 
 class ShapeSource(Protocol):
-    """Where a form comes from."""
+    """The origin of a shape."""
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data: ``kind``, and what else selects the mesh."""
@@ -87,11 +87,11 @@ class Origin(Protocol):
 
     @property
     def given(self) -> Sequence[str]:
-        """Those that the program gives, sorted; the others are at the defaults of the language."""
+        """The properties that the program gives, sorted; the others have the defaults of the language."""
 
     @property
     def fixed(self) -> frozenset[str]:
-        """Those that are the same in every scene."""
+        """The properties that are the same in every scene."""
 
     def read(self, thing: Any, name: str) -> object:
         """The value of a property of the object in one scene."""

@@ -78,7 +78,7 @@ def course_document(course: Course, *, k: int, tries: int) -> dict[str, Any]:
 
 
 def _record(value: Any, numbers: Mapping[int, int]) -> Any:
-    """What was recorded; of what is in a file of its own, that file's name."""
+    """Return a recorded value as plain data; a value in a file of its own becomes the name of the file."""
     return {"$file": value.name} if isinstance(value, Filed) else plain(value, numbers)
 
 

@@ -51,7 +51,7 @@ class Trajectory:
         raise KeyError(name)
 
     def position(self, name: str) -> Array:
-        """Where the object of that name was, ``(s, 3)``, metres."""
+        """Return the positions ``(s, 3)`` over time, in metres, of the object with a name."""
         return self.positions[:, self.index(name)]
 
     def orientation(self, name: str) -> Array:

@@ -287,7 +287,7 @@ class Batch:
         return _Group(numbers[np.newaxis], status, self._generation)
 
     def _boxes_of(self, domain: Domain) -> NDArray[np.intp]:
-        """Which boxes of the factors of the domain each lane is drawn from, ``(parts, n)``."""
+        """The number of the box, for each factor of the domain, that each lane is drawn from: ``(parts, n)``."""
         if self._boxes is None:
             self._boxes = domain.choose(self._source.uniforms(box_addresses(len(domain.parts))))
         return self._boxes
@@ -370,7 +370,7 @@ class Batch:
         return result, combined
 
     def _error(self, step: Step, call: Call) -> Exception | None:
-        """What went wrong in a batch of one lane: the first operand's fault, as Python evaluates from the left."""
+        """Return the error of a step in a batch of one lane: the first faulty operand's, as Python evaluates from the left."""
         operands = step.nodes[0].operands
         if step.operation.strict:
             for operand, status in zip(operands, call.operands, strict=True):

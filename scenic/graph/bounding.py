@@ -15,7 +15,7 @@ LARGEST: Final = 2.0**62
 """Integer columns hold values of smaller size than this, so that one more addition cannot overflow."""
 
 _VISITS: Final = 256
-"""How many nodes `overall` looks at before it gives up."""
+"""Number of nodes that `overall` visits before it gives up."""
 
 
 def of_kind(kind: Kind) -> Bounds | None:

@@ -40,7 +40,8 @@ def make_node(
 def _equal_nodes(
     operation: Operation, operands: Sequence[Node], payload: Any, kind: Kind
 ) -> tuple[Consumers | None, Hashable]:
-    """Where an equal node would be kept, and under which key; ``None`` where equal nodes are not one.
+    """Return the table and the key under which a node equal to this one would be stored; ``None`` if equal
+    nodes are not merged.
 
     Python objects are not shared: two lists of equal items are two lists.
     """

@@ -30,7 +30,7 @@ class Domain:
     upper: Floats
     factors: tuple["Domain", ...] = ()
     _narrowed: NDArray[np.bool_] = field(init=False, repr=False)
-    """Which axes each part narrows, ``(parts, dimension)``."""
+    """A mask of the axes that each part narrows, ``(parts, dimension)``."""
 
     def __post_init__(self) -> None:
         if self.lower.ndim != 2 or self.lower.shape != self.upper.shape or len(self.lower) == 0:

@@ -1,4 +1,4 @@
-"""Where the random numbers of a scenario come from: every draw has an address.
+"""Random numbers of a scenario: every draw has an address, and a source gives the number at each address.
 
 An axis of the unit cube is named by its *address*, a 64-bit word made of the place in the program that draws and of how
 often that place has drawn before (`address`). A `Source` says which number each address has in each lane. The usual one

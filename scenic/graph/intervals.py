@@ -40,7 +40,7 @@ def unbounded(like: Bounds) -> Bounds:
 
 
 def infinite(bounds: Bounds) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    """Where a value may be infinite or NaN."""
+    """Return a mask of the boxes in which a value may be infinite or NaN."""
     return ~(np.isfinite(bounds.lower) & np.isfinite(bounds.upper))
 
 

@@ -34,7 +34,7 @@ class Node:
     limits: tuple[int, int] | None = None
     _consumers: Consumers | None = field(default=None, init=False, repr=False)
     _bounds: Any = field(default=UNREAD, init=False, repr=False)
-    """What `scenic.graph.bounding.overall` has found: it is asked of a node again and again."""
+    """The cached result of `scenic.graph.bounding.overall`, which is called for the same node again and again."""
 
     @property
     def consumers(self) -> Consumers:

@@ -22,12 +22,12 @@ from scenic.graph.node import Graph, Node
 from scenic.graph.operation import Operation
 
 Slot = int
-"""Where a batch keeps the columns of a group."""
+"""The index under which a batch stores the columns of a group."""
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where the column of a node is: which group, which member."""
+    """The location of the column of a node: the group and the member in it."""
 
     slot: Slot
     member: int
@@ -187,7 +187,7 @@ class Scheduler:
         return frozenset(self._missing(roots, {}))
 
     def without_python(self, roots: Sequence[Node]) -> tuple[Node, ...]:
-        """Those of some nodes that are evaluated without a call of the program's own Python code."""
+        """Filter nodes: keep the nodes that are evaluated without a call of the program's own Python code."""
         clear: dict[Node, bool] = {}
         for node in self._missing(roots, {}):
             clear[node] = not node.runs_python and all(
@@ -196,7 +196,7 @@ class Scheduler:
         return tuple(node for node in roots if clear.get(node, True))
 
     def gather(self, schedule: Schedule, nodes: tuple[Node, ...]) -> Gather:
-        """Where the columns of ``nodes`` are, once ``schedule`` has been done."""
+        """Return the way to get the columns of ``nodes`` after ``schedule`` has run."""
         key = (id(schedule), nodes)
         gather = self._gathers.get(key)
         if gather is None:
@@ -204,7 +204,9 @@ class Scheduler:
         return gather
 
     def _steps(self, roots: Sequence[Node], places: dict[Node, Place]) -> list[AnyStep]:
-        """What gets ``roots`` where the nodes of ``places`` are there; adds the places of what it gets."""
+        """Return the steps that evaluate ``roots`` when the nodes of ``places`` are evaluated, and add the
+        places of their results.
+        """
         missing = self._missing(roots, places)
         steps: list[AnyStep] = []
         levels: dict[Node, int] = {}
@@ -226,11 +228,13 @@ class Scheduler:
         return steps
 
     def _merged(self, node: Node) -> Node:
-        """What is evaluated in place of a node. (Singly, nodes are evaluated as they are: that tells what failed.)"""
+        """Return the node that is evaluated in place of a node. (Single lanes evaluate the node itself, which
+        shows what failed.)
+        """
         return self._merger(node) if self._grouped else node
 
     def _needed(self, node: Node) -> Sequence[Node]:
-        """What has to be there before a node is evaluated."""
+        """Return the nodes that must be evaluated before a node."""
         merged = self._merged(node)
         if merged is not node:
             return (merged,)
@@ -332,7 +336,7 @@ def _order(node: Node, places: Mapping[Node, Place]) -> tuple[tuple[int, int], .
 
 
 def _gather(operands: Sequence[Node], places: Mapping[Node, Place]) -> Gather:
-    """How to get the columns of one operand of all members of a group."""
+    """Return the way to get the columns of one operand for all members of a group."""
     if all(operand.is_constant for operand in operands):
         columns = [operand.payload.column for operand in operands]
         if all(column is columns[0] for column in columns[1:]) or _equal_constants(operands):

@@ -55,7 +55,7 @@ _VALUES: Final = frozenset(
     {CompletionKind.FUNCTION, CompletionKind.VARIABLE, CompletionKind.PARAMETER, CompletionKind.MODULE}
 )
 _DEEPEST: Final = 3
-"""How deep in packages world models are looked for."""
+"""Depth in packages to which world models are searched."""
 _OWN: Final = 4
 """The rank of the last names that a program or its modules define."""
 _BEGUN: Final = re.compile(r"\w*$")
@@ -274,7 +274,8 @@ def _find(
 def _of_kind(
     project: Project, module: Module, snapshot: Snapshot, method: str, line: int, column: int
 ) -> Iterator[Completion]:
-    """What a statement wants first, then other names that a program defines; none of the language's own.
+    """Yield completions for a statement that takes an instance: first the fitting names, then other names of
+    the program, none of the language's.
 
     ``method`` is what the instances of the wanted classes have; without one, monitors are wanted.
     """
@@ -308,7 +309,7 @@ def _parameters(project: Project, module: Module, before: tuple[str, ...]) -> It
 
 
 def _places(snapshot: Snapshot, line: int) -> frozenset[Place]:
-    """Where in a program a line is, as far as that decides which statements may stand there.
+    """Return the kinds of places in a program that a line belongs to, which decide the statements that are allowed there.
 
     Read off the headers of the blocks around it, since what is being written may not be in the tree.
     """
@@ -479,7 +480,7 @@ def _is_scenic(
 def _symbol_named(
     project: Project, module: Module, snapshot: Snapshot | None, name: str, place: Iterable[str]
 ) -> Symbol | None:
-    """What a name means at a place."""
+    """Return the symbol that a name denotes at a place, or ``None``."""
     binding: Binding | None = module.resolution.names.get(name)
     numbers = [int(part) for part in place if part.isdigit()]
     if snapshot is not None and snapshot.filename == module.filename and len(numbers) == 2:

@@ -1,4 +1,6 @@
-"""Where the header of a clause belongs, as soon as it is typed: `else:` below its `if`, `interrupt when ...:` below its `try`."""
+"""Indentation of the header of a clause as soon as it is typed: `else:` below its `if`, `interrupt when ...:`
+below its `try`.
+"""
 
 import re
 from collections.abc import Mapping

@@ -138,7 +138,7 @@ def _comments(tokens: Tokens, snapshot: Snapshot) -> Iterator[Fold]:
 
 
 def _regions(tokens: Tokens) -> Iterator[Fold]:
-    """What stands between the comments ``# region`` and ``# endregion``."""
+    """Yield the folds between the comments ``# region`` and ``# endregion``."""
     opened: list[int] = []
     for line, _, text in tokens.comments:
         word = _region(text)

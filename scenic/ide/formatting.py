@@ -120,7 +120,9 @@ def _edited(text: str, edits: Sequence[Edit]) -> str:
 
 
 def _changes(old: Sequence[str], new: Sequence[str]) -> Iterator[tuple[int, int, int, int]]:
-    """Where two texts differ: lines of the one, and those of the other that take their place, as few as can be."""
+    """Yield the differences of two texts: a range of lines of the old text and the range that replaces it, as
+    few lines as possible.
+    """
     # Lines that say the same are changed one by one; those that say nothing are like all others of their kind.
     matches = _matches([_said(line) for line in old], [_said(line) for line in new])
     done, new_done = 0, 0
@@ -194,7 +196,7 @@ def _formatted(snapshot: Snapshot) -> str | None:
 
 @dataclass(frozen=True, slots=True)
 class _Unit:
-    """What the unparser writes for a statement, or for the header of one with blocks.
+    """The text that the unparser writes for a statement, or for the header of a statement with blocks.
 
     ``place`` is where it begins: line, and column in bytes. ``text`` is ``None`` for what is kept as it stands.
     """
@@ -399,7 +401,9 @@ class _Layout:
         self._end = first - 1
 
     def _level(self, column: int, depth: int) -> int:
-        """How deep a comment stands: one that stands deeper than what follows belongs to the block before."""
+        """Return the depth of a comment at a column: a comment that is indented more than the next statement
+        belongs to the block before.
+        """
         levels = range(depth, max(depth, self._depth) + 1)
         return min(levels, key=lambda level: (abs(len(_INDENTATION) * level - column), -level))
 
@@ -471,7 +475,7 @@ class _Layout:
 
 
 def _width(line: str) -> int:
-    """How far a line is indented."""
+    """Return the indentation of a line, in columns."""
     expanded = line.expandtabs()
     return len(expanded) - len(expanded.lstrip())
 

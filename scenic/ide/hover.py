@@ -75,7 +75,7 @@ def _of_parameter(project: Project, snapshot: Snapshot, name: str, span: Span) -
 
 
 def _defined(project: Project, snapshot: Snapshot, span: Span) -> str | None:
-    """What the project knows of a name."""
+    """Return the project's description of the name at a span, or ``None``."""
     module = project.module(snapshot.filename)
     found = None if module is None else occurrence_at(module, span.line, span.column)
     if module is None or found is None or found.span.line != span.line or found.span.column != span.column:
@@ -87,7 +87,7 @@ def _defined(project: Project, snapshot: Snapshot, span: Span) -> str | None:
 
 
 def _tracked(module: Module, name: str) -> str | None:
-    """What the ego or the workspace is, if the module sets it."""
+    """Return the description of the ego or the workspace, if the module sets it."""
     setting = next((each for each in occurrences(module) if each.name == name and each.defines), None)
     if setting is None:
         return None
@@ -96,7 +96,7 @@ def _tracked(module: Module, name: str) -> str | None:
 
 
 def _explain(word: str, kind: int, node: ast.AST) -> str | None:
-    """What ``word`` means in ``node``, which is the smallest node around it, as far as the language says it."""
+    """Return the language's explanation of ``word`` in ``node``, the smallest node around it, or ``None``."""
     if isinstance(node, ast.Name):
         return documentation.of_name(word)
     if isinstance(node, ast.Attribute):

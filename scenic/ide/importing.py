@@ -63,7 +63,7 @@ _COMMON: Final[Mapping[str, frozenset[str]]] = {
     "dataclasses": frozenset(["dataclass", "field"]),
     "pathlib": frozenset({"Path"}),
 }
-"""What programs take most often from Python's library."""
+"""The names that programs import most often from Python's library."""
 _MOST: Final = 5
 """So many modules are offered for one name."""
 
@@ -125,7 +125,7 @@ def _defines(module: Module, name: str) -> bool:
 
 
 def _module_name(project: Project, filename: str, importer: str) -> str | None:
-    """What a program calls the module in a file; ``None`` if it cannot import it."""
+    """Return the name under which a program imports the module in a file; ``None`` if it cannot import it."""
     for base in (os.path.dirname(importer), *project.finder.roots):
         if not filename.startswith(base + os.sep):
             continue

@@ -81,7 +81,7 @@ def _named(module: Module) -> Iterator[tuple[ast.AST, str, Span]]:
 
 
 def _after(filename: str | None, old: str, new: str) -> str | None:
-    """Where a file is once a path has become another; ``None`` if it stays."""
+    """Return the new path of a file after the path ``old`` has become ``new``; ``None`` if the file stays."""
     if filename == old:
         return new
     if filename is not None and filename.startswith(old + os.sep):

@@ -44,7 +44,9 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """Where a name leads: ``origin`` is the name that was asked about, ``extent`` the whole definition."""
+    """The destination of a jump from a name: ``origin`` is the name that the jump starts from, ``extent`` the
+    whole definition.
+    """
 
     filename: str
     span: Span
@@ -70,11 +72,12 @@ class Moniker:
 
 
 class RenameError(Exception):
-    """Why a name cannot be changed, or not into that."""
+    """The reason why a name cannot be changed, or cannot become the new name."""
 
 
 def definitions(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
-    """Where the name at a place is defined: what the language provides, where it is declared with its documentation.
+    """Return the definitions of the name at a place; a name of the language is defined where it is declared
+    with its documentation.
 
     A name that several places bind leads to all of them; a module to its file; a global parameter to where it is set.
     """
@@ -135,7 +138,7 @@ def moniker(project: Project, snapshot: Snapshot, line: int, column: int) -> Mon
 
 
 def declarations(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
-    """Where the name at a place comes into its module: for an imported one the import, otherwise the definition."""
+    """Return the place at which the name at a place enters its module: the import of an imported name, else its definition."""
     module, found = _occurrence(project, snapshot, line, column)
     if module is None or found is None:
         return ()
@@ -149,7 +152,7 @@ def declarations(project: Project, snapshot: Snapshot, line: int, column: int) -
 
 
 def type_definitions(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
-    """Where the class of the value of the name at a place is defined."""
+    """Return the definition of the class of the value that the name at a place has."""
     module, found = _occurrence(project, snapshot, line, column)
     if module is None or found is None:
         return ()
@@ -356,7 +359,7 @@ def _occurrence(
 
 
 def _alias(module: Module, found: Occurrence) -> Binding | None:
-    """What a name is bound to that an import of the module gave, as in ``import a as b``; ``None`` for all other names."""
+    """Return the binding of an import's alias, as in ``import a as b``; ``None`` for all other names."""
     binding = module.resolution.names.get(found.name)
     if binding is None or isinstance(found.node, ast.Attribute) or len(binding.sites) != 1:
         return None
@@ -389,7 +392,7 @@ def _around(extent: Span | None, span: Span) -> Span:
 
 
 def _ego(module: Module | None, found: Occurrence | None) -> tuple[Target, ...]:
-    """Where the ego or the workspace is set, which is no binding."""
+    """Return the places where the ego or the workspace is set, which is not a binding."""
     if module is None or found is None or found.name not in TRACKED:
         return ()
     return tuple(

@@ -1,4 +1,4 @@
-"""Where the names of definitions stand: the tree has the places of whole statements only."""
+"""Places of the names of definitions: the tree records the places of whole statements only."""
 
 import ast
 from typing import Any

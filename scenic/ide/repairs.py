@@ -14,7 +14,7 @@ __all__ = ["can_repair_all", "difference", "ignoring", "repair_all", "repairs", 
 
 
 def repairs(found: Sequence[Diagnostic], span: Span) -> tuple[Diagnostic, ...]:
-    """Those of the diagnostics that can be repaired and that touch ``span``, themselves or with their repair."""
+    """Filter diagnostics: keep those that have a repair and that touch ``span``, themselves or with the repair."""
     return tuple(
         item
         for item in found
@@ -26,7 +26,7 @@ def repairs(found: Sequence[Diagnostic], span: Span) -> tuple[Diagnostic, ...]:
 def ignoring(
     snapshot: Snapshot, found: Sequence[Diagnostic], span: Span
 ) -> tuple[tuple[Diagnostic, Edit], ...]:
-    """Those of the diagnostics that touch ``span`` and that a comment on their line may silence, with that comment."""
+    """Return the diagnostics that touch ``span`` and that a comment on their line may silence, each with the comment."""
     commented = {line: (column, text) for line, column, text in snapshot.tokens.comments}
     result = []
     for item in found:

@@ -23,7 +23,7 @@ _INTERVAL: Final = 0.02
 
 
 class RunError(Exception):
-    """Why there is no page: what the program's errors are, or which limit it ran into."""
+    """The reason why there is no page: the errors of the program, or the limit that it exceeded."""
 
 
 def sample_page(

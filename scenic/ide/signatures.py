@@ -46,7 +46,9 @@ def signature_help(project: Project, snapshot: Snapshot, line: int, column: int)
 
 
 def _call_around(snapshot: Snapshot, line: int, column: int) -> tuple[str, int, str | None] | None:
-    """What is called, how many commas stand before the place, and the name that the argument is given by."""
+    """Return the callee of the call around a place, the number of commas before the place, and the name of the
+    argument, if it has one.
+    """
     tokens = snapshot.tokens
     byte = snapshot.source.byte(line, column)
     last = snapshot.tokens_of_line(line).stop - 1

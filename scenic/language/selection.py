@@ -65,7 +65,7 @@ class Rules:
         return chosen > longest_match(code, self.ignore) and longest_match(code, self.never) < 0
 
     def apply(self, diagnostics: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """Those of the diagnostics that are shown, with the severity that they are to have."""
+        """Return the diagnostics that are shown, with the severity that the selection gives them."""
         if self == _PLAIN:
             return tuple(diagnostics)
         shown = []

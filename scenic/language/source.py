@@ -109,7 +109,7 @@ def read_source(path: str | os.PathLike[str]) -> Source:
 
 
 def _whereabouts(path: Path) -> str:
-    """What to do about a file that does not exist: a name like it, or how far the path leads."""
+    """Return advice about a file that does not exist: a similar name, or the part of the path that exists."""
     there = path.parent
     while not there.is_dir() and there != there.parent:
         there = there.parent

@@ -11,7 +11,9 @@ __all__ = ["STATEMENTS", "Effect", "Place", "Statement"]
 
 
 class Place(StrEnum):
-    """Where a statement stands. Functions belong to the place they are written in, nested statements too.
+    """The place of a statement in a program.
+
+    Functions and nested statements belong to the place they are written in.
 
     The values complete the sentence "... cannot be used ...".
     """

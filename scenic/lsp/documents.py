@@ -82,7 +82,7 @@ def changed(text: str, changes: Sequence[types.TextDocumentContentChangeEvent], 
 
 
 def _line(text: str, line: int) -> tuple[int, int] | None:
-    """Where a line begins and ends, without its line end; ``None`` if there is no such line."""
+    """Return the start and the end of a line, without its line end; ``None`` if there is no such line."""
     if "\r" not in text:
         parts = text.split("\n", line)
         if len(parts) <= line:

@@ -45,7 +45,8 @@ _OURS: Final = (
     types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS,
     types.WORKSPACE_EXECUTE_COMMAND,
 )
-"""What pygls does not do for us: its documents count lines by `str.splitlines`, which takes form feeds for line ends."""
+"""Messages that this server handles instead of pygls, whose documents count lines by `str.splitlines`, which
+takes form feeds for line ends."""
 
 
 class Stage(Enum):

@@ -99,7 +99,7 @@ class Session:
         """By file name: the version of each open document that the project knows."""
         self._snapshots: dict[str, tuple[Module, Snapshot]] = {}
         self._working: dict[Future[Any], str] = {}
-        """What is being worked out, by the document on which it depends."""
+        """The running computations, each with the document on which it depends."""
 
     # What the client can do
 

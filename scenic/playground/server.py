@@ -68,7 +68,7 @@ require ego.width > 1
 
 @dataclass(frozen=True, slots=True)
 class _Order:
-    """What a page asks for."""
+    """A request of a page: the text of a program, the number of scenes, and the seed."""
 
     text: str
     count: int

@@ -140,7 +140,7 @@ def _declared(each: BuiltinProperty, owner: str) -> Member:
 
 
 def _own(module: Module, symbol: Symbol, node: ast.ClassDef) -> list[Member]:
-    """What the body of a class defines, and the attributes that its methods set."""
+    """Return the members that the body of a class defines, and the attributes that its methods set."""
     found: list[Member] = []
     for item in node.body:
         if isinstance(item, scenic.PropertyDef):

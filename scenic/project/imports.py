@@ -363,7 +363,7 @@ def _has_guards(stretch: Stretch) -> bool:
 
 
 def _judgement(found: Found, node: Any, level: int) -> tuple[Severity | None, str | None]:
-    """How bad it is that a module is not found, and what may have been meant.
+    """Return the severity of a missing module (``None``: do not report it), and the name that may be meant.
 
     A library may be installed where the program runs and not here; whatever belongs to the program must be here.
     """

@@ -46,7 +46,7 @@ class Exported:
 
 @dataclass(frozen=True, slots=True)
 class Unseen:
-    """Why not all names of a module are known: ``module`` is the dotted name of the one that cannot be looked into."""
+    """The reason why not all names of a module are known: the module with the dotted name ``module`` cannot be read."""
 
     module: str
     reason: str

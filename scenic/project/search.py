@@ -1,4 +1,4 @@
-"""Where the modules of a program are: the rules of ``import`` and ``model``, applied by looking at file names only.
+"""Search for the modules of a program: the rules of ``import`` and ``model``, applied to file names only.
 
 A Scenic module anywhere on the search path wins over a Python module, as when a program runs. Folders are listed once
 and remembered until `Finder.forget`.
@@ -39,7 +39,7 @@ class ModuleKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """Where a module is.
+    """The result of the search for a module.
 
     ``filename`` is its file; of a folder without ``__init__`` the folder, of a module that is built into Python
     nothing. Of a missing module, ``searched`` are the folders in which it was looked for (without those of Python's

@@ -33,7 +33,10 @@ def surroundings_in(project: Project, *, verbose: bool = False) -> SurroundingsO
 
 
 class _Surroundings:
-    """What is known about the imports of one program. Looks into a module when it is first asked about it."""
+    """The imports of one program and the names that they bring.
+
+    A module is read when its names are first needed.
+    """
 
     def __init__(
         self, project: Project, tree: ast.Module, source: Source, resolution: Resolution, verbose: bool
@@ -46,7 +49,7 @@ class _Surroundings:
 
     @cached_property
     def _stars(self) -> tuple[Exports, ...]:
-        """What each star import and model brings, in order."""
+        """The names that each star import and each `model` brings, in order."""
         return tuple(self._project.exports_of(self._imports.found(node)) for node in self._imports.stars)
 
     @cached_property

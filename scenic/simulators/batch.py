@@ -126,5 +126,5 @@ def simulate_number(
 
 
 def _reason(error: Exception) -> str:
-    """What rejected a simulation, in a few words."""
+    """Return the reason why a simulation was rejected, in a few words."""
     return str(error) or f"`raise {type(error).__name__}` in the program"

@@ -16,7 +16,7 @@ __all__ = [
 
 
 class TerminationType(Enum):
-    """Why a simulation ended."""
+    """The reason why a simulation ended."""
 
     timeLimit = "reached simulation time limit"
     scenarioComplete = "the top-level scenario finished"

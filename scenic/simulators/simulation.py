@@ -387,7 +387,7 @@ class Simulation(ABC):
     _createObject = add
 
     def place_of(self, obj: Any) -> tuple[Span | None, str | None]:
-        """Where the program creates an object: span and file, as far as they are known."""
+        """Return the span and file where the program creates an object, each ``None`` if unknown."""
         number = next((index for index, item in enumerate(self.objects) if item is obj), len(self.objects))
         if number < len(self._original.objects):
             return self._original.place(number)

@@ -1,4 +1,4 @@
-"""Where the time of sampling goes, for people."""
+"""Profiles of sampling as tables for people."""
 
 from typing import Final
 

@@ -1,4 +1,4 @@
-"""Why scenes were not found, for people: the share of each requirement in the rejections."""
+"""Tables, for people, of why scenes were not found: the share of each requirement in the rejections."""
 
 from collections.abc import Sequence
 

@@ -102,7 +102,7 @@ def _near(filename: str | None) -> str:
 
 
 def _advice(diagnostic: Diagnostic) -> Iterator[str]:
-    """What to do: the help, and the repair if that says more."""
+    """Yield the advice of a diagnostic: its help, and its repair if that adds something."""
     if diagnostic.help:
         yield diagnostic.help
     fix = diagnostic.fix
@@ -160,7 +160,7 @@ class _Window:
     columns: tuple[int, ...]
 
     def column(self, character: int) -> int:
-        """Where a character is shown; one that is not shown at the nearer end."""
+        """Return the column at which a character is shown; a character outside the line is shown at the nearer end."""
         place = min(max(character - self.first, 0), len(self.columns) - 1)
         return self.indent + self.columns[place]
 
@@ -184,7 +184,7 @@ def _window(line: str, mark: _Mark) -> tuple[str, _Window]:
 
 
 def _cells(text: str) -> int:
-    """How many columns of a terminal a text takes."""
+    """Return the number of terminal columns that a text takes."""
     if text.isascii():
         return len(text)
     return sum(

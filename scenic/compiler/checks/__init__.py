@@ -47,14 +47,14 @@ _NODE_RULES: Final[tuple[tuple[type[ast.AST], NodeRule], ...]] = tuple(
 
 
 def _nodes(piece: Piece, context: Context) -> Iterator[Diagnostic]:
-    """What is said of single nodes."""
+    """Yield the diagnostics of rules about single nodes."""
     for cls, rule in _NODE_RULES:
         for node, scope in piece.nodes(cls):
             yield from rule(node, scope, context)
 
 
 def _misplaced(piece: Piece, context: Context) -> Iterator[Diagnostic]:
-    """What is said of statements that stand where they must not, and of others that cannot be used at all."""
+    """Yield the diagnostics of statements in the wrong place, and of statements that are not supported at all."""
     misplaced = dict(placement.check_placement(piece, context))
     yield from filter(None, misplaced.values())
     yield from support.check_support(piece, context, misplaced)

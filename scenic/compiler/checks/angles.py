@@ -20,7 +20,7 @@ _LARGEST: Final = 2 * math.pi
 """A number beyond a full turn is taken for degrees."""
 
 _DEEPEST: Final = 20
-"""How far sums and the like are looked into: nobody writes an angle that is nested deeper."""
+"""Depth to which sums and similar expressions are examined: nobody writes an angle that is nested deeper."""
 
 _PROPERTIES: Final = frozenset(
     name for cls in CLASSES for name, entry in properties_of(cls).items() if entry.angle
@@ -94,7 +94,7 @@ def _is_angle(node: ast.expr, context: Context) -> bool:
 
 
 def _found(context: Context, value: ast.expr | None, what: str) -> Iterator[Diagnostic]:
-    """What is to be said about a value that stands where an angle is expected."""
+    """Yield the warnings about a value that is used as an angle; ``what`` names the angle."""
     places = list(_degrees(value, context))
     if places:
         written = context.text(places[0])

@@ -69,7 +69,7 @@ def _call(node: ast.Call, _scope: Scope, context: Context) -> Iterator[Diagnosti
 
 
 class _Callee(NamedTuple):
-    """What is called: ``skip`` parameters are given by the call itself."""
+    """The function or class that a call calls; the call itself gives ``skip`` of its parameters."""
 
     name: str
     title: str
@@ -87,12 +87,12 @@ class _Callee(NamedTuple):
         return f"`{self.name}({', '.join(self.required)})`"
 
     def labels(self, context: Context) -> tuple[Label, ...]:
-        """Where it is defined, if the language does not define it."""
+        """Return labels at the definition of the callee; none if the language defines it."""
         return () if self.definition is None else context.defined(self.name, self.definition, self.foreign)
 
 
 def _known(node: ast.Call, context: Context) -> _Callee | None:
-    """What a call certainly calls, if that is defined in the program or by the language."""
+    """Return the callee of a call, if it is certain and defined by the program or by the language."""
     provided = context.provided(node.func)
     if provided is not None:
         args = PROVIDED_PARAMETERS.get(provided)

@@ -13,7 +13,7 @@ from scenic.language.statements import Place
 __all__ = ["DYNAMIC", "Block", "Where", "blocks", "in_compose", "where_of"]
 
 DYNAMIC: Final = frozenset({Place.BEHAVIOR, Place.MONITOR, Place.COMPOSE})
-"""Where statements run step by step during a simulation."""
+"""Places where statements run step by step during a simulation."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -129,7 +129,7 @@ class Context:
 
     @cached_property
     def _state(self) -> tuple[object, ...]:
-        """What every rule may depend on."""
+        """The state, beside the statements themselves, on which every rule may depend."""
         resolution, surroundings = self.resolution, self.surroundings
         imports = [key for stretch in resolution.stretches for key in stretch.importing]
         modules = None if surroundings is None else surroundings.state
@@ -162,7 +162,7 @@ class Context:
 
     @cached_property
     def moves(self) -> Moves:
-        """Where the statements of the version before stand now."""
+        """A map from the statements of the previous version to their places in this version."""
         return Moves(() if self.before is None else self.before.stretches, self.resolution.stretches)
 
     def follows_error(self, stretch: Stretch) -> bool:
@@ -349,7 +349,7 @@ class Context:
         return found
 
     def mentions(self, name: str) -> list[tuple[int, int]]:
-        """Where a name is read or written, in order."""
+        """Return the places where a name is read or written, in order."""
         return sorted(
             place
             for stretch in self.resolution.stretches
@@ -424,7 +424,7 @@ class Context:
 
 
 def _united(context: Context, key: str, find: Callable[[Stretch], frozenset[str]]) -> frozenset[str]:
-    """What is found in any stretch."""
+    """Return the union of the sets found in all stretches."""
     return frozenset().union(*(each.common(key, find) for each in context.resolution.stretches))
 
 

@@ -26,10 +26,10 @@ _LASTING: Final = (
     scenic.DoShuffle,
     scenic.Terminate,
 )
-"""What gives control back to the simulation (note e of section 2.1)."""
+"""Statements that give control back to the simulation (note e of section 2.1)."""
 
 _LEAVING: Final = (ast.Return, ast.Raise, scenic.Abort)
-"""What leaves a loop from anywhere within it, beside ``break``."""
+"""Statements that leave a loop from anywhere within it, beside ``break``."""
 
 _OWN_BODIES: Final = (
     ast.FunctionDef,

@@ -48,7 +48,7 @@ class _Lost(Exception):
 
 
 class Moves:
-    """Where the statements of one version stand in the next."""
+    """A map from the statements of one version to their places in the next."""
 
     def __init__(self, before: Sequence[Stretch], after: Sequence[Stretch]) -> None:
         self._before = before

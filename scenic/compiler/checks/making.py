@@ -165,7 +165,7 @@ def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: Context) ->
 def _wrong(
     value: ast.expr, kinds: tuple[str, ...], words: str, context: Context, *, classes: bool = False
 ) -> Iterator[Diagnostic]:
-    """What is wrong with a value where one of the kinds is run; ``classes`` if a definition itself will do."""
+    """Yield the errors about a value that is run as one of ``kinds``; ``classes`` if the definition itself is allowed."""
     called = isinstance(value, ast.Call)
     name = value.func if isinstance(value, ast.Call) else value
     if not isinstance(name, ast.Name | ast.Attribute):

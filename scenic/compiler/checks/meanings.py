@@ -11,7 +11,7 @@ from scenic.language.properties import CLASSES, attributes_of, properties_of
 __all__ = ["ProgramMeanings"]
 
 _DEEPEST: Final = 20
-"""How long a chain of base classes is followed."""
+"""Length to which a chain of base classes is followed."""
 
 
 class Values(Protocol):

@@ -35,7 +35,7 @@ MOST_SUGGESTIONS: Final = 100
 """Names for which a similar one is looked for: a file full of undefined names must not take long."""
 
 _IMPORTS: Final = ("import", "from", "model")
-"""What statements begin with that bring names of other modules."""
+"""First words of statements that import names of other modules."""
 
 _BUILTINS: Final = frozenset(dir(builtins))
 

@@ -29,7 +29,7 @@ _DEFERRED: Final[tuple[type[ast.AST], ...]] = (
 
 _OPERATORS: Final = frozenset(name for name, each in OPERATORS.items() if each.may_read_ego)
 _SPECIFIERS: Final = frozenset(name for name, each in SPECIFIERS.items() if each.may_read_ego)
-"""Those that may be about the ego without naming it."""
+"""Specifiers that may refer to the ego without naming it."""
 
 
 def check_order(context: Context) -> Iterator[Diagnostic]:

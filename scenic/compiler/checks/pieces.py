@@ -47,7 +47,7 @@ class Piece:
 
     @property
     def inner_blocks(self) -> tuple[Block, ...]:
-        """Those that are whole."""
+        """The lists of statements that are complete: all but the first."""
         return self.blocks[1:]
 
 

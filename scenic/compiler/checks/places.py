@@ -35,7 +35,7 @@ def word_span(source: Source, node: ast.AST, word: str) -> Span:
 
 
 def _whole_word(text: str, word: str, start: int, end: int) -> int:
-    """Where a word stands in a stretch of a line, with no letter, digit or underscore beside it; -1 if nowhere."""
+    """Return the column of a word in a stretch of a line, with no letter, digit or underscore beside it; -1 if absent."""
     found = text.find(word, start, end)
     while found >= 0:
         after = found + len(word)

@@ -18,7 +18,7 @@ _LATER: Final = (scenic.Require, scenic.Record, scenic.TerminateWhen)
 """Statements whose expressions are evaluated later, on samples."""
 
 _DEEPEST: Final = 20
-"""How far values are looked into."""
+"""Depth to which values are examined."""
 
 
 def _is_random(value: ast.AST | None, context: Context, depth: int = 0) -> bool:

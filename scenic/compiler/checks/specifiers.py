@@ -34,7 +34,7 @@ _SPECIFIER_OF_SIDE: Final = MappingProxyType(
 
 
 def _specified(node: scenic.SpecifierPhrase) -> tuple[Specified, ...]:
-    """What a specifier gives a value."""
+    """Return the properties that a specifier gives a value, with their priorities."""
     if node.property is not None:
         return (Specified(node.property, 1),)
     return SPECIFIERS[node.specifier].specifies if node.specifier in SPECIFIERS else ()

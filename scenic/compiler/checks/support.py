@@ -31,7 +31,7 @@ _INSTEAD: Final = (
     "with `Range`, `DiscreteRange`, `Uniform` or `Options` in its place the values are independent draws: "
     "no external sampler chooses them, and feedback changes nothing"
 )
-"""What is different without the only thing that is refused: external samplers."""
+"""Advice on replacing external samplers, the only unsupported feature, and the difference that this makes."""
 _NAMES: Final = frozenset(name.name for name in NAMES.values() if not name.available)
 
 
@@ -96,7 +96,7 @@ def _refusal(feature: str, node: ast.AST, context: Context) -> Diagnostic:
 
 
 def _refused(node: Any) -> str | None:
-    """What the program asks for here, if it cannot have it."""
+    """Return the description of an unsupported element that a node uses, or ``None``."""
     match node:
         case scenic.Operation(operator=name):
             return None if OPERATORS[name].available else f"the operator `{name}`"

@@ -27,7 +27,7 @@ __all__ = [
 ]
 
 _ENDS: Final = ("", ",", ")", "]", "}", ";", ":", "#")
-"""What may follow where something is missing: the end of the line, or one of these."""
+"""Texts that may follow a missing part: the end of the line, or one of these characters."""
 
 
 _HALF_BOUND: Final = re.compile(

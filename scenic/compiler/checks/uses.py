@@ -39,7 +39,7 @@ _HIDING: Final = frozenset(
         BindingKind.VARIABLE,
     }
 )
-"""How a name of the language is hidden by mistake; an import of that name is meant."""
+"""Kinds of bindings that hide a name of the language by mistake; an import of the name is deliberate."""
 
 
 def check_uses(context: Context) -> Iterator[Diagnostic]:

@@ -324,7 +324,7 @@ class _Symbolic:
         return body
 
     def _iterated(self, node: ast.expr) -> ast.expr:
-        """What is iterated over: the runtime accepts it if its elements are fixed."""
+        """Lower the iterable of a loop, which the runtime accepts if its elements are fixed."""
         match node:
             case ast.Call(func=ast.Name(id="range" | "zip" | "enumerate" | "reversed") as callee, args=args):
                 if node.keywords or any(isinstance(arg, ast.Starred) for arg in args):

@@ -61,7 +61,8 @@ class Lowerer(Protocol):
 
 
 class Blocks:
-    """Where in dynamic code the lowering is: whose instance runs, and what ``break`` and ``return`` would leave.
+    """The position of the lowering in dynamic code: the running instance, and the blocks that ``break`` and
+    ``return`` would leave.
 
     ``frames`` are of three kinds: a block of ``try-interrupt`` (the set of the ways out of it that occur), a loop
     (``None``) and a function (``False``).

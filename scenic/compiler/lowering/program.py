@@ -438,7 +438,7 @@ def _is_kept(binding: Binding | None) -> bool:
 
 
 _RUNNING: Final = frozenset({ScopeKind.SCENARIO, ScopeKind.BEHAVIOR, ScopeKind.MONITOR})
-"""What is run as an instance with names of its own."""
+"""Kinds of scopes that run as an instance with names of its own."""
 
 
 def _rules() -> Mapping[type[ast.AST], Callable[[_Program, Any], Any]]:

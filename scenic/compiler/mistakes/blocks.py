@@ -29,7 +29,7 @@ _HEADERS: Final = {
     "scenario": "a scenario", "setup": "`setup`", "compose": "`compose`", "interrupt": "`interrupt when`",
     "precondition": "`precondition`", "invariant": "`invariant`",
 }  # fmt: skip
-"""What starts with a line that ends in a colon, and what messages call it."""
+"""First words of lines that end in a colon, with their names in messages."""
 
 
 def missing_colon(at: Situation) -> Problem | None:

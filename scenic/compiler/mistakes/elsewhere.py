@@ -100,7 +100,7 @@ _UNITS: Final = {
     **dict.fromkeys(("rad", "radian", "radians"), "angles are in radians, or written `30 deg`"),
     "kg": "masses are in kilograms",
 }
-"""What is said of units that somebody may write behind a number."""
+"""Explanations of units that somebody may write after a number."""
 
 
 def unit(at: Situation) -> Problem | None:

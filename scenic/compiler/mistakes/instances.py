@@ -300,7 +300,7 @@ _PLACES: Final = {
     ("beside",): ("left", "of"),
     ("near",): ("left", "of"),
 }
-"""What places are called by people, and the specifier for them."""
+"""Common phrases for places, with the specifier for each."""
 
 _VAGUE: Final = frozenset({"next", "close", "beside", "near"})
 """The first words of those that do not say which side is meant."""

@@ -65,7 +65,7 @@ _LOOSER: Final = frozenset(
         "until",
     ]
 )
-"""Where the operand of a prefix operator ends at the latest."""
+"""Tokens that end the operand of a prefix operator."""
 
 _TEMPORAL: Final = tuple(form.words[0] for form in TEMPORAL_FORMS if form.fixity is Fixity.PREFIX)
 
@@ -93,7 +93,7 @@ def loose_prefix_operator(at: Situation) -> Problem | None:
 
 
 def _end_of_operand(at: Situation) -> int:
-    """Where what starts before the mistake ends: at a looser operator, a closing bracket, or the end of the line."""
+    """Return the end of the expression before the mistake: a looser operator, a closing bracket, or the end of the line."""
     depth = 0
     follows = at.before == "follow"
     for index in range(at.token + 1, at.end):

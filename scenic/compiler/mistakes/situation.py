@@ -16,7 +16,7 @@ _OPENERS: Final = {"(": ")", "[": "]", "{": "}"}
 _CLOSERS: Final = frozenset(_OPENERS.values())
 _LAYOUT: Final = frozenset({NEWLINE, ENDMARKER, DEDENT, INDENT})
 _TIGHT: Final = frozenset({",", ":", ")", "()", "(", ";"})
-"""What is written without a blank before it."""
+"""Tokens that are written without a blank before them."""
 
 
 def insertion(before: int, *words: str) -> Change:
@@ -190,11 +190,11 @@ class Situation:
         return (tokens.lines[first], tokens.columns[first], tokens.end_lines[last], tokens.end_columns[last])
 
     def here(self) -> Place:
-        """Where to point: at the token, or behind what is before it if it is the end of something."""
+        """The place to mark: the token, or the end of the text before it if the token ends something."""
         return self.pointer(self.token)
 
     def pointer(self, token: int) -> Place:
-        """Where to point for a token: behind what is before it if it is the end of something."""
+        """Return the place to mark for a token: the token, or the end of the text before it if the token ends something."""
         kinds = self.tokens.kinds
         if token < len(kinds) and kinds[token] not in _LAYOUT - {INDENT}:
             return self.place(token)
@@ -225,7 +225,7 @@ class Situation:
         return self.reads(changes, context=context).complete
 
     def helps(self, *changes: Change, context: str | None = None) -> bool:
-        """Whether, with ``changes``, the line is right, or right up to a later token."""
+        """Return whether the line with ``changes`` is right, or right up to a later token."""
         outcome = self.reads(changes, context=context)
         return outcome.complete or outcome.reached > max(self.token, changes[-1].end)
 

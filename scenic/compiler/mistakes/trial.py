@@ -64,7 +64,7 @@ _BEFORE: Final[Mapping[str, tuple[_Piece, ...]]] = MappingProxyType(
         "compose": _SCENARIO,
     }
 )
-"""What has to stand before a line that starts with one of these."""
+"""Tokens that must precede a line that starts with one of these words."""
 _INSTANCE: Final[tuple[_Piece, ...]] = ("new", "Object", ",", NEWLINE, INDENT)
 
 

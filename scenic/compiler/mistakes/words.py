@@ -60,7 +60,7 @@ def _near(word: str) -> Iterator[str]:
 
 
 def _synonyms(word: str) -> Iterator[str]:
-    """What other people, and other languages, call a keyword."""
+    """Yield the synonyms of a keyword in other languages and in common speech."""
     yield from _SYNONYMS.get(word.lower(), ())
 
 

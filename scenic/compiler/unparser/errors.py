@@ -1,4 +1,4 @@
-"""Why a tree has no text."""
+"""The exception for trees that have no text."""
 
 import ast
 

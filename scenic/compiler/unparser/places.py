@@ -276,7 +276,7 @@ def _second_words() -> Mapping[str, frozenset[str]]:
 
 
 _SECOND_WORDS: Final = _second_words()
-"""What must not follow a name that is the first word of a prefix operator."""
+"""Words that must not follow a name that is the first word of a prefix operator, by that first word."""
 
 _LATE_WORDS: Final[Mapping[str, str]] = MappingProxyType(
     {

@@ -535,7 +535,7 @@ class Intersection(NetworkElement):
 
     @cached_property
     def surface(self) -> Ground:
-        """That of the connecting lane that holds a point, the first one if several do; else of the nearest."""
+        """The ground below a point: of the first connecting lane that contains the point, or of the nearest connecting lane."""
         numbers = np.array([self.network.road_number(lane.road.uid) for lane in self._connecting])
         return Ground(
             self.network.levels, lambda points: numbers[self._guide_at(points[:, :2])], numbers.tolist()

@@ -98,7 +98,7 @@ class Levels:
         return self._stacks[0]
 
     def stacked(self, places: Floats) -> Mask:
-        """Where roads lie above each other, of places ``(n, 2)``."""
+        """Return a mask of the places ``(n, 2)`` at which roads lie above each other."""
         import shapely
 
         area = self._stacks[1]
@@ -133,7 +133,7 @@ class Levels:
         return frames
 
     def _nearest(self, points: Floats) -> tuple[Indices, Indices]:
-        """Which points ``(n, 3)`` lie on some road, and the road nearest in height to each of them."""
+        """Return the indices of the points ``(n, 3)`` that lie on some road, and for each the road nearest in height."""
         owner, roads, gaps = self._at(points)
         order = np.lexsort((gaps, owner))
         first = order[np.flatnonzero(np.diff(owner[order], prepend=-1))]

@@ -62,7 +62,7 @@ def network_of_program(parameters: Any) -> Network:
 
 
 def _wanted_by(parameter: str) -> str:
-    """What sets a parameter, in words."""
+    """Return words for the place where the user sets a parameter."""
     context = current.get()
     if context is not None and parameter in context.parameters.given:
         return f"`--param {parameter}=...` (or `params`)"

@@ -73,7 +73,7 @@ def walking_step(agent: Any, place: Any, speed: float) -> tuple[float, float]:
 
 
 def _standing(agent: Any, others: Iterable[Any]) -> Iterator[tuple[float, float, float]]:
-    """Where what stands nearby is, relative to an agent, and how far apart the centres have to be."""
+    """Yield the position of each nearby standing object, relative to the agent, and the distance that the centres must keep."""
     x, y, *_ = agent.position
     own = math.hypot(agent.width, agent.length) / 2
     for other in others:

@@ -42,7 +42,7 @@ class Curve:
 
     @property
     def breaks(self) -> Floats:
-        """Where pieces begin and the last one ends."""
+        """The positions at which the pieces begin and the last piece ends."""
         return np.append(self._starts, self.length)
 
     def at(self, s: Floats) -> tuple[Floats, Floats]:

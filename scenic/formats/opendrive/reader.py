@@ -93,7 +93,7 @@ class _Reader:
         self._faults = dict(faults_of(root))
         self._left_out: set[str] = set()
         self._lost: set[str] = set()
-        """Which links of the road that is being read cannot be used."""
+        """The links, of the road that is being read, that cannot be used."""
 
     def _tell(self, code: str, message: str, line: int, kind: str) -> None:
         self._problems.append(Problem(code, message, line, kind))

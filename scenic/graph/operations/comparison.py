@@ -79,7 +79,7 @@ def _comparable(a: Bounds, b: Bounds) -> bool:
 
 
 def _numeric(a: Bounds, b: Bounds) -> Mask:
-    """Where neither number can be NaN, with which every comparison but ``!=`` fails."""
+    """Return a mask of the boxes in which neither number can be NaN, with which every comparison except ``!=`` fails."""
     return np.asarray(~(intervals.infinite(a) | intervals.infinite(b)))
 
 
@@ -115,7 +115,7 @@ def _order_inverse(*, strict: bool, swapped: bool) -> InverseReading:
 
 
 def _below(a: Bounds, b: Bounds, *, strict: bool) -> tuple[Bounds, Bounds]:
-    """What is left of ``a`` and of ``b`` where ``a < b``, or ``a <= b``."""
+    """Return the bounds of ``a`` and of ``b`` that follow from ``a < b`` (``strict``), or from ``a <= b``."""
     top, bottom = b.upper, a.lower
     if strict:
         top, bottom = np.nextafter(top, -np.inf), np.nextafter(bottom, np.inf)
@@ -132,7 +132,7 @@ def _order_solver(function: Callable[[Any, Any], Any]) -> SolverReading:
 
 
 def _equal_certain(a: Bounds, b: Bounds) -> tuple[Mask, Mask] | None:
-    """Where two values are certainly equal, and where certainly not; ``None`` for orientations."""
+    """Return masks of the boxes in which two values are certainly equal, and certainly not equal; ``None`` for orientations."""
     if a.lower.shape[1:] != b.lower.shape[1:]:
         return np.zeros(1, dtype=np.bool_), np.ones(1, dtype=np.bool_)
     if a.lower.shape[1:] == (4,):

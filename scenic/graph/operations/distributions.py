@@ -103,7 +103,7 @@ def _choice(call: Call, axis: Column) -> Column:
 
 
 def _position(axis: Column, cumulative: Any) -> Column:
-    """Which option a point of the axis draws; an option of weight zero is never drawn."""
+    """Return the index of the option that each point of the axis draws; an option of weight zero is never drawn."""
     limits = np.asarray(cumulative, dtype=np.float64)
     found = np.searchsorted(limits, axis, side="right")
     # The last limit is 1 but for rounding; what lies above it belongs to the last option of positive weight.
@@ -267,7 +267,7 @@ def _opened(axis: Bounds) -> Bounds:
 
 
 def _fixed(*operands: Bounds) -> Mask:
-    """Where all operands have one finite value each."""
+    """Return a mask of the boxes in which every operand has a single finite value."""
     result = np.ones(1, dtype=np.bool_)
     for operand in operands:
         result = result & (operand.lower == operand.upper) & np.isfinite(operand.lower)
@@ -281,7 +281,7 @@ def _if_fixed(fixed: Mask, known: Bounds, otherwise: Bounds) -> Bounds:
 
 
 def _range_rounding(low: Bounds, high: Bounds) -> Floats:
-    """What rounding may add to ``low + (high - low) * u``."""
+    """Return the largest error that rounding may add to ``low + (high - low) * u``."""
     return 4 * intervals.EPSILON * np.maximum(intervals.size(low), intervals.size(high))
 
 
@@ -482,7 +482,7 @@ def _weighted_inverse(payload: Any, result: Bounds, _axis: Bounds) -> list[Bound
 
 
 def _room(first: int, cumulative: Any) -> float:
-    """How far floats may be off the whole numbers from ``first`` on, one for each weight."""
+    """Return the largest distance of floats from the whole numbers from ``first`` on, one for each weight."""
     most = max(abs(first), abs(first + len(cumulative)))
     return math.ulp(most) if most > EXACT else 0.0
 

@@ -32,7 +32,7 @@ _INLINE: Final = types.CodeActionKind.RefactorInline
 
 
 def _actions(session: Session, params: types.CodeActionParams) -> list[types.CodeAction]:
-    """What can be repaired at a place, and if that is asked for, all that can be repaired in the document."""
+    """Return the repairs at a place, and on request also the repairs of the whole document."""
     document = session.document(params.text_document.uri)
     span = document.lines.from_range(params.range)
     only = params.context.only or ()
@@ -92,7 +92,7 @@ def _of_document(session: Session, document: Document, kind: str, title: str) ->
 
 
 def _edit_of_document(session: Session, document: Document, kind: str) -> Edit | None:
-    """What an action on the whole document changes, worked out once for each version."""
+    """Return the change that an action makes to the whole document, computed once for each version."""
     snapshot = document.snapshot
     _, rules = session.rules(snapshot.filename)
 

@@ -141,7 +141,7 @@ def _prepare(find: Find, make: type[_Item]) -> Callable[[Session, Placed], list[
 def _symbol(
     session: Session, item: types.CallHierarchyItem | types.TypeHierarchyItem, find: Find
 ) -> tuple[Project, Symbol | None]:
-    """What an item of a hierarchy stands for."""
+    """Return the project and the symbol of an item in a hierarchy."""
     document = session.document(item.uri)
     line, column = document.lines.from_position(item.selection_range.start)
     project = session.project_with(document)

@@ -64,7 +64,7 @@ def _watched(session: Session, params: types.DidChangeWatchedFilesParams) -> Non
 
 
 def _will_rename(session: Session, params: types.RenameFilesParams) -> types.WorkspaceEdit | None:
-    """What changes in the files that import those which get another name."""
+    """Return the edits of the files that import the renamed files."""
     moves = []
     for each in params.files:
         old, new = to_path(each.old_uri), to_path(each.new_uri)

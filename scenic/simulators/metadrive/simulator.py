@@ -243,7 +243,9 @@ def _action(actor: Any, controls: Any) -> list[float]:
 
 
 def _offset(network: Path) -> tuple[float, float]:
-    """What MetaDrive adds to coordinates of the map: SUMO's offset, and the way from the middle of its network to 0."""
+    """Return the offset that MetaDrive adds to the coordinates of the map: SUMO's offset, and the vector from
+    the middle of the network to 0.
+    """
     for _, element in ElementTree.iterparse(network):
         if element.tag == "location":
             left, bottom, right, top = map(float, element.attrib["convBoundary"].split(","))

@@ -125,7 +125,7 @@ class MujocoSimulation(Simulation):
                 self.data.qvel[wheel] = forward / part.radius
 
     def _joint(self, part: Part) -> tuple[int, int]:
-        """Where the state of a body's free joint begins: in ``qpos`` and in ``qvel``."""
+        """Return the indices at which the state of a body's free joint begins, in ``qpos`` and in ``qvel``."""
         body = self.model.body(part.name).id
         joint = self.model.body_jntadr[body]
         return int(self.model.jnt_qposadr[joint]), int(self.model.jnt_dofadr[joint])
@@ -234,7 +234,7 @@ class MujocoSimulation(Simulation):
             self.data.body(part.name).xfrc_applied[:] = force + torque
 
     def _steer(self, parts: list[Part]) -> None:
-        """What has to be computed anew in each step of the physics."""
+        """Update the commands of guided and flying bodies for the next step of the physics."""
         step = self.model.opt.timestep
         for part in parts:
             command = part.command
@@ -308,7 +308,7 @@ class MujocoSimulation(Simulation):
             )
 
     def _culprit(self) -> str:
-        """Which body moves the most, in words."""
+        """Return words that name the body that moves fastest; empty if none moves."""
         speeds: dict[str, float] = {}
         for part in self._parts.values():
             if part.moves:

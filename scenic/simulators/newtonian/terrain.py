@@ -25,7 +25,7 @@ class Terrain:
 
     @classmethod
     def under(cls, scene: Any) -> "Terrain | None":
-        """That of a scene; ``None`` where its map is flat."""
+        """Return the terrain of a scene; ``None`` if its map is flat."""
         network = getattr(scene.workspace, "network", None)
         if network is None or not network.is_elevated or network.levels.elevation.is_level:
             return None

@@ -79,7 +79,7 @@ class SumoSimulation(NewtonianSimulation):
         self._released[id(agent)] = speed_factor
 
     def place_in_sumo(self, obj: Any) -> Pose | None:
-        """Where SUMO has an object after the last step; ``None`` once it has left the map at a dead end."""
+        """Return the pose of an object in SUMO after the last step; ``None`` after it has left the map at a dead end."""
         return self._traffic.pose(self._bodies[id(obj)])
 
     def steered(self) -> list[Any]:

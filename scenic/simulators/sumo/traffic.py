@@ -20,7 +20,7 @@ _ON_LANE: Final = 0
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Where SUMO has a body: its centre (metres), heading (radians, anticlockwise from north) and speed (m/s)."""
+    """The pose of a body in SUMO: its centre (metres), heading (radians, anticlockwise from north) and speed (m/s)."""
 
     x: float
     y: float
@@ -130,7 +130,7 @@ class Traffic:
                 self._go_on(body, body.last[self._route_index])
 
     def pose(self, body: Body) -> Pose | None:
-        """Where SUMO has a body; ``None`` for one that has reached the end of a dead end and left the map."""
+        """Return the pose of a body in SUMO; ``None`` for a body that has left the map at a dead end."""
         last = body.last
         if not last:
             return None
