@@ -66,7 +66,7 @@ CASES = {
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """What one process did."""
+    """The work of one process."""
 
     scenes: int
     candidates: int
@@ -96,13 +96,13 @@ def ours(program: str, seed: int, scenes: int, prune: bool, meshes: str) -> Run:
 
 
 def parameters(program: str, meshes: str) -> dict[str, object]:
-    """Those of a case, with the folder of meshes where it wants one."""
+    """Return the parameters of a case, with the folder of meshes if it takes one."""
     given = dict(CASES[program].parameters)
     return given | ({"folder": meshes} if "folder" in given else {})
 
 
 def child(program: str, seed: int, scenes: int, prune: bool, meshes: str) -> None:
-    """What the fresh process does: prints a `Run` as JSON."""
+    """Run one case in a fresh process, and print a `Run` as JSON."""
     from scenic.pipeline import load
     from scenic.runtime.sampling.report import Exhausted
 

@@ -1,4 +1,4 @@
-"""How the time of a candidate grows with the number of objects: boxes at random places of a cube, as dense at any number.
+"""Growth of a candidate's time with the number of objects: boxes at random places of a cube, at a constant density.
 
 python -m benchmarks.growth
 """

@@ -137,7 +137,7 @@ def cast(
 
 
 def compare_geometry(item: dict, camera: dict, mesh: trimesh.Trimesh) -> list[str]:
-    """What is wrong with the box in space and its projection."""
+    """Return the errors of the box in space and its projection."""
     problems = []
     extrinsics, intrinsics = np.array(camera["extrinsics"]), np.array(camera["intrinsics"])
     matrix = trimesh.transformations.quaternion_matrix(np.roll(item["quaternion"], 1))[:3, :3]

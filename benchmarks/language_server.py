@@ -1,4 +1,4 @@
-"""What an editor waits for, measured over the wire: one edit at a time, to the answer.
+"""Latency of the language server over the wire: one edit at a time, until the answer.
 
     python -m benchmarks.language_server [--edits N] [--memory]
 

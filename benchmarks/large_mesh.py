@@ -1,4 +1,4 @@
-"""How long a mesh of 200,000 triangles takes: to load, to place something on it, in a process of its own.
+"""Times of a mesh of 200,000 triangles: to load it, and to place something on it, in a process of its own.
 
 python -m benchmarks.large_mesh
 """

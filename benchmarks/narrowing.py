@@ -1,4 +1,4 @@
-"""What analysis leaves of the distributions: ``python -m benchmarks.narrowing [--reference PATH]``.
+"""Effect of analysis on the distributions: ``python -m benchmarks.narrowing [--reference PATH]``.
 
 For each program in ``narrowing/``: candidates a scene with the distributions narrowed before sampling and without, and milliseconds a
 scene (load not included), beside another implementation, called as in `benchmarks.compare`, that gets half a minute for ten scenes.

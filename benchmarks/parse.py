@@ -77,7 +77,7 @@ class Driver:
         )
 
     def seconds(self, path: Path) -> float | None:
-        """How long parsing takes; ``None`` if the text is refused."""
+        """Return the seconds that parsing takes; ``None`` if the text is refused."""
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         self._process.stdin.write(json.dumps(str(path)) + "\n")

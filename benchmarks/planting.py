@@ -450,7 +450,7 @@ MISTAKES: Final[dict[str, Planter]] = {
     "clause without head": _missing_head,
     "wrong order": _wrong_order,
 }
-"""How to make each kind of mistake, where the program has a place for it."""
+"""Makers of each kind of mistake, where the program has a place for it."""
 
 
 def base_programs() -> list[Program]:

@@ -17,7 +17,7 @@ HERE = Path(__file__).parent
 
 
 def seconds(program: str, runs: list[list[str]]) -> float:
-    """How long commands take that begin together."""
+    """Return the seconds until commands that start together have ended."""
     with tempfile.TemporaryDirectory() as folder:
         begun = time.perf_counter()
         started = [

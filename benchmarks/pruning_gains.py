@@ -30,7 +30,7 @@ BOXES = 1024
 
 @dataclass(frozen=True)
 class Row:
-    """What one program gives: candidates a scene, and seconds."""
+    """The measurements of one program: candidates a scene, and seconds."""
 
     name: str
     without: float
@@ -107,7 +107,7 @@ def refuted(scenario: Scenario) -> float:
 
 
 def row(path: Path, candidates: int, *, solver: bool) -> Row:
-    """What a program gives."""
+    """Measure a program."""
     scenario, narrowed = loaded(path, prune=True)
     _, plain = loaded(path, prune=False)
     passed = acceptance(scenario, candidates)

@@ -1,4 +1,4 @@
-"""How well the front end finds several mistakes in one program: ``python -m benchmarks.recovery``.
+"""Recall and precision of the front end for several mistakes in one program: ``python -m benchmarks.recovery``.
 
 200 programs, each with one to five mistakes that `benchmarks.planting` makes. A mistake is found if an error is reported on a
 right line of it; an error on no right line of any mistake is spurious. Both are counted for the parser alone and for everything
@@ -27,7 +27,7 @@ UNSUPPORTED = "SC900"
 
 @dataclass(slots=True)
 class Score:
-    """What was planted, and what was said about it."""
+    """Counts of the planted mistakes and of the errors reported for them."""
 
     planted: Counter[str] = field(default_factory=Counter)
     missed: Counter[str] = field(default_factory=Counter)

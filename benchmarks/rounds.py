@@ -1,4 +1,4 @@
-"""What a round of the engine costs, by lanes: ``python -m benchmarks.rounds [PROGRAM ...]``.
+"""Cost of a round of the engine, by lanes: ``python -m benchmarks.rounds [PROGRAM ...]``.
 
 A round takes so many candidates through all checks. Without programs: ten and a hundred boxes in a cube, a desk, and the
 furnished room with toys. Prints milliseconds of processor time, medians of repeated rounds after the first ones, and with

@@ -38,7 +38,7 @@ def main() -> None:
 
 
 def runs(problem: str, ranges: list[Any], name: str, seed: int, most: int) -> int:
-    """How many points a sampler asks for until one fails."""
+    """Return the number of points that a sampler tries until one fails."""
     from dotmap import DotMap
     from verifai.features import Box, Feature, FeatureSpace
     from verifai.samplers.feature_sampler import FeatureSampler

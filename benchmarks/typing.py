@@ -1,4 +1,4 @@
-"""What is said while a program is typed, key by key: ``python -m benchmarks.typing``.
+"""Diagnostics while a program is typed, key by key: ``python -m benchmarks.typing``.
 
 Each phrase is typed at its place in a right program, one character after another; each state is checked as an editor would. A
 state is spoilt if an error is shown on a line that is not being typed, or if a name is called undefined that lies in an
@@ -118,7 +118,7 @@ PHRASES = len(_AT_TOP) + len(_IN_BEHAVIOR) + len(_IN_TRY) + len(_IN_SETUP)
 
 @dataclass(slots=True)
 class Score:
-    """How many states there were, and which were spoilt."""
+    """Counts of all states, and the states that were spoilt."""
 
     states: int = 0
     spoilt: list[str] = field(default_factory=list)
@@ -153,7 +153,7 @@ _SURROUNDINGS = surroundings_in(Project())
 
 
 def _check(text: str) -> tuple[Diagnostic, ...]:
-    """What an editor shows."""
+    """Return the diagnostics that an editor shows."""
     return check_text(text, filename="/nowhere/typed.scenic", surroundings_of=_SURROUNDINGS)
 
 

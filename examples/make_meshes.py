@@ -321,7 +321,7 @@ MESHES: dict[str, Callable[[], Manifold]] = {
         toy_rocket, toy_duck, sea_floor, crater, hillside,
     )
 }  # fmt: skip
-"""What makes each file, by the file's name."""
+"""The function that makes each file, by the file's name."""
 
 
 def as_obj(solid: Manifold, title: str) -> str:

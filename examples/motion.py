@@ -26,8 +26,8 @@ SIZE: Final = (720, 450)
 
 @dataclass(frozen=True, slots=True)
 class Shot:
-    """How an example is shown: the moments (parts of the whole), from where, what must be in the picture (all if empty), and
-    which simulation of seed 1, of how many steps at most.
+    """The pictures of an example: the moments (parts of the whole), the viewpoint, the objects that must be in
+    the picture (all if empty), and the simulation of seed 1 and its largest number of steps.
     """
 
     moments: tuple[float, ...]

@@ -19,7 +19,7 @@ from scenic.formats.trajectory_reading import Trajectory, read_trajectory
 
 Array = npt.NDArray[Any]
 Judgement = tuple[bool, float | None]
-"""Whether a formula held, and by how much, if that is a number."""
+"""The judgement of a formula: true if it held, and its margin or ``None``."""
 
 
 def always(values: Array) -> Judgement:
@@ -45,7 +45,7 @@ def corners(run: Trajectory, name: str) -> Array:
 
 
 def depth(points: Array, x: tuple[float, float], y: tuple[float, float]) -> Array:
-    """How deep points ``(..., 3)`` lie above a rectangle: the distance to its border, negative outside, metres."""
+    """Return the depth of points ``(..., 3)`` above a rectangle: the distance to its border, negative outside, metres."""
     beyond = np.stack(
         [
             np.maximum(x[0] - points[..., 0], points[..., 0] - x[1]),
@@ -127,7 +127,9 @@ JUDGES: Final[Mapping[str, Callable[[Trajectory], dict[str, Judgement]]]] = Mapp
 
 
 def judgements(example: str, run: Trajectory) -> dict[str, Judgement] | None:
-    """What the judge of an example says of a simulation; for other names that of the example with its requirements, if any."""
+    """Return the judgements of an example on a simulation; for other names, those of the example with the same
+    requirements, if any.
+    """
     if example in JUDGES:
         return JUDGES[example](run)
     told = {item["label"] for item in run.about["requirements"]}
@@ -142,7 +144,7 @@ def judgements(example: str, run: Trajectory) -> dict[str, Judgement] | None:
 
 
 def disagreements(example: str, run: Trajectory) -> list[str]:
-    """Where the simulation's verdicts and margins are not those that follow from its trajectory."""
+    """Describe the differences between the simulation's verdicts and margins and those computed from its trajectory."""
     judged = judgements(example, run)
     if judged is None:
         return [f"a simulation of none of {', '.join(JUDGES)}"]

@@ -21,7 +21,7 @@ __all__ = ["main"]
 
 _SECONDS: Final = 30.0
 _OF_PARSING: Final = ("making", "making mutants", "parsing_gives_a_tree", "nodes_lie_in_the_text")
-"""What the rate of the parsing properties is made of: that there is a tree, and where its parts are."""
+"""Steps whose time makes up the rate of the parsing properties: there is a tree, and its parts lie in the text."""
 _REQUIRED: Final = (100.0, 95.0)
 """Shares of Scenic's and of Python's alternatives, in percent, that ``--require-coverage`` asks for."""
 _SHOWN: Final = 20

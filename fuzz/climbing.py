@@ -122,7 +122,7 @@ class Climber:
                 return found
 
     def _start(self, at: int, slot: Slot) -> Parsed | None:
-        """What stands at the beginning: an operator before its operand, something in brackets, or a name."""
+        """Parse the beginning of an operand: an operator before its operand, an expression in brackets, or a name."""
         temporal = slot.ladder is Ladder.TEMPORAL
         starting = self._table.starting
         forms = [*(starting[Ladder.TEMPORAL] if temporal else ()), *starting[Ladder.ORDINARY]]
@@ -146,7 +146,7 @@ class Climber:
         return None
 
     def _longer(self, left: Parsed, slot: Slot, ladder: Ladder) -> Parsed | None:
-        """What is on the left with an operator after it, and its other operands."""
+        """Extend the expression ``left`` by an operator after it, and the operator's other operands."""
         for form in self._table.going_on[ladder]:
             first = form.parts[0]
             if ladder is Ladder.ORDINARY and slot.ladder is Ladder.TEMPORAL:
@@ -205,13 +205,15 @@ class Climber:
 
 
 def climb(text: str, *, temporal: bool = False, table: Table = TABLE) -> str | None:
-    """What a text means, fully parenthesised; ``None`` if it is refused."""
+    """Return a text fully parenthesised, as it is understood; ``None`` if it is refused."""
     tree = Climber(text, table).whole(Ladder.TEMPORAL if temporal else Ladder.ORDINARY)
     return None if tree is None or (temporal and _misplaced(tree)) else _parenthesised(tree)
 
 
 def _misplaced(tree: Tree) -> bool:
-    """Whether a temporal operator stands under a conditional expression, or is called: no table of levels tells."""
+    """Return whether a temporal operator is called, or lies within a conditional expression: the table of
+    levels does not cover this.
+    """
     if isinstance(tree, str):
         return False
     form, parts = tree

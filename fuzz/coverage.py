@@ -1,4 +1,4 @@
-"""Which alternatives of the grammar the accepted programs use, and in which forms."""
+"""Coverage of the grammar by accepted programs: the alternatives that they use, and in which forms."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -37,7 +37,10 @@ def _parser() -> TracingParser:
 
 
 def trace(text: str) -> Trace:
-    """What the parse of a text uses. The tree is ``None``, and nothing is used, if the text is no program."""
+    """Parse a text; return its tree and the choices that it uses.
+
+    Of a text with errors, the tree is ``None`` and the choices are empty.
+    """
     tokens = lex(text, WORDS)
     if tokens.diagnostics:
         return Trace(None, frozenset())
@@ -47,7 +50,7 @@ def trace(text: str) -> Trace:
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """How many of some choices have been made."""
+    """The share of some choices that have been made."""
 
     name: str
     covered: int
@@ -59,13 +62,16 @@ class Share:
         return f"{self.name}: {self.covered} of {self.total} ({percent:.1f} %)"
 
     def explained(self) -> list[str]:
-        """What is missing, in words."""
+        """Describe the missing choices in words."""
         return [explain(derivations().grammar, choice) for choice in self.missing]
 
 
 @dataclass(slots=True)
 class Coverage:
-    """What programs have used so far. Only those that may use something new are traced, since that takes long."""
+    """The choices that programs have made so far.
+
+    Only programs that may make a new choice are traced, since tracing is slow.
+    """
 
     covered: set[Choice] = field(default_factory=set)
     traced: int = 0

@@ -110,7 +110,7 @@ class Derivations:
         self._weights = {self._weighted(name): weight for name, weight in weights.items()}
 
     def _weighted(self, name: str) -> AlternativeId | str:
-        """What a name in the table of weights means: an alternative, or all that a rule has."""
+        """Return the alternative, or the rule for all its alternatives, that a name in the table of weights denotes."""
         if "__" in name:
             return self._resolve(name)
         if name not in self._sources:
@@ -225,7 +225,7 @@ class Derivations:
         return found
 
     def distances(self, aim: AlternativeId) -> Mapping[str, int]:
-        """How many expansions, at least, lead from each rule to the alternative ``aim``; 0 if one is enough."""
+        """Return the least number of expansions from each rule to the alternative ``aim``; 0 if one is enough."""
         distances: dict[str, int] = {}
         found = {
             rule
@@ -367,7 +367,7 @@ def _keys(alternative: Alternative) -> list[str]:
 
 
 def _words(alternative: Alternative) -> set[str]:
-    """What an alternative can be called by: functions of its action, and rules and words among its items."""
+    """Return the names by which an alternative can be called: functions of its action, and rules and words among its items."""
     words = set(re.findall(r"(\w+)\s*\(", alternative.action or ""))
     for item in _within(named.item for named in alternative.items):
         match item:

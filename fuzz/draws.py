@@ -1,4 +1,4 @@
-"""Where the generator's decisions come from: Hypothesis, which can shrink them, or a plain source of random numbers.
+"""Sources of the generator's decisions: Hypothesis, which can shrink them, or a plain source of random numbers.
 
 Both give whole numbers, one for each decision, so that the decisions that a plain source made can be given to Hypothesis
 to be made again (`replayed`). That is what happens once a program breaks a property: making a program with Hypothesis

@@ -47,7 +47,8 @@ _LONGEST: Final = 60
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What came of a fault: after how many seconds, shrinking not included, which property failed, for which shrunk program.
+    """The result of a planted fault: the seconds until it was found (without shrinking), the failed property
+    and the shrunk program.
 
     ``found_by`` is ``None`` if nothing was found. ``error`` is what the run said if it came to an end of another kind.
     """

@@ -29,7 +29,7 @@ __all__ = ["Limits", "Program", "derivations", "from_grammar", "make_program", "
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """How large a sentence may get.
+    """Limits on the size of a sentence.
 
     ``depth`` is the number of expansions within each other, not counting what a rule needs at least;
     ``expansions`` how many there are before only the shortest ones are used.
@@ -112,7 +112,7 @@ def make_program(
 
 @cache
 def derivations() -> Derivations:
-    """Those of ``grammar/scenic.gram``, read once."""
+    """Return the derivations of ``grammar/scenic.gram``, read once."""
     return load()
 
 
@@ -134,7 +134,7 @@ class _Aim:
     distances: Mapping[str, int]
 
     def way(self, option: Option) -> tuple[int, int | None]:
-        """How far it is from an option, -1 if this is it, and through which of its items."""
+        """Return the distance from an option, -1 for the option itself, and the item of it that leads here."""
         if self.alternative in option.counts_as:
             return -1, None
         distances = self.distances
@@ -163,27 +163,27 @@ class _State:
     """The closing quotes of the open f-strings."""
     bans: list[Ban] = field(default_factory=list)
     aim: _Aim | None = None
-    """What the item to be made next has to lead to."""
+    """The aim to which the next item has to lead."""
     specified: bool = False
-    """Whether a specifier list stands before in this line, which a comma and a fitting word would continue."""
+    """True if a specifier list comes before in this line, which a comma and a fitting word would continue."""
     role: Role = Role.ANY
     """The role of the next name."""
     given: Role | None = None
     """The role that the next rule's names have where it is referred to."""
     stars: int = 0
-    """How many starred items may still come in the row of targets or patterns."""
+    """Number of starred items that may still come in the row of targets or patterns."""
     claimed: set[str] = field(default_factory=set)
     """The properties that the specifiers so far give."""
     read: int = 0
-    """How many tokens there were after the last name that is read."""
+    """Number of tokens at the last name that is read."""
     in_lines: int = 0
     """In how many statements whose specifiers stand on lines of their own."""
     generous: bool = False
-    """Whether the next item belongs to what was aimed at, and so should have all its parts."""
+    """True if the next item belongs to the aim, and so should have all its parts."""
     sees: int = 0
     """After how many tokens the specifier `visible` ended last."""
     alone: bool = False
-    """Whether the row to be made next has to be of one item."""
+    """True if the next row has to consist of one item."""
 
 
 class _Generator:

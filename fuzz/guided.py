@@ -30,7 +30,9 @@ _STATUS: Final = re.compile(r"#(\d+)\s+(\w+)\s+cov: (\d+) ft: (\d+) corp: (\d+)/
 
 
 class Progress:
-    """What libFuzzer says about a run, line by line: numbers of texts, of places in the code reached, of texts kept."""
+    """The progress of a run, from libFuzzer's output: the numbers of texts, of reached places in the code, and
+    of kept texts.
+    """
 
     def __init__(self) -> None:
         self.texts = 0
@@ -118,7 +120,7 @@ def _watch(folder: Path, options: argparse.Namespace) -> int:
 
 
 def _left_over(folder: Path) -> Iterator[Path]:
-    """What libFuzzer leaves when a text takes too long, or the interpreter crashes."""
+    """Yield the files that libFuzzer leaves when a text takes too long, or the interpreter crashes."""
     for kind in ("crash", "timeout", "oom"):
         yield from sorted(folder.glob(f"{kind}-*"))
 
@@ -133,7 +135,10 @@ def not_compiler() -> Iterator[str]:
 
 
 def _fuzz(folder: Path, options: argparse.Namespace) -> None:
-    """What the fuzzing process does. Imports are here since only what is imported after the hook is instrumented."""
+    """Run the fuzzing process.
+
+    The imports are here, since only modules imported after the hook are instrumented.
+    """
     atheris: Any = importlib.import_module("atheris")
     with atheris.instrument_imports(include=["scenic"], exclude=list(not_compiler())):
         target: Any = importlib.import_module("fuzz.target")

@@ -55,7 +55,7 @@ _WORDLIKE: Final = frozenset({Shape.WORD, Shape.NUMBER, Shape.STRING, Shape.FORM
 
 @dataclass(frozen=True, slots=True)
 class _Style:
-    """How often what is done, as probabilities, and with which characters."""
+    """Probabilities of the ways to lay out a text, and the characters for them."""
 
     indent: str = "    "
     line_end: str = "\n"
@@ -147,7 +147,7 @@ class _Writer:
         return indentation
 
     def between(self, left: Piece, right: Piece) -> str:
-        """What stands between two tokens of one line."""
+        """Return the text between two tokens of one line."""
         if right.shape in _GLUED or left.shape in _GLUING:
             # Two braces would be one; otherwise nothing may stand beside the text of an f-string.
             return " " if left.shape is Shape.FIELD_OPEN and right.text.startswith("{") else ""
@@ -166,7 +166,7 @@ class _Writer:
 
     @staticmethod
     def may_touch(left: Piece, right: Piece) -> bool:
-        """Whether two tokens remain two without a blank between them."""
+        """Return whether two tokens remain two without a blank between them."""
         if left.text in OPENERS or right.text in CLOSERS or left.text == "," or right.text in (",", ";"):
             return True
         if left.shape is Shape.NUMBER and (right.shape in _WORDLIKE or right.text.startswith(".")):
@@ -180,7 +180,7 @@ class _Writer:
         return not (left.text.startswith(".") and right.shape is Shape.NUMBER)
 
     def touches(self, left: Piece, right: Piece) -> bool:
-        """Whether two tokens that may touch do so: as people write it, or as tightly as possible."""
+        """Return whether two tokens that may touch do so: as people write them, or as tightly as possible."""
         if self.happens(self.style.tight):
             return True
         if left.text in OPENERS or right.text in CLOSERS or right.text in (",", ";", ":"):

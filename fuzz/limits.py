@@ -1,4 +1,4 @@
-"""How long a property may take on one text: what never ends is a failure like any other, and does not end the run."""
+"""Time limits for a property on one text: an endless run is a failure like any other, and does not end the fuzzer."""
 
 import signal
 import threading

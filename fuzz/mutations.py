@@ -136,7 +136,7 @@ def make_mutant(draws: Draws, original: str, other: Callable[[], str], *, most: 
 
 
 def _changed(original: str, text: str) -> tuple[int, int]:
-    """Where two texts begin to differ, and where in the second they end to."""
+    """Return the start of the difference between two texts, and its end in the second text."""
     shorter = min(len(original), len(text))
     start = next((index for index in range(shorter) if original[index] != text[index]), shorter)
     alike = 0

@@ -1,4 +1,4 @@
-"""Which names stand where: what a program binds, and what may be read at each place.
+"""Choice of names: the names that a program binds, and the names that may be read at each place.
 
 Every name of a sentence has a *role*, which follows from the rule it stands in. `Names` keeps the scopes that are open and
 chooses: mostly something that fits and is in scope, and now and then anything.
@@ -21,7 +21,7 @@ SCALE: Final = 1 << 12
 
 
 class Role(Enum):
-    """What a name is there for."""
+    """The role of a name in a sentence."""
 
     ANY = auto()
     """Nothing depends on it."""
@@ -29,10 +29,10 @@ class Role(Enum):
     CLASS = auto()
     """The class after ``new``."""
     RUNNABLE = auto()
-    """What ``do`` runs: a behavior, or a scenario."""
+    """The operand of ``do``: a behavior, or a scenario."""
     OBJECT = auto()
     MODULE = auto()
-    """What is imported."""
+    """An imported module."""
     IMPORTED = auto()
     """The same, which binds its first part."""
     ATTRIBUTE = auto()
@@ -143,7 +143,7 @@ def role_given(option: Option, rule: str) -> Role | None:
 
 
 class Kind(Enum):
-    """What a name is bound to, as far as one can see."""
+    """The kind of thing that a name is bound to, as far as the text shows."""
 
     VALUE = auto()
     CLASS = auto()
@@ -175,11 +175,11 @@ _FRESH: Final[Mapping[Role, tuple[str, ...]]] = {
 }
 """Names for what is not read from a scope, the plainest first."""
 _ONCE: Final = frozenset({Role.PARAMETER, Role.CAPTURE, Role.PROPERTY, Role.KEYWORD, Role.GLOBAL})
-"""What may often be there only once; so these take turns."""
+"""Roles in which a name may often occur only once; these roles take the names in turn."""
 _OWN_SHARE: Final = 0.75
-"""How often a name that is read is one that the program binds, if there is one."""
+"""Share of reads that read a name that the program binds, if there is one."""
 _SOFT_SHARE: Final = 0.15
-"""How often what is bound is a soft keyword or something odd."""
+"""Share of bindings whose name is a soft keyword or something odd."""
 _ODD: Final = ("_", "__x", "é", "ﬁ", "𝐱", "print", "int", "ego", "self", "workspace", "undefined")
 """Among them two that are normalised to other characters."""
 _PROVIDED: Final = (
@@ -190,12 +190,12 @@ _CLASSES: Final = tuple(name for name in CLASSES if NAMES[name].kind is NameKind
 _WITH_BLOCKS: Final = frozenset({"def", "async def", "class", "behavior", "monitor", "scenario"})
 _FUNCTIONS: Final = frozenset({"def", "async def", "lambda", "behavior", "monitor", "scenario"})
 SCOPES: Final = _WITH_BLOCKS | {"lambda", "property", "comprehension"}
-"""What opens a scope."""
+"""Steps that open a scope."""
 
 
 @dataclass(slots=True)
 class _Scope:
-    """What is bound in an open scope; ``touched`` are all names that were used in it."""
+    """The names bound in an open scope; ``touched`` are all names that were used in it."""
 
     kind: Step
     names: dict[str, Kind] = field(default_factory=dict)
@@ -243,7 +243,7 @@ class Names:
         self._scopes.pop()
 
     def end_line(self) -> None:
-        """What the line binds can be read from now on."""
+        """End a line: the names that it binds can be read from now on."""
         self._flush()
 
     def _flush(self) -> None:
@@ -254,11 +254,11 @@ class Names:
     # Choosing.
 
     def has_outer(self) -> bool:
-        """Whether there is something that ``nonlocal`` can name."""
+        """Return whether there is a name that ``nonlocal`` can take."""
         return bool(self._of_outer())
 
     def has_ego(self) -> bool:
-        """Whether the ego has been set before."""
+        """Return whether the ego has been set before."""
         return any("ego" in scope.names for scope in self._scopes)
 
     def choose(self, role: Role, number: int, fits: Callable[[str], bool]) -> str:
@@ -314,7 +314,7 @@ class Names:
     # What is in reach.
 
     def _candidates(self, role: Role) -> tuple[Sequence[str], Sequence[str]] | None:
-        """What a name may be that has to be in scope already: what the program binds, and what else there is.
+        """Return the names that fit a role whose names are already in scope: names of the program, and all others.
 
         ``None`` for roles of other kinds.
         """

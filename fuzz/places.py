@@ -1,4 +1,4 @@
-"""Where statements may stand: what surrounds a place in a program, and what an option of a rule asks of it.
+"""Rules on the places of statements: the surroundings of a place in a program, and the demands of a rule's option on them.
 
 The places of Scenic's statements come from `scenic.language.statements`, by the nodes that the actions of the grammar
 make; those of Python's are rules of Python.
@@ -35,7 +35,10 @@ _DYNAMIC: Final = frozenset({Place.COMPOSE, Place.BEHAVIOR, Place.MONITOR})
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """What stands around a place. ``function`` is ``"def"``, ``"async def"`` or ``"lambda"``, within ``place``."""
+    """The surroundings of a place.
+
+    ``function`` is ``"def"``, ``"async def"`` or ``"lambda"``, within ``place``.
+    """
 
     place: Place = Place.TOP
     function: str | None = None
@@ -49,7 +52,7 @@ class Surroundings:
 
 
 Step = str
-"""What is entered: a kind of definition, ``"loop"``, ...; see `_ENTERED`."""
+"""A construct that is entered: a kind of definition, ``"loop"``, ...; see `_ENTERED`."""
 
 _ENTERED: Final[Mapping[Step, Callable[[Surroundings], Surroundings]]] = {
     "def": lambda around: Surroundings(_of_methods(around.place), "def"),
@@ -77,7 +80,7 @@ def _of_methods(place: Place) -> Place:
 
 @cache
 def enter(around: Surroundings, step: Step) -> Surroundings:
-    """What surrounds the inside of ``step``."""
+    """Return the surroundings of the inside of ``step``."""
     return _ENTERED[step](around)
 
 
@@ -100,7 +103,7 @@ _STEPS: Final[Mapping[tuple[str, str], Step]] = {
 
 
 def step_into(option: Option, nodes: frozenset[str], rule: str) -> Step | None:
-    """What is entered where an option refers to ``rule``, if anything is."""
+    """Return the construct that is entered where an option refers to ``rule``, or ``None``."""
     if option.rule == "async_statement" and rule == "block":
         return "loop" if "AsyncFor" in nodes else "block"
     if any(used == "comprehension_part" for used, _ in option.leads_to):
@@ -117,7 +120,7 @@ def _tight(alternative: Alternative) -> str:
 
 
 def reads_ego(option: Option, alternatives: Iterable[Alternative]) -> bool:
-    """Whether what an option makes may read the ego without naming it; it counts as these alternatives."""
+    """Return whether the text of an option may read the ego without naming it; the option counts as these alternatives."""
     # The narrowing has `not visible` at two more places.
     return (option.start, option.second) == ("not", "visible") or any(map(_reads_ego, alternatives))
 
@@ -155,7 +158,7 @@ def nodes_of(alternative: Alternative) -> frozenset[str]:
 # What options ask of what surrounds them.
 
 Demand = Callable[[Surroundings], bool]
-"""Whether something may stand at a place."""
+"""A test of whether something is allowed in given surroundings."""
 
 _SUSPENDING: Final = frozenset(statement.node for statement in STATEMENTS.values() if statement.suspends)
 """Statements that act on what is running, and so cannot stand in a function."""
@@ -213,7 +216,10 @@ _NEVER: Final = (
 
 
 def demand_of(option: Option, nodes: frozenset[str]) -> Demand | None:
-    """What an option asks, if it asks anything. ``nodes`` are those of the alternatives that it counts as."""
+    """Return the demand of an option, or ``None``.
+
+    ``nodes`` are the nodes of the alternatives that the option counts as.
+    """
     alternatives = frozenset(map(str, option.counts_as))
     if any(alternatives.issuperset(together) for together in _NEVER):
         return lambda _: False

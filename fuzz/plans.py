@@ -1,4 +1,4 @@
-"""What follows from each option of a rule alone, before any sentence is made: a table for the generator."""
+"""Facts about each option of a rule that do not depend on the sentence: a table for the generator."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -25,7 +25,7 @@ __all__ = ["Ban", "Plan", "count_names", "plans_of"]
 
 
 class Ban(NamedTuple):
-    """What must not be chosen within a rule: names, and options that begin with a word."""
+    """Things that must not be chosen within a rule: names, and options that begin with a word."""
 
     names: frozenset[str]
     starts: frozenset[str]
@@ -65,22 +65,22 @@ class Plan:
     demand: Demand | None
     bans: tuple[Ban, ...]
     has_parameters: bool
-    """Whether parameters in it are bound within."""
+    """True if the option contains parameters that it binds."""
     starred: bool
-    """Whether it is a starred item of a row of which only one may be."""
+    """True for a starred item of a row that may have only one such item."""
     row: bool
-    """Whether it is such a row."""
+    """True for a row that may have only one starred item."""
     one_target: bool
-    """Whether, outside of compose blocks, its rows have to be of one item."""
+    """True if rows have to consist of one item outside of compose blocks."""
     outer: bool
-    """Whether it names what functions around bind."""
+    """True if the option names variables of enclosing functions."""
     reads_ego: bool
     properties: frozenset[str]
-    """What a specifier gives, which no other one may give."""
+    """Properties that a specifier gives, and that no other specifier may give."""
     first_specifier: bool
-    """Whether specifiers that follow are those of a new object."""
+    """True if the specifiers that follow belong to a new object."""
     has_lines: bool
-    """Whether its specifiers stand on lines of their own."""
+    """True if the specifiers are on lines of their own."""
 
 
 def plans_of(derivations: Derivations) -> dict[str, tuple[Plan, ...]]:
@@ -154,7 +154,7 @@ def _with_demands(plan: Plan, rules: Mapping[str, Demand]) -> Plan:
 
 
 def count_names(item: Item) -> int:
-    """How many names an item needs itself, not counting those of the rules that it refers to; rows count once."""
+    """Return the number of names that an item needs itself, without the rules that it refers to; a row counts once."""
     match item:
         case Token(literal=False):
             return int(item.text in NAMES_WITHOUT)

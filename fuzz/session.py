@@ -34,7 +34,7 @@ FORMULAS: Final = 20
 _LONGEST: Final = 40.0
 """For so many seconds a failure is shrunk at most."""
 _ENDLESS: Final = 0.5
-"""What takes longer than this is still far too long, where shorter texts are looked for that take too long."""
+"""Seconds beyond which a shorter text still takes far too long, when a text that takes too long is shrunk."""
 _UNFINISHED: Final = frozenset({"SC900", "SC120", "SC214", "SC404"})
 """Errors of programs that are right, but need more than this version or the running Python has, and errors about values, whose
 kinds the grammar does not know."""
@@ -45,7 +45,7 @@ Sample = Program | Mutant
 
 
 class Signature(NamedTuple):
-    """What makes two failures the same one: the property, the kind of exception, and where or what it says."""
+    """The identity of a failure: the property, the kind of exception, and its place or message."""
 
     property: str
     exception: str
@@ -71,7 +71,7 @@ class Failure:
 
 @dataclass(slots=True)
 class Report:
-    """What a run has done so far."""
+    """The work and the findings of a run so far."""
 
     programs: int = 0
     mutants: int = 0
@@ -201,7 +201,7 @@ def run_round(
 
 
 def _is_sound(case: Case) -> bool:
-    """Whether a program passes all checks, so that it is lowered or only waits for a feature."""
+    """Return whether a program passes all checks, so that it is lowered or only waits for a feature."""
     try:
         found = case.checked
     except Exception:  # noqa: BLE001 - a property says so, if it is among those that are tried
@@ -269,7 +269,7 @@ def try_text(
 def fault_of(
     broken: Property, case: Case, *, seconds: float = SECONDS
 ) -> Exception | TookTooLongError | None:
-    """What a property raises: that it took longer than ``seconds`` of processor time, too."""
+    """Return the exception that a property raises, or the error that it took longer than ``seconds`` of processor time."""
     try:
         with limited(seconds):
             broken.holds(case)

@@ -1,4 +1,4 @@
-"""What coverage-guided fuzzing runs: the properties of texts on bytes, and mutations of tokens among those of bytes.
+"""Target of coverage-guided fuzzing: the properties of texts on bytes, and mutations of tokens among mutations of bytes.
 
 Nothing here needs atheris; `fuzz.guided` joins the two.
 """
@@ -24,7 +24,7 @@ _ROOT: Final = Path(__file__).resolve().parents[1]
 _SEEDED: Final = ("examples", "tests/data", "benchmarks")
 _LONGEST_SEED: Final = 1500
 _SELDOM: Final = 4
-"""What is not about parsing is tried on one text in so many."""
+"""Number of texts for each text on which the properties beyond parsing are tried."""
 _SLOW: Final = 10.0
 """Seconds after which a text that long has taken too long; it should be a thousandth of that."""
 

@@ -50,7 +50,7 @@ _SCALE: Final = 120
 _MANY: Final = 20
 _LAYOUTS: Final = 1 << 16
 _TEMPORAL: Final = 5.0
-"""How much oftener a temporal operator is chosen than one of the many of the ordinary ladder."""
+"""Weight of a temporal operator, compared with an operator of the ordinary ladder."""
 _TRACES: Final = 8
 _LONGEST: Final = 5
 _OFTEN: Final = (0.1, 0.5, 0.8, 0.9)
@@ -228,7 +228,7 @@ def make_formula(draws: Draws, variety: int | None = None) -> Program:
 
 
 def formulas(variety: int | None = None) -> SearchStrategy[Program]:
-    """What `make_formula` makes."""
+    """Return a strategy of the formulas that `make_formula` makes."""
 
     @st.composite
     def formula(draw: DrawFn) -> Program:
@@ -394,7 +394,7 @@ def the_table_alone_gives_the_verdict(case: Case) -> None:
 
 
 def formulas_are_followed_as_meant(case: Case) -> None:
-    """What the code of a formula gives to simulations has the verdict of the formula, on any trace."""
+    """A simulation follows the compiled code of a formula to the same verdict as the formula, on any trace."""
     condition = condition_of(case.text)
     if not _is_propositional(condition):
         return
@@ -421,7 +421,7 @@ def _holds(followed: Required, index: int) -> bool:
 
 
 class _Prelude:
-    """What the code of requirements calls: it keeps the formula."""
+    """The functions that the code of requirements calls; it stores the formula."""
 
     def __init__(self) -> None:
         self.required: Any = None
@@ -449,7 +449,7 @@ class _Prelude:
 
 
 def _is_propositional(condition: ast.expr) -> bool:
-    """Whether all atoms are names."""
+    """Return whether all atoms are names."""
     try:
         formula_of(condition)
     except ValueError:
@@ -495,4 +495,4 @@ OF_FORMULAS: Final[tuple[Property, ...]] = (
     ),
     *OF_EXCHANGED,
 )
-"""What must hold of every formula that the temporal rules derive."""
+"""Properties of every formula that the temporal rules derive."""

@@ -16,7 +16,7 @@ __all__ = ["CLOSERS", "FIXED", "NAMES_WITHOUT", "OPENERS", "ROWS", "Piece", "Sha
 
 
 class Shape(Enum):
-    """How a token behaves beside others; see `fuzz.layout`."""
+    """The shape of a token, which decides its layout beside other tokens; see `fuzz.layout`."""
 
     WORD = auto()
     NUMBER = auto()
@@ -30,7 +30,7 @@ class Shape(Enum):
     FORMATTED_END = auto()
     FIELD_OPEN = auto()
     FIELD_MARK = auto()
-    """What separates the parts of a replacement field: ``=``, ``!``, ``:``."""
+    """A separator of the parts of a replacement field: ``=``, ``!``, ``:``."""
     FIELD_CLOSE = auto()
 
 

@@ -39,7 +39,7 @@ WORDS: Final = {"always": 1, "eventually": 1, "next": 1, "not": 1, "until": 2, "
 
 
 class Verdict(Enum):
-    """What is known of a formula after a finite trace."""
+    """The verdict on a formula after a finite trace."""
 
     TRUE = 4
     PRESUMABLY_TRUE = 3
@@ -96,7 +96,7 @@ def holds(formula: Formula, trace: Sequence[State], position: int) -> bool:
 
 
 def progressed(formula: Formula, state: State) -> Formula:
-    """What has to hold from the next state on, so that ``formula`` holds from this state on."""
+    """Return the formula that must hold from the next state on, so that ``formula`` holds from this state on."""
     match formula:
         case bool():
             return formula

@@ -1,4 +1,4 @@
-"""How often what is chosen, where the grammar leaves a choice: the only table of such numbers.
+"""Weights of the choices that the grammar leaves: the only table of such numbers.
 
 Every alternative that is not named here has the weight 1, so that the shares follow from how many there are: a rule that
 only refers to others counts as the square root of what these have. A key is an alternative, called as in

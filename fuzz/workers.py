@@ -33,7 +33,7 @@ _ENOUGH: Final = 120.0
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """What to try: until the time ``deadline`` (of `time.time`), and at most so many programs and mutants.
+    """The amount of work: until the time ``deadline`` (of `time.time`), and at most so many programs and mutants.
 
     Round ``k`` has the seed ``seed + k``. If ``first``, a worker stops when it has found something, and the others after their rounds.
     ``only`` names the properties to be tried; without names, all are.
@@ -47,11 +47,11 @@ class Budget:
     only: frozenset[str] = frozenset()
 
     def chosen(self, properties: Sequence[Property]) -> tuple[Property, ...]:
-        """Those of ``properties`` that are to be tried."""
+        """Return the properties, among ``properties``, that the budget selects."""
         return tuple(each for each in properties if not self.only or each.name in self.only)
 
     def round(self, number: int) -> tuple[int, int] | None:
-        """How many programs and mutants round ``number`` has; ``None`` if it is not to be run."""
+        """Return the numbers of programs and mutants of round ``number``; ``None`` if the round is not to be run."""
         if self.programs is None and self.mutants is None:
             return PROGRAMS, MUTANTS
         programs, mutants = self.programs or 0, self.mutants or 0
@@ -75,7 +75,7 @@ class WorkerDied:
     worker: int
     exit_code: int | None
     seed: int
-    """That of the round it was in."""
+    """The seed of the round in which the worker ended."""
     reason: str = ""
     text: str = ""
     again: bool = False
@@ -229,7 +229,7 @@ class _Team:
         self._died.append(WorkerDied(worker, exit_code, self._seeds[worker], reason, text, again, died_at))
 
     def _dies(self, text: str) -> bool:
-        """Whether a process dies of a text, or does not come to its end."""
+        """Return whether a process crashes on a text, or does not end."""
         process = self._context.Process(target=_try_alone, args=(text, self._budget), daemon=True)
         process.start()
         process.join(_ENOUGH)
@@ -267,7 +267,7 @@ def _try_alone(text: str, budget: Budget) -> None:
 
 
 def _work(number: int, jobs: int, budget: Budget, messages: Any, stop: Any, slate: Slate) -> None:
-    """What a worker process does."""
+    """Run the rounds of a worker process."""
     faulthandler.enable()
     # The process that started it decides what an interruption means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,4 +1,7 @@
-"""What the generated modules depend on, as one number; imports nothing, so that it can be asked for at every start."""
+"""A digest of the sources of the generated modules.
+
+The module imports nothing, so that every start can compute it.
+"""
 
 import hashlib
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Which alternatives of the grammar are Scenic's, and which Python's."""
+"""Classification of the grammar's alternatives as Scenic's or Python's."""
 
 import keyword
 import re

@@ -1,4 +1,4 @@
-"""Which alternatives of the grammar a text uses.
+"""Tracing of the grammar's alternatives that a text uses.
 
 `TracingParser` is made from the grammar in memory, for tests and for the fuzzer; nothing of it is shipped.
 
@@ -59,7 +59,7 @@ class AlternativeId(NamedTuple):
 
 
 class Choice(NamedTuple):
-    """What a text may do at one place of the grammar.
+    """A choice at one place of the grammar, which a text may make or not.
 
     With ``item`` 0 it is to use the alternative; otherwise ``outcome`` is the form that the item with this number, from
     1, has there: ``absent`` or ``present``, ``one`` or ``several``, or one of several tokens.

@@ -273,44 +273,31 @@ def test_modules_are_not_too_long() -> None:
     assert not {module: length for module, length in lengths.items() if length > LONGEST}
 
 
-INDIRECT = {"What", "Which", "Who", "Whose", "How", "Whether"}
-"""Words that no public docstring begins with: it begins with a noun (what it is) or a verb (what it does)."""
+INDIRECT = {"What", "Which", "Who", "Whose", "How", "Why", "That", "Those", "Whether", "Where"}
+"""Words that no docstring begins with: it begins with a noun (what it is) or a verb (what it does)."""
+
+BESIDE = ("grammar", "fuzz", "benchmarks", "editors", "examples", "docs")
+"""Folders, beside the package, whose docstrings people read."""
 
 
-def test_public_docstrings_begin_with_a_noun_or_a_verb() -> None:
+def test_docstrings_begin_with_a_noun_or_a_verb() -> None:
+    scripts = [path for folder in BESIDE for path in sorted((ROOT / folder).rglob("*.py"))]
+    trees = TREES | {str(path): ast.parse(path.read_text(encoding="utf-8")) for path in scripts}
     found = [
         f"{module}:{line}: {text[:60]}"
-        for module, tree in TREES.items()
+        for module, tree in trees.items()
         for line, text in _docstrings(tree)
         if text.split(maxsplit=1)[:1] and text.split(maxsplit=1)[0] in INDIRECT
     ]
     assert not found
 
 
-def _docstrings(node: ast.AST) -> Iterator[tuple[int, str]]:
-    """Line and text of the docstrings of a module or class, of its public members and of its public attributes."""
-    body = getattr(node, "body", [])
-    for before, statement in zip([None, *body], body, strict=False):
-        match statement:
+def _docstrings(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Line and text of every string that is a statement: docstrings, private ones too, and texts below an assignment."""
+    for node in ast.walk(tree):
+        match node:
             case ast.Expr(value=ast.Constant(value=str(text))):
-                if before is None or _is_public(before):
-                    yield statement.lineno, text
-            case ast.ClassDef() if _is_public(statement):
-                yield from _docstrings(statement)
-            case ast.FunctionDef() | ast.AsyncFunctionDef() if _is_public(statement):
-                yield statement.lineno, ast.get_docstring(statement) or ""
-
-
-def _is_public(node: ast.stmt) -> bool:
-    """Return whether a definition, or the target of an assignment, has a name without a leading underscore, or a special one."""
-    match node:
-        case ast.ClassDef(name=name) | ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
-            pass
-        case ast.Assign(targets=[ast.Name(id=name)]) | ast.AnnAssign(target=ast.Name(id=name)):
-            pass
-        case _:
-            return False
-    return not name.startswith("_") or name.endswith("__")
+                yield node.lineno, text
 
 
 def test_a_static_check_loads_no_numpy() -> None:

@@ -32,7 +32,7 @@ class Oracle(Protocol):
         """Tell whether it lies in the plane."""
 
     def covers(self, points: Floats) -> NDArray[np.bool_]:
-        """Which points ``(n, 3)`` lie in the region, ``(n,)``."""
+        """Return a mask ``(n,)`` of the points ``(n, 3)`` that lie in the region."""
 
     def holds(self, place: Floats, heading: float) -> bool:
         """Tell whether the region holds a whole thing."""
@@ -41,7 +41,7 @@ class Oracle(Protocol):
         """Tell whether the region shares a point with a thing."""
 
     def distance(self, point: Floats) -> float:
-        """How far a point is from the region."""
+        """Return the distance of a point from the region."""
 
 
 def turned(points: Floats, heading: float) -> Floats:

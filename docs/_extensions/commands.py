@@ -58,7 +58,7 @@ class _Commands(SphinxDirective):
     """Sections of all commands."""
 
     def run(self) -> list[nodes.Node]:
-        """What `commands_text` says."""
+        """Insert the text of `commands_text`."""
         return self.parse_text_to_nodes(commands_text(), allow_section_headings=True)
 
 

@@ -36,7 +36,7 @@ _OURS = (Path(__file__), Path(plans.__file__))
 
 @dataclass(frozen=True, slots=True)
 class Shot:
-    """How a program is shown.
+    """The way to show a program.
 
     ``count`` scenes of the seed, from number ``k`` on. ``steps``: the picture shows moments of a simulation of at most so
     many steps. ``camera``: the name of a sensor whose images are shown. ``plan``: from above, with the regions of a road map.

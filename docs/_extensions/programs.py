@@ -79,7 +79,7 @@ class ScenicBlock(SphinxDirective):
 
 
 class CameraImage(SphinxDirective):
-    """What a camera of a program above sees: ``PROGRAM CAMERA seed=1 count=1``."""
+    """Images from a camera of a program above: ``PROGRAM CAMERA seed=1 count=1``."""
 
     required_arguments = 1
     final_argument_whitespace = True

@@ -87,7 +87,7 @@ class PageRun:
     programs: Programs
     names: dict[str, Any]
     shell: bool = False
-    """Whether blocks of shell commands are run."""
+    """True if blocks of shell commands are run."""
 
     @classmethod
     def begin(cls, *, shell: bool = False) -> "PageRun":
@@ -95,7 +95,7 @@ class PageRun:
         return cls(Programs(), {"__name__": "page"}, shell)
 
     def output(self, block: Block) -> str | None:
-        """What a block writes when it is run; ``None`` for a block that is not run."""
+        """Return the output of a block; ``None`` for a block that is not run."""
         if "elsewhere" in block.options and block.language != "python":
             return None
         match block.language:
@@ -144,7 +144,7 @@ class PageRun:
 
 
 def _records(scenario: Scenario, options: Mapping[str, str]) -> Mapping[str, Any]:
-    """What a simulation records, if that is to be shown."""
+    """Return the records of a simulation, if the block shows them."""
     done = simulate_number(
         scenario,
         choose_simulator(None, scenario),
@@ -193,7 +193,7 @@ def _commands(block: Block) -> str:
 
 
 def _called(arguments: list[str]) -> str:
-    """What the command line writes, on both of its streams."""
+    """Return the output of the command line, from both of its streams."""
     written = io.StringIO()
     with (
         mock.patch.object(sys, "argv", ["scenic", *arguments]),

@@ -68,7 +68,7 @@ def _reduced(command: list[str]) -> list[str]:
 
 
 def _called(command: list[str], given: bytes) -> bytes:
-    """What a command writes to its standard output."""
+    """Return the standard output of a command."""
     if command[0] != "scenic":
         raise WrongCommandError(f"only 'scenic' can be run here, not {shlex.join(command)!r}")
     streams = [io.TextIOWrapper(io.BytesIO(data), encoding="utf-8") for data in (given, b"", b"")]

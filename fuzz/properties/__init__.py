@@ -1,4 +1,6 @@
-"""What must hold: of every text, and of every program that the grammar makes. One module for each family.
+"""Properties that must hold of every text, and of every program that the grammar makes.
+
+One module for each family.
 
 A property is a function of a `Case` that returns if it holds and raises `Violation`, or whatever the compiler raised,
 if it does not. To add one, write the function and enter it in its module's ``OF_TEXTS`` or ``OF_PROGRAMS``.
@@ -40,7 +42,7 @@ PARSING: Final = (
     *parsers.OF_TEXTS,
     *recovery.OF_TEXTS,
 )
-"""What must hold of the parser alone, for every text."""
+"""Properties of the parser alone, for every text."""
 
 OF_TEXTS: Final = (
     *PARSING,
@@ -53,7 +55,7 @@ OF_TEXTS: Final = (
     *tools.OF_TEXTS,
     *repairs.OF_TEXTS,
 )
-"""What must hold of every text."""
+"""Properties of every text."""
 
 OF_PROGRAMS: Final = (*OF_TEXTS, *acceptance.OF_PROGRAMS)
-"""What must hold of every program that the grammar makes."""
+"""Properties of every program that the grammar makes."""

@@ -1,4 +1,4 @@
-"""What the grammar makes is a program."""
+"""Acceptance: every sentence of the grammar is a program."""
 
 from dataclasses import dataclass
 from typing import Final

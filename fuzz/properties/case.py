@@ -1,4 +1,4 @@
-"""What properties are given, and what they are."""
+"""Properties, and the cases that they are checked on."""
 
 import ast
 import zlib
@@ -37,7 +37,7 @@ class Violation(AssertionError):
 
 
 class Change(Protocol):
-    """How a text came from a program; `fuzz.mutations.Mutant` is one."""
+    """The change that made a text from a program; `fuzz.mutations.Mutant` is one."""
 
     @property
     def original(self) -> str:
@@ -58,17 +58,17 @@ class Case:
 
     @cached_property
     def result(self) -> ParseResult:
-        """What the parser makes of it; raises what the parser raises."""
+        """The result of parsing the text; raises the parser's exceptions."""
         return parse(self.text)
 
     @cached_property
     def has_error(self) -> bool:
-        """Whether the parser finds an error."""
+        """True if the parser finds an error."""
         return any(each.severity is Severity.ERROR for each in self.result.diagnostics)
 
     @cached_property
     def checked(self) -> tuple[Diagnostic, ...]:
-        """What the static check says of it; raises what that raises."""
+        """The diagnostics of the static check of the text; raises the check's exceptions."""
         return check_text(self.text, filename=FILENAME)
 
     @cached_property
@@ -127,7 +127,7 @@ class Property:
 
 
 def is_syntax_error(diagnostic: Diagnostic) -> bool:
-    """Whether a diagnostic says that a text is no program."""
+    """Return whether a diagnostic is a syntax error."""
     return diagnostic.severity is Severity.ERROR and diagnostic.code.startswith("SC1")
 
 

@@ -1,4 +1,4 @@
-"""Where two trees differ."""
+"""Differences between two trees."""
 
 import ast
 
@@ -8,7 +8,10 @@ _PLACE = ("lineno", "col_offset", "end_lineno", "end_col_offset")
 
 
 def difference(left: ast.AST, right: ast.AST, *, places: bool = False) -> str | None:
-    """Where two trees differ first, in words; ``None`` if nowhere. Positions count if ``places``."""
+    """Describe the first difference between two trees; ``None`` if they are equal.
+
+    Positions count if ``places``.
+    """
     stack: list[tuple[str, object, object]] = [("tree", left, right)]
     while stack:
         path, one, other = stack.pop()

@@ -180,7 +180,7 @@ def _matched(form: Form, parts: Sequence[_Part]) -> tuple[Slot, ...] | None:
 
 
 def _begins(parts: Sequence[_Part], words: tuple[str, ...]) -> bool:
-    """Whether an operator and the first word of its operand are one operator."""
+    """Return whether an operator and the first word of its operand are one operator."""
     operand = parts[1]
     if len(words) != 2 or parts[0].text != words[0] or operand.parentheses or operand.node is None:
         return False

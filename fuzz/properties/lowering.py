@@ -57,7 +57,7 @@ _COMPLAINTS: Final = (
     r"too many nested .*",
 )
 _COMPLAINT: Final = re.compile("|".join(_COMPLAINTS))
-"""What Python's compiler, other than its parser, may have against a program: it is the program's fault.
+"""Complaints of Python's compiler, other than its parser, that are the fault of the program.
 
 What stands outside of a function, or of a loop, is not among it: our own checks find that.
 """
@@ -149,7 +149,7 @@ def check_places(found: Lowering) -> None:
 
 
 def _gathers(node: ast.stmt) -> bool:
-    """Whether a lowered statement holds what several statements of a class say: its properties."""
+    """Return whether a lowered statement gathers several statements of a class: its properties."""
     match node:
         case ast.Assign(targets=[ast.Name(id="__scenic_properties__")]):
             return True

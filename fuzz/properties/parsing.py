@@ -1,4 +1,4 @@
-"""What the parser gives, for any text."""
+"""Properties of the parser's result, for any text."""
 
 import ast
 from itertools import pairwise

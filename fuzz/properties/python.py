@@ -1,4 +1,4 @@
-"""What is Python in a program is what Python says: its trees, and the scopes of its names."""
+"""Agreement with Python on the Python in a program: trees, and scopes of names."""
 
 import ast
 import dis

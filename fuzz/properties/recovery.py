@@ -1,4 +1,4 @@
-"""Where errors are reported, in programs that were changed.
+"""Places of errors in programs that were changed.
 
 A program was changed between two places, and is none any more. Then an error must be reported near the change, and not at
 the end of the file, or at a statement that has nothing to do with it. What is near:
@@ -77,14 +77,16 @@ class _Offsets:
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """Where an error must be, in offsets of the changed text, both inclusive."""
+    """The range in which an error must be, in offsets of the changed text, both inclusive."""
 
     start: int
     end: int
 
 
 def region(original: str, text: str) -> Region | None:
-    """Where errors of ``text`` must be, which was made of the program ``original``; ``None`` if they are the same."""
+    """Return the range in which the errors of ``text`` must be, which was made from the program ``original``;
+    ``None`` if the texts are equal.
+    """
     before, after = _Offsets(original), _Offsets(text)
     old, new = before.source.text, after.source.text
     if old == new:

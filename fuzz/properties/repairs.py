@@ -1,4 +1,4 @@
-"""What the repairs of diagnostics do."""
+"""Properties of the repairs of diagnostics."""
 
 from typing import Final
 
@@ -45,7 +45,7 @@ def _shown(diagnostic: Diagnostic) -> tuple[str, str, object]:
 
 
 def _is_of_edit(diagnostic: Diagnostic, fix: Fix) -> bool:
-    """Whether a diagnostic of the repaired text is about what was put in."""
+    """Return whether a diagnostic of the repaired text is about the inserted text."""
     span = diagnostic.span
     # The line with the mistake could have been the clause that is missing before it.
     return (
@@ -59,7 +59,9 @@ def _is_of_edit(diagnostic: Diagnostic, fix: Fix) -> bool:
 
 
 def _starts_before_edits(diagnostic: Diagnostic) -> bool:
-    """Whether the place of the diagnostic stays what it is: what comes after a change may be another of the same kind."""
+    """Return whether the edits leave the place of the diagnostic unchanged: a diagnostic after an edit may be
+    another one of the same kind.
+    """
     assert diagnostic.fix is not None
     return diagnostic.span is not None and all(
         (edit.span.line, edit.span.column) >= (diagnostic.span.line, diagnostic.span.column)

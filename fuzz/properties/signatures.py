@@ -28,7 +28,7 @@ class Field:
     types: tuple[type, ...]
 
     def fault(self, value: object) -> str | None:
-        """Why a value is not of this field's type; ``None`` if it is."""
+        """Describe why a value is not of this field's type; ``None`` if it is."""
         if self.kind in ("list", "list with gaps"):
             if not isinstance(value, list):
                 return f"{self.name} is {value!r}, not a list"

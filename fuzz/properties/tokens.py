@@ -11,7 +11,7 @@ __all__ = ["OF_TEXTS"]
 
 _LAYOUT: Final = frozenset({NEWLINE, INDENT, DEDENT, ENDMARKER})
 _BETWEEN: Final = re.compile(rb"(?:[ \t\f\n]|\\\n|#[^\n]*)*+")
-"""What may stand between tokens."""
+"""The text allowed between tokens."""
 
 
 def tokens_are_where_they_are_written(case: Case) -> None:

@@ -71,7 +71,7 @@ def check_and_server_agree(case: Case) -> None:
 
 
 def places_survive_conversion(case: Case) -> None:
-    """What an editor or another program is told is the same as what the check says, in any encoding of columns."""
+    """Editors and other programs receive the same places as the check reports, in any encoding of columns."""
     found = case.checked
     for kind, encoding in _ENCODINGS.items():
         if encoding == "utf-16-le" and _PAIRED.search(case.text):
@@ -122,7 +122,7 @@ def _clipped(span: Span, source: Source) -> tuple[int, int, int, int]:
 
 
 def _plain(item: Diagnostic) -> dict[str, Any]:
-    """What JSON should say of a diagnostic."""
+    """Return the data that JSON should contain for a diagnostic."""
     spans = [None if span is None else _json_span(span) for _, span in spans_of(item)]
     labels = spans[1 : 1 + len(item.labels)]
     edits = spans[1 + len(item.labels) :]

@@ -1,4 +1,4 @@
-"""Whether a tree is one: types of fields, contexts, and places."""
+"""Validity of trees: types of fields, contexts, and places."""
 
 import ast
 from collections.abc import Iterator
@@ -239,14 +239,16 @@ def _check_order(node: ast.AST, row: list[ast.AST]) -> None:
 
 
 def _stands_for_both(node: ast.AST) -> bool:
-    """Whether a node is a clause of ``match`` that could not be parsed: its pattern and its block are the same text."""
+    """Return whether a node is a clause of ``match`` that could not be parsed: its pattern and its block are the same text."""
     return isinstance(node, ast.match_case) and any(
         isinstance(part, scenic.ErrorStatement) for part in node.body
     )
 
 
 def _is_of_field(node: ast.AST, last: Any, part: Any) -> bool:
-    """Whether what stands before ``part`` is the text of ``{part=}``, which lies in the replacement field as in Python's trees."""
+    """Return whether the node before ``part`` is the text of ``{part=}``, which lies in the replacement field
+    as in Python's trees.
+    """
     return (
         isinstance(node, ast.JoinedStr)
         and isinstance(part, ast.FormattedValue)

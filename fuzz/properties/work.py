@@ -8,7 +8,7 @@ __all__ = ["work"]
 
 
 def work(function: Callable[..., Any], *arguments: Any) -> int:
-    """How many Python functions are called, or gone on with, while ``function`` runs."""
+    """Return the number of calls and resumptions of Python functions while ``function`` runs."""
     count = 0
 
     def profile(_frame: object, event: str, _argument: object) -> None:

@@ -36,7 +36,7 @@ class _Maker:
     classes: list[str] = field(default_factory=lambda: ["Object"])
     behaviors: list[str] = field(default_factory=list)
     fixed: bool = False
-    """Whether no distribution may be made: in requirements and behaviors."""
+    """True if no distribution may be made: in requirements and behaviors."""
 
     def pick(self, *options: str) -> str:
         return str(self.draw(st.sampled_from(options)))

@@ -1,4 +1,4 @@
-"""What must hold of every program that is loaded, sampled and simulated."""
+"""Properties of every program that is loaded, sampled and simulated."""
 
 import io
 import random
@@ -33,7 +33,7 @@ _LITERAL: Final = re.compile(r"(?<=\bload )(\d+(?:\.\d+)?)(?=[,\n])")
 
 @dataclass(frozen=True)
 class Outcome:
-    """How the loading or the sampling of a program ended: its scenes, or the code of what was reported."""
+    """The outcome of loading or sampling a program: its scenes, or the code of the reported error."""
 
     stage: str
     code: str = ""

@@ -19,7 +19,7 @@ ROUND: Final = 100
 
 @dataclass
 class Report:
-    """What a round found: outcomes by stage and code, and each failure with its smallest program."""
+    """The findings of a round: outcomes by stage and code, and each failure with its smallest program."""
 
     outcomes: Counter[str] = field(default_factory=Counter)
     failures: list[str] = field(default_factory=list)

@@ -46,7 +46,7 @@ class Step:
 
 
 class Analysis:
-    """What the generator needs to know about a grammar, computed when it is asked for."""
+    """Facts about a grammar that the generator needs, computed on demand."""
 
     def __init__(self, grammar: Grammar) -> None:
         self.grammar = grammar
@@ -120,7 +120,7 @@ class Analysis:
 
     @staticmethod
     def may_be_empty(item: Item) -> bool:
-        """Whether an item can match nothing."""
+        """Return whether an item can match nothing."""
         return isinstance(item, Optional | Look | Cut | BlockEnded) or (
             isinstance(item, Repeat) and not item.at_least_one
         )
@@ -171,17 +171,17 @@ class Analysis:
         return self._first_of_alternative(items, self.first)
 
     def is_nullable(self, items: Sequence[Named]) -> bool:
-        """Whether a row of items can match nothing."""
+        """Return whether a row of items can match nothing."""
         return all(self.may_be_empty(named.item) for named in items)
 
     def ends_with_layout(self, items: Sequence[Named]) -> bool:
-        """Whether the last token of a row of items can be a line end or the end of a block."""
+        """Return whether the last token of a row of items can be a line end or the end of a block."""
         return bool(self._last_of_alternative(items, self.last) & LAYOUT)
 
     # Left recursion.
 
     def is_left_recursive(self, rule: Rule) -> bool:
-        """Whether an alternative of the rule starts with the rule itself."""
+        """Return whether an alternative of the rule starts with the rule itself."""
         return any(
             alternative.items and alternative.items[0].item == Reference(rule.name)
             for alternative in rule.alternatives
@@ -382,7 +382,7 @@ class Analysis:
         return kinds
 
     def _reaches(self, items: Sequence[Named], target: str, stops: frozenset[str], *, to_cut: bool) -> bool:
-        """Whether ``items`` can contain ``target``; with ``to_cut``, before a failure would end the choice."""
+        """Return whether ``items`` can contain ``target``; with ``to_cut``, before a failure would end the choice."""
         roots = []
         for named in items:
             if to_cut and isinstance(named.item, Cut):
@@ -418,7 +418,7 @@ class Analysis:
 
 
 def same_item(left: Named, right: Named) -> bool:
-    """Whether two items are parsed alike and under one name, so that two alternatives can share them."""
+    """Return whether two items are parsed alike and under one name, so that two alternatives can share them."""
     return left.item == right.item and (left.name == right.name or left.name is None or right.name is None)
 
 

@@ -49,7 +49,7 @@ def _check_shadowing(analysis: Analysis, rule: Rule) -> None:
 
 
 def _covers(analysis: Analysis, one: Item, other: Item) -> bool:
-    """Whether ``one`` matches whenever ``other`` does, and the same text."""
+    """Return whether ``one`` matches whenever ``other`` does, and the same text."""
     if one == other:
         return True
     return (

@@ -48,7 +48,7 @@ class Branch:
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """What is done with the value of an alternative: returned, or made the left operand of the next round.
+    """The use of an alternative's value: it is returned, or becomes the left operand of the next iteration.
 
     ``operand`` is the name of a left operand that is matched already. ``whole`` says that the rule fails if the
     choice does.
@@ -94,7 +94,7 @@ class ChoiceWriter(ItemWriter):
     def is_last_resort(
         self, group: list[Branch], first: frozenset[int], later: list[list[Branch]], mode: Mode
     ) -> bool:
-        """Whether the rule has matched or failed with the next item of ``group``, if it starts with ``first``."""
+        """Return whether the rule's outcome is that of the next item of ``group``, for a token in ``first``."""
         branch = group[0]
         if len(group) > 1 or branch.position or len(branch.alternative.items) > 1 or mode.operand is not None:
             return False

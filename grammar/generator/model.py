@@ -35,7 +35,7 @@ class TokenChoice:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """What another rule matches."""
+    """A reference to another rule; it matches the text that the rule matches."""
 
     rule: str
 
@@ -85,7 +85,7 @@ Item: TypeAlias = Token | TokenChoice | Reference | Optional | Repeat | Gather |
 
 
 def is_varied(item: Item) -> bool:
-    """Whether what an item matches has one of several forms: absent or there, one or several, this or that token."""
+    """Return whether an item matches in several forms: absent or present, one or several, one of several tokens."""
     if isinstance(item, Look):
         return item.positive and isinstance(item.item, TokenChoice)
     return isinstance(item, Optional | Repeat | Gather | TokenChoice)

@@ -100,7 +100,7 @@ class Form:
 
     @property
     def fixity(self) -> str:
-        """Where the operands are."""
+        """The position of the operands: prefix, postfix, infix, ternary or closed."""
         left, right = isinstance(self.parts[0], Slot), isinstance(self.parts[-1], Slot)
         if left and right:
             return "infix" if len(self.slots) == 2 else "ternary"
@@ -108,7 +108,7 @@ class Form:
 
     @property
     def associativity(self) -> str:
-        """How the operator stands beside others of its level."""
+        """The associativity among operators of one level: left, right, chained or none."""
         if self.repeats:
             return "chained"
         first, last = self.parts[0], self.parts[-1]
@@ -247,7 +247,7 @@ class Precedence:
         return placed
 
     def _belongs(self, branch: str, rule: str) -> bool:
-        """Whether a branch of ``rule`` ends in an operand of ``rule``, or only puts something in brackets."""
+        """Return whether a branch of ``rule`` ends in an operand of ``rule``, or only puts something in brackets."""
         for alternative in self.rules[branch].alternatives:
             items = [named for named in alternative.items if not isinstance(named.item, Look)]
             if items[-1].item == Reference(rule) or alternative.action in {named.name for named in items}:
@@ -331,7 +331,7 @@ class Precedence:
         ]
 
     def _is_clause(self, item: Item) -> bool:
-        """Whether an item is one or more tokens, then operands: a piece of a form."""
+        """Return whether an item is one or more tokens, then operands: a piece of a form."""
         if isinstance(item, Token):
             return item.literal
         if not isinstance(item, Reference) or item.rule in self._levels:
@@ -385,7 +385,7 @@ def _content(item: Item) -> Content:
 
 
 def _evaluate(node: ast.expr, variables: Mapping[str, Any]) -> Any:
-    """What is known of the value of an action: operands stay symbols, nodes are pairs of a name and fields."""
+    """Evaluate an action as far as possible: operands stay symbols, nodes become pairs of a name and fields."""
     match node:
         case ast.Name(id=name) if name in variables:
             return variables[name]

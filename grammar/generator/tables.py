@@ -28,7 +28,7 @@ def emit_tables(analysis: Analysis, header: str) -> str:
         lines += ["    }", ")", ""]
     lines += [
         "WORDS = MappingProxyType({**HARD_KEYWORDS, **OPERATORS, **SOFT_KEYWORDS})",
-        '"""What the lexer has to know: the kind of every keyword and operator."""',
+        '"""The kind of every keyword and operator, for the lexer."""',
         "",
         "KIND_NAMES = MappingProxyType(",
         f"    {{kind: name for name, kind in {KINDS!r}.items()}}",
