@@ -7,7 +7,6 @@ analysis decides whether the requirements leave scenes in which it holds, and sc
 import ast
 from collections.abc import Container, Iterator, Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass
 from pathlib import Path
 from types import CodeType
 from typing import Any, Final
@@ -19,6 +18,7 @@ from scenic.compiler.compile import compile_text
 from scenic.compiler.parser import parse
 from scenic.compiler.traversal import walk
 from scenic.compiler.unparser import unparse
+from scenic.dataclass import dataclass
 from scenic.graph.node import Graph, Node
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.names import LIFTED_FUNCTIONS

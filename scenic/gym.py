@@ -15,13 +15,13 @@ env = ScenicEnv(
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, Final, SupportsFloat, TypeAlias
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.formats.instances import picture
 from scenic.formats.render import render
 from scenic.language.errors import (

@@ -5,12 +5,12 @@ import os
 import platform
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 from importlib import metadata
 from pathlib import Path
 
 import scenic
+from scenic.dataclass import dataclass
 from scenic.language.extras import EXTRAS, installation
 from scenic.runtime.geometry.store import kept_files, store_folder
 

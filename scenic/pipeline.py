@@ -3,7 +3,7 @@
 import inspect
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from types import CodeType, FrameType, ModuleType, TracebackType
 from typing import TYPE_CHECKING, Any, Final
@@ -14,6 +14,7 @@ from scenic.compiler import loader
 from scenic.compiler.compile import compile_text
 from scenic.compiler.parser import bare_text
 from scenic.compiler.tracebacks import SOURCE_NAME, Locator
+from scenic.dataclass import dataclass
 from scenic.failures import placed
 from scenic.graph.domain import Domain
 from scenic.language.errors import (

@@ -1,13 +1,13 @@
 """Boxes of the unit cube, many at a time."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph.bounds import Floats
 
 

@@ -12,7 +12,6 @@ All work is counted, never timed: the result decides which scenes a seed gives.
 import math
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -21,6 +20,7 @@ from numpy.typing import NDArray
 from scenic.analysis.boxes import Boxes
 from scenic.analysis.facts import Fact
 from scenic.analysis.paving import RARE, pave_by_trial, share_that_may_hold
+from scenic.dataclass import dataclass
 from scenic.graph import bounding
 from scenic.graph.bounds import Bounds, Floats
 from scenic.graph.domain import Domain

@@ -1,7 +1,6 @@
 """The questions of analysis: conditions that every scene must meet."""
 
-from dataclasses import dataclass
-
+from scenic.dataclass import dataclass
 from scenic.graph.node import Node
 from scenic.language.spans import Span
 

@@ -7,11 +7,11 @@ never rests on it.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from scenic.analysis.facts import Fact
 from scenic.analysis.terms import Questions, SolverTerms, Term
+from scenic.dataclass import dataclass
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph, Node
 from scenic.graph.operations import TABLE

@@ -1,12 +1,12 @@
 """Values that random quantities can have: over the whole cube, and over the part of it that analysis leaves."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.graph.bounding import over
 from scenic.graph.bounds import Bounds, Floats
 from scenic.graph.domain import Domain

@@ -2,7 +2,6 @@
 
 import json
 import math
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from scenic.analysis.supports import DrawnSupport
 from scenic.assessment.drawing import Whereabouts, png, svg
+from scenic.dataclass import dataclass
 from scenic.language.spans import Span
 from scenic.runtime.sampling.estimating import ComponentEstimate, RequirementEstimate
 from scenic.runtime.sampling.report import Approximation

@@ -2,12 +2,13 @@
 
 import io
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from html import escape
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
+
+from scenic.dataclass import dataclass
 
 __all__ = ["Whereabouts", "png", "svg"]
 

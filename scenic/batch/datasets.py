@@ -8,7 +8,7 @@ a run that goes on evaluates these candidates and looks for the rest.
 import contextlib
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final, Protocol, Self
 
@@ -19,6 +19,7 @@ from scenic.batch.engines import Engine
 from scenic.batch.image_parts import ImageRows, ImageSink, join_indices
 from scenic.batch.manifest import DatasetError, Manifest, Part
 from scenic.batch.scenes import LONGEST, Job, Made, encoded_here, in_processes, method_of
+from scenic.dataclass import dataclass
 from scenic.formats.files import Waiting, make_folder, refusing, writing
 from scenic.formats.json_lines import SceneLines
 from scenic.formats.mesh_files import digest_of

@@ -7,14 +7,14 @@ their program with them, and refuse to work where versions or the program's grap
 import pickle
 import platform
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from concurrent.futures.process import BrokenProcessPool
 from functools import lru_cache
-from importlib import metadata
-from typing import Any, Final, Protocol, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Final, Protocol, Self, TypeVar
 
 from scenic.language.errors import Located, UnsupportedError
 from scenic.language.extras import installation
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor, Future
 
 __all__ = ["ClusterError", "DaskCluster", "Engine", "OverExecutor", "Processes", "versions"]
 
@@ -83,7 +83,7 @@ class OverExecutor:
 
     """
 
-    def __init__(self, executor: Executor, jobs: int) -> None:
+    def __init__(self, executor: "Executor", jobs: int) -> None:
         self._executor = executor
         self.jobs = jobs
 
@@ -95,6 +95,9 @@ class OverExecutor:
         lost: Callable[[_Argument, int], _Result],
     ) -> Iterator[tuple[int, _Result]]:
         """See `Engine.run`."""
+        from concurrent.futures import FIRST_COMPLETED, wait  # like the next ones slow to import
+        from concurrent.futures.process import BrokenProcessPool
+
         remote = _Remote(function)
         waiting = enumerate(arguments)
         busy: dict[Future[bytes], tuple[int, _Argument]] = {}
@@ -246,6 +249,8 @@ def versions() -> dict[str, str]:
 
 
 def _version(name: str) -> str:
+    from importlib import metadata  # slow to import
+
     try:
         return metadata.version(name)
     except metadata.PackageNotFoundError:

@@ -3,10 +3,10 @@
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, redirect_stdout
-from dataclasses import dataclass
 from typing import Any
 
 from scenic.batch import workers
+from scenic.dataclass import dataclass
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
 from scenic.simulators.results import TerminationType

@@ -8,7 +8,6 @@ of its scene's files.
 import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
@@ -16,6 +15,7 @@ from typing import Any, Final
 import numpy as np
 
 from scenic.batch.manifest import DatasetError, Manifest, Part
+from scenic.dataclass import dataclass
 from scenic.formats.coco import INDEX, Photographer, index_of
 from scenic.formats.files import Waiting, write, writing
 from scenic.formats.mesh_files import digest_of

@@ -3,11 +3,12 @@
 import json
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, field, replace
 from pathlib import Path
 from typing import Any, Final, Self
 
 from scenic.batch.engines import versions
+from scenic.dataclass import dataclass
 from scenic.formats.files import write
 from scenic.formats.mesh_files import digest_of
 from scenic.language.errors import Located

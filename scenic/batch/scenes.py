@@ -7,8 +7,7 @@ replaced, and its run is made again.
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Executor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pickle import PickleBuffer
 from typing import TYPE_CHECKING, Any, Final
@@ -16,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from scenic.batch.engines import Engine, OverExecutor, Processes
+from scenic.dataclass import dataclass
 from scenic.graph.points import PointSet, Sobol
 from scenic.language.errors import Located, RejectionException
 from scenic.runtime.sampling.report import Exhausted
@@ -23,6 +23,8 @@ from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from _typeshed import ReadableBuffer
 
 _FIRST: Final = 16
@@ -167,7 +169,7 @@ def sampled_in_processes(
     max_attempts: int | None = None,
     time_limit: float | None = None,
     source: PointSet | None = None,
-    executor: Executor | None = None,
+    executor: "Executor | None" = None,
 ) -> Iterator[Scene]:
     """Scenes ``first`` to ``first + n`` of a seed, found by several processes: our own, or those of ``executor``.
 

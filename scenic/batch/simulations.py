@@ -2,18 +2,20 @@
 
 import random
 from collections.abc import Generator, Iterator, Mapping, Sequence
-from concurrent.futures import Executor
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from scenic.batch.engines import Engine, OverExecutor, Processes
 from scenic.batch.keeping import Form, Kept, about_file
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from scenic.runtime.scenes.scenario import Scenario
     from scenic.simulators.batch import Numbered
     from scenic.simulators.simulator import Simulator
@@ -280,7 +282,7 @@ def simulated(
     shown: bool = False,
     folder: str | Path | None = None,
     processes: int = 1,
-    executor: Executor | None = None,
+    executor: "Executor | None" = None,
 ) -> list[SimulationRow]:
     """Simulate scenes ``first`` to ``first + n`` of a seed.
 

@@ -4,10 +4,11 @@ import csv
 import io
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Final
 
 from scenic.batch.simulations import SimulationRow, is_violated
+from scenic.dataclass import dataclass
 
 __all__ = ["Setting", "csv_of", "plot", "summary", "verdict_of"]
 

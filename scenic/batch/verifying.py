@@ -4,7 +4,7 @@ import json
 import math
 import random
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from scenic.batch.datasets import Encoder
 from scenic.batch.image_parts import IMAGE_FORMS, copy_images, damaged_files, image_rows, join_indices
 from scenic.batch.manifest import DatasetError, Manifest, Part
 from scenic.batch.scenes import Job, method_of, results_of
+from scenic.dataclass import dataclass
 from scenic.formats.files import make_folder, write
 from scenic.formats.mesh_files import digest_of
 from scenic.formats.trajectory_tables import parquet_support

@@ -3,7 +3,7 @@
 import os
 import re
 import traceback
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
 from pathlib import Path
 from typing import Final
@@ -11,6 +11,7 @@ from typing import Final
 from scenic.compiler.check import check_text, in_order
 from scenic.compiler.ignores import apply_ignores
 from scenic.compiler.surroundings import SurroundingsOf
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import UNSUPPORTED, Diagnostic, Severity
 from scenic.language.errors import Located
 from scenic.language.selection import Rules

@@ -2,10 +2,10 @@
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 from scenic.configuration.project import Configurations
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic
 
 __all__ = ["STANDARD_INPUT", "Found", "discover"]

@@ -33,6 +33,7 @@ from scenic.cli.running import NOT_ALL, ended_by_signals, engine_of, progress_ba
 from scenic.formats.files import OutputError
 from scenic.formats.growing import GrowingFile
 from scenic.language.errors import Located
+from scenic.language.garbage import import_lasting
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
@@ -275,9 +276,8 @@ def sample(
     deadline = None if time_limit is None else time.monotonic() + time_limit
 
     # These bring in NumPy and the geometry libraries.
+    import_lasting("scenic.pipeline")
     from scenic.batch import scenes as batches
-    from scenic.batch.datasets import Run, make_dataset, write_table
-    from scenic.batch.manifest import Manifest
     from scenic.formats.json_lines import SceneLines
     from scenic.formats.resuming import continued
     from scenic.pipeline import load
@@ -302,6 +302,8 @@ def sample(
     done = 0
     points = "sobol" if sobol else None if approximate is None else f"approximate {approximate}"
     if dataset is not None and resume:
+        from scenic.batch.manifest import Manifest
+
         seed = Manifest.load(dataset).seed if seed is None else seed
     if grown is not None and resume:
         seed, done = continued(grown, loaded.digest, seed, first, count, points=points)
@@ -336,8 +338,11 @@ def sample(
         engine = stack.enter_context(engine_of(jobs, dask))
         advance = stack.enter_context(progress_bar(count, "sampling", shown=not to_terminal))
         advance(done, 0)
-        run = Run(engine, deadline, advance)
         if dataset is not None or table is not None:
+            from scenic.batch.datasets import Run, make_dataset, write_table
+            from scenic.batch.manifest import Manifest
+
+            run = Run(engine, deadline, advance)
             manifest = Manifest.of(
                 loaded,
                 seed=seed,

@@ -32,6 +32,7 @@ from scenic.cli.options import (
 from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
 from scenic.cli.running import NOT_ALL, ended_by_signals, engine_of, progress_bar
 from scenic.cli.sinks import check_page
+from scenic.language.garbage import import_lasting
 
 if TYPE_CHECKING:
     from scenic.batch.keeping import Form
@@ -148,6 +149,7 @@ def simulate(
     there), 130 interrupted.
     """
     # These bring in NumPy and the geometry libraries.
+    import_lasting("scenic.pipeline")
     from scenic.batch.simulations import Running, Simulations
     from scenic.batch.summaries import Setting, csv_of, plot, summary
     from scenic.formats.files import make_folder, write

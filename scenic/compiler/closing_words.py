@@ -11,13 +11,14 @@ All takes one pass over the tokens.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Final, Literal, NamedTuple, TypeAlias
 
 from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS, SOFT_KEYWORDS, WORDS
 from scenic.compiler.phrases import CLOSING_WORDS, TEMPORAL_FORMS, words_before
 from scenic.compiler.precedence import Fixity
 from scenic.compiler.tokens import FSTRING_START, NAME, NEWLINE, NUMBER, STRING, Tokens
+from scenic.dataclass import dataclass
 
 __all__ = ["Operand", "closed_operands", "in_parentheses"]
 

@@ -5,7 +5,7 @@ import re
 import threading
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from types import CodeType, MappingProxyType
 from typing import Final, TypeAlias
 
@@ -17,6 +17,7 @@ from scenic.compiler.parser import DEEPEST, ParseResult, ordinary_recursion, par
 from scenic.compiler.resolver import resolve_within
 from scenic.compiler.scopes import Resolution
 from scenic.compiler.surroundings import SurroundingsOf
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.source import Source
 from scenic.language.spans import Span

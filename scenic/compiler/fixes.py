@@ -6,11 +6,11 @@ Texts here are as they stand in the file: with their byte order mark and their l
 import re
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 from scenic.compiler.check import check_text
 from scenic.compiler.surroundings import SurroundingsOf
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
 
 __all__ = ["Repaired", "apply_fixes", "repair"]

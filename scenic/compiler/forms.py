@@ -5,9 +5,9 @@ knows.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from scenic.compiler.precedence import FORMS, SPECIFIERS, Form, Word
+from scenic.dataclass import dataclass
 from scenic.language import operators, specifiers
 from scenic.language.keywords import TEMPORAL_OPERATORS
 

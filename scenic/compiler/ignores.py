@@ -10,12 +10,13 @@ Comments are those of the lexer: a string that holds such a text is none.
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
 from scenic.compiler.tokens import DEDENT, ENDMARKER, INDENT, NEWLINE, Tokens
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
 from scenic.language.selection import is_lasting, is_selector, similar_selector
 from scenic.language.source import Source

@@ -8,7 +8,6 @@ and on whether what follows goes on with it, which is looked at each time.
 import ast
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from scenic.compiler.actions import Problem
@@ -25,6 +24,7 @@ from scenic.compiler.parser import (
 from scenic.compiler.relexing import Change, Lexed, Splice, lex_again
 from scenic.compiler.tokens import DEDENT, ENDMARKER, INDENT, NEWLINE, Tokens
 from scenic.compiler.traversal import FIELDS
+from scenic.dataclass import dataclass
 from scenic.language.garbage import no_garbage_collection
 
 __all__ = ["Revision", "revise"]

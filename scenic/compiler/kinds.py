@@ -6,11 +6,11 @@ through names that are bound just once. `None` stands for all that is not certai
 
 import ast
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final, Protocol
 
 from scenic.compiler import tree as scenic
+from scenic.dataclass import dataclass
 from scenic.language.names import NAMES, NameKind
 from scenic.language.operators import OPERATORS
 from scenic.language.properties import attributes_of, properties_of

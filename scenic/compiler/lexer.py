@@ -10,7 +10,6 @@ something is missing. Indentation is repaired instead, so that the blocks around
 
 import unicodedata
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from itertools import islice
 from typing import ClassVar, Final, NamedTuple
 
@@ -30,6 +29,7 @@ from scenic.compiler.tokens import (
     STRING,
     Tokens,
 )
+from scenic.dataclass import dataclass
 from scenic.language.spans import Span
 
 _MOST_BRACKETS_SEARCHED: Final = 100

@@ -7,13 +7,12 @@ program is simply compiled each time.
 """
 
 import hashlib
-import importlib.abc
 import marshal
 import os
 import sys
-import tempfile
 from collections.abc import Iterable, Iterator
 from functools import cache
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import CodeType
 from typing import Final
@@ -70,19 +69,11 @@ def load_code(path: str | os.PathLike[str]) -> CodeType:
     return ScenicLoader(location.stem, str(location)).get_code(location.stem)
 
 
-class ScenicLoader(importlib.abc.ExecutionLoader):
+class ScenicLoader(SourceFileLoader):
     """Loads one Scenic file; the module never enters ``sys.modules``, since each compilation runs it afresh.
 
-    Not a ``SourceLoader``, which would cache the code where that of a Python module of the same name belongs.
+    The code is cached by `get_code`, not where that of a Python module of the same name belongs.
     """
-
-    def __init__(self, fullname: str, path: str) -> None:
-        self.name = fullname
-        self.path = path
-
-    def get_filename(self, fullname: str) -> str:
-        """The path of the source."""
-        return self.path
 
     def get_source(self, fullname: str) -> str:
         """The text of the program; raises `ScenicError` if it cannot be read."""
@@ -165,6 +156,8 @@ def _read(file: Path, key: bytes) -> CodeType | None:
 
 def _write(file: Path, key: bytes, code: CodeType) -> None:
     """Writes a cache that is complete or absent; a folder that cannot be written stays without."""
+    import tempfile  # only where something is written, and slow to import
+
     body = marshal.dumps(code)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)

@@ -10,7 +10,7 @@ import threading
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from types import MappingProxyType
 from typing import Any, Final, TypeAlias
 
@@ -19,6 +19,7 @@ from scenic.compiler.actions.common import Place
 from scenic.compiler.generated import WORDS, build_parser
 from scenic.compiler.lexer import lex
 from scenic.compiler.tokens import DEDENT, ENDMARKER, INDENT, NEWLINE, TokenLists, Tokens
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
 from scenic.language.garbage import no_garbage_collection
 from scenic.language.source import Source

@@ -13,13 +13,13 @@ operator of the temporal ladder, the last specifier of ``new``) takes in what fo
 
 import ast
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, Final, TypeAlias
 
 from scenic.compiler import generated
+from scenic.dataclass import dataclass
 
 __all__ = [
     "ATOM",

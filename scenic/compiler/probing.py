@@ -5,7 +5,6 @@ where this has a mistake, the line alone.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final
 
@@ -15,6 +14,7 @@ from scenic.compiler.lexer import lex
 from scenic.compiler.parser import DEEPEST, recursion_limit
 from scenic.compiler.syntax import BLOCK_STARTERS, RULES, Reference, first_words
 from scenic.compiler.tokens import DEDENT, ERROR, INDENT, NEWLINE, Tokens
+from scenic.dataclass import dataclass
 
 __all__ = ["CLAUSES", "Wanted", "wanted_at"]
 

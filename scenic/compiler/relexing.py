@@ -9,12 +9,13 @@ places can be read again alone, and what follows stays as it was if the lexer st
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 from scenic.compiler.lexical_errors import is_open_text, unreadable
 from scenic.compiler.lines import MOST_DIAGNOSTICS
 from scenic.compiler.tokens import Tokens
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.spans import Span
 

@@ -8,13 +8,14 @@ import builtins
 import threading
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from functools import cached_property
 from typing import Any, Final, TypeVar
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.traversal import first_line, position
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import NAMES, TRACKED
 

@@ -6,11 +6,12 @@ program that is compiled to be run has none, and whatever an import brings is un
 
 import ast
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Protocol
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Resolution
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.source import Source
 from scenic.language.spans import Span

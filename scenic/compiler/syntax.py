@@ -4,12 +4,12 @@ Lookaheads and most of the actions are left out, so a row says what a text consi
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import pairwise
 from types import MappingProxyType
 from typing import Any, Final, TypeAlias
 
 from scenic.compiler.generated import HARD_KEYWORDS, SOFT_KEYWORDS, syntax_rules
+from scenic.dataclass import dataclass
 
 __all__ = [
     "BLOCK_STARTERS",

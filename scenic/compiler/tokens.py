@@ -1,9 +1,10 @@
 """Tokens: their kinds, and a text as parallel lists of them, which is what a parser reads fastest."""
 
 from bisect import bisect_left, bisect_right
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final, TypeAlias
 
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic
 
 ENDMARKER: Final = 0

@@ -12,7 +12,6 @@ import sys
 import sysconfig
 import traceback
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cache
 from itertools import islice
 from pathlib import Path
@@ -20,6 +19,7 @@ from types import CodeType, FrameType, TracebackType
 from typing import Final
 
 from scenic.compiler.lowering.build import PRELUDE
+from scenic.dataclass import dataclass
 from scenic.language.source import Source
 from scenic.language.spans import Span
 

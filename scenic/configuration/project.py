@@ -7,11 +7,12 @@ it becomes diagnostics with code SC606; what is right in it holds nevertheless.
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, Final
 
 from scenic.configuration.globs import matches
 from scenic.configuration.toml_places import place_in_toml
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.errors import ScenicError
 from scenic.language.selection import EVERYTHING, Rules, is_selector, similar_selector

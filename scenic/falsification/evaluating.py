@@ -3,13 +3,13 @@
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from scenic.batch.keeping import Kept
+from scenic.dataclass import dataclass
 from scenic.falsification.objectives import Objective, ObjectiveError
 from scenic.falsification.space import Floats, Space
 from scenic.falsification.store import number

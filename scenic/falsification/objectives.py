@@ -2,10 +2,10 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Final
 
+from scenic.dataclass import dataclass
 from scenic.language.errors import Located
 from scenic.language.spelling import nearest
 from scenic.runtime.scenes.scene import Scene

@@ -5,7 +5,7 @@ import random
 import time
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -13,6 +13,7 @@ import numpy as np
 
 from scenic.batch.engines import Engine, Processes
 from scenic.batch.simulations import Running, Simulations
+from scenic.dataclass import dataclass
 from scenic.falsification.evaluating import Evaluation, Task
 from scenic.falsification.objectives import Objective, ObjectiveError
 from scenic.falsification.samplers import make_sampler

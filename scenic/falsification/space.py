@@ -1,12 +1,12 @@
 """The space that is searched: coordinates in the unit interval, and the numbers of draws that they stand for."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph.operations.distributions import FIRST, LAST
 from scenic.graph.operations.normal import conditioned_cumulative, conditioned_quantile
 from scenic.runtime.program.external import Choosable

@@ -1,10 +1,9 @@
 """The first hits of rays through the pixels of an image."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.formats.camera import Camera
 from scenic.formats.instances import Array
 from scenic.formats.stage import GROUND, SKY, Stage

@@ -1,11 +1,11 @@
 """The viewpoint of an image, and the ground below the objects."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.formats.instances import Array, Instance
 from scenic.formats.regions import bounds as workspace_bounds
 from scenic.formats.scenes import Scene

@@ -7,13 +7,13 @@ read.
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.formats.files import write
 from scenic.formats.instances import Gallery, Surfaces
 from scenic.formats.labels import Observation, document, observe

@@ -7,9 +7,7 @@ any error, Ctrl-C included, the temporary file is removed and what had the name 
 import contextlib
 import os
 import secrets
-import shutil
 import stat
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
@@ -129,6 +127,8 @@ class Waiting:
     """A file without a name in the folder of ``path``, to become the file of that name; raises ``OutputError``."""
 
     def __init__(self, path: Path) -> None:
+        import tempfile  # slow to import
+
         self._path = path
         with refusing(path):
             self.stream: BinaryIO = tempfile.TemporaryFile(dir=path.resolve().parent)  # noqa: SIM115 - `close` does
@@ -140,9 +140,11 @@ class Waiting:
 
     def copy(self, target: BinaryIO) -> None:
         """Write all of it to a file."""
+        from shutil import copyfileobj  # slow to import
+
         with refusing(self._path):
             self.stream.seek(0)
-            shutil.copyfileobj(self.stream, target)
+            copyfileobj(self.stream, target)
 
     def close(self) -> None:
         """Forget it."""

@@ -6,12 +6,13 @@ look round and edges stay sharp.
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.formats.poses import Four, Triple, quaternion_of, rotation_matrix
 from scenic.formats.scenes import Scene, SceneObject, UnitMesh
 from scenic.runtime.geometry.patches import Patch

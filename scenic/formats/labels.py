@@ -7,12 +7,12 @@ one that is only beyond the image's border, in a corner of the view window, as v
 """
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.formats.buffers import Lens, seen
 from scenic.formats.instances import Array, Gallery, Instance
 from scenic.formats.poses import euler_angles

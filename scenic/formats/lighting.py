@@ -5,12 +5,12 @@ Both are estimated by rays, sparsely: at every other row and column of the coars
 gets rays of its own.
 """
 
-from dataclasses import dataclass
 from typing import Final, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.formats.buffers import Groups, Seen
 from scenic.formats.stage import SKY, Stage
 from scenic.runtime.geometry.embree import Singles

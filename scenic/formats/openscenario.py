@@ -8,13 +8,13 @@ base; so the centre of a bounding box lies ahead of it and above it.
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.formats.files import write
 from scenic.language.errors import UnsupportedError
 from scenic.language.extras import installation

@@ -2,10 +2,10 @@
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from scenic.dataclass import dataclass
 from scenic.formats.json_lines import FORMAT, VERSION
 from scenic.formats.mesh_files import resolved
 from scenic.language.errors import Located, MissingFileError

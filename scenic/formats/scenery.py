@@ -8,11 +8,12 @@ not meant for pictures.
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, Final
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.formats.instances import Array
 from scenic.language.errors import Located
 

@@ -2,10 +2,10 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.formats.camera import Camera
 from scenic.formats.instances import Array
 from scenic.formats.poses import quaternion_of

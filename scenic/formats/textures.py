@@ -6,12 +6,12 @@ the object's own colour.
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.language.errors import Located
 from scenic.runtime.geometry.embree import Singles
 

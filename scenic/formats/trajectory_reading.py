@@ -2,13 +2,13 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.formats.trajectories import FORMAT, VERSION
 from scenic.formats.trajectory_tables import parquet_about, parquet_steps
 from scenic.language.errors import Located, MissingFileError

@@ -1,13 +1,14 @@
 """Scenes as worlds of Webots R2023a: nodes of its VRML format, and whole ``.wbt`` files with their meshes beside them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path, PurePosixPath
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.formats.camera import corners, ground_height
 from scenic.formats.files import make_folder, write
 from scenic.formats.instances import Instance, Surface, distinct_labels, picture

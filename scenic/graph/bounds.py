@@ -1,10 +1,11 @@
 """Interval bounds of a node's value, over many boxes of the unit cube at a time."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from scenic.dataclass import dataclass
 
 Floats = NDArray[np.float64]
 

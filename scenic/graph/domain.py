@@ -1,11 +1,13 @@
 """The part of the unit cube to sample from: a union of boxes, or a product of several."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Final, Self
 
 import numpy as np
 from numpy.typing import NDArray
+
+from scenic.dataclass import dataclass
 
 Floats = NDArray[np.float64]
 

@@ -8,12 +8,13 @@ So no draw depends on which others there are, in which order they are asked for,
 
 import hashlib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
+
+from scenic.dataclass import dataclass
 
 Words = NDArray[np.uint64]
 Floats = NDArray[np.float64]

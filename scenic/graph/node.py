@@ -1,12 +1,13 @@
 """Nodes of the value graph, and a graph as the nodes reachable from its roots."""
 
 from collections.abc import Hashable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Final
 from weakref import WeakValueDictionary
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.graph.draws import Words, address
 from scenic.graph.kinds import Column, Kind, boxed
 from scenic.graph.operation import Call, Operation, always

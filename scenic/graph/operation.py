@@ -1,12 +1,12 @@
 """An entry of the table of operations: one operation, all its readings side by side."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any, Final, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Codec, Column, Kind
 

@@ -9,12 +9,12 @@ worked out once; and so is, for a chain of stages, after which step nobody needs
 """
 
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.graph.draws import Words
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.merging import Merger, is_choice_of_draws

@@ -5,7 +5,6 @@ two differ in another way than in numbers, quotes and parentheses, the unparser'
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS, WORDS
@@ -20,6 +19,7 @@ from scenic.compiler.tokens import (
     NUMBER,
     STRING,
 )
+from scenic.dataclass import dataclass
 
 __all__ = ["Token", "as_written"]
 

@@ -5,7 +5,6 @@ added to the grammar and declared is offered without further ado.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
 from typing import Final
@@ -15,6 +14,7 @@ from scenic.compiler.precedence import ATOM, FORMS, Ladder, Slot
 from scenic.compiler.precedence import SPECIFIERS as SPECIFIER_FORMS
 from scenic.compiler.probing import Wanted, wanted_at
 from scenic.compiler.syntax import STATEMENT_FORMS, words_of
+from scenic.dataclass import dataclass
 from scenic.ide import documentation
 from scenic.language.operators import OPERATORS
 from scenic.language.specifiers import SPECIFIERS

@@ -1,7 +1,6 @@
 """Parts of a text that an editor can fold: blocks, brackets, long strings, runs of comments and of imports."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 
 from scenic.compiler.generated import WORDS
@@ -15,6 +14,7 @@ from scenic.compiler.tokens import (
     STRING,
     Tokens,
 )
+from scenic.dataclass import dataclass
 from scenic.ide.snapshot import Snapshot
 
 __all__ = ["Fold", "FoldKind", "folds"]

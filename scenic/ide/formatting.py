@@ -14,13 +14,14 @@ import re
 from bisect import bisect_left, bisect_right
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.incremental import revise
 from scenic.compiler.tokens import DEDENT, ENDMARKER, FSTRING_MIDDLE, INDENT, NEWLINE, STRING, Tokens
 from scenic.compiler.unparser import UnparseError, unparse
+from scenic.dataclass import dataclass
 from scenic.ide.as_written import Token, as_written
 from scenic.ide.snapshot import Snapshot
 from scenic.language.diagnostics import Edit

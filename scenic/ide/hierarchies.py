@@ -2,11 +2,11 @@
 
 import ast
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.traversal import walk
+from scenic.dataclass import dataclass
 from scenic.ide.inheritance import subclasses
 from scenic.language.spans import Span
 from scenic.project.classes import class_of_symbol, meaning

@@ -6,7 +6,6 @@ keywords are names in most places, so most of them count only within a phrase of
 
 import re
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 from itertools import groupby
 from typing import Final
@@ -16,6 +15,7 @@ from scenic.compiler.phrases import SCENIC_FORMS
 from scenic.compiler.precedence import FORMS, Form, Slot, Word
 from scenic.compiler.syntax import RULES, STATEMENT_FORMS, Kind, ListOf, Optional, Reference, Row, words_of
 from scenic.compiler.syntax import Word as Written
+from scenic.dataclass import dataclass
 from scenic.language.names import NAMES, TRACKED, NameKind
 from scenic.language.properties import CLASSES, properties_of
 

@@ -2,11 +2,11 @@
 
 import ast
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.tokens import NAME
+from scenic.dataclass import dataclass
 from scenic.ide import descriptions, documentation
 from scenic.ide.parameters import parameter_at, settings
 from scenic.ide.snapshot import Snapshot

@@ -4,13 +4,13 @@ import ast
 import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.fixes import apply_fixes
 from scenic.compiler.loader import SUFFIXES
 from scenic.compiler.parser import parse
+from scenic.dataclass import dataclass
 from scenic.ide.repairs import difference
 from scenic.ide.snapshot import Snapshot
 from scenic.language.diagnostics import Diagnostic, Edit

@@ -1,8 +1,8 @@
 """Base and derived classes, and the definitions of members that replace each other."""
 
-from dataclasses import dataclass
 from typing import Any
 
+from scenic.dataclass import dataclass
 from scenic.project.classes import Class, class_of_symbol
 from scenic.project.index import Project
 from scenic.project.symbols import Symbol, SymbolKind, symbols_of

@@ -1,10 +1,10 @@
 """Commands to run parts of a document: the program itself, and each scenario that it defines."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.traversal import walk
+from scenic.dataclass import dataclass
 from scenic.ide.places import name_span
 from scenic.ide.snapshot import Snapshot
 from scenic.language.spans import Span

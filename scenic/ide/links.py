@@ -3,10 +3,10 @@
 import ast
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Final
 
 from scenic.compiler.traversal import walk
+from scenic.dataclass import dataclass
 from scenic.ide.places import span_of
 from scenic.ide.snapshot import Snapshot
 from scenic.language.spans import Span

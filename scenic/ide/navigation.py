@@ -5,12 +5,12 @@ import keyword
 import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from types import ModuleType
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.scopes import Binding, Resolution, ScopeKind
+from scenic.dataclass import dataclass
 from scenic.ide.inheritance import family, own_member, owner_of, subclasses
 from scenic.ide.parameters import parameter_at, settings
 from scenic.ide.snapshot import Snapshot

@@ -2,10 +2,10 @@
 
 import ast
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.traversal import walk
+from scenic.dataclass import dataclass
 from scenic.ide.snapshot import Snapshot
 from scenic.language.spans import Span
 from scenic.project.index import Project

@@ -1,8 +1,8 @@
 """Completions, as plain data."""
 
-from dataclasses import dataclass
 from enum import StrEnum
 
+from scenic.dataclass import dataclass
 from scenic.language.spans import Span
 from scenic.project.symbols import Symbol, SymbolKind
 

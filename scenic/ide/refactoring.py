@@ -6,12 +6,12 @@ and conditions are evaluated again and again.
 
 import ast
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.traversal import parts, walk
+from scenic.dataclass import dataclass
 from scenic.ide.snapshot import Snapshot
 from scenic.language.diagnostics import Edit
 from scenic.language.spans import Span

@@ -1,10 +1,10 @@
 """The signature of the function whose arguments are being written, and the parameter that is next."""
 
 import ast
-from dataclasses import dataclass
 from typing import Final
 
 from scenic.compiler.tokens import DEDENT, INDENT, NEWLINE, Tokens
+from scenic.dataclass import dataclass
 from scenic.ide.expressions import expression, operand_before
 from scenic.ide.snapshot import Snapshot
 from scenic.project.index import Project

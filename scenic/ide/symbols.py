@@ -2,12 +2,12 @@
 
 import ast
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.unparser import UnparseError, unparse
+from scenic.dataclass import dataclass
 from scenic.ide.places import name_span, span_of
 from scenic.ide.snapshot import Snapshot
 from scenic.language.spans import Span

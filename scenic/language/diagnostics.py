@@ -4,11 +4,12 @@ A diagnostic is plain data. The command line, the language server and the except
 all show the same ones; how they look is decided where they are shown.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from types import MappingProxyType
 from typing import Final
 
+from scenic.dataclass import dataclass
 from scenic.language.spans import Span
 
 _LONGEST: Final = 2000

@@ -1,9 +1,10 @@
 """The extras of the package: what each is for, which modules it brings, and the command that installs it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
+
+from scenic.dataclass import dataclass
 
 __all__ = ["EXTRAS", "Extra", "installation"]
 

@@ -29,7 +29,10 @@ def import_lasting(name: str) -> ModuleType:
     """
     with no_garbage_collection():
         module = import_module(name)
-    promote_young()
+    if gc.isenabled() and not gc.get_freeze_count():
+        # What is frozen is not looked at, and is old when it is thawed: an import leaves no garbage to look for.
+        gc.freeze()
+        gc.unfreeze()
     return module
 
 

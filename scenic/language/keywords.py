@@ -1,9 +1,10 @@
 """Meanings of the keywords of the language, for readers: hard ones, soft ones and the temporal operators."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
+
+from scenic.dataclass import dataclass
 
 __all__ = ["HARD_KEYWORDS", "PYTHON_KEYWORDS", "SOFT_KEYWORDS", "TEMPORAL_OPERATORS", "TemporalOperator"]
 

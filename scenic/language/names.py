@@ -2,11 +2,11 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
 from typing import Any, Final
 
+from scenic.dataclass import dataclass
 from scenic.language.types import FIELD, REGION, SCALAR, SHAPE, VECTOR, Type
 
 __all__ = [

@@ -6,10 +6,10 @@ the operands stand in the order declared here. An operand with a default may be 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
+from scenic.dataclass import dataclass
 from scenic.language.types import (
     DIRECTION,
     FIELD,

@@ -5,10 +5,10 @@ Defaults are given as text for readers; the runtime computes them.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Final
 
+from scenic.dataclass import dataclass
 from scenic.language.types import BOOLEAN, NONE, ORIENTATION, REGION, SCALAR, SHAPE, VECTOR, Type, listed
 
 __all__ = [

@@ -4,9 +4,10 @@ A *selector* is a code (``SC304``) or what codes begin with (``SC3``, ``SC``).
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import CODES, Diagnostic, Severity
 from scenic.language.spelling import nearest
 

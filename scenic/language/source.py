@@ -2,10 +2,11 @@
 
 import ast
 import os
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Final
 
+from scenic.dataclass import dataclass
 from scenic.language.errors import MissingFileError, ScenicError
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest

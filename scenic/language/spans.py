@@ -1,6 +1,6 @@
 """Places in a source text."""
 
-from dataclasses import dataclass
+from scenic.dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True, order=True)

@@ -6,10 +6,10 @@ specifies, and how strongly, is declared here once for all.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
+from scenic.dataclass import dataclass
 from scenic.language.operators import EGO, Function, Operand, label
 from scenic.language.types import (
     ANYTHING,

@@ -2,10 +2,11 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
 from typing import Final
+
+from scenic.dataclass import dataclass
 
 __all__ = ["STATEMENTS", "Effect", "Place", "Statement"]
 

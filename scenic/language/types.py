@@ -1,8 +1,9 @@
 """The types of operands and parameters, as data: names, nouns for messages, and what a program writes to have one."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
+
+from scenic.dataclass import dataclass
 
 __all__ = [
     "ANYTHING",

@@ -7,12 +7,13 @@ us.
 
 import os
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from typing import Final
 
 from lsprotocol import types
 
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic, Edit, Label, Severity
 from scenic.language.explanations import explanation_file
 from scenic.language.source import Source

@@ -3,12 +3,12 @@
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
 from lsprotocol import types
 
+from scenic.dataclass import dataclass
 from scenic.ide.snapshot import Snapshot
 from scenic.language.errors import ScenicError
 from scenic.language.source import read_source

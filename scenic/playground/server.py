@@ -14,7 +14,6 @@ import tempfile
 from collections import OrderedDict
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 from types import MappingProxyType
@@ -26,6 +25,7 @@ from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
+from scenic.dataclass import dataclass
 from scenic.ide.running import RunError, sample_page
 from scenic.playground.bridge import connect_language_server
 from scenic.playground.language import language

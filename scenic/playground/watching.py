@@ -9,12 +9,13 @@ import secrets
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib import resources
 from pathlib import Path
 from typing import Any, Final
 
+from scenic.dataclass import dataclass
 from scenic.ide.running import RunError, analysis_text, sample_page
 
 __all__ = ["View", "Watch", "served"]

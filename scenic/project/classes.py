@@ -2,12 +2,13 @@
 
 import ast
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import BindingKind, Scope, ScopeKind
 from scenic.compiler.traversal import walk
+from scenic.dataclass import dataclass
 from scenic.language.properties import CLASSES, BuiltinProperty, attributes_of, properties_of
 from scenic.project.index import Project
 from scenic.project.modules import Module

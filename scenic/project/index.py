@@ -9,13 +9,14 @@ import importlib
 import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.loader import SUFFIXES
 from scenic.compiler.scopes import Binding, Resolution
+from scenic.dataclass import dataclass
 from scenic.language.errors import ScenicError
 from scenic.language.source import Source, read_source
 from scenic.project.modules import Module, read_module

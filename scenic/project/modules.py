@@ -3,7 +3,7 @@
 import ast
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import Any, Final, TypeVar
 
@@ -13,6 +13,7 @@ from scenic.compiler.parser import DEEPEST, parse, recursion_limit
 from scenic.compiler.resolver import bind
 from scenic.compiler.scopes import Resolution, Scope, ScopeKind
 from scenic.compiler.traversal import walk
+from scenic.dataclass import dataclass
 from scenic.language.source import Source
 from scenic.language.spans import Span
 

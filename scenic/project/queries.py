@@ -3,13 +3,14 @@
 import ast
 from bisect import bisect_right
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import DEFINITIONS
 from scenic.compiler.scopes import Binding, BindingKind, Scope
 from scenic.compiler.traversal import walk
+from scenic.dataclass import dataclass
 from scenic.language.spans import Span
 from scenic.project.classes import class_of_symbol, meaning
 from scenic.project.index import Exported, Project

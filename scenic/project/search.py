@@ -7,7 +7,6 @@ and remembered until `Finder.forget`.
 import os
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from importlib.machinery import EXTENSION_SUFFIXES
 from importlib.util import find_spec
@@ -16,6 +15,7 @@ from typing import Final
 
 from scenic import language
 from scenic.compiler.loader import SUFFIXES
+from scenic.dataclass import dataclass
 from scenic.language.spelling import nearest
 
 __all__ = ["Finder", "Found", "ModuleKind"]

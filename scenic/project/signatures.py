@@ -1,10 +1,11 @@
 """Signatures of the definitions of a project: parameters with their defaults, as written."""
 
 import ast
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from scenic.compiler import tree as scenic
+from scenic.dataclass import dataclass
 from scenic.language.names import NAMES
 from scenic.project.classes import class_of_symbol
 from scenic.project.index import Project

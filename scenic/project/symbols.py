@@ -2,7 +2,7 @@
 
 import ast
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from typing import Any, Final
 
@@ -10,6 +10,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.places import header_span
 from scenic.compiler.scopes import Binding, BindingKind, ScopeKind
 from scenic.compiler.traversal import position
+from scenic.dataclass import dataclass
 from scenic.language.names import NAMES, TRACKED, NameKind
 from scenic.language.properties import CLASSES
 from scenic.language.spans import Span

@@ -3,9 +3,10 @@
 import random
 import struct
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Final
 
+from scenic.dataclass import dataclass
 from scenic.language.errors import DivergenceError, SerializationError
 from scenic.runtime.dynamics.draws import Draw, Draws, Recorded, Seeded, Source
 from scenic.runtime.dynamics.driving import Sourcing, kept

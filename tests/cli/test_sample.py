@@ -1,6 +1,7 @@
 import json
 import os
 import signal
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -26,6 +27,32 @@ ROWS = (
     RejectionRow("requirement on line 9", Span(9, 0, 9, 5), 0.25, 0.125),
     RejectionRow("collision of a and b", None, 1.0, 0.75),
 )
+
+
+def test_a_small_program_imports_only_what_it_uses(tmp_path: Path) -> None:
+    program = tmp_path / "small.scenic"
+    program.write_text(
+        "ego = new Object at (Range(0, 1), 0), facing 30 deg\nnew Object at (5, Range(5, 6))\n"
+    )
+    code = (
+        "import sys; from scenic.cli.main import scenic\n"
+        "scenic.main(['sample', sys.argv[1], '-n', '1', '--seed', '1'], standalone_mode=False)\n"
+        "print(*sys.modules, file=sys.stderr)"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", code, str(program)], capture_output=True, text=True, check=True
+    )
+    loaded = set(result.stderr.split())
+    assert len(json.loads(result.stdout)["objects"]) == 2
+    assert "scenic.pipeline" in loaded
+    for libraries in (
+        {"scipy", "shapely", "trimesh", "manifold3d", "embreex", "fcl", "networkx", "PIL", "rich", "z3"},
+        {"numpy.ma", "numpy.f2py", "numpy.testing"},
+        {"asyncio", "concurrent.futures.process", "email", "logging", "multiprocessing", "tempfile", "bz2"},
+        {"scenic.batch.datasets", "scenic.formats.render", "scenic.runtime.sampling.approximate"},
+        {"scenic.runtime.geometry.reading.obj"},
+    ):
+        assert not loaded & libraries
 
 
 class Stub:

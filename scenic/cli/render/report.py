@@ -1,9 +1,10 @@
 """The input of a renderer: all that there is to say about one run."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from scenic.cli.render.sources import Sources
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic
 
 __all__ = ["Report"]

@@ -3,11 +3,11 @@
 import os
 import unicodedata
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 from scenic.cli.render.report import Report
 from scenic.cli.render.sources import Sources
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.source import Source
 from scenic.language.spans import Span

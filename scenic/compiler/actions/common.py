@@ -2,10 +2,10 @@
 
 import ast
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Any, Final, TypeAlias, TypeVar
 
 from scenic.compiler.tokens import Tokens
+from scenic.dataclass import dataclass
 
 Place: TypeAlias = tuple[int, int, int, int]
 """Start and end: line from 1 and column in UTF-8 bytes, each."""

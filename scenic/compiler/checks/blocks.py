@@ -2,12 +2,13 @@
 
 import ast
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Scope, ScopeKind
 from scenic.compiler.traversal import position
+from scenic.dataclass import dataclass
 from scenic.language.statements import Place
 
 __all__ = ["DYNAMIC", "Block", "Where", "blocks", "in_compose", "where_of"]

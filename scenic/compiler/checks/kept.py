@@ -8,10 +8,11 @@ lines further down as the statements that it is said of.
 
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 from scenic.compiler.scopes import Binding, Stretch
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic, Edit, Label
 from scenic.language.spans import Span
 

@@ -1,7 +1,7 @@
 """The questions of rules about a mistake: the tokens around it, what was expected, whether a repair would do."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from scenic.compiler.actions import Problem
@@ -9,6 +9,7 @@ from scenic.compiler.actions.common import Place
 from scenic.compiler.generated import WORDS
 from scenic.compiler.mistakes.trial import LONGEST, Change, Outcome, Trials
 from scenic.compiler.tokens import DEDENT, ENDMARKER, INDENT, NAME, NEWLINE, NUMBER, STRING, Tokens
+from scenic.dataclass import dataclass
 
 __all__ = ["Situation", "insertion"]
 

@@ -4,13 +4,13 @@ A suggestion that was tried is never nonsense: the parser itself has read the te
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Final, TypeAlias
 
 from scenic.compiler.actions import Actions
 from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS, SOFT_KEYWORDS, build_recording_parser
 from scenic.compiler.tokens import DEDENT, ENDMARKER, ERROR, INDENT, NAME, NEWLINE, NUMBER, STRING, Tokens
+from scenic.dataclass import dataclass
 
 __all__ = ["LONGEST", "Change", "Outcome", "Trials"]
 

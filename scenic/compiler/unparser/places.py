@@ -12,7 +12,6 @@ A place is described by four values, which the writers of expressions hand on fr
 
 import ast
 from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import chain
 from types import MappingProxyType
 from typing import Any, Final, TypeAlias
@@ -20,6 +19,7 @@ from typing import Any, Final, TypeAlias
 from scenic.compiler.generated import SOFT_KEYWORDS
 from scenic.compiler.precedence import FORMS, LADDERS, SPECIFIERS, Form, Ladder, Slot, Word, forms_of
 from scenic.compiler.syntax import STATEMENT_FORMS, ListOf, Optional, Reference, first_words
+from scenic.dataclass import dataclass
 
 After: TypeAlias = str | ast.AST
 

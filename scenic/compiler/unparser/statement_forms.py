@@ -6,13 +6,13 @@ a constant or by an operand that this module knows.
 
 import ast
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from itertools import chain
 from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.compiler.syntax import RULES, Alternative, Constant, Item, ListOf, Optional, Reference, Word
 from scenic.compiler.unparser.places import DO, PREFIX, RECORD, REQUIRE, level_of
+from scenic.dataclass import dataclass
 from scenic.language.statements import STATEMENTS
 
 __all__ = ["FORMS", "StatementText", "TextPart", "form_of"]

@@ -4,13 +4,13 @@ All roads of a map are tables, so that many points on different roads are comput
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.formats.opendrive.records import Cubic
 from scenic.graph import quaternions
 

@@ -2,11 +2,12 @@
 
 import hashlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
+from scenic.dataclass import dataclass
 from scenic.domains.driving.building import LaneTypes, build_roads
 from scenic.domains.driving.crossings import add_crossings
 from scenic.domains.driving.elevation import Elevation, RoadHeight

@@ -1,7 +1,9 @@
 """OpenDRIVE maps as typed records, in the units of the file (metres, radians); lines are those of the XML elements."""
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
+
+from scenic.dataclass import dataclass
 
 __all__ = [
     "Connection",

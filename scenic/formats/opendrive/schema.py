@@ -5,10 +5,10 @@ Attributes that only later versions of the standard require are optional here.
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
+from scenic.dataclass import dataclass
 from scenic.formats.opendrive.xml_tree import Element
 
 __all__ = ["Fault", "faults_of"]

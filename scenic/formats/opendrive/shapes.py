@@ -1,13 +1,13 @@
 """Roads as arrays: the boundaries of their lanes, sampled so that chords keep to a stated error (sections 3.3 and 3.4)."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.formats.opendrive.curves import Curve, cubic_bend, cubic_values
 from scenic.formats.opendrive.records import Cubic, Lane, LaneSection, Problem, Road
 

@@ -525,7 +525,8 @@ MOST_CUTS: Final = 4096
 
 
 def _between_options(cumulative: Any) -> Floats:
-    limits = np.unique(np.asarray(cumulative, dtype=np.float64))
+    # Without the index NumPy would import its masked arrays, which takes longer than the rest of a small program.
+    limits, _ = np.unique(np.asarray(cumulative, dtype=np.float64), return_index=True)
     return np.asarray(limits[(limits > 0) & (limits < limits[-1])])
 
 

@@ -5,11 +5,11 @@ The pages are the files ``SCnnn.md`` beside this module. `explanation` reads one
 
 import os
 import re
-from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 from typing import Final
 
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import CODES, Severity
 
 __all__ = ["Explanation", "explanation", "explanation_file"]

@@ -4,9 +4,10 @@ The same for the scenario that is compiled and for those that are set up during 
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, Protocol
 
+from scenic.dataclass import dataclass
 from scenic.language.spans import Span
 from scenic.runtime.temporal.formulas import Atom, Compound, Formula
 

@@ -7,10 +7,10 @@ attributes. An instance made while the scenario is compiled may hold random valu
 
 import inspect
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
+from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import InvalidScenarioError, ScenicSyntaxError, ScenicTypeError
 from scenic.language.spans import Span

@@ -1,16 +1,15 @@
 """Files that store recorded values: the extension selects the format, and a file holds either a series or one value."""
 
 import json
-import string
 from array import array
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, BinaryIO, Final
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.language.errors import ScenicValueError, UnsupportedError
 from scenic.language.extras import installation
 from scenic.runtime.dynamics.recorded import as_array, as_pixels, plain
@@ -160,7 +159,9 @@ class Files(_Pattern):
 
 def for_pattern(pattern: str) -> Recorder:
     """The recorder that a pattern of file names means: one file a value if the name depends on the step."""
-    fields = [field for _, field, _, _ in string.Formatter().parse(pattern) if field is not None]
+    from string import Formatter  # slow to import
+
+    fields = [field for _, field, _, _ in Formatter().parse(pattern) if field is not None]
     automatic = [str(index) if field == "" else field for index, field in enumerate(fields)]
     for field in automatic:
         if field.partition(".")[0] not in ("0", "1", "2", "simulation", "step", "time"):

@@ -8,7 +8,6 @@ import pickle
 from array import array
 from contextlib import suppress
 from pathlib import Path
-from shutil import copyfileobj
 from typing import Any, Protocol
 
 import numpy as np
@@ -51,6 +50,8 @@ class Lines:
 
     def save(self) -> None:
         """Complete the file."""
+        from shutil import copyfileobj  # slow to import
+
         with whole(self._path) as stream, self._stream:
             self._stream.seek(0)
             copyfileobj(self._stream, stream)

@@ -3,7 +3,7 @@
 import math
 import numbers
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache, lru_cache
 from importlib import import_module
 from pathlib import Path
@@ -12,6 +12,7 @@ from typing import Any, ClassVar, Final, TypeAlias
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.graph import quaternions
 from scenic.language.errors import Located, ScenicTypeError, ScenicValueError
 from scenic.language.names import NAMES, NameKind

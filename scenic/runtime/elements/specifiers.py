@@ -7,11 +7,12 @@ which of the offered values are taken.
 """
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache, partial
 from types import MappingProxyType
 from typing import Any, Final
 
+from scenic.dataclass import dataclass
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS, SpecifierDeclaration

@@ -3,10 +3,9 @@
 All three coordinates are computed by each operation, since for few entries operations cost more than numbers.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry.poses import Floats, Indices, Poses
 
 Columns = tuple[Floats, Floats, Floats] | Floats

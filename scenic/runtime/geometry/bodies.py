@@ -1,10 +1,11 @@
 """Bodies over lanes: which mesh, where, how large."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Indices, Poses
 

@@ -1,12 +1,12 @@
 """Quick tests of many pairs of oriented boxes: world boxes, then separating axes."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
 from scenic.runtime.geometry.ragged import rows
 

@@ -1,12 +1,12 @@
 """Many bodies over many lanes as a few flat arrays, so that work on them needs no loop over bodies."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.graph import quaternions
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh

@@ -1,10 +1,11 @@
 """Ray casting: the one place that knows Embree, which works in single precision."""
 
-from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+
+from scenic.dataclass import dataclass
 
 Singles: TypeAlias = npt.NDArray[np.float32]
 

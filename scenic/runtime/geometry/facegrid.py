@@ -1,10 +1,10 @@
 """The faces of a unit mesh sorted into the cells of a grid: which faces may a line meet, which are near a point."""
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry.cells import PADDING, cell_of, touched_cells
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Floats, Indices

@@ -6,11 +6,11 @@ together, level by level, so that the cost of a step is shared by all of them.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry.affine import AffineMaps, taken
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices

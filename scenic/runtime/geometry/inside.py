@@ -8,11 +8,11 @@ only points within rounding of the surface itself may go either way.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.ragged import expand, group_starts, pieces

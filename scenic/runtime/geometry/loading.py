@@ -1,13 +1,11 @@
 """Reading mesh files: the common formats by our own readers, all others by trimesh."""
 
-import bz2
-import gzip
 import io
 import math
 import numbers
 import warnings
 import zlib
-from collections.abc import Callable, Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
@@ -17,11 +15,7 @@ import numpy as np
 from scenic.language.errors import MeshError, ScenicTypeError, ScenicValueError
 from scenic.language.garbage import no_garbage_collection
 from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.reading.gltf import Neighbour, read_glb, read_gltf
-from scenic.runtime.geometry.reading.obj import read_obj
-from scenic.runtime.geometry.reading.ply import read_ply
 from scenic.runtime.geometry.reading.soup import NotCoveredError, Soup
-from scenic.runtime.geometry.reading.stl import read_stl
 from scenic.runtime.geometry.solids import proper_volume
 from scenic.runtime.geometry.topology import merge_vertices
 
@@ -31,18 +25,6 @@ MOST_TRIANGLES: Final = 4_000_000
 _MOST_BYTES: Final = 1 << 30
 """Length of a file, unpacked, up to which it is read."""
 
-_PACKINGS: Final[Mapping[str, Callable[[io.BytesIO], Any]]] = MappingProxyType(
-    {".bz2": bz2.BZ2File, ".gz": lambda stream: gzip.GzipFile(fileobj=stream)}
-)
-_READERS: Final[Mapping[str, Callable[[bytes, Neighbour], Soup]]] = MappingProxyType(
-    {
-        "obj": lambda data, _: read_obj(data),
-        "stl": lambda data, _: read_stl(data),
-        "ply": lambda data, _: read_ply(data),
-        "glb": read_glb,
-        "gltf": read_gltf,
-    }
-)
 _NO_MESHES: Final = frozenset({"bz2", "tar.bz2", "tar.gz", "zip", "dxf", "xyz"})
 """Archives, drawings and point clouds among the formats of trimesh."""
 
@@ -114,8 +96,10 @@ def load_mesh(path: str | Path, *, unify: bool = True, volume: bool = True) -> M
 
 
 def _read(file: Path, name: str) -> Soup:
+    from scenic.runtime.geometry.reading.formats import PACKINGS, READERS  # few programs read meshes
+
     suffixes = [suffix.lower() for suffix in file.suffixes[-2:]]
-    unpack = _PACKINGS.get(suffixes[-1]) if suffixes else None
+    unpack = PACKINGS.get(suffixes[-1]) if suffixes else None
     if unpack is not None:
         suffixes = suffixes[:-1]
     file_type = suffixes[-1][1:] if suffixes else ""
@@ -127,17 +111,17 @@ def _read(file: Path, name: str) -> Soup:
         ) from None
     except OSError as error:
         raise MeshError(f"{name} cannot be read: {error.strerror or error}") from None
-    if file_type not in _READERS:
-        _check_format(file_type, name)
+    if file_type not in READERS:
+        _check_format(file_type, READERS.keys(), name)
     if unpack is not None:
         try:
             data = _limited(unpack(io.BytesIO(data)), name)
         except (OSError, EOFError, zlib.error) as error:
             raise MeshError(f"{name} cannot be unpacked: {error}") from None
-    if file_type in _READERS:
+    if file_type in READERS:
         try:
             with no_garbage_collection():  # text is split into lists by the ten thousand
-                return _READERS[file_type](data, lambda beside: (file.parent / beside).read_bytes())
+                return READERS[file_type](data, lambda beside: (file.parent / beside).read_bytes())
         except NotCoveredError:
             pass
         except OSError as error:
@@ -158,10 +142,10 @@ def _limited(stream: Any, name: str) -> bytes:
     return data
 
 
-def _check_format(file_type: str, name: str) -> None:
+def _check_format(file_type: str, read_here: Collection[str], name: str) -> None:
     import trimesh
 
-    formats = (set(trimesh.available_formats()) | _READERS.keys()) - _NO_MESHES
+    formats = (set(trimesh.available_formats()) | set(read_here)) - _NO_MESHES
     if file_type not in formats:
         raise MeshError(
             f"{name} is of an unknown format{f' `.{file_type}`' if file_type else ''}",

@@ -1,13 +1,13 @@
 """Triangle meshes as immutable values, with what is derived from them computed once."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final, TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.language.errors import MeshError
 from scenic.runtime.geometry import topology
 from scenic.runtime.geometry.poses import Floats, Indices
@@ -156,7 +156,7 @@ class Mesh:
         """The convex hull; fails for flat meshes."""
         if self._is_its_hull:
             planes = np.concatenate([self.normals, self._offsets[:, None]], axis=1)[self.areas > 0]
-            planes = np.unique(np.round(planes, 12), axis=0)
+            planes = _different(planes)
             used = distinct(self.faces)
             return Hull(_read_only(self.vertices[used]), _read_only(planes), self.volume)
         found = kept("hull 1", self.digest, self._computed_hull)
@@ -178,7 +178,7 @@ class Mesh:
         # Interior vertices of flat faces are no corners; qhull's default joins such faces, so that no sliver
         # gives a plane of its own.
         found = ConvexHull(self.vertices)
-        planes = np.unique(np.round(found.equations, 12), axis=0)
+        planes = _different(found.equations)
         return {
             "vertices": self.vertices[np.sort(found.vertices)],
             "planes": planes,
@@ -269,6 +269,12 @@ class Mesh:
         vertices = np.where((self.vertices == upper) & (extents > 0), 0.5, np.clip(vertices, -0.5, 0.5))
         vertices = np.where((self.vertices == lower) & (extents > 0), -0.5, vertices)
         return Mesh(vertices, self.faces), centre, extents
+
+
+def _different(planes: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Planes ``(f, 4)``, each once though some differ by rounding, in order."""
+    # Asked for the index, too, NumPy does without its masked arrays, whose import takes a tenth of a start.
+    return np.unique(np.round(planes, 12), axis=0, return_index=True)[0]
 
 
 def _read_only(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

@@ -8,12 +8,12 @@ never says anything else than the exact test.
 
 import time
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry.affine import AffineMaps, relative_map
 from scenic.runtime.geometry.broadphase import boxes_overlap
 from scenic.runtime.geometry.contact import Surfaces

@@ -1,9 +1,9 @@
 """Coloured areas that show what a workspace is, drawn under the objects of a scene."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
+
+from scenic.dataclass import dataclass
 
 __all__ = ["Patch"]
 

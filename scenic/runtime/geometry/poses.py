@@ -1,12 +1,12 @@
 """Poses of the bodies of many entries: position, orientation and size of a unit mesh."""
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.graph import quaternions
 
 Floats: TypeAlias = npt.NDArray[np.float64]

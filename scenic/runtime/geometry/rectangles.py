@@ -1,9 +1,8 @@
 """Rectangles of the plane over lanes: outlines of upright boxes, in closed form."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
 
 

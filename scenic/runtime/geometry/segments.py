@@ -2,12 +2,12 @@
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final, Self
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.graph import quaternions
 from scenic.runtime.geometry.near_boxes import near_boxes, tree_of_boxes
 from scenic.runtime.geometry.nearest import Nearest

@@ -13,7 +13,6 @@ import hashlib
 import io
 import json
 import os
-import tempfile
 import zlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -113,6 +112,8 @@ def _checksum(content: bytes) -> bytes:
 
 
 def _write(path: Path, arrays: Arrays) -> None:
+    import tempfile  # only where something is written, and slow to import
+
     stream = io.BytesIO()
     stream.write(json.dumps(list(arrays)).encode() + b"\n")
     for array in arrays.values():

@@ -7,11 +7,11 @@ on the size and on one row of R only, so lanes in which these are equal share th
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.graph import quaternions
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh

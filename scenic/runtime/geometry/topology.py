@@ -1,9 +1,8 @@
 """Connections of the triangles of a mesh: edges, components, closedness."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry.poses import Floats, Indices
 from scenic.runtime.geometry.ragged import distinct, first_of_each
 

@@ -4,12 +4,12 @@ Solid cells prove collisions and empty ones prove that there is none, whatever t
 Where cells are cut, nothing is proved.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry.cells import touched_cells
 from scenic.runtime.geometry.inside import contains_lattice, contains_points
 from scenic.runtime.geometry.mesh import Mesh

@@ -5,13 +5,14 @@ Section 5.2 of the specification.
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from graphlib import TopologicalSorter
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError, ScenicValueError
 from scenic.language.properties import CLASSES

@@ -2,9 +2,9 @@
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from scenic.dataclass import dataclass
 from scenic.language.errors import InvalidScenarioError, Located, ScenicValueError, SpecifierError
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest_property

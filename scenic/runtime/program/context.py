@@ -10,13 +10,14 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Hashable, Sequence
 from contextvars import ContextVar
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from types import FrameType, TracebackType
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.graph.draws import address
 from scenic.language.errors import ScenicWarning
 from scenic.language.spans import Span

@@ -1,6 +1,6 @@
 """Values of a program that an external sampler may choose."""
 
-from dataclasses import dataclass
+from scenic.dataclass import dataclass
 
 __all__ = ["Choosable"]
 

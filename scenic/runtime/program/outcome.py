@@ -2,9 +2,10 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
+from scenic.dataclass import dataclass
 from scenic.graph.node import Node
 from scenic.language.spans import Span
 from scenic.runtime.dynamics.declarations import Declared, Required

@@ -5,12 +5,13 @@ concrete values too; analysis sees nothing of it.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import BuiltinFunctionType, FunctionType, MappingProxyType
 from typing import Any
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.graph.bounding import of_constant
 from scenic.graph.bounds import Bounds
 from scenic.graph.construction import make_node

@@ -10,12 +10,12 @@ import copy as shallow
 import dis
 from collections import OrderedDict, defaultdict, deque
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
 from types import BuiltinMethodType, CellType, CodeType, FunctionType, MethodType, ModuleType
 from typing import Any, Final, Protocol
 from weakref import ref
 
+from scenic.dataclass import dataclass
 from scenic.graph.node import Graph, Node
 from scenic.runtime.instances.objects import PLACEMENT, Point, put
 from scenic.runtime.python.class_members import members

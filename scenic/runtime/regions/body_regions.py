@@ -1,13 +1,13 @@
 """Regions that belong to an object: the space it fills, and the sides of its surface."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.graph import intervals
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind

@@ -4,13 +4,13 @@ Most things stand on something that does not move. Analysis sees where they may 
 as on a box, the orientation on the side is fixed, too.
 """
 
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import accumulate
 from typing import Any, Final
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.graph import quaternions
 from scenic.graph.bounds import Bounds
 from scenic.graph.intervals import EPSILON

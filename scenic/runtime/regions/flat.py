@@ -1,12 +1,12 @@
 """Regions of the plane, and columns above and below them, as shapely geometries over lanes; and how bodies meet them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph.kinds import Column
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.outlines import Geometries, cuts, shadows, shadows_meet, upright

@@ -5,12 +5,13 @@ certainly outside where that box lies beside the box in which the region lies, o
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph import intervals
 from scenic.graph.bounds import Bounds, Floats
 from scenic.graph.operations.narrowing import truth, where

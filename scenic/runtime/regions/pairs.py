@@ -1,9 +1,9 @@
 """Tables of what kinds of regions know of each other."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any, Final
 
+from scenic.dataclass import dataclass
 from scenic.language.errors import UnknownPairError
 from scenic.runtime.program.context import here
 from scenic.runtime.regions.base import Region

@@ -9,12 +9,12 @@ program's as one likes. The share of lanes that live at each block gives the pro
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
 from scenic.graph.draws import (
     Counter,

@@ -1,12 +1,12 @@
 """The draws of a plan in blocks, and which of them each check reads."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph.draws import box_addresses
 from scenic.graph.node import Graph, Node
 from scenic.runtime.sampling.checks import Check, CollisionCheck

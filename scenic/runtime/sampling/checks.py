@@ -1,12 +1,13 @@
 """Checks that a candidate has to pass to become a scene, each over many lanes at a time."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node

@@ -6,17 +6,19 @@ draws is independent of the others, so that each may be looked for alone (`sceni
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import accumulate
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph.bounding import over, overall
 from scenic.graph.bounds import Bounds
 from scenic.graph.draws import box_addresses
 from scenic.graph.node import Graph, Node
+from scenic.runtime.geometry.ragged import distinct
 from scenic.runtime.sampling.checks import Check, CollisionCheck, NodeCheck, ObjectNodes
 from scenic.runtime.sampling.engine import Engine, Plan
 from scenic.runtime.sampling.halving import Tree, any_passes, divide
@@ -94,7 +96,7 @@ def _split(plan: Plan) -> Components | None:
         if not isinstance(check, CollisionCheck):
             continue
         pairs = check.pairs[_may_meet(check, bounds)]
-        members = {member: joins.add(check.objects[member].all) for member in np.unique(pairs).tolist()}
+        members = {member: joins.add(check.objects[member].all) for member in distinct(pairs).tolist()}
         parts: dict[int, list[int]] = {}
         for number, (first, second) in enumerate(pairs.tolist()):
             joins.join(members[first], members[second])

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.graph.draws import Source, Words
+from scenic.runtime.geometry.ragged import distinct
 
 __all__ = ["Composed"]
 
@@ -57,5 +58,5 @@ class Composed:
         owners = np.array(
             [self._owner.get(place, first) - first for place in addresses.tolist()], dtype=np.intp
         )
-        for number in np.unique(owners).tolist():
+        for number in distinct(owners).tolist():
             yield number, np.flatnonzero(owners == number)

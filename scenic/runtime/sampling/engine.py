@@ -10,13 +10,14 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import islice, repeat
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
 from scenic.graph.domain import Domain
 from scenic.graph.draws import Counter, Lanes, Source, attempt_keys, scene_keys, seed_word

@@ -1,8 +1,8 @@
 """Estimates, component by component, of how many candidates pass, and of the share of each requirement in it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from scenic.dataclass import dataclass
 from scenic.language.spans import Span
 from scenic.runtime.sampling.engine import Engine
 from scenic.runtime.sampling.pending import Task

@@ -9,12 +9,12 @@ Estimates of how often each check holds decide where to divide, and whether that
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
 from scenic.graph.node import Graph
 from scenic.runtime.sampling.blocks import Piece, Reads, blocks, merged, pieces

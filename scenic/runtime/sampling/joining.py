@@ -8,12 +8,12 @@ candidates for a part are made ahead.
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph.draws import Lanes, Source, attempt_keys
 from scenic.runtime.geometry.ragged import expand
 from scenic.runtime.sampling.composed import Composed

@@ -1,8 +1,9 @@
 """Number of candidates to try at a time: measured, and without influence on the results."""
 
 import math
-from dataclasses import dataclass
 from typing import Final
+
+from scenic.dataclass import dataclass
 
 _FADING: Final = 0.8
 """Old measurements count less, since costs change with what is sampled."""

@@ -7,13 +7,14 @@ of a hundred parking lots are evaluated in one call. Those that have found nothi
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import islice
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
 from scenic.graph.draws import Lanes, Source, attempt_keys, scene_keys, seed_word
 from scenic.runtime.geometry.ragged import expand

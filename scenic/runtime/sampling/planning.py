@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph.bounding import forward, overall
 from scenic.graph.bounds import Bounds, Floats
 from scenic.graph.domain import Domain
@@ -366,7 +366,7 @@ def _collisions(program: Program) -> list[Check]:
     pairs = np.stack([first, second], axis=1)[wanted & ~settled]
     if not len(pairs):
         return []
-    shapes = [nodes[index].shape for index in np.unique(pairs).tolist()]
+    shapes = [nodes[index].shape for index in distinct(pairs).tolist()]
     recall(shape.value.mesh for shape in shapes if shape.is_constant)
     return [CollisionCheck(nodes, pairs)]
 

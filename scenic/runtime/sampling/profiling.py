@@ -6,8 +6,9 @@ evaluated together for nodes of several lines are divided among the lines.
 
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from scenic.dataclass import dataclass
 from scenic.graph.schedule import AnyStep, Scheduler, Step
 from scenic.language.spans import Span
 from scenic.runtime.sampling.checks import Check

@@ -1,8 +1,8 @@
 """Reports of why candidates were rejected, with counts that do not depend on the order of checks."""
 
-from dataclasses import dataclass
 from typing import Final
 
+from scenic.dataclass import dataclass
 from scenic.language.spans import Span
 
 CORRELATED: Final = 0.1

@@ -6,10 +6,10 @@ So checks share a stage while their columns are small. None of this changes whic
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
+from scenic.dataclass import dataclass
 from scenic.graph.node import Node
 from scenic.graph.schedule import Schedule, Scheduler
 from scenic.runtime.sampling.checks import Check

@@ -1,13 +1,13 @@
 """Scenes in columns: one value of many scenes at a time, as arrays where the graph has arrays."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph.kinds import Kind
 from scenic.runtime.instances.objects import Object
 from scenic.runtime.python.samples import dependencies

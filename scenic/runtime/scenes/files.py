@@ -2,7 +2,6 @@
 
 import os
 import secrets
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -24,6 +23,8 @@ def naming(path: Path) -> Iterator[None]:
 
 def unnamed(path: Path) -> BinaryIO:
     """A file in the folder of another one."""
+    import tempfile  # slow to import
+
     with naming(path):
         return tempfile.TemporaryFile(dir=path.parent)
 

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from scenic.graph.domain import Domain
 from scenic.graph.draws import Counter, Lanes, Points, Source
 from scenic.graph.points import PointSet
-from scenic.runtime.sampling.approximate import approximated
 from scenic.runtime.sampling.components import Components, components_of, divided
 from scenic.runtime.sampling.driving import driven
 from scenic.runtime.sampling.engine import Accepted, Engine, Plan
@@ -113,6 +112,8 @@ class Sampler:
         """Scenes of a seed that are only approximately of the program's law; see `Scenario.stream`."""
         if self.impossible:
             return self._not_found((seed, k) for k in range(first, first + count))
+        from scenic.runtime.sampling.approximate import approximated  # few runs want it
+
         return approximated(
             self.engine,
             seed,

@@ -7,11 +7,11 @@ or of the same with other options, is refused.
 import hashlib
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.graph.draws import Counter, Points, Source
 from scenic.graph.node import Graph, Node
 from scenic.language.errors import SerializationError

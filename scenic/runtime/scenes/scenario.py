@@ -3,15 +3,14 @@
 import random
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor
-from dataclasses import dataclass
 from itertools import chain, repeat
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.graph.domain import Domain
 from scenic.graph.node import Graph
 from scenic.graph.points import PointSet
@@ -44,6 +43,9 @@ from scenic.runtime.scenes.sampler import Sampler
 from scenic.runtime.scenes.saving import SavedScene, draws_of, source_of
 from scenic.runtime.scenes.scene import Family, Scene
 from scenic.runtime.scenes.services import Services
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
 
 
 @dataclass(frozen=True, slots=True)
@@ -316,7 +318,7 @@ class Scenario(Generating):
         source: PointSet | None = None,
         approximate: int | None = None,
         processes: int = 1,
-        executor: Executor | None = None,
+        executor: "Executor | None" = None,
     ) -> list[Scene]:
         """``n`` scenes of a seed (drawn from Python's ``random`` if not given).
 

@@ -2,10 +2,10 @@
 
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
+from scenic.dataclass import dataclass
 from scenic.graph.node import Node
 from scenic.language.spans import Span
 from scenic.runtime.dynamics.declarations import Copier

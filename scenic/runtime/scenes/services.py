@@ -1,10 +1,11 @@
 """Services of a scenario that layers above the runtime compute, handed to it when it is made."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
+from scenic.dataclass import dataclass
 from scenic.runtime.scenes.scene import Scene
 
 __all__ = ["Services"]

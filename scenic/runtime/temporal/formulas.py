@@ -1,7 +1,8 @@
 """Temporal formulas: atoms (indices into what the caller evaluates in each state) and operators."""
 
-from dataclasses import dataclass
 from typing import Final, TypeAlias
+
+from scenic.dataclass import dataclass
 
 __all__ = ["ARITY", "Atom", "Compound", "Formula", "is_temporal"]
 

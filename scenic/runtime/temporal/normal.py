@@ -3,9 +3,9 @@
 Each subformula is one object, compared and hashed by identity.
 """
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
+from scenic.dataclass import dataclass
 from scenic.runtime.temporal.formulas import Atom, Formula
 
 __all__ = ["Junction", "Literal", "Next", "Normal", "Obligation", "Until", "normal"]

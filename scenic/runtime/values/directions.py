@@ -2,9 +2,10 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
+
+from scenic.dataclass import dataclass
 
 __all__ = ["DIRECTIONS", "Direction"]
 

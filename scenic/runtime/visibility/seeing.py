@@ -4,12 +4,12 @@ Observers and targets are known by what they have, so that classes of objects ca
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final, Literal
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Graph, Node
 from scenic.graph.operation import Call, Operation, always

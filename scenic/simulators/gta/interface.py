@@ -1,10 +1,10 @@
 """Models of cars, as toolkits import them. Sizes are nominal, since the game is not needed to sample."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Final
 
+from scenic.dataclass import dataclass
 from scenic.runtime.elements.distributions import Discrete, Uniform
 
 __all__ = ["CarModel"]

@@ -5,11 +5,12 @@ and touch others with its convex parts. The frame of a body is that of the objec
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Final
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.language.errors import SimulationCreationError
 from scenic.simulators.cameras import carried
 from scenic.simulators.commands import model_of

@@ -1,9 +1,9 @@
 """The controls of a car in the built-in simulator."""
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
+from scenic.dataclass import dataclass
 from scenic.domains.driving.actions import Steers, Walks
 from scenic.runtime.program.builtins import running_simulation
 

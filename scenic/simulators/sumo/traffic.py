@@ -3,9 +3,10 @@
 import math
 import random
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Final
 
+from scenic.dataclass import dataclass
 from scenic.language.errors import SimulationCreationError, SimulationError
 
 __all__ = ["Body", "Pose", "Traffic"]

@@ -1,11 +1,11 @@
 """Axes of Webots worlds, and how places and turns convert between them and ours (x east, y north, z up)."""
 
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.dataclass import dataclass
 from scenic.language.errors import SimulationCreationError
 from scenic.runtime.values.values import Orientation
 

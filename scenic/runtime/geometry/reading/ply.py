@@ -1,13 +1,13 @@
 """Stanford PLY, text and binary: the elements ``vertex`` and ``face``."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry.poses import Indices
 from scenic.runtime.geometry.reading.soup import NotCoveredError, Soup, fans
 

@@ -5,11 +5,12 @@ the azimuth ``-h/2 + (i + 1/2) h/H``, so that rays are spread evenly and none is
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import Final
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry.poses import Floats, Indices
 from scenic.runtime.geometry.ragged import expand, pieces
 from scenic.runtime.geometry.visibility.views import Extents, Views

@@ -5,11 +5,11 @@ serves every lane, pose and size. Embree names the face in single precision; whe
 in double precision, and where the single-precision answer is in doubt, every face that the ray may meet is looked at.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.embree import RayScene
 from scenic.runtime.geometry.facegrid import face_grid

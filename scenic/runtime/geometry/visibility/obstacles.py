@@ -1,10 +1,11 @@
 """The bodies that may stand between observers and what they look at."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.visibility.hits import Placed, place

@@ -8,13 +8,14 @@ width, where two occluders touch.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from enum import IntEnum
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices
 from scenic.runtime.geometry.ragged import expand

@@ -6,11 +6,11 @@ checked in double precision against every face it may meet, so that no body is s
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
+from scenic.dataclass import dataclass
 from scenic.runtime.geometry import inside
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh

@@ -1,6 +1,5 @@
 """Views: the positions and directions of observers, and the range of directions in which they see a box."""
 
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 from typing import Final
@@ -8,6 +7,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.graph import quaternions
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
 

@@ -1,7 +1,8 @@
 """The cars that come with Webots, by the names of their PROTO files; sizes are those of their makers."""
 
-from dataclasses import dataclass
 from typing import Final
+
+from scenic.dataclass import dataclass
 
 __all__ = ["CarModel", "carModels", "modelWithName"]
 
