@@ -1,22 +1,24 @@
 """Places where work is done: processes of this machine, any executor, a Dask cluster. All give the same results.
 
-An engine calls a function on arguments and yields index and result as they come. Functions that leave this process carry
-their program with them, and refuse to work where versions or the program's graph differ from the parent's.
+An engine calls a function on arguments and yields index and result as they come. Functions that leave this process are
+`Portable`: they refuse to work where versions or the program's graph differ from those of this process.
 """
 
+import os
 import pickle
-import platform
+import time
 from collections.abc import Callable, Iterable, Iterator
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final, Protocol, Self, TypeVar
 
-from scenic.language.errors import Located, UnsupportedError
+from scenic.batch.portable import ClusterError, Portable
+from scenic.batch.upcoming import Upcoming
+from scenic.language.errors import UnsupportedError
 from scenic.language.extras import installation
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor, Future
 
-__all__ = ["ClusterError", "DaskCluster", "Engine", "OverExecutor", "Processes", "versions"]
+__all__ = ["ClusterError", "DaskCluster", "Engine", "OverExecutor", "Processes"]
 
 _Argument = TypeVar("_Argument")
 _Result = TypeVar("_Result")
@@ -24,14 +26,8 @@ _Result = TypeVar("_Result")
 _AHEAD: Final = 2
 """Arguments given to an executor for each of its workers: one under way, one waiting."""
 
-_LIBRARIES: Final = ("numpy", "scipy", "trimesh", "manifold3d", "embreex", "shapely")
-"""Libraries whose version may change a scene."""
-
-
-class ClusterError(Located):
-    """A cluster that cannot be reached, is lost, or whose workers differ from this process."""
-
-    code = "SC611"
+_COUNTED: Final = 2.0
+"""Seconds until the workers of a cluster are counted again: they may come and go."""
 
 
 class Engine(Protocol):
@@ -47,11 +43,13 @@ class Engine(Protocol):
         arguments: Iterable[_Argument],
         *,
         lost: Callable[[_Argument, int], _Result],
+        spread: int | None = None,
     ) -> Iterator[tuple[int, _Result]]:
         """Call ``function``, which raises nothing, on each of the arguments; yields index and result as they come.
 
-        Arguments are taken when a worker is free, so that later ones may depend on earlier results. Where a worker dies,
-        ``lost`` makes the result from the argument that it was at and its exit code.
+        Arguments are taken when a worker is free, so that later ones may depend on earlier results; no more than
+        ``spread`` ahead of the oldest one without a result. Where a worker dies, ``lost`` makes the result from the
+        argument that it was at and its exit code.
         """
 
 
@@ -67,11 +65,12 @@ class Processes:
         arguments: Iterable[_Argument],
         *,
         lost: Callable[[_Argument, int], _Result],
+        spread: int | None = None,
     ) -> Iterator[tuple[int, _Result]]:
         """See `Engine.run`."""
         from scenic.batch import workers  # takes a sixteenth of a start, which one process can do without
 
-        return workers.run(function, arguments, jobs=self.jobs, lost=lost)
+        return workers.run(function, arguments, jobs=self.jobs, lost=lost, spread=spread)
 
 
 class OverExecutor:
@@ -93,36 +92,39 @@ class OverExecutor:
         arguments: Iterable[_Argument],
         *,
         lost: Callable[[_Argument, int], _Result],
+        spread: int | None = None,
     ) -> Iterator[tuple[int, _Result]]:
         """See `Engine.run`."""
-        from concurrent.futures import FIRST_COMPLETED, wait  # like the next ones slow to import
-        from concurrent.futures.process import BrokenProcessPool
+        from concurrent.futures.process import BrokenProcessPool  # like the next one slow to import
+        from queue import SimpleQueue
 
-        remote = _Remote(function)
-        waiting = enumerate(arguments)
-        busy: dict[Future[bytes], tuple[int, _Argument]] = {}
+        remote = Portable(function)
+        upcoming = Upcoming(arguments, spread)
+        busy: dict[Future[bytes], int] = {}
+        done: SimpleQueue[Future[bytes]] = SimpleQueue()
 
         def give() -> None:
-            upcoming = next(waiting, None)
-            if upcoming is not None:
-                busy[self._executor.submit(remote, upcoming[1])] = upcoming
+            while len(busy) < _AHEAD * self.jobs and (taken := upcoming.take()) is not None:
+                index, argument = taken
+                future = self._executor.submit(remote, argument)
+                busy[future] = index
+                future.add_done_callback(done.put)
 
         try:
-            for _ in range(_AHEAD * self.jobs):
-                give()
+            give()
             while busy:
-                done, _ = wait(busy, return_when=FIRST_COMPLETED)
-                for future in done:
-                    index, _ = busy.pop(future)
-                    try:
-                        result = pickle.loads(future.result())
-                    except BrokenProcessPool as error:
-                        raise ClusterError(
-                            f"a process of the executor has died: {error}",
-                            help="it may lack memory: use fewer processes",
-                        ) from error
-                    give()
-                    yield index, result
+                future = done.get()
+                index = busy.pop(future)
+                try:
+                    result = pickle.loads(future.result())
+                except BrokenProcessPool as error:
+                    raise ClusterError(
+                        f"a process of the executor has died: {error}",
+                        help="it may lack memory: use fewer processes",
+                    ) from error
+                upcoming.finish(index)
+                give()
+                yield index, result
         finally:
             for future in busy:
                 future.cancel()
@@ -151,6 +153,8 @@ class DaskCluster:
         self._distributed: Any = distributed  # its functions have no types
         self._label = label
         self._address = address
+        self._threads = 0
+        self._recount = 0.0
         try:
             self._client: Any = self._distributed.Client(address, timeout="10s", set_as_default=False)
         except (OSError, ValueError) as error:
@@ -162,8 +166,11 @@ class DaskCluster:
     @property
     def jobs(self) -> int:
         """Number of tasks that the cluster runs at a time; one where it has no workers yet."""
-        threads: int = sum(self._client.nthreads().values())
-        return max(1, threads)
+        now = time.monotonic()
+        if now >= self._recount:
+            self._recount = now + _COUNTED
+            self._threads = sum(self._client.nthreads().values())
+        return max(1, self._threads)
 
     def __enter__(self) -> Self:
         return self
@@ -177,25 +184,24 @@ class DaskCluster:
         arguments: Iterable[_Argument],
         *,
         lost: Callable[[_Argument, int], _Result],
+        spread: int | None = None,
     ) -> Iterator[tuple[int, _Result]]:
         """See `Engine.run`. Dask runs the task of a lost worker again; ``lost`` answers when that has failed, too."""
-        remote = _Remote(function)
-        waiting = enumerate(arguments)
+        remote = Portable(function)
+        upcoming = Upcoming(arguments, spread)
         busy: dict[Any, tuple[int, _Argument]] = {}
         done = self._distributed.as_completed(loop=self._client.loop)
-        token = f"{id(remote):x}"
+        token = os.urandom(6).hex()  # other commands may use the same cluster
 
         def give() -> None:
-            upcoming = next(waiting, None)
-            if upcoming is not None:
-                key = f"{self._label}-{token}-{upcoming[0]}"
-                future = self._client.submit(remote, upcoming[1], key=key, pure=False)
-                busy[future] = upcoming
+            while len(busy) < _AHEAD * self.jobs and (taken := upcoming.take()) is not None:
+                key = f"{self._label}-{token}-{taken[0]}"
+                future = self._client.submit(remote, taken[1], key=key, pure=False)
+                busy[future] = taken
                 done.add(future)
 
         try:
-            for _ in range(_AHEAD * self.jobs):
-                give()
+            give()
             while busy:
                 future = next(done)
                 index, argument = busy.pop(future)
@@ -208,6 +214,7 @@ class DaskCluster:
                     raise error
                 else:
                     result = pickle.loads(future.result())
+                upcoming.finish(index)
                 give()
                 yield index, result
         except (OSError, self._distributed.CancelledError, StopIteration) as error:
@@ -221,48 +228,3 @@ class DaskCluster:
             f"the connection to the Dask scheduler at '{self._address}' is lost",
             help="what is complete is kept; give the command again with --resume when the cluster is back",
         )
-
-
-class _Remote:
-    """A function of this process as other processes, perhaps of other machines, call it; it returns pickled results."""
-
-    def __init__(self, function: Callable[[Any], Any]) -> None:
-        self._versions = versions()
-        self._payload = pickle.dumps(function, protocol=5)
-
-    def __call__(self, argument: Any) -> bytes:
-        check_versions(self._versions)
-        return pickle.dumps(_unpickled(self._payload)(argument), protocol=5)
-
-
-@lru_cache(maxsize=2)
-def _unpickled(payload: bytes) -> Callable[[Any], Any]:
-    """The function, with its program compiled once in each process."""
-    function: Callable[[Any], Any] = pickle.loads(payload)
-    return function
-
-
-def versions() -> dict[str, str]:
-    """Versions of Python, of this package and of the libraries that may change a scene."""
-    found = {"python": platform.python_version(), "scenic": _version("scenic-lang")}
-    return found | {name: _version(name) for name in _LIBRARIES}
-
-
-def _version(name: str) -> str:
-    from importlib import metadata  # slow to import
-
-    try:
-        return metadata.version(name)
-    except metadata.PackageNotFoundError:
-        return "none"
-
-
-def check_versions(wanted: dict[str, str]) -> None:
-    """Raise `ClusterError` where this process has other versions than ``wanted``."""
-    mine = versions()
-    for name, version in wanted.items():
-        if mine.get(name) != version:
-            raise ClusterError(
-                f"a worker has {name} {mine.get(name)}, this process has {name} {version}",
-                help="install the same versions everywhere: other versions may give other scenes",
-            )

@@ -2,20 +2,18 @@
 
 import json
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, field, replace
 from pathlib import Path
 from typing import Any, Final, Self
 
-from scenic.batch.engines import versions
+from scenic.batch.portable import mesh_digests, versions
 from scenic.dataclass import dataclass
 from scenic.formats.files import write
-from scenic.formats.mesh_files import digest_of
 from scenic.language.errors import Located
 from scenic.runtime.scenes.scenario import Scenario
-from scenic.runtime.values.choices import options_of
 
-__all__ = ["FORMAT", "NAME", "VERSION", "DatasetError", "Manifest", "Part", "mesh_digests"]
+__all__ = ["FORMAT", "NAME", "VERSION", "DatasetError", "Manifest", "Part"]
 
 FORMAT: Final = "scenic-dataset"
 VERSION: Final = 1
@@ -203,26 +201,3 @@ _SETTINGS: Final = (
     "program", "digest", "fingerprint", "seed", "first", "form", "part_size", "points", "max_attempts", "properties",
     "images", "meshes", "versions",
 )  # fmt: skip
-
-
-def mesh_digests(scenario: Scenario) -> dict[str, str]:
-    """Digests of the mesh files of a scenario's shapes, by their paths relative to the program."""
-    folder = Path(scenario.filename).absolute().parent
-    found = {}
-    for path in _mesh_files(scenario):
-        try:
-            name = path.relative_to(folder).as_posix()
-        except ValueError:
-            name = path.name
-        found[name] = digest_of(path)
-    return dict(sorted(found.items()))
-
-
-def _mesh_files(scenario: Scenario) -> Iterable[Path]:
-    for thing in scenario.objects:
-        shape = thing.__dict__.get("shape")
-        for option in options_of(shape) or (shape,):
-            source = getattr(option, "source", None)
-            path = source.as_dict().get("path") if source is not None else None
-            if path is not None and Path(path).is_file():
-                yield Path(path).absolute()

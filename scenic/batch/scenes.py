@@ -36,10 +36,16 @@ _SECONDS: Final = 0.8
 _SMALLEST: Final = 6
 """The smallest pieces are such a part of the usual one: more would take longer to start than to make."""
 
+_FEWEST: Final = 32
+"""The same for few workers, of which one may be at a piece that takes long."""
+
 _LONGEST: Final = 4096
 """Scenes of a piece, at most: what has to be kept until those before it are there."""
 
 _TRIES: Final = 3
+
+_SPREAD: Final = 8
+"""Pieces for each worker, at most, from the first that is not there to the last under way: more would fill the memory."""
 
 Encode = Callable[[Scenario, Sequence[Scene]], bytes]
 """Turns some scenes of a scenario into bytes; it must be picklable where processes are not forked."""
@@ -201,22 +207,22 @@ def in_processes(scenario: Scenario, encode: Encode, job: Job, engine: Engine) -
 
     Raises `WorkerDiedError` where processes keep dying, and whatever sampling raises.
     """
-    yield from _ordered(scenario, encode, _Pieces(job, engine.jobs), engine)
+    yield from _ordered(scenario, encode, _Pieces(job, engine), engine)
 
 
 class _Pieces:
     """A job in pieces that take about as long each, smaller ones at the end, so that all processes end together."""
 
-    def __init__(self, job: Job, jobs: int) -> None:
+    def __init__(self, job: Job, engine: Engine) -> None:
         self._job = job
-        self._jobs = jobs
+        self._engine = engine
         self._size = self._usual = _FIRST
 
     def __iter__(self) -> Iterator[Job]:
         job, first = self._job, self._job.first
         while first < job.last:
             left = job.last - first
-            fair = -(-left // (2 * self._jobs))
+            fair = -(-left // (2 * self._engine.jobs))
             last = first + min(left, self._size, max(fair, self._usual // _SMALLEST))
             yield replace(job, first=first, last=last)
             first = last
@@ -253,7 +259,10 @@ def _made(
 ) -> Iterator[tuple[int, Made]]:
     """The results of pieces as they come, with the numbers of the pieces."""
     return engine.run(
-        partial(_make, scenario, encode), pieces, lost=lambda piece, code: Made(piece, b"", (), died=code)
+        partial(_make, scenario, encode),
+        pieces,
+        lost=lambda piece, code: Made(piece, b"", (), died=code),
+        spread=max(_FEWEST, _SPREAD * engine.jobs),
     )
 
 

@@ -20,6 +20,8 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess, parent_process
 from typing import Any, Final, TypeVar
 
+from scenic.batch.upcoming import Upcoming
+
 __all__ = ["DEFAULT_METHOD", "run", "usable_cpus"]
 
 _Argument = TypeVar("_Argument")
@@ -45,16 +47,19 @@ def run(
     jobs: int,
     lost: Callable[[_Argument, int], _Result],
     method: str = DEFAULT_METHOD,
+    spread: int | None = None,
 ) -> Iterator[tuple[int, _Result]]:
     """Call ``function``, which raises nothing, on each of the arguments; yields index and result as they come.
 
-    Arguments are taken when a process is free, so that later ones may depend on earlier results.
+    Arguments are taken when a process is free, so that later ones may depend on earlier results; no more than ``spread`` ahead
+    of the oldest one without a result.
 
     Where a process dies, ``lost`` makes the result from the argument that it was at and its exit code, and another
     process takes its place. When the iterator is closed, which Ctrl-C does too, the processes are ended.
     """
     context: Any = multiprocessing.get_context(method)
-    waiting = enumerate(arguments)
+    upcoming = Upcoming(arguments, spread)
+    idle: list[tuple[Connection, BaseProcess]] = []
     busy: dict[Connection, tuple[BaseProcess, int, _Argument]] = {}
     processes: list[BaseProcess] = []
 
@@ -69,25 +74,16 @@ def run(
         processes.append(process)
         return ours, process
 
-    def give(connection: Connection, process: BaseProcess, upcoming: tuple[int, _Argument] | None) -> None:
-        """The next argument to a process, or the message that there is none."""
-        with contextlib.suppress(OSError):  # if it died, that is noticed when its answer is read
-            if upcoming is None:
-                connection.send(None)
-                return
-            index, argument = upcoming
-            busy[connection] = (process, index, argument)
-            connection.send((argument,))
-
-    def replace() -> None:
-        """Another process, if there is something left to do for it."""
-        upcoming = next(waiting, None)
-        if upcoming is not None:
-            give(*start(), upcoming)
+    def give() -> None:
+        """Give the next arguments to idle processes, and start new ones where there are too few."""
+        while len(busy) < jobs and (taken := upcoming.take()) is not None:
+            connection, process = idle.pop() if idle else start()
+            busy[connection] = (process, *taken)
+            with contextlib.suppress(OSError):  # if it died, that is noticed when its answer is read
+                connection.send((taken[1],))
 
     try:
-        for _ in range(jobs):
-            replace()
+        give()
         while busy:
             ready: list[Any] = wait(list(busy))  # what a connection is differs between systems
             for connection in ready:
@@ -96,11 +92,12 @@ def run(
                     result = _received(connection)
                 except (EOFError, OSError):  # it died, perhaps in the middle of its answer
                     process.join()
-                    yield index, lost(argument, process.exitcode or 0)
-                    replace()
+                    result = lost(argument, process.exitcode or 0)
                 else:
-                    give(connection, process, next(waiting, None))
-                    yield index, result
+                    idle.append((connection, process))
+                upcoming.finish(index)
+                give()
+                yield index, result
     finally:
         for process in processes:
             process.terminate()
@@ -120,10 +117,7 @@ def _work(function: Callable[[Any], Any], connection: Connection, inherited: Con
     sentinels = [] if parent is None else [parent.sentinel]
     with contextlib.suppress(EOFError, OSError):  # the parent has gone, perhaps in the middle of a message
         while connection in wait([connection, *sentinels]):
-            message = connection.recv()
-            if message is None:
-                return
-            _answer(connection, function(*message))
+            _answer(connection, function(*connection.recv()))
 
 
 def _answer(connection: Connection, result: Any) -> None:

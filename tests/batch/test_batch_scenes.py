@@ -403,7 +403,7 @@ def test_lines_of_any_other_kind_are_refused(
 @pytest.mark.parametrize("jobs", [2, 7])
 def test_pieces_are_a_job_whole_however_long_they_take(seconds: float, jobs: int) -> None:
     """None is empty, and none holds more than may wait in memory."""
-    pieces = _Pieces(Job(seed=1, first=3, last=9003, max_attempts=None, deadline=None), jobs)
+    pieces = _Pieces(Job(seed=1, first=3, last=9003, max_attempts=None, deadline=None), Processes(jobs))
     reached = 3
     for number, piece in enumerate(pieces):
         assert piece.first == reached < piece.last <= reached + 4096
