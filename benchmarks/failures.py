@@ -242,7 +242,7 @@ def content(folder: Path) -> dict[str, str]:
 
 
 def differences(found: dict[str, str], wanted: dict[str, str]) -> list[str]:
-    """What is wrong with files."""
+    """Differences between the files that were found and those that are wanted."""
     return [
         *(f"{name} is missing" for name in wanted if name not in found),
         *(f"{name} is left over" for name in found if name not in wanted),
