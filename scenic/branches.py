@@ -1,4 +1,4 @@
-"""Branches of `if` in behaviors that no scene reaches.
+"""Branches that no scene reaches in code that runs during simulations: of `if`, `while`, interrupts, conditional expressions.
 
 A condition over drawn values alone, which no step of a simulation changes, is built again as a node of the value graph; then
 analysis decides whether the requirements leave scenes in which it holds, and scenes in which it does not.
@@ -7,62 +7,56 @@ analysis decides whether the requirements leave scenes in which it holds, and sc
 import ast
 from collections.abc import Container, Iterator, Mapping, Sequence
 from copy import deepcopy
+from enum import StrEnum
 from pathlib import Path
 from types import CodeType
-from typing import Any, Final
+from typing import Any, Final, get_args
 
 from scenic.analysis.contraction import contract
 from scenic.analysis.facts import Fact
 from scenic.compiler import tree as scenic
 from scenic.compiler.compile import compile_text
 from scenic.compiler.parser import parse
-from scenic.compiler.traversal import walk
+from scenic.compiler.traversal import parts
 from scenic.compiler.unparser import unparse
 from scenic.dataclass import dataclass
 from scenic.graph.node import Graph, Node
 from scenic.language.diagnostics import Diagnostic, Severity
-from scenic.language.names import LIFTED_FUNCTIONS
 from scenic.language.spans import Span
-from scenic.runtime.dynamics.definitions import Behavior
 from scenic.runtime.program.context import current
 from scenic.runtime.program.outcome import Program
 from scenic.runtime.program.prelude import Loader
-from scenic.runtime.values.values import is_random
+from scenic.settled import PARAMETERS, Code, Settled
 
 __all__ = ["prove_branches"]
 
-_PARAMETERS: Final = "globalParameters"
 _PREFIX: Final = "_branch_"
 _FILENAME: Final = "<branch>"
 
-_READABLE: Final = (
-    ast.Name,
-    ast.Constant,
-    ast.Compare,
-    ast.BoolOp,
-    ast.UnaryOp,
-    ast.BinOp,
-    ast.IfExp,
-    ast.Call,
-    ast.Attribute,
-    scenic.Operation,
-    ast.operator,
-    ast.cmpop,
-    ast.boolop,
-    ast.unaryop,
-    ast.expr_context,
-)
-"""Nodes that a condition may consist of."""
+_INNER: Final = (*get_args(Code), ast.AsyncFunctionDef, ast.ClassDef)
+"""Definitions, which are looked at by themselves."""
 
-_INNER: Final = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)
+
+class _Way(StrEnum):
+    """Ways on from a condition, each with what is said where it is never taken."""
+
+    BRANCH = "the branch of this condition is never taken: it holds in no scene that reaches it"
+    ELSE = "the `else` of this condition is never reached: the condition holds in every scene that reaches it"
+    LOOP = "the loop of this condition is never entered: it holds in no scene that reaches it"
+    INTERRUPT = "this interrupt never happens: its condition holds in no scene that reaches it"
+    VALUE = "the value before this condition is never used: it holds in no scene that reaches it"
+    OTHER_VALUE = "the value after the `else` of this condition is never used: the condition holds in every scene that reaches it"
+
+
+_Path = tuple[tuple[ast.expr, bool], ...]
 
 
 @dataclass(frozen=True, slots=True)
 class _Branch:
-    """One way through an `if`: the conditions that lead to it, the last of which is the one that is blamed."""
+    """One way on: the conditions that lead to it, the last of which is the one that is blamed."""
 
-    path: tuple[tuple[ast.expr, bool], ...]
-    is_else: bool
+    path: _Path
+    way: _Way
 
     @property
     def test(self) -> ast.expr:
@@ -83,134 +77,54 @@ def prove_branches(
 
     """
     tree = parse(text, filename=filename).tree
-    definitions = [item for item in tree.body if isinstance(item, scenic.BehaviorDef)]
-    found: list[Diagnostic] = []
-    for definition in definitions:
-        values = _Values(definition, tree, program)
-        for branch in _branches(definition.body):
-            told = [values.readings(test) for test, _ in branch.path]
-            if not told[-1]:
+    settled = Settled(tree, program)
+    found: list[_Branch] = []
+    dead: set[_Path] = set()
+    for code, body in settled.code():
+        for branch in _branches(body):
+            told = [settled.readings(test, code) for test, _ in branch.path]
+            if not told[-1] or any(branch.path[:end] in dead for end in range(len(told))):
                 continue
             uses = max(map(len, told))
             if all(_is_dead(branch, told, use, program, roots, facts) for use in range(uses)):
-                found.append(_diagnostic(branch, filename))
-    return tuple(found)
+                found.append(branch)
+                dead.add(branch.path)
+    found.sort(key=lambda branch: (branch.test.lineno, branch.test.col_offset))
+    return tuple(_diagnostic(branch, filename) for branch in found)
 
 
 def _branches(body: Sequence[ast.stmt]) -> Iterator[_Branch]:
-    """All branches of the `if` statements of a body, outer ones first."""
-    stack: list[tuple[ast.stmt, tuple[tuple[ast.expr, bool], ...]]] = [(item, ()) for item in reversed(body)]
+    """All branches in the statements of a body, outer ones first."""
+    stack: list[tuple[ast.AST, _Path]] = [(item, ()) for item in reversed(body)]
     while stack:
-        statement, path = stack.pop()
-        if isinstance(statement, _INNER):
+        part, path = stack.pop()
+        if isinstance(part, _INNER):
             continue
-        if isinstance(statement, ast.If):
-            taken, passed = (*path, (statement.test, True)), (*path, (statement.test, False))
-            yield _Branch(taken, is_else=False)
-            is_elif = len(statement.orelse) == 1 and isinstance(statement.orelse[0], ast.If)
-            if statement.orelse and not is_elif:
-                yield _Branch(passed, is_else=True)
-            stack += [(item, passed) for item in reversed(statement.orelse)]
-            stack += [(item, taken) for item in reversed(statement.body)]
-            continue
-        inner = [part for part in ast.iter_child_nodes(statement) if not isinstance(part, ast.expr)]
-        for part in reversed(inner):
-            if isinstance(part, ast.stmt):
-                stack.append((part, path))
-            else:  # handlers, interrupts, cases
-                stack += [
-                    (item, path)
-                    for item in reversed(list(ast.iter_child_nodes(part)))
-                    if isinstance(item, ast.stmt)
-                ]
-
-
-class _Values:
-    """The values that names in a behavior have throughout every simulation of a scene."""
-
-    def __init__(self, definition: scenic.BehaviorDef, tree: ast.Module, program: Program) -> None:
-        self._program = program
-        self._uses: list[Mapping[str, Any]] | None = None
-        self._names: dict[str, Any] = {}
-        self._assigned = {
-            part.id
-            for item in definition.body
-            for part in walk(item)
-            if isinstance(part, ast.Name) and not isinstance(part.ctx, ast.Load)
-        }
-        changed = {name for part in walk(tree) if isinstance(part, ast.Global) for name in part.names}
-        arguments = definition.args
-        self._parameters = {
-            item.arg
-            for item in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, arguments.vararg, arguments.kwarg)
-            if item is not None
-        }  # fmt: skip
-        kind = next((item for item in program.invocables if item._definition.name == definition.name), None)
-        if kind is None or kind._definition.body is None:
-            return
-        scope = kind._definition.body.__globals__
-        self._names = {
-            name: value for name, value in scope.items() if name not in changed and _is_settled(value)
-        }
-        if not _is_used_inside(definition.name, tree):
-            own = [item.behavior for item in program.objects if item.behavior is not None]
-            if all(isinstance(item, Behavior) for item in own):
-                self._uses = [item._arguments.arguments for item in own if isinstance(item, kind)]
-
-    def readings(self, test: ast.expr) -> list[dict[str, Any]]:
-        """The values of the names in a condition, for each use of the behavior; none where some may change, or are not known."""
-        own: dict[str, Any] = {}
-        parameters: set[str] = set()
-        for part in walk(test):
-            if not isinstance(part, _READABLE) or (
-                isinstance(part, scenic.Operation) and None in part.operands
-            ):
-                return []
-            if isinstance(part, ast.Attribute) and not self._is_parameter(part):
-                return []
-            if isinstance(part, ast.Call) and not (
-                isinstance(part.func, ast.Name) and part.func.id in LIFTED_FUNCTIONS
-            ):
-                return []
-            if not isinstance(part, ast.Name) or part.id == _PARAMETERS:
-                continue
-            if part.id in self._assigned:
-                return []
-            if part.id in self._parameters:
-                parameters.add(part.id)
-            elif part.id in self._names:
-                own[part.id] = self._names[part.id]
-            elif part.id not in LIFTED_FUNCTIONS:
-                return []
-        if not parameters:
-            return [own]
-        uses = self._uses or []
-        if not all(name in use and _is_settled(use[name]) for use in uses for name in parameters):
-            return []
-        return [{**own, **{name: use[name] for name in parameters}} for use in uses]
-
-    def _is_parameter(self, part: ast.Attribute) -> bool:
-        return (
-            isinstance(part.value, ast.Name)
-            and part.value.id == _PARAMETERS
-            and _is_settled(self._program.parameters.get(part.attr))
-        )
-
-
-def _is_settled(value: Any) -> bool:
-    """Tell whether a value is drawn with the scene, or a constant."""
-    return isinstance(value, bool | int | float | str) or is_random(value)
-
-
-def _is_used_inside(name: str, tree: ast.Module) -> bool:
-    """Tell whether code that runs in simulations may start the behavior of a name."""
-    later = (scenic.BehaviorDef, scenic.MonitorDef, scenic.ScenarioDef, *_INNER)
-    return any(
-        isinstance(part, ast.Name) and part.id == name
-        for item in tree.body
-        if isinstance(item, later)
-        for part in walk(item)
-    )
+        if isinstance(part, ast.If | ast.While | ast.IfExp):
+            taken, passed = (*path, (part.test, True)), (*path, (part.test, False))
+            inside, otherwise = (
+                ([part.body], [part.orelse]) if isinstance(part, ast.IfExp) else (part.body, part.orelse)
+            )
+            if isinstance(part, ast.If):
+                yield _Branch(taken, _Way.BRANCH)
+                is_elif = len(otherwise) == 1 and isinstance(otherwise[0], ast.If)
+                if otherwise and not is_elif:
+                    yield _Branch(passed, _Way.ELSE)
+            elif isinstance(part, ast.While):
+                yield _Branch(taken, _Way.LOOP)
+            else:
+                yield _Branch(taken, _Way.VALUE)
+                yield _Branch(passed, _Way.OTHER_VALUE)
+            stack += [(item, passed) for item in reversed(otherwise)]
+            stack += [(item, taken) for item in reversed(inside)]
+            stack.append((part.test, path))
+        elif isinstance(part, scenic.Interrupt):
+            taken = (*path, (part.condition, True))
+            yield _Branch(taken, _Way.INTERRUPT)
+            stack += [(item, taken) for item in reversed(part.body)]
+            stack.append((part.condition, path))
+        else:
+            stack += [(item, path) for item in reversed(parts(part))]
 
 
 def _is_dead(
@@ -255,7 +169,7 @@ class _Named(ast.NodeTransformer):
     def visit_Name(self, node: ast.Name) -> ast.expr:
         if node.id not in self._names:
             return node
-        return ast.Attribute(ast.Name(_PARAMETERS, ast.Load()), _PREFIX + node.id, ast.Load())
+        return ast.Attribute(ast.Name(PARAMETERS, ast.Load()), _PREFIX + node.id, ast.Load())
 
 
 class _NoModules:
@@ -273,13 +187,9 @@ def _diagnostic(branch: _Branch, filename: str) -> Diagnostic:
     assert test.end_lineno is not None
     assert test.end_col_offset is not None
     span = Span(test.lineno, test.col_offset, test.end_lineno, test.end_col_offset)
-    if branch.is_else:
-        message = "the `else` of this condition is never reached: the condition holds in every scene that reaches it"
-    else:
-        message = "the branch of this condition is never taken: it holds in no scene that reaches it"
     return Diagnostic(
         "SC703",
-        message,
+        branch.way.value,
         span,
         Severity.WARNING,
         filename,
