@@ -42,7 +42,7 @@ _READABLE: Final = (
     ast.unaryop,
     ast.expr_context,
 )
-"""What a condition may consist of."""
+"""Parts of which a condition may consist."""
 
 _COMPUTED: Final = frozenset({Kind.SCALAR, Kind.INTEGER, Kind.BOOLEAN, Kind.VECTOR, Kind.ORIENTATION})
 """Kinds of values of which operators read nothing that may change."""
@@ -222,7 +222,7 @@ _DYNAMIC: Final = (scenic.BehaviorDef, scenic.MonitorDef, scenic.ScenarioDef)
 
 
 class _Places:
-    """Where names stand. ``owners`` gives for each, as a node, the innermost definition in whose code it stands.
+    """Places of names. ``owners`` gives for each, as a node, the innermost definition in whose code it stands.
 
     There is none where the code may run while a scene is looked for.
     """
