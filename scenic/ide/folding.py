@@ -53,8 +53,9 @@ def folds(snapshot: Snapshot) -> tuple[Fold, ...]:
         *_blocks(tokens),
         *_brackets(tokens),
     ):
-        if fold.end_line > fold.line:
-            found.setdefault((fold.line, fold.end_line), fold)
+        end_line = min(fold.end_line, len(snapshot.source.lines))
+        if end_line > fold.line:
+            found.setdefault((fold.line, end_line), Fold(fold.line, end_line, fold.kind))
     return tuple(found[key] for key in sorted(found))
 
 

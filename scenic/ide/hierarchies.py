@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.traversal import walk
+from scenic.compiler.traversal import parts, walk
 from scenic.dataclass import dataclass
 from scenic.ide.inheritance import subclasses
 from scenic.language.spans import Span
@@ -15,7 +15,16 @@ from scenic.project.modules import Module
 from scenic.project.queries import references, symbol_at
 from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding
 
-__all__ = ["Call", "callable_at", "callees", "callers", "class_at", "subtypes", "supertypes"]
+__all__ = [
+    "Call",
+    "callable_at",
+    "callees",
+    "callers",
+    "class_at",
+    "module_symbol",
+    "subtypes",
+    "supertypes",
+]
 
 _CALLABLE = (
     SymbolKind.CLASS,
@@ -28,6 +37,7 @@ _CALLABLE = (
 _DEFINITIONS = (
     ast.FunctionDef,
     ast.AsyncFunctionDef,
+    ast.ClassDef,
     scenic.BehaviorDef,
     scenic.MonitorDef,
     scenic.ScenarioDef,
@@ -72,7 +82,10 @@ def callers(project: Project, symbol: Symbol) -> tuple[Call, ...]:
 
 
 def callees(project: Project, symbol: Symbol) -> tuple[Call, ...]:
-    """The callees of a function, each once, with the places of the calls in the function."""
+    """The callees of a function, each once, with the places of the calls in the function.
+
+    Calls in definitions within it are those of the inner ones. The callees of a module are called outside of definitions.
+    """
     module, node = symbol.module, symbol.node
     if module is None or node is None:
         return ()
@@ -99,8 +112,13 @@ def subtypes(project: Project, symbol: Symbol) -> tuple[Symbol, ...]:
 
 
 def _calls(node: ast.AST) -> Iterator[ast.expr]:
-    """The functions that are called in a definition, and the classes of which it makes instances."""
-    for part in walk(node):
+    """The functions that are called in a definition itself, and the classes of which it makes instances."""
+    pending = [node]
+    while pending:
+        part = pending.pop()
+        if part is not node and isinstance(part, _DEFINITIONS):
+            continue
+        pending += reversed(parts(part))
         if isinstance(part, ast.Call):
             yield part.func
         elif isinstance(part, scenic.Do | scenic.DoChoose | scenic.DoShuffle):
@@ -116,7 +134,8 @@ def _is_called(module: Module, span: Span) -> bool:
 
 def _called_spans(module: Module) -> frozenset[tuple[int, int]]:
     found = set()
-    for function in _calls(module.tree):
+    inner = (node for node in walk(module.tree) if isinstance(node, _DEFINITIONS))
+    for function in (call for node in (module.tree, *inner) for call in _calls(node)):
         span = (
             module.attribute_span(function)
             if isinstance(function, ast.Attribute)
@@ -138,6 +157,11 @@ def _around(module: Module, span: Span) -> Symbol:
     binding = None if inner is None else module.resolution.binding_at(inner)
     if binding is not None:
         return symbol_of_binding(module, binding)
+    return module_symbol(module)
+
+
+def module_symbol(module: Module) -> Symbol:
+    """A module as the caller of what is called in it outside of definitions."""
     name = module.filename.replace("\\", "/").rpartition("/")[2]
     whole = Span(1, 0, len(module.source.lines), len(module.source.lines[-1]))
     return Symbol(

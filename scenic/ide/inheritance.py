@@ -64,9 +64,13 @@ def own_member(cls: Class, name: str) -> Symbol | None:
 
 
 def subclasses(project: Project, symbol: Symbol, *, deep: bool) -> tuple[Symbol, ...]:
-    """The classes of the workspace that derive from a class: directly, or if ``deep``, also through others."""
+    """The classes of the workspace, and of its own file, that derive from a class.
+
+    Directly, or if ``deep``, also through others.
+    """
     found: list[Symbol] = []
-    for filename in project.files():
+    home = [] if symbol.filename is None else [symbol.filename]
+    for filename in dict.fromkeys([*home, *project.files()]):
         module = project.module(filename)
         for each in () if module is None else symbols_of(module):
             if each.kind is not SymbolKind.CLASS or each.filename != filename or each == symbol:

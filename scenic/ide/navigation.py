@@ -6,6 +6,7 @@ import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from types import ModuleType
+from unicodedata import normalize
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.generated import HARD_KEYWORDS
@@ -218,7 +219,9 @@ def highlights(project: Project, snapshot: Snapshot, line: int, column: int) -> 
     module, found = _occurrence(project, snapshot, line, column)
     if module is None or found is None:
         return ()
-    return tuple(Highlight(each.span, each.defines) for each in _same(project, module, found))
+    symbol = symbol_of(project, module, found)
+    wanted = () if symbol is None or symbol.is_builtin else family(project, symbol).definitions
+    return tuple(Highlight(each.span, each.defines) for each in _same(project, module, found, *wanted))
 
 
 def linked(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Span, ...]:
@@ -370,15 +373,19 @@ def _alias(module: Module, found: Occurrence) -> Binding | None:
     return binding if is_alias else None
 
 
-def _same(project: Project, module: Module, found: Occurrence) -> Sequence[Occurrence]:
-    """The words of a module that mean the same as one of them; without a meaning, those that are the same."""
+def _same(project: Project, module: Module, found: Occurrence, *related: Symbol) -> Sequence[Occurrence]:
+    """The words of a module that mean the same as one of them, or one of ``related``.
+
+    Without a meaning, those that are the same.
+    """
     symbol = symbol_of(project, module, found)
     names = {found.name} | ({symbol.name} if symbol is not None else set())
     aliased = {alias.asname for alias in module.import_of if alias.asname}
     same = [each for each in occurrences(module) if each.name in names or each.name in aliased]
     if symbol is None:
         return [each for each in same if each.name == found.name and type(each.node) is type(found.node)]
-    return [each for each in same if symbol_of(project, module, each) == symbol]
+    wanted = {symbol, *related}
+    return [each for each in same if symbol_of(project, module, each) in wanted]
 
 
 def _targets(symbol: Symbol, origin: Span) -> tuple[Target, ...]:
@@ -411,4 +418,4 @@ def _text(project: Project, place: Place) -> str:
     module = project.module(place.filename)
     if module is None:
         return ""
-    return module.source.line(place.span.line)[place.span.column : place.span.end_column]
+    return normalize("NFKC", module.source.line(place.span.line)[place.span.column : place.span.end_column])

@@ -49,8 +49,9 @@ class Document:
 
     @property
     def line_end(self) -> str:
-        """The line end of the document."""
-        return "\r\n" if "\r\n" in self.text else "\n"
+        """The line end of the document: its first one."""
+        found = _LINE_END.search(self.text)
+        return "\n" if found is None else found[0]
 
     def is_saved(self) -> bool:
         """Return whether its file holds its present text."""

@@ -49,6 +49,17 @@ _OURS: Final = (
 takes form feeds for line ends."""
 
 
+def _strictly(value: Any, kind: Any) -> Any:
+    """A plain value, or a member of an enumeration of such, as a message has it."""
+    if issubclass(kind, Enum):
+        return kind(value)
+    if kind is int and isinstance(value, float) and value.is_integer():
+        return int(value)  # Some clients write whole numbers as `1.0`.
+    if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
+        raise ValueError(f"expected a value of type {kind.__name__}, not {value!r}")
+    return value
+
+
 class Stage(Enum):
     """The stages of a conversation."""
 
@@ -62,6 +73,9 @@ class Protocol(LanguageServerProtocol):
 
     def __init__(self, server: LanguageServer, converter: Converter) -> None:
         super().__init__(server, converter)
+        for kind in (int, str, bool):
+            # By itself the converter makes a text of any value, and 1 of 1.5.
+            converter.register_structure_hook(kind, _strictly)
         self.stage = Stage.NEW
         self.loop: asyncio.AbstractEventLoop | None = None
         self.exited: Callable[[], None] = lambda: None
@@ -149,11 +163,15 @@ class Protocol(LanguageServerProtocol):
         if self.stage is Stage.RUNNING and method == types.INITIALIZE:
             raise JsonRpcInvalidRequest("the server is already initialized")
         self._get_handler(method)
+        if _is_notification(method):
+            raise JsonRpcInvalidRequest(f"`{method}` is a notification, and has no answer")
 
     def _notification(self, method: str, params: Any) -> None:
         self._trace(f"received notification {method}", params)
         if method == types.EXIT:
             self.exited()
+        elif self.stage is Stage.RUNNING and _is_request(method):
+            self.log(f"{method} was sent without an id, so it cannot be answered")
         elif self.stage is Stage.RUNNING:
             try:
                 typed = self._typed(method, params)
@@ -304,6 +322,14 @@ class Protocol(LanguageServerProtocol):
         """Log what a timer has raised."""
         error = context.get("exception")
         self.log(fault("the server", error).message if isinstance(error, Exception) else context["message"])
+
+
+def _is_request(method: str) -> bool:
+    return types.METHOD_TO_TYPES.get(method, (None, None))[1] is not None
+
+
+def _is_notification(method: str) -> bool:
+    return method in types.METHOD_TO_TYPES and not _is_request(method)
 
 
 def fault(what: str, error: BaseException) -> JsonRpcInternalError:

@@ -5,6 +5,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import field
 from typing import Any, Final
+from unicodedata import normalize
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import DEFINITIONS
@@ -322,7 +323,7 @@ def references(
     for filename in dict.fromkeys([*homes, *project.files()]):
         go_on()
         module = project.module(filename)
-        if module is None or name not in module.source.text:
+        if module is None or not _mentions(module.source.text, name):
             continue
         names = {name} | {
             alias.asname for alias in module.import_of if alias.asname and name in alias.name.split(".")
@@ -333,3 +334,8 @@ def references(
             if each.name in names and symbol_of(project, module, each) in wanted
         }
         yield from (Place(module.filename, span, defines) for span, defines in spans.items())
+
+
+def _mentions(text: str, name: str) -> bool:
+    """Tell whether a name stands in a text, maybe in other characters that Python takes for the same."""
+    return name in text or (not text.isascii() and name in normalize("NFKC", text))

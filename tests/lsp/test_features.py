@@ -114,7 +114,7 @@ def test_every_method_has_a_handler() -> None:
 
 def test_what_is_offered(project: Project) -> None:
     providers = {name for name, value in project.offered.items() if name.endswith("Provider") and value}
-    assert len(providers) == 29
+    assert len(providers) == 30
     assert project.offered["textDocumentSync"] == {
         "openClose": True,
         "change": 2,
@@ -382,6 +382,16 @@ def test_calls(project: Project) -> None:
         "main.scenic": 2,
         "outer": 1,
     }
+    # And back: what a module calls outside of definitions, and not what is called within them.
+    whole = next(each["from"] for each in incoming if each["from"]["name"] == "main.scenic")
+    outgoing = project.client.request("callHierarchy/outgoingCalls", {"item": whole})
+    assert {each["to"]["name"]: len(each["fromRanges"]) for each in outgoing} == {
+        "Armchair": 1,
+        "Walk": 1,
+        "helper": 2,
+        "weight": 1,
+    }
+    assert project.client.request("callHierarchy/incomingCalls", {"item": whole}) is None
     (outer,) = project.ask("prepareCallHierarchy", "def ou|ter(")
     (outgoing,) = project.client.request("callHierarchy/outgoingCalls", {"item": outer})
     assert outgoing["to"]["name"] == "helper"
@@ -399,6 +409,46 @@ def test_types(project: Project) -> None:
     assert below["name"] == "Armchair"
     (above,) = project.client.request("typeHierarchy/supertypes", {"item": below})
     assert (above["name"], above["uri"]) == ("Chair", project.library)
+
+
+def test_values_while_debugging(project: Project) -> None:
+    text = "k = 3\nbehavior B(p):\n    n = p + k\n    take n\ndef f(q):\n    return q\nego = new Object\n"
+    project.client.open("untitled:debugged", text)
+    stopped = {"start": {"line": 3, "character": 4}, "end": {"line": 3, "character": 10}}
+    everything = {"start": {"line": 0, "character": 0}, "end": {"line": 9, "character": 0}}
+    params = {
+        "textDocument": {"uri": "untitled:debugged"},
+        "range": everything,
+        "context": {"frameId": 1, "stoppedLocation": stopped},
+    }
+    found = project.client.request("textDocument/inlineValue", params)
+    assert [
+        (each["range"]["start"]["line"], each.get("variableName") or each["expression"]) for each in found
+    ] == [
+        (0, "k"),
+        (2, "__instance__.n"),
+        (2, "__instance__.p"),
+        (2, "k"),
+        (3, "__instance__.n"),
+    ]
+
+
+def test_names_in_other_characters(project: Project) -> None:
+    # Python takes them for the same: `x𝐱` is `xx`.
+    project.client.open("untitled:characters", "x𝐱 = 1\ny = x𝐱 + xx\n")
+    document = {"textDocument": {"uri": "untitled:characters"}, "position": {"line": 0, "character": 0}}
+    edit = project.client.request("textDocument/rename", {**document, "newName": "z"})
+    (changed,) = edit["documentChanges"]
+    assert len(changed["edits"]) == 3
+
+
+def test_highlights_are_the_references_in_the_document(project: Project) -> None:
+    # A property means the same where a class gives another default, and where an object sets it.
+    found = project.ask("documentHighlight", "    le|gs: 3")
+    references = project.ask("references", "    le|gs: 3", context={"includeDeclaration": True})
+    own = [each["range"] for each in references if each["uri"] == project.main]
+    assert [each["range"] for each in found] == own
+    assert len(own) == 2
 
 
 def test_symbols_of_the_workspace(project: Project) -> None:

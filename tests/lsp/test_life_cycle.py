@@ -125,6 +125,10 @@ def test_what_is_no_message_is_refused_and_what_follows_is_answered(client: Clie
         ("textDocument/hover", {}),
         ("textDocument/hover", {"textDocument": {"uri": 3}, "position": {"line": 0, "character": 0}}),
         ("textDocument/hover", place(-1)),
+        ("textDocument/hover", {**place(uri="untitled:1"), "position": {"line": 0.5, "character": 0}}),
+        ("textDocument/hover", {**place(uri="untitled:1"), "position": {"line": True, "character": 0}}),
+        ("textDocument/hover", {"textDocument": {"uri": None}, "position": {"line": 0, "character": 0}}),
+        ("textDocument/references", {**place(uri="untitled:1"), "context": {"includeDeclaration": "no"}}),
         ("textDocument/hover", {"textDocument": {"uri": "untitled:1"}, "position": {"line": "0"}}),
         ("textDocument/completion", place(uri="file:///nowhere")),
         ("textDocument/codeAction", {"textDocument": {"uri": "untitled:1"}}),
@@ -153,6 +157,10 @@ def test_notifications_that_make_no_sense_change_nothing(running: Client) -> Non
         running.send("textDocument/didOpen", params)
         running.send("textDocument/didClose", params)
     running.send("workspace/didChangeWatchedFiles", {"changes": [{}]})
+    # A request without an id, and a notification with one.
+    running.send("shutdown")
+    document = {"uri": "untitled:1", "languageId": "scenic", "version": 9, "text": ""}
+    assert running.refused("textDocument/didOpen", {"textDocument": document}) == INVALID_REQUEST
     assert running.request("textDocument/hover", place(uri="untitled:1", character=7))
 
 

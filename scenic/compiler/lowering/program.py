@@ -24,7 +24,8 @@ from scenic.compiler.lowering.build import (
 )
 from scenic.compiler.lowering.conditions import Conditions, assigns, implicit_ego, truth_value
 from scenic.compiler.lowering.dynamics import Blocks
-from scenic.compiler.scopes import Binding, BindingKind, Resolution, Scope, ScopeKind
+from scenic.compiler.lowering.instances import instance_name, is_kept
+from scenic.compiler.scopes import Binding, Resolution
 from scenic.language.errors import InternalError
 from scenic.language.names import CONVERSIONS, TRACKED
 from scenic.language.statements import STATEMENTS
@@ -58,7 +59,7 @@ class _Program:
             site: binding
             for scope in resolution.scopes.values()
             for binding in scope.bindings.values()
-            if _is_kept(binding)
+            if is_kept(binding)
             for site in binding.sites
         }
         self._conditions: Conditions | None = None
@@ -130,7 +131,7 @@ class _Program:
     def _instance(self, node: ast.Name) -> str | None:
         """The running instance that a name is an attribute of."""
         binding = self._resolution.binding(node)
-        return _instance_name(binding.scope) if binding is not None and _is_kept(binding) else None
+        return instance_name(binding.scope) if binding is not None and is_kept(binding) else None
 
     def walrus(self, node: ast.NamedExpr) -> ast.expr:
         instance = None if self._captured else self._instance(node.target)
@@ -308,7 +309,7 @@ class _Program:
         return at(ast.BoolOp(ast.Or(), [failed, conclusion]), node)
 
     def behavior(self, node: scenic.BehaviorDef) -> Any:
-        own = _instance_name(self._resolution.scopes[node])
+        own = instance_name(self._resolution.scopes[node])
         with self.blocks.running(own):
             guards = dynamics.guards(self, node, ["self"])
             body = self.block(node.body)
@@ -318,7 +319,7 @@ class _Program:
         )
 
     def monitor(self, node: scenic.MonitorDef) -> Any:
-        own = _instance_name(self._resolution.scopes[node])
+        own = instance_name(self._resolution.scopes[node])
         with self.blocks.running(own):
             body = self.block(node.body)
         args = self._with_instance(node.args, node, own)
@@ -333,7 +334,7 @@ class _Program:
         body: list[ast.stmt] = []
         if node.docstring is not None:
             body.append(start_of(ast.Expr(start_of(ast.Constant(node.docstring), node)), node))
-        own = _instance_name(self._resolution.scopes[node])
+        own = instance_name(self._resolution.scopes[node])
         with self.blocks.running(own):
             guards = dynamics.guards(self, node, [])
             body.extend(self.block(node.setup or ()))
@@ -360,7 +361,7 @@ class _Program:
 
     def _store(self, site: ast.AST) -> ast.stmt:
         binding = self._bound_by[site]
-        return store_on_instance(_instance_name(binding.scope), binding.name, site)
+        return store_on_instance(instance_name(binding.scope), binding.name, site)
 
     def importation(self, node: ast.Import | ast.ImportFrom) -> Any:
         stores = [self._store(alias) for alias in node.names if alias in self._bound_by]
@@ -374,7 +375,7 @@ class _Program:
 
     def nonlocal_declaration(self, node: ast.Nonlocal) -> ast.stmt:
         scope = self._resolution.nonlocals[node]
-        names = [identifier for identifier in node.names if not _is_kept(scope.lookup(identifier))]
+        names = [identifier for identifier in node.names if not is_kept(scope.lookup(identifier))]
         if len(names) == len(node.names):
             return node
         return rebuilt(node, names=names) if names else at(ast.Pass(), node)
@@ -413,32 +414,12 @@ class _Program:
     def _store_now(self, site: ast.AST) -> ast.expr:
         """As `_store`, in an expression."""
         binding = self._bound_by[site]
-        setter = start_of(instance_attribute(_instance_name(binding.scope), "__setattr__", site), site)
+        setter = start_of(instance_attribute(instance_name(binding.scope), "__setattr__", site), site)
         return at(ast.Call(setter, [constant(binding.name, site), name(binding.name, site)], []), site)
-
-
-def _instance_name(scope: Scope) -> str:
-    """The parameter that holds the running instance; definitions inside others have their own."""
-    depth = sum(outer.kind in _RUNNING for outer in scope.ancestors()) - 1
-    return f"__instance_{depth}__" if depth else "__instance__"
 
 
 def _attributes(node: ast.expr) -> Iterator[ast.Attribute]:
     return (part for part in ast.walk(node) if isinstance(part, ast.Attribute))
-
-
-def _is_kept(binding: Binding | None) -> bool:
-    """Tell whether a name is local to a scenario, behavior or monitor, and so an attribute of the running instance.
-
-    The names of exceptions, which Python deletes again, stay what they are.
-    """
-    if binding is None or binding.scope.kind not in _RUNNING:
-        return False
-    return bool(binding.kinds - {BindingKind.SELF, BindingKind.EXCEPTION})
-
-
-_RUNNING: Final = frozenset({ScopeKind.SCENARIO, ScopeKind.BEHAVIOR, ScopeKind.MONITOR})
-"""Kinds of scopes that run as an instance with names of its own."""
 
 
 def _rules() -> Mapping[type[ast.AST], Callable[[_Program, Any], Any]]:

@@ -30,6 +30,7 @@ _THEMES: Final[Mapping[str, tuple[str, ...]]] = {
     "hints": (
         types.TEXT_DOCUMENT_INLAY_HINT,
         types.INLAY_HINT_RESOLVE,
+        types.TEXT_DOCUMENT_INLINE_VALUE,
         types.TEXT_DOCUMENT_CODE_LENS,
         types.CODE_LENS_RESOLVE,
         types.TEXT_DOCUMENT_DOCUMENT_LINK,

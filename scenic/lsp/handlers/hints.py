@@ -1,4 +1,4 @@
-"""Handlers of what editors show beside the text: inlay hints, lenses, links, colours."""
+"""Handlers of what editors show beside the text: inlay hints, values while debugging, lenses, links, colours."""
 
 from typing import Any, Final
 
@@ -6,6 +6,7 @@ from lsprotocol import types
 
 from scenic.ide.colors import colors, presentation
 from scenic.ide.inlay_hints import HintKind, hints
+from scenic.ide.inline_values import inline_values
 from scenic.ide.lenses import lenses
 from scenic.ide.links import links
 from scenic.lsp.capabilities import SAMPLE, SIMULATE
@@ -42,6 +43,21 @@ def _resolve_hint(_session: Session, hint: types.InlayHint) -> types.InlayHint:
     if isinstance(tooltip, str):
         hint.tooltip = tooltip
     return hint
+
+
+def _inline_values(session: Session, params: types.InlineValueParams) -> list[types.InlineValue]:
+    document = session.document(params.text_document.uri)
+    lines = document.lines
+    # The line that is about to run shows what it will read.
+    stopped = lines.from_position(params.context.stopped_location.end)
+    return [
+        types.InlineValueVariableLookup(
+            lines.to_range(each.span), case_sensitive_lookup=True, variable_name=each.name
+        )
+        if each.expression is None
+        else types.InlineValueEvaluatableExpression(lines.to_range(each.span), each.expression)
+        for each in inline_values(document.snapshot, lines.from_range(params.range), stopped)
+    ]
 
 
 def _lenses(session: Session, params: types.CodeLensParams) -> list[types.CodeLens]:
@@ -108,6 +124,7 @@ HANDLERS: Final = {
     types.TEXT_DOCUMENT_COLOR_PRESENTATION: _presentations,
     types.TEXT_DOCUMENT_INLAY_HINT: _inlay_hints,
     types.INLAY_HINT_RESOLVE: _resolve_hint,
+    types.TEXT_DOCUMENT_INLINE_VALUE: _inline_values,
     types.TEXT_DOCUMENT_CODE_LENS: _lenses,
     types.CODE_LENS_RESOLVE: _resolve_lens,
     types.TEXT_DOCUMENT_DOCUMENT_LINK: _links,

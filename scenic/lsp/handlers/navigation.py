@@ -152,8 +152,8 @@ def _incoming(
     session: Session, params: types.CallHierarchyIncomingCallsParams
 ) -> list[types.CallHierarchyIncomingCall] | None:
     project, symbol = _symbol(session, params.item, hierarchies.callable_at)
-    if symbol is None:
-        return None
+    if symbol is None or params.item.kind is types.SymbolKind.Module:
+        return None  # Nothing calls a module.
     return [
         types.CallHierarchyIncomingCall(
             _item(session, call.symbol, types.CallHierarchyItem),
@@ -167,6 +167,9 @@ def _outgoing(
     session: Session, params: types.CallHierarchyOutgoingCallsParams
 ) -> list[types.CallHierarchyOutgoingCall] | None:
     project, symbol = _symbol(session, params.item, hierarchies.callable_at)
+    if params.item.kind is types.SymbolKind.Module:
+        module = project.module(session.document(params.item.uri).snapshot.filename)
+        symbol = None if module is None else hierarchies.module_symbol(module)
     if symbol is None:
         return None
     return [

@@ -1,0 +1,56 @@
+"""Values that a debugger shows in the text while a program is stopped: of which names, and how to ask for them.
+
+A debugger of Python stops in programs of Scenic, since generated code knows their lines. It finds most names by themselves;
+those of a behavior, monitor or scenario are attributes of the running instance.
+"""
+
+import ast
+from collections.abc import Iterator
+from typing import Final
+
+from scenic.compiler.lowering.build import PRELUDE
+from scenic.compiler.lowering.instances import instance_name, is_kept
+from scenic.compiler.scopes import BindingKind, Scope
+from scenic.dataclass import dataclass
+from scenic.ide.snapshot import Snapshot
+from scenic.language.names import TRACKED
+from scenic.language.spans import Span
+
+__all__ = ["InlineValue", "inline_values"]
+
+_SHOWN: Final = frozenset(
+    {BindingKind.VARIABLE, BindingKind.PARAMETER, BindingKind.CAPTURE, BindingKind.EXCEPTION}
+)
+
+
+@dataclass(frozen=True, slots=True)
+class InlineValue:
+    """A name whose value is shown; ``expression`` gives the value where that is not the variable of this name."""
+
+    span: Span
+    name: str
+    expression: str | None = None
+
+
+def inline_values(snapshot: Snapshot, span: Span, stopped: tuple[int, int]) -> tuple[InlineValue, ...]:
+    """The names in a stretch of the text that have a value where the program has stopped: each but once in a line."""
+    around = tuple(snapshot.scope_at(*stopped).ancestors())
+    found: dict[tuple[int, str], InlineValue] = {}
+    for node, value in _values(snapshot, around):
+        place = snapshot.source.span(node)
+        if span.line <= place.line <= min(span.end_line, stopped[0]):
+            known = found.get((place.line, node.id))
+            if known is None or place < known.span:
+                found[place.line, node.id] = InlineValue(place, node.id, value)
+    return tuple(sorted(found.values(), key=lambda each: each.span))
+
+
+def _values(snapshot: Snapshot, around: tuple[Scope, ...]) -> Iterator[tuple[ast.Name, str | None]]:
+    for node, reference in snapshot.resolution.references.items():
+        if not isinstance(node, ast.Name):
+            continue
+        binding = reference.binding
+        if node.id in TRACKED:
+            yield node, f"{PRELUDE}.{node.id}"
+        elif binding is not None and binding.scope in around and binding.kinds & _SHOWN:
+            yield node, f"{instance_name(binding.scope)}.{node.id}" if is_kept(binding) else None
