@@ -51,7 +51,11 @@ WORKSPACE: Final = Kind("workspace")
 SHAPE: Final = Kind("shape")
 FIELD: Final = Kind("vector field")
 FUNCTION: Final = Kind("function")
+CLASS: Final = Kind("class")
 ORIENTED_POINT: Final = Kind("oriented point")
+
+_MADE_BY_CALLS: Final = (NameKind.SHAPE, NameKind.REGION, NameKind.DISTRIBUTION)
+"""Names that stand for a value only when they are called."""
 
 _SEQUENCES: Final = frozenset({"tuple", "list"})
 
@@ -225,7 +229,8 @@ class KindOf:
         if name in ("everywhere", "nowhere"):
             return REGION
         if name is not None:
-            return FUNCTION if name in NAMES and NAMES[name].kind is NameKind.FUNCTION else None
+            kind = NAMES[name].kind if name in NAMES else None
+            return FUNCTION if kind is NameKind.FUNCTION else CLASS if kind in _MADE_BY_CALLS else None
         annotation = self._meanings.annotation(node)
         if annotation is not None:
             return self._annotated(annotation)

@@ -48,6 +48,7 @@ class Name:
             each module has of its own.
         lifted: a function that takes random arguments, so that a call in a condition can become part of the value graph.
         is_complete: the signature shows all parameters; a call with others is a mistake.
+        further: optional parameters that the signature leaves out, as Python writes them. With them it is complete.
         types: types of the parameters, in order, as far as the implementation gets them converted.
         angles: the parameters whose numbers are angles in radians.
         result: the type of what a call returns, where that is always the same.
@@ -66,6 +67,7 @@ class Name:
     lifted: bool = False
     available: bool = True
     is_complete: bool = False
+    further: str = ""
     types: tuple[Type, ...] = ()
     angles: tuple[str, ...] = ()
     result: Type | None = None
@@ -367,24 +369,46 @@ _ALL = (
     # Regions
     _region("everywhere", "All of space.", "spaces"),
     _region("nowhere", "The empty region.", "spaces"),
-    _region("PointSetRegion(name, points)", "A finite set of points.", "scattered"),
-    _region("GridRegion(name, grid, Ax, Ay, Bx, By)", "The free cells of a grid.", "scattered"),
+    _region(
+        "PointSetRegion(name, points)",
+        "A finite set of points.",
+        "scattered",
+        further="kdTree=None, orientation=None, tolerance=1e-6",
+    ),
+    _region(
+        "GridRegion(name, grid, Ax, Ay, Bx, By)",
+        "The free cells of a grid.",
+        "scattered",
+        further="orientation=None",
+    ),
     _region("PolylineRegion(points)", "A sequence of line segments in the plane.", "lines"),
     _region("PathRegion(points)", "A sequence of line segments in space.", "lines"),
     _region("PolygonalRegion(points, z=0)", "A polygon in a horizontal plane.", "planar"),
-    _region("PolygonalFootprintRegion(polygon)", "All points above and below a polygon.", "planar"),
-    _region("CircularRegion(center, radius)", "A disc in a horizontal plane.", "circular"),
+    _region(
+        "PolygonalFootprintRegion(polygon)",
+        "All points above and below a polygon.",
+        "planar",
+        further="name=None",
+    ),
+    _region(
+        "CircularRegion(center, radius)",
+        "A disc in a horizontal plane.",
+        "circular",
+        further="resolution=32, *, name=None",
+    ),
     _region(
         "SectorRegion(center, radius, heading, angle)",
         "A sector of a disc in a horizontal plane.",
         "sectors",
         angles=("heading", "angle"),
+        further="resolution=32, *, name=None",
     ),
     _region(
         "RectangularRegion(position, heading, width, length)",
         "A rectangle in a horizontal plane.",
         "rectangular",
         angles=("heading",),
+        further="*, name=None",
     ),
     _region(
         "MeshVolumeRegion(mesh, dimensions=None, position=None, rotation=None)",

@@ -9,7 +9,18 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.dataclass import dataclass
-from scenic.language.types import BOOLEAN, NONE, ORIENTATION, REGION, SCALAR, SHAPE, VECTOR, Type, listed
+from scenic.language.types import (
+    BOOLEAN,
+    COLOR,
+    NONE,
+    ORIENTATION,
+    REGION,
+    SCALAR,
+    SHAPE,
+    VECTOR,
+    Type,
+    listed,
+)
 
 __all__ = [
     "CLASSES",
@@ -378,7 +389,7 @@ _OBJECT = BuiltinClass(
         _P("showVisibleRegion", (BOOLEAN,), Constant(False), "Whether pictures show its view volume."),
         _P(
             "color",
-            (_words("3 or 4 numbers in [0, 1]"), NONE),
+            (COLOR, NONE),
             Constant(None),
             "Colour in pictures: red, green, blue, opacity.",
         ),

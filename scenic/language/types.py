@@ -8,6 +8,7 @@ from scenic.dataclass import dataclass
 __all__ = [
     "ANYTHING",
     "BOOLEAN",
+    "COLOR",
     "DIRECTION",
     "FIELD",
     "HEADING",
@@ -132,6 +133,13 @@ ORIENTED_POINT: Final = Type(
 OBJECT: Final = Type("object", "an object", "make one with `new Object`", kinds=frozenset({"object"}))
 NONE: Final = Type("None", "`None`", "write `None`", kinds=frozenset({"nothing"}))
 BOOLEAN: Final = Type("boolean", "a truth value", "write `True` or `False`")
+COLOR: Final = Type(
+    "3 or 4 numbers in [0, 1]",
+    "a colour (3 or 4 numbers from 0 to 1)",
+    "write red, green, blue and maybe opacity, as `(1, 0.5, 0)`",
+    kinds=frozenset({"vector"}),
+    lengths=frozenset({3, 4}),
+)
 VIEW_ANGLES: Final = Type("pair of angles", "a pair of angles", "write two angles, as `(90 deg, 45 deg)`")
 
 

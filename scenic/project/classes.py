@@ -66,6 +66,12 @@ class Class:
         return next((each for each in self.members if each.name == name), None)
 
     @property
+    def initial_is_own(self) -> bool:
+        """Return whether the class itself says how instances are made."""
+        initial = self.member("__init__")
+        return initial is not None and initial.owner == self.symbol.name
+
+    @property
     def properties(self) -> tuple[Member, ...]:
         """Properties that can be given after ``with``."""
         return tuple(each for each in self.members if each.kind is SymbolKind.PROPERTY)

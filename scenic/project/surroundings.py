@@ -121,6 +121,9 @@ def _explored(project: Project, exported: Exported) -> Foreign | None:
     parameters, properties, is_plain_class = None, None, False
     if isinstance(node, ast.ClassDef):
         known = class_of_symbol(project, symbol)
+        if known is not None and not known.is_scenic and not node.keywords and known.initial_is_own:
+            # Whatever its bases are.
+            parameters = _parameters(known)
         if known is not None and known.complete:
             properties = _properties(known) if known.is_scenic else None
             parameters = None if known.is_scenic else _parameters(known)

@@ -27,6 +27,10 @@ _KINDS: Final[dict[type[ast.AST], str]] = {
 }
 
 
+_CHOICES: Final = frozenset({"Uniform"})
+"""Distributions that choose from their arguments, of which there may be any number but none."""
+
+
 def kind_of(definition: ast.AST) -> str:
     """The kind of a definition, in a word."""
     return _KINDS[type(definition)]
@@ -64,7 +68,14 @@ def _call(node: ast.Call, _scope: Scope, context: Context) -> Iterator[Diagnosti
                 yield from _arguments(node, found, context)
         return
     callee = _known(node, context)
-    if callee is not None:
+    if context.provided(node.func) in _CHOICES and not node.args:
+        yield context.error(
+            "SC211",
+            f"the distribution `{context.text(node.func)}` needs something to choose from",
+            node,
+            "give it the options: `Uniform(1, 2)`",
+        )
+    elif callee is not None:
         yield from _arguments(node, callee, context)
 
 

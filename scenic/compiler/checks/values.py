@@ -7,25 +7,28 @@ from typing import Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context, NodeRule
 from scenic.compiler.kinds import Kind, accepts
-from scenic.compiler.scopes import Scope
+from scenic.compiler.scopes import Scope, ScopeKind
 from scenic.compiler.traversal import position, walk
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.members import MEMBERS
 from scenic.language.operators import OPERATORS
-from scenic.language.properties import properties_of
+from scenic.language.properties import attributes_of, properties_of
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.spelling import nearest
-from scenic.language.types import INSTANCES, VECTOR, Type, wanted
+from scenic.language.types import COLOR, INSTANCES, VECTOR, Type, wanted
 
 __all__ = ["RULES"]
 
 _COMPLETE: Final = frozenset({"vector", "orientation"})
 """Kinds all of whose attributes and methods are declared."""
 
+_COORDINATES: Final = frozenset({"x", "y", "z", "yaw", "pitch", "roll", "heading", "position", "orientation"})
+
 _ORDERED: Final = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 
 _PROPERTIES: Final = properties_of("Object")
+_MEMBERS_OF_OBJECTS: Final = frozenset(_PROPERTIES) | frozenset(attributes_of("Object"))
 
 
 def _wrong(
@@ -33,6 +36,8 @@ def _wrong(
 ) -> Iterator[Diagnostic]:
     """SC404: a value that certainly does not do where some types are declared. ``title`` is quoted."""
     kind = context.kind_of(value)
+    if types[0] is COLOR and isinstance(value, ast.Tuple | ast.List):
+        yield from _too_bright(title, value, context)
     if value is None or kind is None or accepts(types, kind):
         return
     noun, advice = wanted(types)
@@ -41,6 +46,18 @@ def _wrong(
     else:
         message = f"{title}: expected {noun}, not {kind.phrase}"
     yield context.error("SC404", message, value, advice or f"give it {noun}")
+
+
+def _too_bright(title: str, value: ast.Tuple | ast.List, context: Context) -> Iterator[Diagnostic]:
+    for part in value.elts:
+        if isinstance(part, ast.Constant) and isinstance(part.value, int | float) and part.value > 1:
+            yield context.error(
+                "SC404",
+                f"{title}: a colour is made of numbers from 0 to 1, not {part.value}",
+                part,
+                "divide parts that go up to 255: `(255 / 255, 128 / 255, 0)`",
+            )
+            return
 
 
 def _specifiers(node: scenic.New | scenic.Override, scope: Scope, context: Context) -> Iterator[Diagnostic]:
@@ -178,6 +195,27 @@ def _compare(node: ast.Compare, scope: Scope, context: Context) -> Iterator[Diag
             return
 
 
+def _arithmetic(node: ast.BinOp, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``ego.width + "3"``."""
+    if not isinstance(node.op, ast.Add | ast.Sub | ast.Div):
+        return
+    kinds = context.kind_of(node.left), context.kind_of(node.right)
+    names = {kind.name for kind in kinds if kind is not None}
+    if len(names) < 2 or "text" not in names or not names <= _APART or _may_be_meant(node, scope, context):
+        return
+    other = next(kind.phrase for kind in kinds if kind is not None and kind.name != "text")
+    yield context.error(
+        "SC404",
+        f"`{_SIGNS[type(node.op)]}`: text and {other} cannot be combined",
+        node,
+        'write numbers without quotes, and make text of a value by `str(value)` or `f"{value}"`',
+    )
+
+
+_APART: Final = frozenset({"text", "number", "vector", "tuple", "list", "nothing", "boolean"})
+_SIGNS: Final = {ast.Add: "+", ast.Sub: "-", ast.Div: "/"}
+
+
 def _is_unordered(kind: Kind) -> bool:
     return kind.name in INSTANCES or kind.name in ("vector", "orientation", "region", "workspace", "nothing")
 
@@ -191,7 +229,17 @@ def _attribute(node: ast.Attribute, scope: Scope, context: Context) -> Iterator[
         yield from _parameter(node, context)
         return
     kind = context.kind_of(node.value)
+    if kind is None and isinstance(node.value, ast.Name) and node.value.id == "self":
+        yield from _of_agent(node, context)
     if kind is None or _may_be_meant(node, scope, context):
+        return
+    if kind.name == "number" and name in _COORDINATES:
+        yield context.error(
+            "SC214",
+            f"a number has no attribute `{name}`",
+            _end(node, context),
+            f"take `{name}` of a vector, an orientation or an object",
+        )
         return
     if kind.name in INSTANCES:
         known = kind.members
@@ -211,6 +259,30 @@ def _attribute(node: ast.Attribute, scope: Scope, context: Context) -> Iterator[
         place,
         f"did you mean `{meant}`?" if meant else f"its attributes are {', '.join(sorted(known)[:6])}, ...",
         fix=context.renaming(place, name, meant) if meant else None,
+    )
+
+
+def _of_agent(node: ast.Attribute, context: Context) -> Iterator[Diagnostic]:
+    """SC214: ``self.spped`` in a behavior or monitor, whose agent may be of any class."""
+    binding = context.binding(node.value)
+    if binding is None or binding.scope.kind not in (ScopeKind.BEHAVIOR, ScopeKind.MONITOR):
+        return
+    name = node.attr
+    known = context.given | context.stored_attributes | context.owners.keys() | _MEMBERS_OF_OBJECTS
+    meant = None if name in known else nearest(name, _MEMBERS_OF_OBJECTS)
+    if meant is None or any(name == item.name for item, _ in context.nodes(scenic.PropertyDef)):
+        return
+    surroundings = context.surroundings
+    brought = () if surroundings is None else map(surroundings.brought, surroundings.names)
+    if any(each is not None and each.properties is not None and name in each.properties for each in brought):
+        return
+    place = _end(node, context)
+    yield context.warning(
+        "SC214",
+        f"no class of this program has a property `{name}`",
+        place,
+        f"did you mean `{meant}`?",
+        fix=context.renaming(place, name, meant),
     )
 
 
@@ -272,6 +344,7 @@ def _of_self(node: ast.Attribute, name: str, known: frozenset[str], context: Con
 RULES: Final[dict[type[ast.AST], NodeRule]] = {
     ast.Assign: _assign,
     ast.Attribute: _attribute,
+    ast.BinOp: _arithmetic,
     ast.ClassDef: _class,
     ast.Compare: _compare,
     scenic.Mutate: _mutate,

@@ -1,4 +1,4 @@
-"""Where generated code keeps the names of scenarios, behaviors and monitors: as attributes of the running instance."""
+"""Names of scenarios, behaviors and monitors in generated code: attributes of the running instance."""
 
 from typing import Final
 

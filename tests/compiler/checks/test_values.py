@@ -37,6 +37,13 @@ WRONG = [
     ("x = table.position.hight", "a vector has no attribute `hight`"),
     ("x = room.diference(room)", "a region has no attribute `diference`"),
     ("class Car:\n    size: self.lenth * 2", "`Car` has no property `lenth`"),
+    ("x = table.position.z.y", "a number has no attribute `y`"),
+    ('x = table.width + "3"', "`+`: text and a number cannot be combined"),
+    ("x = 'at ' + table.position", "`+`: text and a vector cannot be combined"),
+    ("new Object with shape BoxShape", "`with shape`: expected a shape, not a class"),
+    ('new Object with color "red"', "`with color`: expected a colour"),
+    ("new Object with color (255, 0, 0)", "`with color`: a colour is made of numbers from 0 to 1, not 255"),
+    ("behavior B():\n    take self.spped", "no class of this program has a property `spped`"),
     ("x = globalParameters.sped", "this program sets no parameter `sped`"),
 ]
 RIGHT = [
@@ -56,6 +63,12 @@ RIGHT = [
     "def f(spot):\n    return new Object at spot",
     "require table.position.x > 3",
     "table = new Object\nx = table._conditioned",
+    "new Object with color (1, 0.5, 0)",
+    "new Object with color table.color",
+    "x = 'wide' * 3 + str(table.width)",
+    "x = isinstance(table.shape, BoxShape)",
+    "class Bus:\n    spped: 3\nbehavior B():\n    take self.spped",
+    "behavior B():\n    self.spped = 3\n    take self.spped, self.position.x",
     "workspace = Workspace(room)",
     "x = (room if table.width > 3 else table).anything",
 ]
