@@ -192,6 +192,12 @@ class KindOf:
             owner = self(function.value, depth)
             if owner in (REGION, WORKSPACE) and function.attr in ("intersect", "union", "difference"):
                 return REGION
+            if owner in (REGION, WORKSPACE) and function.attr in (
+                "intersects",
+                "containsPoint",
+                "containsObject",
+            ):
+                return BOOLEAN
             if owner == VECTOR and function.attr in ("norm", "distanceTo", "angleTo", "azimuthTo", "dot"):
                 return NUMBER
             named = self._meanings.provided(function.value)
@@ -229,8 +235,10 @@ class KindOf:
         if name in ("everywhere", "nowhere"):
             return REGION
         if name is not None:
-            kind = NAMES[name].kind if name in NAMES else None
-            return FUNCTION if kind is NameKind.FUNCTION else CLASS if kind in _MADE_BY_CALLS else None
+            declared = NAMES[name].kind if name in NAMES else None
+            return (
+                FUNCTION if declared is NameKind.FUNCTION else CLASS if declared in _MADE_BY_CALLS else None
+            )
         annotation = self._meanings.annotation(node)
         if annotation is not None:
             return self._annotated(annotation)

@@ -1,7 +1,7 @@
 """Expressions that read as a tuple or an operator, and can only be meant as a specifier of a new object."""
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from scenic.compiler import tree as scenic
@@ -22,14 +22,15 @@ def check_meant_specifiers(piece: Piece, context: Context) -> Iterator[Diagnosti
     """SC111, SC113 and SC311: a specifier without `new`, without a comma before it, or missing after one."""
     for cls in (ast.Assign, ast.Expr):
         for node, _ in piece.nodes(cls):
-            yield from _dangling_comma(node.value, context)
+            targets = node.targets if cls is ast.Assign else ()
+            yield from _dangling_comma(node.value, targets, context)
     for node, _ in piece.nodes(scenic.Operation):
         yield from _missing_new(node, context)
     for node, _ in piece.nodes(scenic.SpecifierPhrase):
         yield from _missing_comma(node, context)
 
 
-def _dangling_comma(value: ast.expr, context: Context) -> Iterator[Diagnostic]:
+def _dangling_comma(value: ast.expr, targets: Sequence[ast.expr], context: Context) -> Iterator[Diagnostic]:
     """``ego = new Object with width 3,``."""
     if not (isinstance(value, ast.Tuple) and len(value.elts) == 1 and isinstance(value.elts[0], scenic.New)):
         return
@@ -41,7 +42,9 @@ def _dangling_comma(value: ast.expr, context: Context) -> Iterator[Diagnostic]:
     if comma < 0:
         return
     place = Span(end.end_line, comma, end.end_line, comma + 1)
-    yield context.error(
+    # Nobody wants such a tuple, but the ego alone must not be one.
+    say = context.error if any(context.provided(each) == "ego" for each in targets) else context.warning
+    yield say(
         "SC311",
         "no specifier follows this comma, which makes a tuple of the object",
         place,

@@ -216,6 +216,40 @@ _APART: Final = frozenset({"text", "number", "vector", "tuple", "list", "nothing
 _SIGNS: Final = {ast.Add: "+", ast.Sub: "-", ast.Div: "/"}
 
 
+def _subscript(node: ast.Subscript, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``Uniform[1, 2]``, ``ego.width[0]``."""
+    kind = context.kind_of(node.value)
+    if kind is None or kind.name not in _WITHOUT_ITEMS or _may_be_meant(node, scope, context):
+        return
+    name = context.provided(node.value)
+    yield context.error(
+        "SC404",
+        f"{kind.phrase} has no items" if name is None else f"`{name}` has no items",
+        node,
+        "take items of lists, tuples and dictionaries"
+        if name is None
+        else f"call it with parentheses: `{name}(...)`",
+    )
+
+
+def _loop(node: ast.For, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``for i in 3``."""
+    kind = context.kind_of(node.iter)
+    if kind is None or kind.name not in _WITHOUT_ITEMS or _may_be_meant(node, scope, context):
+        return
+    text = context.text(node.iter)
+    is_number = kind.name == "number" and text
+    yield context.error(
+        "SC404",
+        f"`for` goes through the items of a value, and {kind.phrase} has none",
+        node.iter,
+        f"write `range({text})` to count" if is_number else "name a list, or count with `range(n)`",
+    )
+
+
+_WITHOUT_ITEMS: Final = frozenset({"number", "boolean", "nothing", "class", "function"})
+
+
 def _is_unordered(kind: Kind) -> bool:
     return kind.name in INSTANCES or kind.name in ("vector", "orientation", "region", "workspace", "nothing")
 
@@ -264,7 +298,7 @@ def _attribute(node: ast.Attribute, scope: Scope, context: Context) -> Iterator[
 
 def _of_agent(node: ast.Attribute, context: Context) -> Iterator[Diagnostic]:
     """SC214: ``self.spped`` in a behavior or monitor, whose agent may be of any class."""
-    binding = context.binding(node.value)
+    binding = context.binding(node.value) if isinstance(node.value, ast.Name) else None
     if binding is None or binding.scope.kind not in (ScopeKind.BEHAVIOR, ScopeKind.MONITOR):
         return
     name = node.attr
@@ -347,6 +381,8 @@ RULES: Final[dict[type[ast.AST], NodeRule]] = {
     ast.BinOp: _arithmetic,
     ast.ClassDef: _class,
     ast.Compare: _compare,
+    ast.For: _loop,
+    ast.Subscript: _subscript,
     scenic.Mutate: _mutate,
     scenic.New: _new,
     scenic.Operation: _operation,

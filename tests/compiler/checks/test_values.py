@@ -44,6 +44,9 @@ WRONG = [
     ('new Object with color "red"', "`with color`: expected a colour"),
     ("new Object with color (255, 0, 0)", "`with color`: a colour is made of numbers from 0 to 1, not 255"),
     ("behavior B():\n    take self.spped", "no class of this program has a property `spped`"),
+    ("x = Uniform[1, 2]", "`Uniform` has no items"),
+    ("for i in 3:\n    x = i", "`for` goes through the items of a value, and a number has none"),
+    ("new Object in room.intersects(room)", "`in`: expected a region, not a boolean"),
     ("x = globalParameters.sped", "this program sets no parameter `sped`"),
 ]
 RIGHT = [
@@ -66,6 +69,9 @@ RIGHT = [
     "new Object with color (1, 0.5, 0)",
     "new Object with color table.color",
     "x = 'wide' * 3 + str(table.width)",
+    "x = [table, room][0]",
+    "for i in range(3):\n    x = i",
+    "def f(x: list[int]):\n    return x",
     "x = isinstance(table.shape, BoxShape)",
     "class Bus:\n    spped: 3\nbehavior B():\n    take self.spped",
     "behavior B():\n    self.spped = 3\n    take self.spped, self.position.x",
