@@ -17,9 +17,14 @@ from typing import Any, BinaryIO
 
 from lsprotocol import converters, types
 
+from tests.lsp.forked import Forked
+
 ROOT = Path(__file__).parents[2]
 PATIENCE = 60.0
 """Seconds to wait for an answer before the test fails."""
+
+PROGRAM = ("-m", "scenic.cli.main", "lsp")
+"""How Python starts a server."""
 
 FULL: dict[str, Any] = {
     "general": {"positionEncodings": ["utf-16"]},
@@ -60,7 +65,8 @@ class Refused(Exception):
 class Client:
     """Starts a server, and waits for no message longer than `PATIENCE`.
 
-    Unless ``strict``, it believes what it is told, as editors do: holding a long answer against the protocol takes longer
+    The server is forked from a process that has imported it, unless ``program`` says how Python starts it. Unless
+    ``strict``, the client believes what it is told, as editors do: holding a long answer against the protocol takes longer
     than making it. ``environment`` is what the server finds in its environment besides.
     """
 
@@ -68,19 +74,24 @@ class Client:
         self,
         *,
         cwd: Path = ROOT,
-        program: tuple[str, ...] = ("-m", "scenic.cli.main", "lsp"),
+        program: tuple[str, ...] = (),
         strict: bool = True,
         environment: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
         self._strict = strict
-        self.process = subprocess.Popen(
-            [sys.executable, *program],
-            cwd=cwd,
-            env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-        )
+        environment = {**os.environ, "PYTHONPATH": str(ROOT), **environment}
+        self.process: Forked | subprocess.Popen[bytes]
+        if program or os.name == "nt":
+            self.process = subprocess.Popen(
+                [sys.executable, *(program or PROGRAM)],
+                cwd=cwd,
+                env=environment,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+            )
+        else:
+            self.process = Forked(cwd, environment)
         self.methods: dict[int, str] = {}
         self.kept: list[dict[str, Any]] = []
         self.log: list[bytes] = []

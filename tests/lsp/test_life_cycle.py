@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.lsp.client import FULL, PATIENCE, Client
+from tests.lsp.client import FULL, PATIENCE, PROGRAM, Client
 
 PARSE_ERROR, INVALID_REQUEST, NO_METHOD, INVALID_PARAMS = -32700, -32600, -32601, -32602
 NOT_INITIALIZED, CANCELLED = -32002, -32800
@@ -223,9 +223,7 @@ def test_a_hostile_folder_runs_nothing(tmp_path: Path, start: str) -> None:
     )
     file = tmp_path / "main.scenic"
     file.write_text(text)
-    program = (
-        ("-m", "scenic.cli.main", "lsp") if start == "module" else ("-P", "-m", "scenic.cli.main", "lsp")
-    )
+    program = PROGRAM if start == "module" else ("-P", *PROGRAM)
     client = Client(cwd=tmp_path, program=program)
     try:
         client.start(FULL, tmp_path)
