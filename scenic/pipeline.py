@@ -27,7 +27,6 @@ from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest
 from scenic.runtime.dynamics.definitions import ModularScenario
-from scenic.runtime.elements.external import choosable_of
 from scenic.runtime.instances.mutation import apply_noise
 from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.program.context import Context, current
@@ -314,7 +313,7 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
                 if context.record.looks or context.record.has_later_elements:
                     # Only now everything is there that may hide something, or that a condition speaks of.
                     program.requirements[:] = [item.rebuilt() for item in program.requirements]
-            program.external_names = _external_names({**program.parameters, **vars(module)}, context)
+            program.module = vars(module)
             program.variables = _names(module, state.ego)
             _settle_parameters(program, strict=options.strict_params)
             workspace = state.workspace or Workspace(everywhere)
@@ -460,17 +459,6 @@ def _names(module: ModuleType, ego: Object | None) -> Mapping[int, str]:
                     names.setdefault(id(item), f"{name}[{index}]")
     if ego is not None:
         names.setdefault(id(ego), "ego")
-    return names
-
-
-def _external_names(values: Mapping[str, Any], context: Context) -> dict[int, str]:
-    """Parameters and variables that hold external parameters, by address."""
-    places = {id(item): place for place, item in context.record.externals.items()}
-    names: dict[int, str] = {}
-    for name, value in values.items():
-        found = choosable_of(value)
-        if found is not None:
-            names.setdefault(places[id(found)], name)
     return names
 
 

@@ -41,6 +41,7 @@ class DrawnSupport:
         options: what a choice among fixed values picks from, as text; empty for others.
         left: options that are left, by number.
         removed: the share of the axes that is removed, 0 to 1.
+        axes: the axes that decide it.
 
     """
 
@@ -51,6 +52,7 @@ class DrawnSupport:
     options: tuple[str, ...]
     left: tuple[int, ...]
     removed: float
+    axes: tuple[Node, ...]
 
 
 def supports(graph: Graph, domain: Domain) -> tuple[DrawnSupport, ...]:
@@ -67,22 +69,23 @@ def supports(graph: Graph, domain: Domain) -> tuple[DrawnSupport, ...]:
     for node, axes in drawn.items():
         span = node.span if isinstance(node.span, Span) else None
         removed = 1 - float(np.prod([_left(domain, axis) for axis in axes]))
+        own = tuple(operand for operand in node.operands if operand.is_axis)
         kind = NAMES.get(node.operation.name, "place")
         if kind == "place":
             if span in places:  # several numbers of one place
                 place = places[span]
                 known = rows[place]
                 rows[place] = DrawnSupport(
-                    kind, span, None, None, (), (), 1 - (1 - known.removed) * (1 - removed)
+                    kind, span, None, None, (), (), 1 - (1 - known.removed) * (1 - removed), known.axes + own
                 )
             else:
                 places[span] = len(rows)
-                rows.append(DrawnSupport(kind, span, None, None, (), (), removed))
+                rows.append(DrawnSupport(kind, span, None, None, (), (), removed, own))
             continue
         options = options_of(node, graph.nodes)
         ends = _ends(after[node])
         left = _options_left(node, graph, domain) if options else ()
-        rows.append(DrawnSupport(kind, span, _ends(before[node]), ends, options, left, removed))
+        rows.append(DrawnSupport(kind, span, _ends(before[node]), ends, options, left, removed, own))
     return tuple(rows)
 
 

@@ -47,15 +47,20 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
         scenes = scenario.stream(_SHOWN, seed=seed, approximate=_SHOWN, max_attempts=tries)
     found = [scene for scene in scenes if isinstance(scene, Scene)]
     places = []
+    instances, draws = scenario.instance_names, scenario.draw_names
     for number, item in enumerate(scenario.objects):
         lower, upper = places_of(as_node(item.position), graph, domain)
-        name = scenario.variable(item) or (
-            "ego" if item is scenario.egoObject else f"{type(item).__name__} {number}"
-        )
         seen = [list(scene.cast[number].position) for scene in found]
-        places.append(Whereabouts(name, lower, upper, np.array(seen, dtype=np.float64).reshape(-1, 3)))
+        places.append(
+            Whereabouts(instances[id(item)], lower, upper, np.array(seen, dtype=np.float64).reshape(-1, 3))
+        )
     values = tuple(
-        ValueRow(_text(scenario.text, row), None if row.span is None else row.span.line, row)
+        ValueRow(
+            _text(scenario.text, row),
+            None if row.span is None else row.span.line,
+            row,
+            tuple(dict.fromkeys(draws[graph.address(axis)].thing for axis in row.axes)),
+        )
         for row in supports(graph, domain)
     )
     return Assessment(

@@ -20,11 +20,18 @@ __all__ = ["Assessment", "ValueRow"]
 
 @dataclass(frozen=True, slots=True)
 class ValueRow:
-    """A random value of the program: what it is called there, and what it can be."""
+    """A random value of the program: how it is written there, what it can be, and what it decides."""
 
     text: str
     line: int | None
     support: DrawnSupport
+    names: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The variable or property that the value decides; of several the first, and how many there are."""
+        others = len(self.names) - 1
+        return "" if not self.names else f"{self.names[0]} and {others} more" if others else self.names[0]
 
     @property
     def before(self) -> str:
@@ -162,6 +169,7 @@ class Assessment:
             "costliest": None if worst is None else _requirement(worst),
             "values": [
                 {
+                    "names": list(row.names),
                     "text": row.text,
                     "line": row.line,
                     "kind": row.support.kind,

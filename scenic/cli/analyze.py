@@ -76,11 +76,12 @@ def _show(found: "Assessment") -> None:
     for line in found.summary():
         console.print(line, soft_wrap=True, markup=False)
     values = Table(title="Random values", title_justify="left")
+    values.add_column("name", no_wrap=True)
     for heading in ("value", "line", "before", "after", "removed"):
         values.add_column(heading, overflow="fold")
     for row in found.values:
         line = "" if row.line is None else str(row.line)
-        values.add_row(row.text, line, row.before, row.after, f"{row.support.removed:.1%}")
+        values.add_row(row.name, row.text, line, row.before, row.after, f"{row.support.removed:.1%}")
     if found.values:
         console.print(values)
     for number, part in enumerate(found.components, start=1):

@@ -4,7 +4,7 @@ import secrets
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -29,6 +29,9 @@ if TYPE_CHECKING:
     from scenic.falsification.search import FalsificationResult
 
 __all__ = ["falsify"]
+
+_SHOWN: Final = 12
+"""Values of a point that are printed, at most."""
 
 
 @click.command()
@@ -220,8 +223,10 @@ def _show(label: str, result: "FalsificationResult") -> None:
     worst = result.best
     if worst is not None:
         print(f"least value {min(map(float, worst['values'])):.6g} in run {worst['run']}")
-        for name, value in list(worst["point"].items())[:12]:
-            print(f"  {name} = {value:.6g}")
+        for words in result.point(worst)[:_SHOWN]:
+            print(f"  {words}")
+        if len(worst["point"]) > _SHOWN:
+            print(f"  and {len(worst['point']) - _SHOWN} more")
     if result.is_blind:
         print("all values are plus or minus infinity: nothing guides the search")
     sys.stdout.flush()

@@ -31,7 +31,9 @@ _STYLE: Final = (
 def load_result(folder: Path) -> FalsificationResult:
     """The result of the search that a folder keeps; raises `SearchFolderError` if there is none."""
     about = manifest_of(folder)
-    return FalsificationResult(read_rows(folder), tuple(about.get("objectives", ())), folder)
+    return FalsificationResult(
+        read_rows(folder), tuple(about.get("objectives", ())), folder, about.get("units", {})
+    )
 
 
 def load_results(folder: Path) -> dict[str, FalsificationResult]:
@@ -151,9 +153,7 @@ def _described(row: Any, result: FalsificationResult, links_from: Path | None) -
         page = result.folder / "counterexamples" / f"{row['run']:04d}" / "play.html"
         if page.exists():
             run = f"<a href='{html.escape(os.path.relpath(page, links_from or result.folder))}'>{run}</a>"
-    point = ", ".join(
-        f"{html.escape(name)} = {value:.4g}" for name, value in list(row["point"].items())[:_MOST_AXES]
-    )
+    point = html.escape(", ".join(result.point(row)[:_MOST_AXES]))
     return run, f"{_value(row):.6g}", row["status"], point
 
 

@@ -18,7 +18,7 @@ from scenic.falsification.evaluating import Evaluation, Task
 from scenic.falsification.objectives import Objective, ObjectiveError
 from scenic.falsification.samplers import make_sampler
 from scenic.falsification.samplers.protocol import Exhausted
-from scenic.falsification.space import Floats, Space, space_of
+from scenic.falsification.space import Floats, Space, space_of, worded
 from scenic.falsification.store import SearchFolder
 from scenic.formats.files import OutputError
 from scenic.language.errors import InvalidScenarioError, Located
@@ -81,6 +81,7 @@ class Plan:
             "simulator": "none" if self.is_static else simulator,
             "steps": self.max_steps,
             "timestep": self.timestep,
+            "units": space_of(scenario, self.space).units,
         }
 
 
@@ -93,12 +94,18 @@ class FalsificationResult:
             objectives, ``point`` (values by name), ``numbers`` (of draws, by address in hexadecimal digits).
         objectives: the names of the objectives.
         folder: where it is kept.
+        units: the units of a point's values, by name; none of values whose unit is not known.
 
     """
 
     rows: list[dict[str, Any]]
     objectives: tuple[str, ...]
     folder: Path | None = None
+    units: Mapping[str, str] = field(default_factory=dict)
+
+    def point(self, row: Mapping[str, Any]) -> list[str]:
+        """The point of a run, for readers."""
+        return [worded(name, value, self.units.get(name, "")) for name, value in row["point"].items()]
 
     @property
     def counterexamples(self) -> list[dict[str, Any]]:
@@ -200,7 +207,10 @@ def search(
         None if folder is None else folder.path,
     )
     result = FalsificationResult(
-        [], tuple(item.label for item in plan.objectives), None if folder is None else folder.path
+        [],
+        tuple(item.label for item in plan.objectives),
+        None if folder is None else folder.path,
+        space.units,
     )
     kept = [] if folder is None else folder.rows
     deadline = None if limits.time_limit is None else time.monotonic() + limits.time_limit

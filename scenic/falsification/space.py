@@ -1,7 +1,7 @@
 """The space that is searched: coordinates in the unit interval, and the numbers of draws that they stand for."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +12,13 @@ from scenic.graph.operations.normal import conditioned_cumulative, conditioned_q
 from scenic.runtime.program.external import Choosable
 
 if TYPE_CHECKING:
+    from scenic.runtime.scenes.naming import DrawName
     from scenic.runtime.scenes.scenario import Scenario
 
-__all__ = ["Coordinate", "Floats", "Space", "space_of"]
+__all__ = ["SHARE", "Coordinate", "Floats", "Space", "space_of", "worded"]
+
+SHARE: Final = "of its range"
+"""In the place of the unit of a number from 0 to 1 of which only this is known."""
 
 Floats = NDArray[np.float64]
 
@@ -33,6 +37,7 @@ class Coordinate:
         cells: the ends of these buckets, or each value twice, if they do not divide the values from ``low`` to ``high`` evenly.
         normal: mean and deviation, if values within buckets are those of a normal law between ``low`` and ``high``.
         is_stratified: whether buckets come from a prior.
+        unit: of the values, where it is known; `SHARE` where only the place between the least and the greatest is.
 
     """
 
@@ -45,6 +50,7 @@ class Coordinate:
     cells: tuple[tuple[float, float], ...] | None = None
     normal: tuple[float, float] | None = None
     is_stratified: bool = False
+    unit: str = ""
 
     @property
     def is_continuous(self) -> bool:
@@ -116,10 +122,20 @@ class Space:
     def __len__(self) -> int:
         return len(self.coordinates)
 
+    @property
+    def units(self) -> dict[str, str]:
+        """The units of values, by label, where they are known."""
+        return {item.label: item.unit for item in self.coordinates if item.unit}
+
     def numbers(self, points: Floats) -> Floats:
         """The numbers of draws ``(n, d)`` for points ``(n, d)``."""
         columns = [item.number(points[:, place]) for place, item in enumerate(self.coordinates)]
         return np.column_stack(columns) if columns else np.zeros((len(points), 0))
+
+
+def worded(label: str, value: float, unit: str) -> str:
+    """A coordinate and its value, for readers."""
+    return f"{label} = {value:.6g} {unit}".rstrip()
 
 
 def space_of(scenario: "Scenario", wanted: str = "auto") -> Space:
@@ -133,18 +149,21 @@ def space_of(scenario: "Scenario", wanted: str = "auto") -> Space:
     """
     externals = scenario.externals
     if wanted == "external" or (wanted == "auto" and externals):
-        return Space(tuple(_external(place, item, scenario) for place, item in externals.items()))
-    seen: dict[str, int] = {}
-    return Space(
-        tuple(Coordinate(axis.address, _numbered(_place(axis.span), seen)) for axis in scenario.axes)
-    )
+        names = scenario.draw_names
+        return Space(tuple(_external(place, item, names.get(place)) for place, item in externals.items()))
+    return Space(tuple(_drawn(axis.address, axis.name) for axis in scenario.axes))
 
 
-def _external(address: int, item: Choosable, scenario: "Scenario") -> Coordinate:
-    label = scenario.external_names.get(address) or f"{item.kind} {address:016x}"
+def _drawn(address: int, name: "DrawName") -> Coordinate:
+    low, high = name.ends or (0.0, 1.0)
+    return Coordinate(address, name.text, low, high, unit=name.unit if name.ends else SHARE)
+
+
+def _external(address: int, item: Choosable, name: "DrawName | None") -> Coordinate:
+    """The coordinate of an external parameter; one that nothing holds, as only a behavior uses it, has no name."""
     return Coordinate(
         address,
-        label,
+        f"{item.kind} {address:016x}" if name is None else name.text,
         item.low,
         item.high,
         item.count,
@@ -152,17 +171,8 @@ def _external(address: int, item: Choosable, scenario: "Scenario") -> Coordinate
         item.cells,
         item.normal,
         item.is_stratified,
+        name.unit if name is not None and name.ends == (item.low, item.high) else "",
     )
-
-
-def _place(span: object) -> str:
-    line, column = getattr(span, "line", None), getattr(span, "column", None)
-    return "draw" if line is None else f"line {line}:{column}"
-
-
-def _numbered(label: str, seen: dict[str, int]) -> str:
-    seen[label] = seen.get(label, 0) + 1
-    return label if seen[label] == 1 else f"{label} #{seen[label]}"
 
 
 def shares_of(space: Space, buckets: int) -> Sequence[Floats]:

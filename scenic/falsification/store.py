@@ -14,6 +14,8 @@ __all__ = ["SearchFolder", "SearchFolderError", "folders_of", "manifest_of", "nu
 
 _FORMAT: Final = "scenic-falsification"
 _VERSION: Final = 1
+_UNITS: Final = "units"
+"""The setting that only describes."""
 
 
 class SearchFolderError(Located):
@@ -47,7 +49,7 @@ class SearchFolder:
                     help="go on with it by --resume, or name another folder",
                 )
             found = _manifest(manifest)
-            different = [name for name in wanted if found.get(name) != wanted[name]]
+            different = [name for name in wanted if name != _UNITS and found.get(name) != wanted[name]]
             if different:
                 raise SearchFolderError(
                     f"'{path}' holds another search: its {different[0]} differs",

@@ -47,8 +47,7 @@ class BuiltinProperty:
     """One property as one built-in class defines it.
 
     Its value has any of ``types``. ``given`` is the default: a constant, or the words of the manual for one that the runtime
-    computes. ``needs`` are the properties that the default reads. ``angle`` tells whether numbers in the value are angles in
-    radians.
+    computes. ``needs`` are the properties that the default reads. ``unit`` is that of the numbers in the value, where they have one.
     """
 
     name: str
@@ -59,7 +58,12 @@ class BuiltinProperty:
     dynamic: bool = False
     final: bool = False
     additive: bool = False
-    angle: bool = False
+    unit: str = ""
+
+    @property
+    def angle(self) -> bool:
+        """Return whether numbers in the value are angles, in radians."""
+        return self.unit == "rad"
 
     @property
     def type(self) -> str:
@@ -118,21 +122,23 @@ _POINT = BuiltinClass(
     None,
     "A position in space.",
     (
-        _P("position", (VECTOR,), Constant((0, 0, 0)), "Global position, in metres.", dynamic=True),
-        _P("width", (SCALAR,), Constant(0), "Extent along the local X axis; points have none."),
-        _P("length", (SCALAR,), Constant(0), "Extent along the local Y axis; points have none."),
-        _P("height", (SCALAR,), Constant(0), "Extent along the local Z axis; points have none."),
+        _P("position", (VECTOR,), Constant((0, 0, 0)), "Global position, in metres.", dynamic=True, unit="m"),
+        _P("width", (SCALAR,), Constant(0), "Extent along the local X axis; points have none.", unit="m"),
+        _P("length", (SCALAR,), Constant(0), "Extent along the local Y axis; points have none.", unit="m"),
+        _P("height", (SCALAR,), Constant(0), "Extent along the local Z axis; points have none.", unit="m"),
         _P(
             "baseOffset",
             (VECTOR,),
             Constant((0, 0, 0)),
             "The base point, relative to the position, that `on` puts on a surface.",
+            unit="m",
         ),
         _P(
             "contactTolerance",
             (SCALAR,),
             Constant(0),
             "The small gap that `on` and the directional specifiers leave, in metres.",
+            unit="m",
         ),
         _P(
             "onDirection",
@@ -145,9 +151,9 @@ _POINT = BuiltinClass(
             (_words("pair of scalars"),),
             Constant((2 * math.pi, math.pi), "(360 deg, 180 deg)"),
             "Horizontal and vertical angle of view.",
-            angle=True,
+            unit="rad",
         ),
-        _P("visibleDistance", (SCALAR,), Constant(50), "How far it sees, in metres."),
+        _P("visibleDistance", (SCALAR,), Constant(50), "How far it sees, in metres.", unit="m"),
         _P(
             "viewRayDensity",
             (SCALAR,),
@@ -178,6 +184,7 @@ _POINT = BuiltinClass(
             (VECTOR,),
             Constant((1, 1, 0)),
             "Standard deviation of the noise on the position, per axis.",
+            unit="m",
         ),
         _P(
             "mutator",
@@ -202,7 +209,7 @@ _ORIENTED_POINT = BuiltinClass(
             Constant(0),
             "Rotation about the Z axis of the parent orientation, in radians.",
             dynamic=True,
-            angle=True,
+            unit="rad",
         ),
         _P(
             "pitch",
@@ -210,7 +217,7 @@ _ORIENTED_POINT = BuiltinClass(
             Constant(0),
             "Rotation about the X axis after the yaw, in radians.",
             dynamic=True,
-            angle=True,
+            unit="rad",
         ),
         _P(
             "roll",
@@ -218,7 +225,7 @@ _ORIENTED_POINT = BuiltinClass(
             Constant(0),
             "Rotation about the Y axis after yaw and pitch, in radians.",
             dynamic=True,
-            angle=True,
+            unit="rad",
         ),
         _P(
             "parentOrientation",
@@ -243,14 +250,14 @@ _ORIENTED_POINT = BuiltinClass(
             ("orientation",),
             dynamic=True,
             final=True,
-            angle=True,
+            unit="rad",
         ),
         _P(
             "viewAngle",
             (SCALAR,),
             Constant(2 * math.pi, "360 deg"),
             "Horizontal angle of view; the older form of `viewAngles`.",
-            angle=True,
+            unit="rad",
         ),
         _P(
             "viewAngles",
@@ -258,14 +265,14 @@ _ORIENTED_POINT = BuiltinClass(
             "(viewAngle, 180 deg)",
             "Horizontal and vertical angle of view.",
             ("viewAngle",),
-            angle=True,
+            unit="rad",
         ),
         _P(
             "headingStdDev",
             (SCALAR,),
             Constant(math.radians(5), "5 deg"),
             "Standard deviation of the noise on the yaw.",
-            angle=True,
+            unit="rad",
         ),
         _P(
             "orientationStdDev",
@@ -273,7 +280,7 @@ _ORIENTED_POINT = BuiltinClass(
             "(headingStdDev, 0, 0)",
             "Standard deviations of the noise on yaw, pitch and roll.",
             ("headingStdDev",),
-            angle=True,
+            unit="rad",
         ),
         _P(
             "mutator",
@@ -401,14 +408,16 @@ _OBJECT = BuiltinClass(
             "Velocity at the start of a simulation.",
             ("speed", "orientation"),
             dynamic=True,
+            unit="m/s",
         ),
-        _P("speed", (SCALAR,), Constant(0), "Speed at the start of a simulation.", dynamic=True),
+        _P("speed", (SCALAR,), Constant(0), "Speed at the start of a simulation.", dynamic=True, unit="m/s"),
         _P(
             "angularVelocity",
             (VECTOR,),
             Constant((0, 0, 0)),
             "Angular velocity at the start of a simulation.",
             dynamic=True,
+            unit="rad/s",
         ),
         _P(
             "angularSpeed",
@@ -416,6 +425,7 @@ _OBJECT = BuiltinClass(
             Constant(0),
             "Angular speed at the start of a simulation.",
             dynamic=True,
+            unit="rad/s",
         ),
         _P(
             "behavior",

@@ -68,8 +68,8 @@ class Program:
     workspace: Workspace | None = None
     places: dict[int, tuple[Span | None, str | None]] = field(default_factory=dict)
     """The span and file where each instance was created, by the identity of the instance."""
-    external_names: Mapping[int, str] = field(default_factory=dict)
-    """Names of the program's external parameters, by address."""
+    module: Mapping[str, Any] = field(default_factory=dict)
+    """The names of its main module."""
     variables: Mapping[int, str] = field(default_factory=dict)
     """Variables that hold instances, by the instance's identity."""
     names: Globals = field(default_factory=Globals)

@@ -47,13 +47,16 @@ from scenic.runtime.scenes.services import Services
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
+    from scenic.runtime.scenes.naming import DrawName
+
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """An axis of the unit cube: one draw of the program, and where it stands."""
+    """An axis of the unit cube: one draw of the program, where it stands, and what it is called."""
 
     address: int
     span: Span | None
+    name: "DrawName"
 
 
 _KEPT: Final = frozenset({"_foreseen", "_external_sampler"})
@@ -105,6 +108,7 @@ class Scenario(Generating):
         self._foreseen = Foreseen(self._foresee)
         self._choosing: Sampler | None = None
         self._external_sampler: Any = None
+        self._draw_names: dict[int, DrawName] | None = None
         self._approximation: Approximation | None = None
         self._family = Family(
             program,
@@ -156,9 +160,20 @@ class Scenario(Generating):
     @property
     def axes(self) -> tuple[Axis, ...]:
         """The axes of the unit cube that scenes are drawn from: the columns of `scenic.GivenPoints`."""
-        graph = self.outline.graph
-        spans = (node.span if isinstance(node.span, Span) else None for node in graph.axes)
-        return tuple(Axis(graph.address(node), span) for node, span in zip(graph.axes, spans, strict=True))
+        graph, names = self.outline.graph, self.draw_names
+        return tuple(
+            Axis(address, node.span if isinstance(node.span, Span) else None, names[address])
+            for node, address in ((node, graph.address(node)) for node in graph.axes)
+        )
+
+    @property
+    def draw_names(self) -> "Mapping[int, DrawName]":
+        """The names of the program's draws, by address."""
+        from scenic.runtime.scenes.naming import names_of_draws
+
+        if self._draw_names is None:
+            self._draw_names = names_of_draws(self._program, self.outline.graph)
+        return self._draw_names
 
     @property
     def externals(self) -> Mapping[int, Choosable]:
@@ -166,9 +181,11 @@ class Scenario(Generating):
         return self._program.context.record.externals
 
     @property
-    def external_names(self) -> Mapping[int, str]:
-        """Parameters or variables that hold external parameters, by address."""
-        return self._program.external_names
+    def instance_names(self) -> Mapping[int, str]:
+        """The names of all instances, by identity: the variable, else the class, with a number if there are several."""
+        from scenic.runtime.scenes.naming import names_of_instances
+
+        return names_of_instances(self._program)
 
     def chosen(
         self,
