@@ -144,6 +144,13 @@ class Simulations:
             self._simulator = self._choose(self._named)
         return self._simulator
 
+    @property
+    def named(self) -> str | None:
+        """The name of the simulator as it was given, if it was."""
+        from scenic.simulators.simulator import Simulator
+
+        return None if isinstance(self._named, Simulator) else self._named
+
     def _choose(self, name: str | None) -> "Simulator":
         from scenic.runtime.python.importing import beside, forget_stranger
         from scenic.simulators.batch import choose_simulator
@@ -220,7 +227,11 @@ class Simulations:
             if done is None:
                 what = f"rejected ({numbered.tries} tried)" if numbered.has_scene else "no scene found"
                 return SimulationRow(k, missing=what, rejections=numbered.rejections)
-            about = {**course_document(done, k=k, tries=numbered.tries), "settings": self._settings()}
+            about = {
+                **course_document(done, k=k, tries=numbered.tries),
+                "settings": self._settings(),
+                "origin": {**self._scenario.origin, "simulator": self.named},
+            }
             wanted = not self._only_violations or is_violated(about)
             return SimulationRow(k, about=about, page=kept.finish(done, about) if wanted else None)
 

@@ -1,6 +1,7 @@
 """``scenic falsify``: search for scenes and simulations in which requirements fail."""
 
 import secrets
+import shlex
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -227,6 +228,8 @@ def _show(label: str, result: "FalsificationResult") -> None:
             print(f"  {words}")
         if len(worst["point"]) > _SHOWN:
             print(f"  and {len(worst['point']) - _SHOWN} more")
+        if result.folder is not None:
+            print(f"again: scenic replay {shlex.join([str(result.folder), str(worst['run'])])}")
     if result.is_blind:
         print("all values are plus or minus infinity: nothing guides the search")
     sys.stdout.flush()

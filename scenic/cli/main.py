@@ -43,6 +43,7 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
         "map": ("scenic.cli.map", "map_command", "Show what is in a road map, or draw it."),
         "simulate": ("scenic.cli.simulate", "simulate", "Simulate scenes of a program."),
         "falsify": ("scenic.cli.falsify", "falsify", "Search for scenes and simulations that fail."),
+        "replay": ("scenic.cli.replay", "replay", "Make a run that was kept again, and compare it."),
         "doctor": ("scenic.cli.doctor", "doctor", "Tell whether this installation is complete."),
         "cache": ("scenic.cli.cache", "cache", "Look at the cache, or empty it."),
         "completion": ("scenic.cli.completion", "completion", "Let a shell complete commands and options."),
@@ -57,7 +58,7 @@ _GROUPS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
     {
         "Write programs": ("new", "check", "format", "explain", "playground", "lsp"),
         "Make scenes": ("sample", "analyze", "view", "dataset", "map"),
-        "Run simulations": ("simulate", "falsify"),
+        "Run simulations": ("simulate", "falsify", "replay"),
         "Look behind": ("doctor", "cache", "completion", "ast", "python"),
     }
 )

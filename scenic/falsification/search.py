@@ -82,7 +82,14 @@ class Plan:
             "steps": self.max_steps,
             "timestep": self.timestep,
             "units": space_of(scenario, self.space).units,
+            "origin": {**scenario.origin, "objectives": self._goals()},
         }
+
+    def _goals(self) -> list[dict[str, str | None]] | None:
+        """The objectives as plain data, unless one of them is a function."""
+        if any(item.function is not None for item in self.objectives):
+            return None
+        return [{"name": item.name, "expression": item.expression} for item in self.objectives]
 
 
 @dataclass

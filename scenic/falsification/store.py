@@ -14,8 +14,8 @@ __all__ = ["SearchFolder", "SearchFolderError", "folders_of", "manifest_of", "nu
 
 _FORMAT: Final = "scenic-falsification"
 _VERSION: Final = 1
-_UNITS: Final = "units"
-"""The setting that only describes."""
+_DESCRIBING: Final = ("units", "origin")
+"""Settings that decide nothing: they may be others when a search goes on."""
 
 
 class SearchFolderError(Located):
@@ -49,7 +49,9 @@ class SearchFolder:
                     help="go on with it by --resume, or name another folder",
                 )
             found = _manifest(manifest)
-            different = [name for name in wanted if name != _UNITS and found.get(name) != wanted[name]]
+            different = [
+                name for name in wanted if name not in _DESCRIBING and found.get(name) != wanted[name]
+            ]
             if different:
                 raise SearchFolderError(
                     f"'{path}' holds another search: its {different[0]} differs",

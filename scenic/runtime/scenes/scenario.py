@@ -59,6 +59,17 @@ class Axis:
     name: "DrawName"
 
 
+def _plain(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return options as JSON has them, without parameters that it cannot hold."""
+    known: dict[str, Any] = {name: value for name, value in options.items() if name != "params"}
+    params = {
+        name: value
+        for name, value in options.get("params", {}).items()
+        if isinstance(value, str | int | float | bool | None)
+    }
+    return {**known, "params": params} if params else known
+
+
 _KEPT: Final = frozenset({"_foreseen", "_external_sampler"})
 """Attributes of a scenario that conditions do not replace."""
 
@@ -415,6 +426,11 @@ class Scenario(Generating):
     def options(self) -> Mapping[str, Any]:
         """The keyword arguments of `scenic.load` with which the program was compiled."""
         return self._services.options
+
+    @property
+    def origin(self) -> dict[str, Any]:
+        """The file of the program, and those `options` that are plain data: what it takes to load it again."""
+        return {"file": self.filename, "options": _plain(self._services.options)}
 
     @property
     def fingerprint(self) -> str:
