@@ -14,6 +14,9 @@ settings.register_profile(
 if not os.environ.get("CI"):
     settings.load_profile("patient")
 
+# Several processes test at once: threads of BLAS would only wait for each other, which costs processor time.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 # Tests compute everything themselves, and leave nothing behind in the home of whoever runs them.
 os.environ["SCENIC_CACHE"] = "off"
 

@@ -11,6 +11,7 @@ import scenic
 from scenic.runtime.dynamics.recorded import plain
 from scenic.simulators.dummy import DummySimulator
 from tests.dynamic_programs import FOLDER, Traced, programs, recorded, reviewed
+from tests.each import each
 
 FILES = sorted(FOLDER.glob("*.txt"))
 
@@ -50,16 +51,18 @@ def _text(action: Any) -> str:
     return str(action)
 
 
-def cases() -> Iterator[Any]:
+def cases() -> Iterator[tuple[str, Traced, dict[str, Any]]]:
     for file in FILES:
         table = recorded(file)
         for name, program in programs(file).items():
             if not program.differs:
-                yield pytest.param(program, table[name], id=f"{file.stem}: {name}")
+                yield f"{file.stem}: {name}", program, table[name]
 
 
-@pytest.mark.parametrize(("program", "expected"), list(cases()))
-def test_the_trace_is_as_recorded(program: Traced, expected: dict[str, Any]) -> None:
+@pytest.mark.slow
+@each(cases())
+def test_the_trace_is_as_recorded(case: tuple[str, Traced, dict[str, Any]]) -> None:
+    _, program, expected = case
     found = trace(program)
     if "error" in expected:
         expected = {"error": expected["error"].partition(":")[0].removeprefix("Scenic")}

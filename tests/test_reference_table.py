@@ -15,6 +15,7 @@ from scipy import stats
 
 import scenic
 from scenic.runtime.values.values import Orientation
+from tests.each import each
 from tests.runtime.programs import FALSE_ALARM
 
 DATA: dict[str, Any] = json.loads((Path(__file__).parent / "data" / "reference" / "table.json").read_text())
@@ -70,7 +71,8 @@ def same_laws(first: list[Any], second: list[Any]) -> bool:
     )
 
 
-@pytest.mark.parametrize("name", list(PROGRAMS))
+@pytest.mark.slow
+@each(PROGRAMS)
 def test_results_agree(name: str) -> None:
     entry = PROGRAMS[name]
     text = entry["program"].replace("{SETTING}", DATA["setting"])

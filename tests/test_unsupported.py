@@ -2,8 +2,6 @@
 
 from collections.abc import Iterator
 
-import pytest
-
 import scenic
 from scenic.failures import diagnose
 from scenic.language.diagnostics import Diagnostic
@@ -11,6 +9,7 @@ from scenic.language.names import NAMES
 from scenic.language.support import refused_features
 from scenic.runtime.program.builtins import builtin_names
 from scenic.runtime.program.outcome import Program
+from tests.each import each
 
 
 def test_nothing_that_is_declared_is_refused() -> None:
@@ -34,8 +33,9 @@ def parts() -> Iterator[tuple[str, str]]:
             yield cls, f"{name}({arguments.get(name, '')})" if attribute.is_method else name
 
 
-@pytest.mark.parametrize(("cls", "part"), list(parts()))
-def test_what_instances_have_works_or_is_refused(cls: str, part: str) -> None:
+@each(parts())
+def test_what_instances_have_works_or_is_refused(asked: tuple[str, str]) -> None:
+    cls, part = asked
     text = f"ego = new Object at (9, 9)\nx = new {cls} at (Range(0, 1), 0), with allowCollisions True\ny = x.{part}\n"
     found = mistake(text)
     assert found is None or (found.code, found.span is not None and found.span.line) == ("SC900", 3), found

@@ -13,6 +13,7 @@ from scenic.analysis.terms import SolverTerms
 from scenic.graph.kinds import Kind
 from scenic.graph.operations import TABLE
 from scenic.graph.operations.encoding import componentwise
+from tests.each import each
 
 VALUES = {
     S: (-2.5, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 3.25),
@@ -104,7 +105,7 @@ class Asked:
 SOLVED = [case for case in CASES if has(case, "solver")]
 
 
-@pytest.mark.parametrize("case", SOLVED, ids=str)
+@each(SOLVED)
 def test_the_solver_allows_the_value_and_no_other(case):
     columns = operands_of(case)
     values, fine = values_of(case, columns)

@@ -57,9 +57,8 @@ def whole(folder: Path) -> bytes:
 
 @pytest.mark.slow
 def test_any_number_of_processes_makes_the_same_lines(folder: Path) -> None:
-    for jobs in (2, 3):
-        assert run(folder, "-j", jobs, "-o", f"{jobs}.jsonl").returncode == 0
-        assert (folder / f"{jobs}.jsonl").read_bytes() == whole(folder)
+    assert run(folder, "-j", 3, "-o", "3.jsonl").returncode == 0
+    assert (folder / "3.jsonl").read_bytes() == whole(folder)
     part = run(folder, "-j", 2, "--first", 590, "-o", "-")
     assert part.stdout.encode().splitlines()[:10] == whole(folder).splitlines()[590:]
 
@@ -70,7 +69,7 @@ def test_a_killed_run_goes_on_to_the_same_bytes(folder: Path) -> None:
     target = folder / "killed.jsonl"
     part = folder / "killed.jsonl.part"
     kills = 0
-    for _ in range(4):
+    for _ in range(2):
         with subprocess.Popen(
             command("-j", 2, "-o", target.name, "--resume"),
             cwd=folder,
@@ -109,7 +108,7 @@ def test_killed_workers_change_nothing(folder: Path) -> None:
     rng = random.Random(11)
     target = folder / "workers.jsonl"
     kills = 0
-    while kills < 4:
+    while kills < 2:
         target.unlink(missing_ok=True)
         with subprocess.Popen(
             command("-j", 2, "-o", target.name), cwd=folder, stderr=subprocess.PIPE, text=True

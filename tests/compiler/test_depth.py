@@ -8,6 +8,7 @@ import pytest
 from scenic.compiler.check import check_text
 from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS
 from scenic.compiler.parser import parse
+from tests.each import each
 from tests.work import calls_while
 
 Text = Callable[[int], str]
@@ -259,7 +260,7 @@ def check(text: str) -> None:
         assert found.span is not None
 
 
-@pytest.mark.parametrize("name", TEXTS)
+@each(TEXTS)
 def test_checking_nested_texts_takes_linear_time(name: str) -> None:
     # Below some depth a block with a mistake may be parsed once more for every block around it.
     factor = 10 if name.startswith("blocks of") else 1
@@ -268,7 +269,7 @@ def test_checking_nested_texts_takes_linear_time(name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", TEXTS)
+@each(TEXTS)
 def test_deep_texts(name: str) -> None:
     text = TEXTS[name](DEPTH)
     if "mistake" in name or "unclosed" in name:

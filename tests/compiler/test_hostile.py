@@ -12,6 +12,7 @@ from scenic.language.errors import ScenicError
 from scenic.language.source import read_source
 from tests.cli.commands import run_here
 from tests.compiler.hostile import LINES
+from tests.each import each
 from tests.work import calls_while
 
 LONG = (
@@ -68,7 +69,7 @@ def test_odd_texts_that_are_wrong(name: str, text: str, line: int, column: int) 
     assert check_text(text, filename="odd.scenic")
 
 
-@pytest.mark.parametrize("name", LINES)
+@each(LINES)
 def test_checking_long_lines_takes_linear_time(name: str) -> None:
     small, large = (calls_while(check, LINES[name](size)) for size in (1000, 2000))
     # What is reported is bounded; before the bound is reached, a report costs some calls.

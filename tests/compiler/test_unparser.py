@@ -18,6 +18,7 @@ from tests.compiler import tree_strategies as trees
 from tests.compiler.golden_cases import Case, python_cases, scenic_cases
 from tests.compiler.round_trip import difference
 from tests.compiler.round_trip import written_again as check
+from tests.each import each
 
 ROOT = Path(__file__).parent.parent.parent
 DATA = ROOT / "tests" / "data" / "unparser"
@@ -37,7 +38,7 @@ def readable(text: str) -> ast.Module | None:
 # What the parser makes.
 
 
-@pytest.mark.parametrize("case", scenic_cases(), ids=str)
+@each(scenic_cases())
 def test_scenic_cases(case: Case) -> None:
     found = readable(case.source)
     assert found is not None

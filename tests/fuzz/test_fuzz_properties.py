@@ -12,6 +12,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.parser import ParseResult, parse
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
 from scenic.language.spans import Span
+from tests.each import each
 
 
 def case(text: str, *diagnostics: Diagnostic, node: ast.AST | None = None) -> Case:
@@ -42,15 +43,13 @@ RIGHT = [
 ]
 
 
-@pytest.mark.parametrize("each", properties.OF_PROGRAMS, ids=lambda each: each.name)
-@pytest.mark.parametrize("text", RIGHT)
-def test_what_is_right_is_accepted(each: Property, text: str):
-    each.holds(Case(text, thorough=True))
+@each(properties.OF_PROGRAMS, RIGHT)
+def test_what_is_right_is_accepted(law: Property, text: str):
+    law.holds(Case(text, thorough=True))
 
 
-@pytest.mark.parametrize("each", properties.OF_TEXTS, ids=lambda each: each.name)
-@pytest.mark.parametrize(
-    "text",
+@each(
+    properties.OF_TEXTS,
     [
         "\0",
         "\ud800 = (",
@@ -66,8 +65,8 @@ def test_what_is_right_is_accepted(each: Property, text: str):
         "\f\\",
     ],
 )
-def test_what_is_wrong_is_explained(each: Property, text: str):
-    each.holds(Case(text, thorough=True))
+def test_what_is_wrong_is_explained(law: Property, text: str):
+    law.holds(Case(text, thorough=True))
 
 
 # Of properties.

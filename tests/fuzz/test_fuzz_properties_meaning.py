@@ -26,6 +26,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.parser import ParseResult, parse
 from scenic.compiler.scopes import Scope, ScopeKind
 from scenic.language.spans import Span
+from tests.each import each
 
 TEXTS = [
     "",
@@ -48,11 +49,10 @@ RIGHT = tuple(
 )
 
 
-@pytest.mark.parametrize("text", TEXTS)
-@pytest.mark.parametrize("each", RIGHT, ids=lambda each: each.name)
-def test_right_texts_have_them(each: Any, text: str):
-    each.holds(Case(text, thorough=True))
-    each.holds(Case(text + "x = = 1\n", thorough=True))
+@each(RIGHT, TEXTS)
+def test_right_texts_have_them(law: Any, text: str):
+    law.holds(Case(text, thorough=True))
+    law.holds(Case(text + "x = = 1\n", thorough=True))
 
 
 # Tokens.

@@ -12,6 +12,7 @@ from scenic.compiler.parser import parse
 from scenic.ide.formatting import format_text, formatting
 from scenic.ide.snapshot import Snapshot
 from scenic.language.source import Source
+from tests.each import each
 
 ROOT = Path(__file__).parents[2]
 TEXTS = [
@@ -145,12 +146,12 @@ def test_style() -> None:
     assert formatted == PRETTY
 
 
-@pytest.mark.parametrize("index", range(len(TEXTS)))
+@each(range(len(TEXTS)))
 def test_programs(index: int) -> None:
     check(TEXTS[index], format_text(TEXTS[index]))
 
 
-@pytest.mark.parametrize("seed", range(60))
+@each(range(60))
 def test_bad_layout(seed: int) -> None:
     """Programs whose blanks, blank lines and comments have been disturbed."""
     chance = random.Random(seed)
@@ -220,7 +221,7 @@ def test_a_range_with_all_that_belongs_to_it(text: str, first: int, last: int, e
     assert _formatted(text, first, last) == expected
 
 
-@pytest.mark.parametrize("index", range(len(TEXTS)))
+@each(range(len(TEXTS)))
 def test_ranges_of_programs_mean_the_same(index: int) -> None:
     text = TEXTS[index].replace("    ", "  ").replace(" = ", "=")
     tree = parse(text).tree

@@ -2,17 +2,16 @@
 
 from pathlib import Path
 
-import pytest
-
 from scenic.language.names import NAMES
 from scenic.language.operators import OPERATORS
 from scenic.language.specifiers import SPECIFIERS
+from tests.each import each
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "language.md").read_text()
 NOT_BUILT = PAGE.split("## What is not built")[1]
 
 
-@pytest.mark.parametrize("word", [*NAMES, *OPERATORS, *SPECIFIERS])
+@each([*NAMES, *OPERATORS, *SPECIFIERS])
 def test_every_word_is_listed(word: str) -> None:
     assert f"`{word}`" in PAGE
 

@@ -17,6 +17,7 @@ from scenic.pipeline import scenarioFromString
 from scenic.project.index import Project
 from scenic.project.surroundings import surroundings_in
 from scenic.simulators.kinematic import KinematicSimulator
+from tests.each import each
 
 PAGES = sorted(
     file.name.removesuffix(".md")
@@ -30,7 +31,7 @@ def test_every_code_has_a_page_and_every_page_a_code() -> None:
     assert sorted(CODES) == PAGES
 
 
-@pytest.mark.parametrize("code", PAGES)
+@each(PAGES)
 def test_the_title_is_that_of_the_code(code: str) -> None:
     assert explanation(code).title == CODES[code]
 
@@ -91,7 +92,7 @@ def test_the_repair_is_free_of_it(code: str, tmp_path: Path) -> None:
     assert code not in {found.code for found in observed(page, page.repair, tmp_path)}
 
 
-@pytest.mark.parametrize("code", [code for code in RUN if code < "SC400"])
+@each(code for code in RUN if code < "SC400")
 def test_a_fix_of_the_example_mends_it(code: str) -> None:
     page = explanation(code)
     for found in checked(page.example):

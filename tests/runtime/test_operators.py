@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from scenic.language.errors import InvalidScenarioError, RandomControlFlowError, ScenicTypeError
 from scenic.runtime.values.values import Orientation, Vector
+from tests.each import each
 from tests.runtime.programs import (
     altitude,
     assert_angles_equal,
@@ -633,8 +634,7 @@ WANTED = {
 }
 
 
-@pytest.mark.parametrize("form", WRONG_FORMS)
-@pytest.mark.parametrize("use", WANTED)
+@each(WANTED, WRONG_FORMS)
 def test_what_wants_an_operand_says_what_for(use: str, form: str) -> None:
     """Whether it is wrong at once or shows to be so only later; and a class is no instance of it."""
     what, wanted = WANTED[use]

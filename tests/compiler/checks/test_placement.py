@@ -5,6 +5,7 @@ import pytest
 from scenic.compiler.parser import parse
 from scenic.compiler.resolver import resolve
 from scenic.language.source import Source
+from tests.each import each
 
 PLACES = {
     "top": "{}",
@@ -93,14 +94,16 @@ def misplaced(text: str) -> list[str]:
     return [item.message for item in found if item.code == "SC201"]
 
 
-@pytest.mark.parametrize(("statement", "place", "allowed"), cells())
-def test_every_cell(statement: str, place: str, allowed: bool) -> None:
+@each(cells())
+def test_every_cell(cell: tuple[str, str, bool]) -> None:
+    statement, place, allowed = cell
     # A misplaced block holds statements that may be misplaced as well.
     assert (not misplaced(program(statement, place))) is allowed
 
 
-@pytest.mark.parametrize(("statement", "place", "allowed"), cells())
-def test_nested_statements_stand_where_their_block_stands(statement: str, place: str, allowed: bool) -> None:
+@each(cells())
+def test_nested_statements_stand_where_their_block_stands(cell: tuple[str, str, bool]) -> None:
+    statement, place, allowed = cell
     assert (not misplaced(program(statement, place, around="if a:\n{}"))) is allowed
     in_loop = allowed or statement in ("break", "continue")
     assert (not misplaced(program(statement, place, around="for i in a:\n{}"))) is in_loop
