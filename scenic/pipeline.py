@@ -4,6 +4,7 @@ import inspect
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
+from functools import cache, partial
 from pathlib import Path
 from types import CodeType, FrameType, ModuleType, TracebackType
 from typing import TYPE_CHECKING, Any, Final
@@ -260,7 +261,7 @@ def _scenario(text: str, filename: str, options: _Options) -> Scenario:
         regions=ran.regions,
         domain=domain,
         impossible=impossible,
-        digest=options.digest(text),
+        digest=cache(partial(options.digest, text)),
         services=Services(
             show_page,
             _bundle,

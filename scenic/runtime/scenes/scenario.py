@@ -2,7 +2,7 @@
 
 import random
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import chain, repeat
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -93,14 +93,13 @@ class Scenario(Generating):
         regions: Mapping[str, Region],
         domain: Domain | None = None,
         impossible: Sequence[str] = (),
-        digest: str = "",
+        digest: Callable[[], str] = str,
         services: Services | None = None,
     ) -> None:
         self.filename = filename
         self.text = text
         """The program's text."""
-        self.digest = digest
-        """The digest of the program in saved scenes."""
+        self._digest = digest
         self.workspace = workspace
         self.egoObject = ego
         self.outline: Outline = outline
@@ -149,9 +148,14 @@ class Scenario(Generating):
             names=self._names,
             regions=self._regions,
             domain=domain,
-            digest=self.digest,
+            digest=self._digest,
             services=self._services,
         )
+
+    @property
+    def digest(self) -> str:
+        """The digest of the program in saved scenes; made when it is first needed, from all of the text."""
+        return self._digest()
 
     @property
     def objects(self) -> tuple[Object, ...]:

@@ -61,7 +61,7 @@ class Family:
     populations: Populations
     workspace: Workspace
     names: Mapping[int, str]
-    digest: str
+    digest: Callable[[], str]
     keep: Callable[["Scene"], bytes]
     scenario: Any
     view: Callable[["Scene"], Any] | None
@@ -125,7 +125,7 @@ class Scene:
     @property
     def digest(self) -> str:
         """The digest of the program in saved scenes."""
-        return self._family.digest
+        return self._family.digest()
 
     def lookup(self, node: Node) -> Any:
         """The value of a node in this scene."""
