@@ -92,7 +92,7 @@ def svg(places: Sequence[Whereabouts]) -> str:
 
 def png(places: Sequence[Whereabouts]) -> bytes:
     """The drawing as the content of a PNG file; raises `MissingLibraryError` if Pillow is not installed."""
-    from scenic.formats.png import require_pillow
+    from scenic.formats.imaging import require_pillow
 
     image_library = require_pillow()
     from PIL import ImageDraw

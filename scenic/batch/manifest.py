@@ -7,7 +7,8 @@ from dataclasses import asdict, field, replace
 from pathlib import Path
 from typing import Any, Final, Self
 
-from scenic.batch.portable import mesh_digests, versions
+from scenic.batch.portable import versions
+from scenic.batch.source_files import mesh_digests, texture_digests
 from scenic.dataclass import dataclass
 from scenic.formats.files import write
 from scenic.language.errors import Located
@@ -79,6 +80,7 @@ class Manifest:
         properties: which properties of objects are told, ``all`` or ``changed``.
         images: of labelled images, the ``camera``, their ``size`` (its own if ``None``), and whether there is an ``overlay``.
         meshes: digests of the mesh files that the program names.
+        textures: digests of the image files that objects may have as textures.
         versions: versions of Python and of libraries that may change a scene.
         command: the command line or call, for people.
         seconds: time spent so far.
@@ -100,6 +102,7 @@ class Manifest:
     properties: str = "changed"
     images: Mapping[str, Any] | None = None
     meshes: Mapping[str, str] = field(default_factory=dict)
+    textures: Mapping[str, str] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=versions)
     options: Mapping[str, Any] = field(default_factory=dict)
     source: str = ""
@@ -121,6 +124,7 @@ class Manifest:
             settings.pop("form", "parquet"),
             settings.pop("part_size", 65536),
             meshes=mesh_digests(scenario),
+            textures=texture_digests(scenario),
             options=json.loads(json.dumps(dict(scenario.options), default=repr)),
             **settings,
         )
@@ -199,5 +203,5 @@ class Manifest:
 
 _SETTINGS: Final = (
     "program", "digest", "fingerprint", "seed", "first", "form", "part_size", "points", "max_attempts", "properties",
-    "images", "meshes", "versions",
+    "images", "meshes", "textures", "versions",
 )  # fmt: skip

@@ -9,18 +9,17 @@ import io
 import pickle
 import platform
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, Final
 
-from scenic.formats.mesh_files import digest_of
+from scenic.batch.source_files import mesh_digests, texture_digests
 from scenic.language.errors import Located
 from scenic.runtime.scenes.scenario import Scenario
-from scenic.runtime.values.choices import options_of
 
-__all__ = ["ClusterError", "Portable", "mesh_digests", "versions"]
+__all__ = ["ClusterError", "Portable", "versions"]
 
 _LIBRARIES: Final = ("numpy", "scipy", "trimesh", "manifold3d", "embreex", "shapely")
 """Libraries whose version may change a scene."""
@@ -81,7 +80,7 @@ def _same(
     except Exception as error:  # noqa: BLE001 - whatever the program raises, told where it can be shown
         raise ClusterError(
             f"a worker cannot load '{name}': {error}",
-            help="modules, maps and meshes must lie at the same place on all machines",
+            help="modules, maps, meshes and textures must lie at the same place on all machines",
         ) from None
     found = _marks(scenario)
     for mark in wanted:
@@ -90,18 +89,19 @@ def _same(
         if mine != theirs and (mark in found or not mark.startswith("module")):
             raise ClusterError(
                 f"a worker makes another program of '{name}': its {mark} is {mine[:12]}, in this process {theirs[:12]}",
-                help="give all machines the same files (modules and meshes of the program, the package itself), and start "
+                help="give all machines the same files (modules, meshes and textures of the program, the package itself), and start "
                 "workers again that have loaded earlier ones",
             )
     return scenario
 
 
 def _marks(scenario: Scenario) -> dict[str, str]:
-    """Digests of the scenario's mesh files, of the modules beside it that are loaded, and of its graph."""
-    meshes = {f"mesh '{name}'": digest for name, digest in mesh_digests(scenario).items()}
+    """Digests of the scenario's meshes and textures, of the modules beside it that are loaded, and of its graph."""
+    files = {f"mesh '{name}'": digest for name, digest in mesh_digests(scenario).items()}
+    files |= {f"texture '{name}'": digest for name, digest in texture_digests(scenario).items()}
     folder = Path(scenario.filename).absolute().parent
     modules = {f"module '{module.__name__}'": _module_digest(module) for module in _modules_in(folder)}
-    return {**meshes, **modules, "graph": scenario.fingerprint}
+    return {**files, **modules, "graph": scenario.fingerprint}
 
 
 def _modules_in(folder: Path) -> list[ModuleType]:
@@ -174,26 +174,3 @@ def check_versions(wanted: Mapping[str, str]) -> None:
                 f"a worker has {name} {mine.get(name)}, this process has {name} {version}",
                 help="install the same versions everywhere: other versions may give other scenes",
             )
-
-
-def mesh_digests(scenario: Scenario) -> dict[str, str]:
-    """Digests of the mesh files of a scenario's shapes, by their paths relative to the program."""
-    folder = Path(scenario.filename).absolute().parent
-    found = {}
-    for path in _mesh_files(scenario):
-        try:
-            name = path.relative_to(folder).as_posix()
-        except ValueError:
-            name = path.name
-        found[name] = digest_of(path)
-    return dict(sorted(found.items()))
-
-
-def _mesh_files(scenario: Scenario) -> Iterable[Path]:
-    for thing in scenario.objects:
-        shape = thing.__dict__.get("shape")
-        for option in options_of(shape) or (shape,):
-            source = getattr(option, "source", None)
-            path = source.as_dict().get("path") if source is not None else None
-            if path is not None and Path(path).is_file():
-                yield Path(path).absolute()

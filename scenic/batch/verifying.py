@@ -13,6 +13,7 @@ from scenic.batch.datasets import Encoder
 from scenic.batch.image_parts import IMAGE_FORMS, copy_images, damaged_files, image_rows, join_indices
 from scenic.batch.manifest import DatasetError, Manifest, Part
 from scenic.batch.scenes import Job, method_of, results_of
+from scenic.batch.source_files import mesh_digests, texture_digests
 from scenic.dataclass import dataclass
 from scenic.formats.files import make_folder, write
 from scenic.formats.mesh_files import digest_of
@@ -59,6 +60,14 @@ def verify(
             f"the data set in '{folder}' is of another program, or of the same with other options or meshes",
             help="give the program as it was when the data set was made",
         )
+    if scenario is not None:
+        found = {**mesh_digests(scenario), **texture_digests(scenario)}
+        for name, digest in {**manifest.meshes, **manifest.textures}.items():
+            if found.get(name) != digest:
+                raise DatasetError(
+                    f"the data set in '{folder}' was made with another file '{name}'",
+                    help="put the file back that it was made with",
+                )
     for part in manifest.parts:
         path = folder / part.file
         if not path.is_file():

@@ -50,7 +50,7 @@ def analyze(
     Exit codes: 0 success, 1 the program has errors or no scene exists, 2 wrong usage.
     """
     from scenic.formats.files import check_writable
-    from scenic.formats.png import require_pillow
+    from scenic.formats.imaging import require_pillow
     from scenic.pipeline import analyze as analysed
 
     if png is not None:

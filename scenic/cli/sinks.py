@@ -110,7 +110,7 @@ def page(path: Path, title: str) -> Sink:
 
 def check_labelled(folder: Path) -> None:
     """Raises ``OutputError``, ``OutputChoiceError`` or ``MissingLibraryError`` if no labelled images can be in a folder."""
-    from scenic.formats.png import require_pillow
+    from scenic.formats.imaging import require_pillow
 
     require_pillow()
     if folder == STANDARD_OUTPUT or folder.suffix.lower() in {*_OTHER_FORMATS, *_FILES, ".jsonl"}:
@@ -134,7 +134,7 @@ def images(
 
     Raises ``OutputError`` or ``MissingLibraryError`` at once if that cannot be.
     """
-    from scenic.formats.png import require_pillow
+    from scenic.formats.imaging import require_pillow
 
     require_pillow()
     if path.suffix.lower() == ".png":

@@ -10,7 +10,8 @@ from typing import Any
 
 from scenic.formats.course_page import PoseTape, course_data, course_page
 from scenic.formats.html import page
-from scenic.formats.png import MissingLibraryError, png
+from scenic.formats.imaging import MissingLibraryError
+from scenic.formats.png import png
 from scenic.formats.scenes import Scene
 
 __all__ = ["embedded_courses", "embedded_scenes", "embedded_simulation", "scene_bundle", "table"]

@@ -6,13 +6,15 @@ look round and edges stay sharp.
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
-from typing import Final
+from dataclasses import field, replace
+from pathlib import Path
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from scenic.dataclass import dataclass
+from scenic.formats.mesh_coordinates import coordinates_of
 from scenic.formats.poses import Four, Triple, quaternion_of, rotation_matrix
 from scenic.formats.scenes import Scene, SceneObject, UnitMesh
 from scenic.runtime.geometry.patches import Patch
@@ -57,6 +59,14 @@ class Surface:
     vertices: Array
     normals: Array
     faces: npt.NDArray[np.int64]
+    _known: dict[str, npt.NDArray[np.float32] | None] = field(default_factory=dict, repr=False, compare=False)
+
+    def coordinates(self, source: Mapping[str, Any]) -> npt.NDArray[np.float32] | None:
+        """Texture coordinates of its triangles ``(f, 3, 2)``, found once; see `coordinates_of`."""
+        key = repr(source)
+        if key not in self._known:
+            self._known[key] = coordinates_of(source, self.vertices, self.faces)
+        return self._known[key]
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +82,8 @@ class Instance:
     size: Triple
     color: Four
     is_ego: bool
+    folder: Path | None = None
+    """Where paths of images start."""
 
     @property
     def label(self) -> str:
@@ -162,6 +174,8 @@ class Gallery:
         """Add a scene: all objects but those with ``render`` false and those of no size."""
         instances = []
         names = scene.names
+        # Scenes that were read back do not know where their program was.
+        folder: Path | None = getattr(scene, "folder", None)
         shades: Counter[str] = Counter()
         for thing in scene.objects:
             class_name = type(thing).__name__
@@ -182,6 +196,7 @@ class Gallery:
                     size=size,
                     color=_color(thing, default),
                     is_ego=thing is scene.egoObject,
+                    folder=folder,
                 )
             )
         return tuple(instances)

@@ -21,6 +21,7 @@ from scenic.formats.scenery import scenery_of
 from scenic.formats.scenes import Scene, SceneObject
 from scenic.formats.sensors import Viewpoint
 from scenic.formats.stage import Stage
+from scenic.formats.textures import ImageTexture, placed_errors, texture_of
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
@@ -127,7 +128,8 @@ def observe(
     gallery = Gallery() if gallery is None else gallery
     index = {id(thing): number for number, thing in enumerate(scene.objects)}
     instances = [item for item in gallery.add(scene) if item.thing is not viewpoint.owner]
-    stage = Stage(gallery.surfaces, instances, scenery_of(scene.params))
+    with placed_errors(scene):
+        stage = Stage(gallery.surfaces, instances, scenery_of(scene.params))
     lens = Lens(viewpoint.camera, stage.center, viewpoint.size)
     buffer = seen(lens, stage.rays)
     numbers = np.array([index[id(item.thing)] for item in instances] + [-1], dtype=np.int32)
@@ -269,6 +271,14 @@ def document(observation: Observation, scene: Scene) -> dict[str, Any]:
     }
 
 
+def _texture(item: Instance) -> dict[str, Any]:
+    """The image on an object, as plain data; nothing where there is none."""
+    texture = texture_of(item.thing.properties.get("texture"), item.color, item.folder)
+    if not isinstance(texture, ImageTexture):
+        return {}
+    return {"texture": {"image": texture.name, "sha256": texture.digest()}}
+
+
 def _entry(label: Label) -> dict[str, Any]:
     item = label.instance
     return {
@@ -279,6 +289,7 @@ def _entry(label: Label) -> dict[str, Any]:
         "quaternion": list(item.quaternion),
         "euler": list(euler_angles(item.quaternion)),
         "size": list(item.size),
+        **_texture(item),
         "visible": label.visible,
         "pixels": label.pixels,
         "full_pixels": label.full_pixels,

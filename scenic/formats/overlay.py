@@ -5,9 +5,9 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from scenic.formats.imaging import require_pillow
 from scenic.formats.instances import PALETTE
 from scenic.formats.labels import Observation
-from scenic.formats.png import require_pillow
 
 __all__ = ["overlay"]
 

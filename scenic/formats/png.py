@@ -2,40 +2,21 @@
 
 import io
 from dataclasses import replace
-from types import ModuleType
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
 from scenic.formats.camera import STANDARD, Outlook, framed, framing
+from scenic.formats.imaging import require_pillow
 from scenic.formats.instances import picture, resting
 from scenic.formats.render import SIZE, render
 from scenic.formats.scenes import Scene
-from scenic.language.errors import Located
-from scenic.language.extras import installation
+from scenic.formats.textures import placed_errors
 
 _EFFORT: Final = 1
 _RUNS: Final = 3
 """zlib's strategy for runs: at its lowest level it is both the quickest for such images and better than the usual one."""
-
-
-class MissingLibraryError(Located):
-    """An output was asked for that needs a library which is not installed."""
-
-    code = "SC604"
-
-
-def require_pillow() -> ModuleType:
-    """The library that writes images; raises ``MissingLibraryError`` with the way to get it."""
-    try:
-        import PIL.Image
-    except ImportError as error:
-        raise MissingLibraryError(
-            "images need the library Pillow, which is not installed",
-            help=f"install it: {installation('view')}",
-        ) from error
-    return PIL.Image
 
 
 def png(scene: Scene, size: tuple[int, int] = SIZE, outlook: Outlook = STANDARD) -> bytes:
@@ -48,7 +29,8 @@ def png(scene: Scene, size: tuple[int, int] = SIZE, outlook: Outlook = STANDARD)
     if any(drawn.grounds):
         drawn = replace(drawn, scenes=(resting(drawn.scenes[0]),))
     camera = framing(framed(scene, drawn.scenes[0], outlook), size[0] / size[1], outlook)
-    return encoded(render(drawn, 0, size, camera=camera))
+    with placed_errors(scene):
+        return encoded(render(drawn, 0, size, camera=camera))
 
 
 def encoded(pixels: npt.NDArray[np.uint8] | npt.NDArray[np.uint16]) -> bytes:

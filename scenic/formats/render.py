@@ -147,7 +147,9 @@ class _Drawing:
         if stage.textures and len(thing):
             start = self._lens.eye if eye is None else eye[thing]
             places = start + seen.directions[thing] / seen.nearness[thing, None]
-            result[:, thing] *= stage.pattern(stage.owner[triangle], places)
+            width = np.asarray(self._lens.pixel / seen.nearness[thing], np.float32)
+            weights = seen.second[thing], seen.third[thing]
+            result[:, thing] *= stage.pattern(triangle, weights, places, width)
         if (stage.alphas < 1).any():
             alpha = stage.alphas[stage.owner[triangle]]
             clear = thing[alpha < 1]

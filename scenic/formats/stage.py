@@ -11,12 +11,13 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from scenic.dataclass import dataclass
 from scenic.formats.camera import corners, ground_height
 from scenic.formats.colors import linear
 from scenic.formats.instances import Array, Instance, Piece, Surface
 from scenic.formats.poses import rotation_matrix
 from scenic.formats.scenery import USUAL, Scenery
-from scenic.formats.textures import texture_of
+from scenic.formats.textures import ImageTexture, Texture, TextureError, texture_of
 from scenic.runtime.geometry.embree import RayScene, Singles
 
 GROUND: Final = -1
@@ -66,11 +67,7 @@ class Stage:
     ) -> None:
         self.scenery = scenery
         self._instances = instances
-        self.textures = {
-            number: texture
-            for number, item in enumerate(instances)
-            if (texture := texture_of(item.thing.properties.get("texture"), item.color)) is not None
-        }
+        self.textures = _textures(instances)
         points = corners(instances)
         self.center = (points.min(axis=0) + points.max(axis=0)) / 2
         self.reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
@@ -85,6 +82,7 @@ class Stage:
             - self.center[2]
         )
         triangles, normals, owners = [], [], []
+        self._coordinates: dict[int, _Coordinates] = {}
         for index, instance in enumerate(instances):
             surface = surfaces[instance.surface]
             matrix = instance.matrix()
@@ -94,6 +92,12 @@ class Stage:
             triangles.append(world.astype(np.float32)[surface.faces])
             normals.append(turned.astype(np.float32)[surface.faces])
             owners.append(np.full(len(surface.faces), index, np.int32))
+            texture = self.textures.get(index)
+            if isinstance(texture, ImageTexture) and texture.projection == "mesh":
+                found = surface.coordinates(instance.thing.shape.source.as_dict())
+                if found is not None:
+                    first = sum(map(len, owners[:-1]))
+                    self._coordinates[index] = _Coordinates(first, found, _density(found, triangles[-1]))
         for index, piece in enumerate(pieces, len(instances)):
             surface = surfaces[piece.surface]
             world = surface.vertices - self.center
@@ -112,6 +116,8 @@ class Stage:
         self.normals = np.concatenate([mean, np.array([[0, 0, 1]], np.float32)])
         away = np.abs(corner_normals - mean[:, None]) > np.float32(1e-3)
         self.smooth = np.append(away.reshape(-1, 9).any(axis=1), False)
+        # Images bring their own colours.
+        rgba[[k for k, item in self.textures.items() if isinstance(item, ImageTexture)], :3] = 1
         albedo = linear(rgba[:, :3])[self.owner]
         self.sunny, self.shady = _light_on(scenery, corner_normals, albedo)
         # Flat triangles are most of the pixels; entries of one array after the other are quick to take.
@@ -126,24 +132,47 @@ class Stage:
         """A number for the object and the rough direction of triangles, at least 1; `SKY` for -1."""
         return np.take(self._groups, triangle)
 
-    def pattern(self, owner: npt.NDArray[np.int32], places: Singles) -> Singles:
+    def pattern(
+        self,
+        triangle: npt.NDArray[np.int32],
+        corners: tuple[Singles, Singles],
+        places: Singles,
+        pixel: Singles,
+    ) -> Singles:
         """By how much textures change colours at places on instances; components ``(3, n)``.
 
         Args:
-            owner: the instances, ``(n,)``.
+            triangle: the triangles, ``(n,)``.
+            corners: the weights of their second and third corners, ``(n,)`` each.
             places: places on them, ``(n, 3)``.
+            pixel: widths of the image's pixels there, metres, ``(n,)``.
 
         """
+        owner = self.owner[triangle]
         factor = np.ones((3, len(owner)), np.float32)
         for number, texture in self.textures.items():
             mine = np.flatnonzero(owner == number)
-            if len(mine):
-                item = self._instances[number]
-                offset = places[mine] - (np.array(item.position) - self.center).astype(np.float32)
-                share = texture.share(offset @ rotation_matrix(item.quaternion).astype(np.float32))
-                own, second = linear(item.color[:3]), linear(texture.color)
-                change = second / np.maximum(own, np.float32(1e-3)) - np.float32(1)
-                factor[:, mine] += change[:, None] * share
+            if not len(mine):
+                continue
+            item = self._instances[number]
+            turn = rotation_matrix(item.quaternion).astype(np.float32)
+            offset = (places[mine] - (np.array(item.position) - self.center).astype(np.float32)) @ turn
+            own = linear(item.color[:3])
+            if isinstance(texture, Texture):
+                change = linear(texture.color) / np.maximum(own, np.float32(1e-3)) - np.float32(1)
+                factor[:, mine] += change[:, None] * texture.share(offset)
+                continue
+            seen = triangle[mine]
+            coordinates, density = texture.projected(offset, self.normals[seen] @ turn, item.size)
+            blur = pixel[mine] * np.float32(density)
+            if number in self._coordinates:
+                second, third = (weight[mine] for weight in corners)
+                known = self._coordinates[number]
+                found = known.at(seen - known.first, second, third)
+                has = ~np.isnan(found[:, 0])
+                coordinates[has] = found[has]
+                blur[has] = pixel[mine][has] * known.density[seen[has] - known.first]
+            factor[:, mine] = texture.colors(own, coordinates, blur)
         return factor
 
     def sunlit(self, places: Singles, normals: Singles, pattern: npt.NDArray[np.int64], rays: int) -> Singles:
@@ -175,6 +204,49 @@ class Stage:
             total += ~self.rays.blocked(start, directions, self.reach * 0.25)
         result: Singles = total / np.float32(rays)
         return result
+
+
+@dataclass(frozen=True, slots=True)
+class _Coordinates:
+    """Texture coordinates of an instance's triangles, whose first has the number ``first``.
+
+    ``values`` has shape ``(t, 3, 2)``; ``density``, ``(t,)``, is how many of them a metre is.
+    """
+
+    first: int
+    values: Singles
+    density: Singles
+
+    def at(self, triangle: npt.NDArray[np.int32], second: Singles, third: Singles) -> Singles:
+        """Coordinates ``(n, 2)`` in triangles, by weights of their corners; not a number where there are none."""
+        a, b, c = (self.values[triangle, corner] for corner in range(3))
+        return np.asarray(a + second[:, None] * (b - a) + third[:, None] * (c - a), np.float32)
+
+
+def _density(values: Singles, triangles: Singles) -> Singles:
+    """How many texture coordinates a metre is, on triangles ``(t, 3, 3)`` with coordinates ``(t, 3, 2)``; ``(t,)``."""
+    u, v = values[:, 1] - values[:, 0], values[:, 2] - values[:, 0]
+    area = np.linalg.norm(
+        np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1
+    )
+    share = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / np.maximum(area, np.float32(1e-12))
+    return np.asarray(np.sqrt(share), np.float32)
+
+
+def _textures(instances: Sequence[Instance]) -> dict[int, Texture | ImageTexture]:
+    """The textures of instances that have one, by their numbers; their files can be read."""
+    found = {}
+    for number, item in enumerate(instances):
+        try:
+            texture = texture_of(item.thing.properties.get("texture"), item.color, item.folder)
+            if isinstance(texture, ImageTexture):
+                texture.image()
+        except TextureError as error:
+            error.thing = item.thing
+            raise
+        if texture is not None:
+            found[number] = texture
+    return found
 
 
 def ground_light(albedo: Singles, sun: Singles, sky: Singles, scenery: Scenery = USUAL) -> Singles:

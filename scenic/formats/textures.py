@@ -1,33 +1,30 @@
-"""Patterns on objects in pictures, by their property ``texture``: computed from places in the object's own frame, in metres.
+"""Textures of objects in pictures, by their property ``texture``: patterns, and images from files.
 
-A texture is the name of a pattern, or a mapping with ``pattern``, ``scale`` (metres) and ``color``, which the pattern has in turn with
-the object's own colour.
+A pattern is computed from places in the object's own frame, in metres. Its name will do, or a mapping with ``pattern``, ``scale``
+(metres) and ``color``, which the pattern has in turn with the object's own colour. An image is named by its file, or by a mapping
+with ``image``, ``scale`` and ``projection``.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from scenic.dataclass import dataclass
-from scenic.language.errors import Located
+from scenic.formats.image_textures import PROJECTIONS, SUFFIXES, ImageTexture, TextureError
 from scenic.runtime.geometry.embree import Singles
 
-__all__ = ["PATTERNS", "Texture", "TextureError", "texture_of"]
+__all__ = ["PATTERNS", "ImageTexture", "Texture", "TextureError", "image_name", "placed_errors", "texture_of"]
 
 _SCALE: Final = 0.25
 _DARKER: Final = 0.55
 """By so much the second colour is darker if none is given, in sRGB."""
 _SHIFT: Final = 0.37
 """Faces seldom lie at this part of a cell, where rounding would decide."""
-
-
-class TextureError(Located):
-    """A texture that there is not."""
-
-    code = "SC604"
 
 
 def _checker(places: Singles) -> Singles:
@@ -90,8 +87,15 @@ class Texture:
         return PATTERNS[self.pattern](places / np.float32(self.scale) + np.float32(_SHIFT))
 
 
-def texture_of(value: Any, color: tuple[float, ...]) -> Texture | None:
+def texture_of(
+    value: Any, color: tuple[float, ...], folder: Path | None = None
+) -> Texture | ImageTexture | None:
     """The texture that a property says, of an object of a colour; ``None`` for none.
+
+    Args:
+        value: the value of the property.
+        color: of the object, sRGB.
+        folder: where paths of images start; without it, images with relative paths are left out.
 
     Raises:
         TextureError: there is no such texture.
@@ -99,6 +103,9 @@ def texture_of(value: Any, color: tuple[float, ...]) -> Texture | None:
     """
     if value is None:
         return None
+    name = image_name(value)
+    if name is not None:
+        return _image(value, name, folder)
     given = dict(value) if isinstance(value, Mapping) else {"pattern": value}
     pattern, scale = given.pop("pattern", None), given.pop("scale", _SCALE)
     second = given.pop("color", tuple(_DARKER * part for part in color[:3]))
@@ -112,9 +119,50 @@ def texture_of(value: Any, color: tuple[float, ...]) -> Texture | None:
     except (TypeError, ValueError):
         fine = False
     if given or not fine:
-        raise TextureError(
-            f"{value!r} is no texture",
-            help=f"give the name of a pattern ({', '.join(PATTERNS)}), or "
-            "{'pattern': name, 'scale': metres, 'color': (red, green, blue)}",
-        )
+        raise _none_such(value)
     return Texture(pattern, float(scale), (red, green, blue))
+
+
+def image_name(value: Any) -> str | None:
+    """The image file that a texture names; ``None`` for other textures."""
+    if isinstance(value, Mapping):
+        value = value.get("image")
+        return str(value) if isinstance(value, str | Path) else None
+    is_image = isinstance(value, Path) or (isinstance(value, str) and value.lower().endswith(SUFFIXES))
+    return str(value) if is_image else None
+
+
+def _image(value: Any, name: str, folder: Path | None) -> ImageTexture | None:
+    given = {key: item for key, item in value.items() if key != "image"} if isinstance(value, Mapping) else {}
+    scale, projection = given.pop("scale", None), given.pop("projection", PROJECTIONS[0])
+    try:
+        fine = (scale is None or 0 < scale < math.inf) and projection in PROJECTIONS
+    except TypeError:
+        fine = False
+    if given or not fine:
+        raise _none_such(value)
+    if folder is None and not Path(name).is_absolute():
+        return None
+    path = Path(name) if folder is None else folder / name
+    return ImageTexture(path, name, None if scale is None else float(scale), projection)
+
+
+def _none_such(value: Any) -> TextureError:
+    return TextureError(
+        f"{value!r} is no texture",
+        help=f"give the name of a pattern ({', '.join(PATTERNS)}) or of an image ({', '.join(SUFFIXES)}), "
+        "{'pattern': name, 'scale': metres, 'color': (red, green, blue)}, or "
+        f"{{'image': name, 'scale': metres, 'projection': {' or '.join(map(repr, PROJECTIONS))}}}",
+    )
+
+
+@contextmanager
+def placed_errors(scene: Any) -> Iterator[None]:
+    """Gives errors about textures the place of the object in the program, where the scene knows it."""
+    try:
+        yield
+    except TextureError as error:
+        if error.thing is not None and hasattr(scene, "place"):
+            number = next(k for k, thing in enumerate(scene.objects) if thing is error.thing)
+            error.at(scene.place(number))
+        raise

@@ -60,6 +60,7 @@ class Present:
         self.workspace = scene.workspace
         self.seed, self.k, self.attempts = scene.seed, scene.k, scene.attempts
         self.params: Mapping[str, object] = scene.params
+        self.folder = scene.folder
 
     def origin(self, thing: Any) -> Any:
         """Raise ``KeyError``: nobody asks for the origins of objects while images are made."""

@@ -9,8 +9,9 @@ import pytest
 import scenic
 from scenic.formats.buffers import Lens, seen
 from scenic.formats.camera import STANDARD, corners, framed, framing, ground_height
+from scenic.formats.imaging import MissingLibraryError
 from scenic.formats.instances import picture
-from scenic.formats.png import MissingLibraryError, png
+from scenic.formats.png import png
 from scenic.formats.render import paint, render
 from scenic.formats.stage import Stage
 from tests.formats.stand_ins import BALL, Object, Scene, Turn

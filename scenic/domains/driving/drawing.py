@@ -84,7 +84,7 @@ def png(network: "RoadNetwork", width: int = 1600) -> bytes:
 
     import shapely
 
-    from scenic.formats.png import require_pillow
+    from scenic.formats.imaging import require_pillow
 
     library = require_pillow()
     from PIL import ImageDraw

@@ -132,6 +132,11 @@ class Scene:
         return self.found.batch.value(node, self.lane)
 
     @property
+    def folder(self) -> Path:
+        """The folder of the program, where its paths of files start."""
+        return Path(self.scenario.filename).absolute().parent
+
+    @property
     def dimension(self) -> int:
         """Number of axes of the unit cube that scenes of the program are drawn from."""
         return self.found.batch.graph.dimension

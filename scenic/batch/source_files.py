@@ -1,0 +1,82 @@
+"""Files beside a program on which its scenes and their images depend: meshes and textures, with digests of their content."""
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+from scenic.formats.mesh_files import digest_of
+from scenic.formats.textures import ImageTexture, TextureError, image_name, texture_of
+from scenic.runtime.scenes.scenario import Scenario
+from scenic.runtime.values.choices import options_of
+from scenic.runtime.values.nodes import as_node
+
+__all__ = ["check_textures", "mesh_digests", "texture_digests"]
+
+
+def texture_digests(scenario: Scenario) -> dict[str, str]:
+    """Digests of the image files that objects may have as textures, by the names that the program gives them.
+
+    Files that cannot be read are left out.
+    """
+    folder = _folder(scenario)
+    names = {name for thing in scenario.objects for name in _image_names(thing.__dict__.get("texture"))}
+    return {name: digest_of(folder / name) for name in sorted(names) if (folder / name).is_file()}
+
+
+def check_textures(scenario: Scenario) -> None:
+    """Read all image files that objects may have as textures, as far as the program alone tells them.
+
+    Raises:
+        TextureError: at the object, if a file cannot be read.
+
+    """
+    folder = _folder(scenario)
+    for thing in scenario.objects:
+        for name in dict.fromkeys(_image_names(thing.__dict__.get("texture"))):
+            texture = texture_of({"image": name}, (1, 1, 1), folder)
+            assert isinstance(texture, ImageTexture)
+            try:
+                texture.image()
+            except TextureError as error:
+                place = scenario.program.places.get(id(thing), (None, None))
+                raise error.at(place) from None
+
+
+def _image_names(value: Any) -> Iterator[str]:
+    """The image files that a texture may name, as far as the program says them."""
+    found, left = set(), [as_node(value)]
+    while left:
+        node = left.pop()
+        if node in found:
+            continue
+        found.add(node)
+        left += reversed(node.operands)
+        if node.is_constant and (name := image_name(node.value)) is not None:
+            yield name
+
+
+def _folder(scenario: Scenario) -> Path:
+    return Path(scenario.filename).absolute().parent
+
+
+def mesh_digests(scenario: Scenario) -> dict[str, str]:
+    """Digests of the mesh files of a scenario's shapes, by their paths relative to the program."""
+    folder = Path(scenario.filename).absolute().parent
+    found = {}
+    for path in _mesh_files(scenario):
+        try:
+            name = path.relative_to(folder).as_posix()
+        except ValueError:
+            name = path.name
+        found[name] = digest_of(path)
+    return dict(sorted(found.items()))
+
+
+def _mesh_files(scenario: Scenario) -> Iterable[Path]:
+    for thing in scenario.objects:
+        shape = thing.__dict__.get("shape")
+        for option in options_of(shape) or (shape,):
+            source = getattr(option, "source", None)
+            path = source.as_dict().get("path") if source is not None else None
+            if path is not None and Path(path).is_file():
+                yield Path(path).absolute()
