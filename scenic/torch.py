@@ -20,6 +20,7 @@ from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 
 try:
+    from torch import int64, zeros
     from torch.utils.data import IterableDataset, get_worker_info
 except ImportError as error:
     raise UnsupportedError(
@@ -40,7 +41,8 @@ class SceneStream(IterableDataset):  # type: ignore[misc] # PyTorch is not there
         seed: of the scenes.
         count: how many scenes an epoch has in all processes together; without end if ``None``.
         first: number of the first scene.
-        transform: makes of a scene what the loader collects, in the worker; the scenes themselves by default.
+        transform: makes of a scene what the loader collects, in the worker. Without it the stream gives the scenes themselves, which a
+            loader takes with ``batch_size=None`` or a ``collate_fn``.
         block: scenes that a worker makes one after the other.
         rank: the number of this process among those of a distributed job.
         world_size: how many such processes there are.
@@ -72,13 +74,17 @@ class SceneStream(IterableDataset):  # type: ignore[misc] # PyTorch is not there
         self._rank = rank
         self._world_size = world_size
         self._options = options
-        self._epoch = 0
+        # In memory that workers share, so that those that live on between epochs see a change.
+        self._epoch = zeros((), dtype=int64).share_memory_()
 
     def set_epoch(self, epoch: int) -> None:
-        """Let the next iteration give the scenes of an epoch, from 0: those that come after the epochs before."""
+        """Let the next iteration give the scenes of an epoch, from 0: those that come after the epochs before.
+
+        Workers that live on between epochs (``persistent_workers``) follow it, too.
+        """
         if self._count is None:
             raise ValueError("a stream without end has no epochs: give it a `count`")
-        self._epoch = epoch
+        self._epoch.fill_(epoch)
 
     def __iter__(self) -> Iterator[Any]:
         """The share of this worker.
@@ -97,7 +103,7 @@ class SceneStream(IterableDataset):  # type: ignore[misc] # PyTorch is not there
         """The numbers of the first scene of each block of this worker, and of the scene after its last."""
         info = get_worker_info()
         worker, workers = (0, 1) if info is None else (info.id, info.num_workers)
-        first = self._first + (self._count or 0) * self._epoch
+        first = self._first + (self._count or 0) * int(self._epoch)
         end = None if self._count is None else first + self._count
         number = self._rank * workers + worker
         while True:

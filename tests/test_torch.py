@@ -21,6 +21,22 @@ def number(scene: Any) -> int:
     return int(scene.k)
 
 
+class Number:
+    """A tensor of one number, as far as a stream uses it."""
+
+    def __init__(self, *_: Any, **__: Any) -> None:
+        self.value = 0
+
+    def share_memory_(self) -> "Number":
+        return self
+
+    def fill_(self, value: int) -> None:
+        self.value = value
+
+    def __int__(self) -> int:
+        return self.value
+
+
 class Workers:
     """PyTorch's documented interface: an iterable data set asks which worker of how many it is in."""
 
@@ -29,8 +45,10 @@ class Workers:
         data = ModuleType("torch.utils.data")
         data.IterableDataset = type("IterableDataset", (), {})  # type: ignore[attr-defined]
         data.get_worker_info = lambda: self.info  # type: ignore[attr-defined]
+        top = ModuleType("torch")
+        top.zeros, top.int64 = Number, int  # type: ignore[attr-defined]
         self.modules = {
-            "torch": ModuleType("torch"),
+            "torch": top,
             "torch.utils": ModuleType("torch.utils"),
             "torch.utils.data": data,
         }
@@ -114,13 +132,79 @@ def test_without_pytorch_the_module_says_so(monkeypatch: pytest.MonkeyPatch) -> 
         import scenic.torch  # noqa: F401
 
 
-@pytest.mark.skipif(find_spec("torch") is None, reason="PyTorch is not installed")
+REAL = pytest.mark.skipif(find_spec("torch") is None, reason="PyTorch is not installed")
+
+
+def place(scene: Any) -> float:
+    return float(scene.egoObject.position.x)
+
+
+class Photo:
+    """The number of a scene, and the image that its ego takes."""
+
+    def __init__(self) -> None:
+        self._photographer: Any = None
+
+    def __call__(self, scene: Any) -> tuple[int, Any]:
+        import torch
+
+        from scenic.formats.coco import Photographer
+
+        if self._photographer is None:
+            self._photographer = Photographer("ego", (16, 12))
+        content = self._photographer.shoot(scene).files[f"ego-{scene.k:06d}-rgb.png"]
+        return scene.k, torch.frombuffer(bytearray(content), dtype=torch.uint8)[:64]
+
+
+@REAL
 def test_pytorch_loads_scenes_in_order() -> None:
     from torch.utils.data import DataLoader
 
     from scenic.torch import SceneStream
 
-    stream = SceneStream(SCENARIO, seed=5, count=20, transform=number, block=4)
-    for count in (0, 2):
-        loader = DataLoader(stream, batch_size=4, num_workers=count)
-        assert [int(value) for batch in loader for value in batch] == list(range(20))
+    alone = [place(scene) for scene in SCENARIO.sample(20, seed=5)]
+    for transform, wanted in ((number, list(range(20))), (place, alone)):
+        stream = SceneStream(SCENARIO, seed=5, count=20, transform=transform, block=4)
+        for count in (0, 2):
+            loader = DataLoader(stream, batch_size=4, num_workers=count)
+            assert [value.item() for batch in loader for value in batch] == wanted
+    scenes = DataLoader(SceneStream(SCENARIO, seed=5, count=3), batch_size=None)
+    assert [place(scene) for scene in scenes] == alone[:3]
+
+
+@REAL
+def test_epochs_reach_workers_that_live_on() -> None:
+    from torch.utils.data import DataLoader
+
+    from scenic.torch import SceneStream
+
+    stream = SceneStream(SCENARIO, seed=5, count=6, transform=number, block=2)
+    loader = DataLoader(stream, batch_size=2, num_workers=2, persistent_workers=True)
+    for epoch in (0, 1, 3):
+        stream.set_epoch(epoch)
+        found = [int(value) for batch in loader for value in batch]
+        assert found == list(range(6 * epoch, 6 * epoch + 6))
+
+
+@REAL
+def test_workers_make_the_same_images() -> None:
+    pytest.importorskip("PIL.Image")
+    from torch.utils.data import DataLoader
+
+    from scenic.torch import SceneStream
+
+    scenario = scenic.scenarioFromString(
+        "ego = new Object with viewAngles (60 deg, 60 deg)\nnew Object at (Range(-1, 1), 4)"
+    )
+    stream = SceneStream(scenario, seed=5, count=6, transform=Photo(), block=2)
+    alone, shared = (
+        {
+            int(k): image.tolist()
+            for numbers, images in DataLoader(stream, batch_size=2, num_workers=count)
+            for k, image in zip(numbers, images, strict=True)
+        }
+        for count in (0, 2)
+    )
+    assert alone == shared
+    assert sorted(alone) == list(range(6))
+    assert len({tuple(image) for image in alone.values()}) > 1
