@@ -62,7 +62,7 @@ class Cluster:
 
 
 def seconds(program: str, runs: list[list[str]], cluster: Cluster | None = None) -> tuple[float, float]:
-    """How long commands take that begin together, and their processor time with that of the cluster."""
+    """Time that commands take which begin together, and their processor time with that of the cluster."""
     with tempfile.TemporaryDirectory() as folder:
         before = 0.0 if cluster is None else cluster.spent()
         used = _of_children()

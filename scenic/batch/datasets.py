@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from scenic.batch.engines import Engine
 from scenic.batch.image_parts import ImageRows, ImageSink, join_indices
-from scenic.batch.manifest import DatasetError, Manifest, Part
+from scenic.batch.manifest import NAME, DatasetError, Manifest, Part
 from scenic.batch.scenes import LONGEST, Job, Made, encoded_here, in_processes, method_of
 from scenic.dataclass import dataclass
 from scenic.formats.files import Waiting, make_folder, refusing, writing
@@ -28,10 +28,13 @@ from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
 
-__all__ = ["GROUP", "Encoder", "Finished", "make_dataset", "write_table"]
+__all__ = ["GROUP", "Encoder", "Finished", "make_dataset", "scenes_kept", "write_table"]
 
 GROUP: Final = 4096
 """Rows of a group of a Parquet file."""
+
+_ENTRY: Final = 16
+"""Bytes of a scene in a journal."""
 
 _BLOCK: Final = 512
 """Scenes evaluated together from a journal."""
@@ -256,6 +259,14 @@ def write_table(
     return Finished(manifest, tuple(missing))
 
 
+def scenes_kept(folder: Path) -> int:
+    """Number of scenes of a data set that a run with ``resume`` does not look for again: in parts and journals."""
+    if not (folder / NAME).exists():
+        return 0
+    done = sum(part.last - part.first for part in Manifest.load(folder).parts)
+    return done + sum(path.stat().st_size // _ENTRY for path in folder.glob("part-*.journal"))
+
+
 def _made(scenario: Scenario, encoder: Encoder, job: Job, engine: Engine | None) -> Iterator[Made]:
     if engine is None or job.last - job.first < 2:
         return encoded_here(scenario, encoder, job, most=encoder.most)
@@ -264,8 +275,6 @@ def _made(scenario: Scenario, encoder: Encoder, job: Job, engine: Engine | None)
 
 def _kept(folder: Path, manifest: Manifest, *, resume: bool) -> Manifest:
     """The manifest to go on with: that in the folder, for as many scenes as are wanted now."""
-    from scenic.batch.manifest import NAME
-
     if not (folder / NAME).exists():
         return manifest
     earlier = Manifest.load(folder)
@@ -332,7 +341,7 @@ class _PartInProgress:
             data = self._journal_path.read_bytes()
         except OSError:
             data = b""
-        entries = np.frombuffer(data[: len(data) - len(data) % 16], dtype=np.int64).reshape(-1, 2)
+        entries = np.frombuffer(data[: len(data) - len(data) % _ENTRY], dtype=np.int64).reshape(-1, 2)
         wanted = self._first + np.arange(len(entries))
         good = np.cumprod(entries[:, 0] == wanted, dtype=np.int64).sum() if len(entries) else 0
         return entries[:good]

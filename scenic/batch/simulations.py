@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Running", "SimulationError", "SimulationRow", "Simulations", "is_violated", "simulated"]
 
+_TRIES: Final = 3
+"""Processes that may die at a simulation until it counts as failed."""
+
 _NOTHING_KEPT: Final = (
     "nothing of this simulation is kept; make room or name another place, and give the same command again"
 )
@@ -179,8 +182,20 @@ class Simulations:
         if engine is None or len(numbers) < 2:
             yield from map(self, numbers)
             return
-        for _, row in engine.run(self, numbers, lost=_lost):
-            yield row
+        left = list(numbers)
+        for tries in range(_TRIES, 0, -1):
+            gone: set[int] = set()
+
+            def lost(k: int, code: int, gone: set[int] = gone) -> SimulationRow:
+                gone.add(k)
+                return _lost(k, code)
+
+            for _, row in engine.run(self, left, lost=lost):
+                if row.k not in gone or tries == 1:
+                    yield row
+            left = sorted(gone)
+            if not left:
+                return
 
     def known(self, k: int) -> SimulationRow | None:
         """Simulation ``k`` as an earlier run has kept it, if that was of the same program, seed and settings."""

@@ -45,6 +45,7 @@ def info(folder: Path) -> int:
         ("acceptance", f"{manifest.rows / attempts:.3g}" if attempts else "unknown"),
         ("time", f"{manifest.seconds:.1f} s"),
         ("meshes", ", ".join(manifest.meshes) or "none"),
+        ("textures", ", ".join(manifest.textures) or "none"),
         ("versions", ", ".join(f"{name} {version}" for name, version in manifest.versions.items())),
         ("command", manifest.command or "unknown"),
     ]

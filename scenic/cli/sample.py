@@ -336,7 +336,7 @@ def sample(
         f"a candidate was still being evaluated {PATIENCE:g} s after the time limit of {time_limit or 0:g} s",
         "look for a loop without end in what is called on samples",
     )
-    with _told_what_is_kept(grown, count), ended_by_signals(), endless, ExitStack() as stack:
+    with _told_what_is_kept(grown, dataset, count), ended_by_signals(), endless, ExitStack() as stack:
         takers = [stack.enter_context(sink) for sink in chosen]
         put = _to_output if grown is None else stack.enter_context(grown).write
         engine = stack.enter_context(engine_of(jobs, dask))
@@ -433,7 +433,7 @@ def _profiled(
 
 
 @contextmanager
-def _told_what_is_kept(grown: GrowingFile | None, count: int) -> Iterator[None]:
+def _told_what_is_kept(grown: GrowingFile | None, dataset: Path | None, count: int) -> Iterator[None]:
     """Says, when a run is interrupted, how many scenes are kept and how to go on."""
     try:
         yield
@@ -441,6 +441,11 @@ def _told_what_is_kept(grown: GrowingFile | None, count: int) -> Iterator[None]:
         kept = 0 if grown is None else len(grown.lines_kept())
         if grown is not None and kept:
             sys.stderr.write(f"{kept:,} of {count:,} kept in '{grown.part}'; continue with --resume\n")
+        if dataset is not None:
+            from scenic.batch.datasets import scenes_kept
+
+            if kept := scenes_kept(dataset):
+                sys.stderr.write(f"{kept:,} of {count:,} kept in '{dataset}'; continue with --resume\n")
         raise
 
 

@@ -27,7 +27,7 @@ SUFFIXES: Final = (".png", ".jpg", ".jpeg")
 """Ends of the names of files that are textures."""
 
 PROJECTIONS: Final = ("mesh", "box", "planar")
-"""How an image comes onto a surface: by the mesh's own coordinates, from six sides, or from above."""
+"""Ways of an image onto a surface: by the mesh's own coordinates, from six sides, or from above."""
 
 _MOST: Final = 2048
 """Pixels of a side of a texture that are kept; larger images are made smaller."""

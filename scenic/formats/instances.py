@@ -83,7 +83,7 @@ class Instance:
     color: Four
     is_ego: bool
     folder: Path | None = None
-    """Where paths of images start."""
+    """Folder where paths of images start."""
 
     @property
     def label(self) -> str:

@@ -224,7 +224,7 @@ class _Coordinates:
 
 
 def _density(values: Singles, triangles: Singles) -> Singles:
-    """How many texture coordinates a metre is, on triangles ``(t, 3, 3)`` with coordinates ``(t, 3, 2)``; ``(t,)``."""
+    """Texture coordinates for each metre on triangles ``(t, 3, 3)`` with coordinates ``(t, 3, 2)``; ``(t,)``."""
     u, v = values[:, 1] - values[:, 0], values[:, 2] - values[:, 0]
     area = np.linalg.norm(
         np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1
