@@ -1,9 +1,11 @@
 """Random elements of a road network: no sample asks Python, and what is drawn is what Python would have found."""
 
+import statistics
 from collections import Counter
 
 import numpy as np
 import pytest
+from scipy.stats import chisquare
 
 import scenic
 from scenic.graph.bounds import Bounds
@@ -139,3 +141,26 @@ def test_bounds_of_places_in_lists_hold_them():
         assert ((numbers.lower <= number) & (number <= numbers.upper))[there].all()
     known = (index[0] == 3) & (index[1] == 3)
     assert (bounds.upper - bounds.lower)[known].min() < 6
+
+
+def test_which_elements_are_the_same_is_known_before_sampling(program):
+    lines = program.splitlines()[:3]
+    text = "\n".join(
+        [
+            *lines,
+            "one, two, three = (Uniform(*network.lanes) for i in range(3))",
+            "ego = new Object in one",
+            "require one.road is two.road and one is not two",
+            "require three is network.lanes[2] or three is one.group",
+            "param one = one, two = two, three = three",
+        ]
+    )
+    scenario = scenic.scenarioFromString(text, mode2D=True)
+    lanes = scenario.sample(1, seed=1)[0].params["one"].network.lanes
+    pairs = {(one, two) for one in lanes for two in lanes if one.road is two.road and one is not two}
+    scenes = scenario.sample(40 * len(pairs), seed=1)
+    found = Counter((scene.params["one"], scene.params["two"]) for scene in scenes)
+    assert set(found) == pairs
+    assert chisquare(list(found.values())).pvalue > 1e-4
+    assert {scene.params["three"] for scene in scenes} == {lanes[2]}
+    assert statistics.mean(scene.attempts for scene in scenes) < 0.2 * len(lanes) ** 3 / len(pairs)

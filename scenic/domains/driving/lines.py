@@ -93,7 +93,7 @@ class FollowedLine:
         return best, side, where
 
     def signed_distance(self, point: Any) -> float:
-        """The distance of a point from the line in metres, positive to the left of it.
+        """The distance of a point from the line in metres, positive to the left of it; past its ends the line goes on straight.
 
         Only segments near the last nearest one are looked at, unless the point is farther away than these reach.
         """
@@ -112,6 +112,8 @@ class FollowedLine:
         x0, y0, dx, dy, square = self._segments[where]
         share = ((x - x0) * dx + (y - y0) * dy) / square
         self.progress = self.lengths[where] + math.sqrt(square) * (0.0 if share < 0.0 else min(share, 1.0))
+        if (share < 0.0 and where == 0) or (share > 1.0 and where == count - 1):
+            return side / math.sqrt(square)
         distance = math.sqrt(best)
         return distance if side >= 0 else -distance
 

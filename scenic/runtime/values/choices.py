@@ -67,11 +67,34 @@ def _identical(_call: Call, left: Any, right: Any) -> Any:
     return np.frompyfunc(operator.is_, 2, 1)(left, right).astype(np.bool_)
 
 
+def _by_number(operands: Sequence[Node], _payload: Any) -> Node | None:
+    """Between choices among constants it is a comparison of numbers, of which bounds are known."""
+    options = [node.operands[1:] if node.operation is TABLE["select"] else (node,) for node in operands]
+    if not all(option.is_constant and option.kind.is_boxed for each in options for option in each):
+        return None
+    number_of: dict[int, int] = {}
+    for each in options:
+        for option in each:
+            number_of.setdefault(id(option.value), len(number_of))
+    numbers = []
+    for node, each in zip(operands, options, strict=True):
+        found = [number_of[id(option.value)] for option in each]
+        if node.is_constant:
+            numbers.append(as_node(found[0]))
+        elif found == list(range(len(found))):
+            numbers.append(node.operands[0])
+        else:
+            chosen = [as_node(number) for number in found]
+            numbers.append(construction.make_node(TABLE["select"], [node.operands[0], *chosen]))
+    return construction.make_node(TABLE["equal"], numbers)
+
+
 IDENTITY = Operation(
     "is",
     always(Kind.BOOLEAN),
     _identical,
     "Whether two Python objects are one and the same.",
+    rewrite=_by_number,
 )
 
 
