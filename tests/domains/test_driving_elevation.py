@@ -126,6 +126,38 @@ def test_crossfall_falls_outwards(tmp_path):
         assert network.elevationAt((x, y)) == pytest.approx(wanted, abs=1e-9)
 
 
+def test_shapes_across_are_added_and_go_over_into_each_other(tmp_path):
+    rows = (  # s, t, and the cubic of the distance from t
+        (20.0, -4.0, 0.1, 0.05, 0.0, 0.0),
+        (20.0, 0.0, 0.3, -0.02, -0.01, 0.002),
+        (60.0, -2.0, 0.0, 0.1, 0.02, -0.01),
+    )
+    lateral = cubic("superelevation", *TILT) + "".join(
+        f'<shape s="{s}" t="{t}" a="{a}" b="{b}" c="{c}" d="{d}"/>' for s, t, a, b, c, d in rows
+    )
+    path = tmp_path / "map.xodr"
+    path.write_text(straight(100.0, rest=heights(cubic("elevation", *PROFILE), lateral)))
+    network = Network.fromFile(path)
+    assert not network.problems
+
+    def across(place: float, t: float) -> float:
+        cubics = [row[1:] for row in rows if row[0] == place]
+        return value(tuple(cubics), t) if t >= cubics[0][0] else cubics[0][1]
+
+    def surface(s: float, t: float) -> float:
+        share = min(max((s - 20) / 40, 0), 1)
+        shape = (1 - share) * across(20.0, t) + share * across(60.0, t)
+        return value(PROFILE, s) + t * math.tan(value(TILT, s)) + shape
+
+    for s, t in ((5, 3), (20, -3), (35, 1), (35, -3), (59, -1), (80, 3), (80, -3.4)):
+        assert network.elevationAt((s, t)) == pytest.approx(surface(s, t), abs=1e-9)
+        step = 1e-5
+        wanted = [surface(s + step, t) - surface(s - step, t), surface(s, t + step) - surface(s, t - step)]
+        (found,) = network.levels.elevation.gradients(np.array([0]), np.array([[s, t]]))
+        if s != 20:
+            assert found == pytest.approx(np.array(wanted) / (2 * step), abs=1e-6)
+
+
 def bridge() -> str:
     """Road 2 passes 6 m above road 1."""
     roads = [

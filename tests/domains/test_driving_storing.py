@@ -14,7 +14,10 @@ from scenic.domains.driving.network import RoadNetwork
 from scenic.domains.driving.storing import restored, stored
 from tests.maps import RoadText, cross, lane, lanes, line, map_text, straight
 
-PROFILE = '<elevationProfile><elevation s="0" a="2" b="0.1" c="0" d="0"/></elevationProfile>'
+PROFILE = (
+    '<elevationProfile><elevation s="0" a="2" b="0.1" c="0" d="0"/></elevationProfile>'
+    '<lateralProfile><shape s="0" t="-5" a="0.1" b="0.01" c="0" d="0"/></lateralProfile>'
+)
 LIGHT = '<signal id="5" s="50" t="-4" type="1000001" country="OpenDRIVE" orientation="+"/>'
 SECTIONS = lanes(left=lane(1, "biking"), right=lane(-1, after=-1) + lane(-2, after=-1)) + lanes(
     left="", right=lane(-1, before=-1) + lane(-2, "shoulder")

@@ -1,4 +1,4 @@
-"""The surfaces of roads in space: the profile of the reference line, tilted by superelevation and crossfall (section 3.6).
+"""The surfaces of roads in space: the profile of the reference line, tilted by superelevation and crossfall, and shaped across (section 3.6).
 
 All roads of a map are tables, so that many points on different roads are computed at once.
 """
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
-from scenic.formats.opendrive.records import Cubic
+from scenic.formats.opendrive.records import Cubic, LateralShape
 from scenic.graph import quaternions
 
 __all__ = ["Elevation", "RoadHeight"]
@@ -37,6 +37,7 @@ class RoadHeight:
         profile: height of the reference line.
         tilt: superelevation in radians, positive where the right side is lower.
         falls: crossfall of the left and of the right side in radians, positive where a side falls outwards.
+        shapes: what is added to that across the road, in order of their places along it.
 
     """
 
@@ -45,6 +46,7 @@ class RoadHeight:
     profile: tuple[Cubic, ...]
     tilt: tuple[Cubic, ...]
     falls: tuple[tuple[Cubic, ...], tuple[Cubic, ...]] = ((), ())
+    shapes: tuple[LateralShape, ...] = ()
 
 
 class Elevation:
@@ -69,7 +71,8 @@ class Elevation:
         cubics = [
             cubic
             for road in self.roads
-            for cubic in (*road.profile, *road.tilt, *road.falls[0], *road.falls[1])
+            for cubics in (road.profile, road.tilt, *road.falls, *(shape.heights for shape in road.shapes))
+            for cubic in cubics
         ]
         return not any(cubic.a or cubic.b or cubic.c or cubic.d for cubic in cubics)
 
@@ -87,19 +90,29 @@ class Elevation:
         )
 
     @cached_property
+    def _shapes(self) -> "_Shapes":
+        return _Shapes([road.shapes for road in self.roads])
+
+    @cached_property
     def _lines(self) -> "_Lines":
         return _Lines([road.samples for road in self.roads])
 
     def heights(self, roads: Indices, places: Floats) -> Floats:
         """Heights ``(n,)`` in metres of the surfaces of roads ``(n,)`` at places ``(n, 2)``, on the road or beside it."""
         s, t, _, _ = self._lines.project(roads, places)
-        return self._profile.values(roads, s) + t * self._lean(roads, s, t)[0]
+        return (
+            self._profile.values(roads, s)
+            + t * self._lean(roads, s, t)[0]
+            + self._shapes.heights(roads, s, t)[0]
+        )
 
     def gradients(self, roads: Indices, places: Floats) -> Floats:
         """By how much surfaces rise towards east and north, ``(n, 2)``; see `heights`."""
         s, t, heading, bend = self._lines.project(roads, places)
         lean, change = self._lean(roads, s, t)
-        rise = self._profile.slopes(roads, s) + t * change
+        _, along, across = self._shapes.heights(roads, s, t)
+        lean = lean + across
+        rise = self._profile.slopes(roads, s) + t * change + along
         rise = rise / np.maximum(1 - bend * t, _CURLED)
         cos, sin = np.cos(heading), np.sin(heading)
         return np.stack([rise * cos - lean * sin, rise * sin + lean * cos], axis=-1)
@@ -137,11 +150,12 @@ class Elevation:
             for table in self._tilts
             if not table.is_zero
         )
-        return low - reach * float(lean), high + reach * float(lean)
+        least, most = self._shapes.bounds(road, reach)
+        return low - reach * float(lean) + least, high + reach * float(lean) + most
 
     def reach(self, road: int, places: Floats) -> float:
         """Upper bounds of the distances of places ``(n, 2)`` from the reference line of a road, in metres."""
-        if all(table.is_zero for table in self._tilts):
+        if self._shapes.is_zero and all(table.is_zero for table in self._tilts):
             return 0.0
         return float(np.abs(self._lines.project(np.full(len(places), road), places)[1]).max(initial=0.0))
 
@@ -165,7 +179,9 @@ class _Cubics:
         found = np.searchsorted(self._keys, roads * _APART + s, side="right") - 1
         index = np.maximum(found, self._first[roads])
         rows = self._table[index]
-        return rows[:, 1:].T, np.maximum(s - rows[:, 0], 0.0)
+        ds = s - rows[:, 0]
+        rows[ds < 0, 2:] = 0.0
+        return rows[:, 1:].T, np.maximum(ds, 0.0)
 
     def values(self, roads: Indices, s: Floats) -> Floats:
         """Values ``(n,)`` on roads ``(n,)`` at distances ``(n,)`` along them."""
@@ -189,6 +205,43 @@ class _Cubics:
             lows.append(min(values))
             highs.append(max(values))
         return float(min(lows)), float(max(highs))
+
+
+class _Shapes:
+    """The shapes of all roads across; between the places where they are given, heights go over evenly, along equal distances aside."""
+
+    def __init__(self, by_road: Sequence[Sequence[LateralShape]]) -> None:
+        shapes = [each or (LateralShape(0.0, ()),) for each in by_road]
+        counts = np.array([len(each) for each in shapes], dtype=np.intp)
+        self._places = np.array([shape.s for each in shapes for shape in each])
+        self._keys = self._places + np.repeat(np.arange(len(shapes)), counts) * _APART
+        self._first = np.cumsum(counts) - counts
+        self._last = self._first + counts - 1
+        self._cubics = _Cubics([shape.heights for each in shapes for shape in each])
+        self.is_zero = self._cubics.is_zero
+
+    def heights(self, roads: Indices, s: Floats, t: Floats) -> tuple[Floats, Floats, Floats]:
+        """Heights ``(n,)`` on roads ``(n,)`` at distances along and to the left of them, and how they change with each."""
+        if self.is_zero:
+            nothing = np.zeros(len(s))
+            return nothing, nothing, nothing
+        found = np.searchsorted(self._keys, roads * _APART + s, side="right") - 1
+        before = np.clip(found, self._first[roads], self._last[roads])
+        after = np.minimum(before + 1, self._last[roads])
+        length = self._places[after] - self._places[before]
+        share = np.clip((s - self._places[before]) / np.where(length > 0, length, 1.0), 0.0, 1.0)
+        one, two = self._cubics.values(before, t), self._cubics.values(after, t)
+        inside = (length > 0) & (s >= self._places[before])
+        along = np.where(inside, (two - one) / np.where(length > 0, length, 1.0), 0.0)
+        across = (1 - share) * self._cubics.slopes(before, t) + share * self._cubics.slopes(after, t)
+        return one + share * (two - one), along, across
+
+    def bounds(self, road: int, reach: float) -> tuple[float, float]:
+        """The least and the greatest height within ``reach`` metres of the reference line of a road."""
+        if self.is_zero:
+            return 0.0, 0.0
+        ends = [self._cubics.bounds(shape, reach) for shape in range(self._first[road], self._last[road] + 1)]
+        return min(low for low, _ in ends), max(high for _, high in ends)
 
 
 class _Lines:

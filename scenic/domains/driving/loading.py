@@ -212,6 +212,7 @@ def _build(content: bytes, filename: str, options: MapOptions, cls: type[RoadNet
                 road.record.elevation,
                 road.record.superelevation,
                 road.record.crossfall,
+                road.record.shapes,
             )
             for road in built.values()
         ]

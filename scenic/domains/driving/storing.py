@@ -30,14 +30,14 @@ from scenic.domains.driving.elements import (
 from scenic.domains.driving.elevation import Elevation, RoadHeight
 from scenic.domains.driving.kinds import ManeuverType, VehicleType
 from scenic.domains.driving.network import RoadNetwork
-from scenic.formats.opendrive.records import Cubic
+from scenic.formats.opendrive.records import Cubic, LateralShape
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.spans import Span
 from scenic.runtime.geometry.store import Arrays
 
 __all__ = ["KIND", "restored", "stored"]
 
-KIND: Final = "road network 2"
+KIND: Final = "road network 3"
 """Name and version of the form of the arrays."""
 
 _Network = TypeVar("_Network", bound=RoadNetwork)
@@ -148,6 +148,7 @@ def stored(network: RoadNetwork) -> Arrays:
             (
                 road.uid,
                 *([_numbers(cubic) for cubic in cubics] for cubics in (road.profile, road.tilt, *road.falls)),
+                [(shape.s, [_numbers(cubic) for cubic in shape.heights]) for shape in road.shapes],
             )
             for road in network._elevation.roads
         ],
@@ -209,8 +210,9 @@ def restored(arrays: Arrays, filename: str, tolerance: float, cls: type[_Network
                 _cubics(profile),
                 _cubics(tilt),
                 (_cubics(left), _cubics(right)),
+                tuple(LateralShape(s, _cubics(heights)) for s, heights in shapes),
             )
-            for (uid, profile, tilt, left, right), start, stop in zip(
+            for (uid, profile, tilt, left, right, shapes), start, stop in zip(
                 text["heights"], starts[:-1], starts[1:], strict=True
             )
         ]

@@ -20,6 +20,7 @@ from scenic.formats.opendrive.records import (
     Lane,
     LaneLinks,
     LaneSection,
+    LateralShape,
     Link,
     MapRecords,
     Problem,
@@ -209,7 +210,8 @@ class _Reader:
             geometry,
             _profile(element.first("elevationProfile"), "elevation"),
             _profile(element.first("lateralProfile"), "superelevation"),
-            self._crossfall(name, element.first("lateralProfile")),
+            self._crossfall(element.first("lateralProfile")),
+            _lateral_shapes(element.first("lateralProfile")),
             tuple(_cubics(lanes, "laneOffset", "s")),
             self._sections(name, lanes, ends),
             tuple(self._signals(name, element.first("signals"), ends)),
@@ -218,13 +220,10 @@ class _Reader:
             frozenset(self._lost),
         )
 
-    def _crossfall(self, road: str, profile: Element | None) -> tuple[tuple[Cubic, ...], tuple[Cubic, ...]]:
+    def _crossfall(self, profile: Element | None) -> tuple[tuple[Cubic, ...], tuple[Cubic, ...]]:
         """The crossfall of the left and of the right side."""
         if profile is None:
             return (), ()
-        if (shape := profile.first("shape")) is not None:
-            message = f"the shape of the surface of road {road} is not read: it is taken for even"
-            self._tell("SC621", message, shape.line, "shape")
         left, right = (
             tuple(
                 _cubics(
@@ -605,6 +604,17 @@ def _cubics(element: Element, tag: str, start: str) -> Iterator[Cubic]:
 
 def _profile(element: Element | None, tag: str) -> tuple[Cubic, ...]:
     return () if element is None else tuple(_cubics(element, tag, "s"))
+
+
+def _lateral_shapes(profile: Element | None) -> tuple[LateralShape, ...]:
+    if profile is None:
+        return ()
+    places: dict[float, list[Element]] = {}
+    for item in profile.all("shape"):
+        places.setdefault(_number(item, "s", 0.0), []).append(item)
+    return tuple(
+        LateralShape(s, tuple(_cubics(Element("", {}, 0, places[s]), "shape", "t"))) for s in sorted(places)
+    )
 
 
 def _geometry(element: Element) -> Geometry:

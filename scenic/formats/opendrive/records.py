@@ -55,6 +55,20 @@ class Cubic:
 
 
 @dataclass(frozen=True, slots=True)
+class LateralShape:
+    """The heights of a road's surface across it, over the plane that superelevation tilts.
+
+    Attributes:
+        s: where along the road.
+        heights: cubics of the distance to the left of the reference line, in order.
+
+    """
+
+    s: float
+    heights: tuple[Cubic, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Geometry:
     """A piece of a reference line.
 
@@ -182,6 +196,7 @@ class Road:
     superelevation: tuple[Cubic, ...]
     crossfall: tuple[tuple[Cubic, ...], tuple[Cubic, ...]]
     """Of the left and of the right side."""
+    shapes: tuple[LateralShape, ...]
     lane_offset: tuple[Cubic, ...]
     sections: tuple[LaneSection, ...]
     signals: tuple[Signal | SignalReference, ...]
