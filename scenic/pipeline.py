@@ -9,15 +9,16 @@ from pathlib import Path
 from types import CodeType, FrameType, ModuleType, TracebackType
 from typing import TYPE_CHECKING, Any, Final
 
-from scenic.analysis.contraction import contract
+from scenic.analysis.contraction import Mask, Pruning, contract, independent
 from scenic.analysis.facts import Fact
+from scenic.analysis.screening import seldom_met
 from scenic.compiler import loader
 from scenic.compiler.compile import compile_text
 from scenic.compiler.parser import bare_text
 from scenic.compiler.tracebacks import SOURCE_NAME, Locator
 from scenic.dataclass import dataclass
 from scenic.failures import placed
-from scenic.graph.domain import Domain
+from scenic.graph.node import Node
 from scenic.language.errors import (
     InvalidScenarioError,
     ScenarioChoiceError,
@@ -39,6 +40,7 @@ from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Everywhere, Nowhere, Workspace, everywhere
 from scenic.runtime.regions.unturned import unturned
 from scenic.runtime.sampling.planning import Outline, outline
+from scenic.runtime.scenes.sampler import Sampler
 from scenic.runtime.scenes.saving import program_digest
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
@@ -249,7 +251,6 @@ class _Ran:
 def _scenario(text: str, filename: str, options: _Options) -> Scenario:
     """From text to scenario: compile, run, outline, contract."""
     ran = _run(_compiled(text, filename), text, filename, options)
-    domain, impossible = _narrowed(ran.outline) if options.prune else (None, ())
     scenario = Scenario(
         ran.program,
         ran.outline,
@@ -259,8 +260,7 @@ def _scenario(text: str, filename: str, options: _Options) -> Scenario:
         workspace=ran.workspace,
         names=ran.names,
         regions=ran.regions,
-        domain=domain,
-        impossible=impossible,
+        sampler=_sampler(ran.outline, prune=options.prune),
         digest=cache(partial(options.digest, text)),
         services=Services(
             show_page,
@@ -274,7 +274,6 @@ def _scenario(text: str, filename: str, options: _Options) -> Scenario:
             lambda given: _scenario(text, filename, replace(options, params={**options.params, **given})),
         ),
     )
-    scenario.prepare()
     promote_young()
     return scenario
 
@@ -324,11 +323,29 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
     return _Ran(program, outlined, state.ego, workspace, program.variables, _regions(module))
 
 
-def _narrowed(outlined: Outline) -> tuple[Domain, tuple[str, ...]]:
-    """The part of the cube that the requirements allow, and the labels of those that cannot hold."""
-    facts = conditions(outlined)
-    pruning = contract(outlined.graph, _in_own_frames(facts))
-    return pruning.domain, tuple(dict.fromkeys(item.label for item in pruning.impossible))
+def _sampler(outlined: Outline, *, prune: bool) -> Sampler:
+    """A sampler that is ready; with ``prune``, of the part of the cube that the requirements allow."""
+    sampler = Sampler(outlined)
+    sampler.prepare()
+    if not prune:
+        return sampler
+    pruning = _narrowed(outlined, sampler.met())
+    if pruning.domain.is_whole and not pruning.impossible:
+        return sampler
+    labels = tuple(dict.fromkeys(item.label for item in pruning.impossible))
+    sampler = Sampler(outlined, pruning.domain, impossible=labels)
+    sampler.prepare()
+    return sampler
+
+
+def _narrowed(outlined: Outline, met: Mapping[Node, Mask]) -> Pruning:
+    """The part of the cube that the requirements allow which candidates seldom meet, and those that cannot hold."""
+    facts = [fact for group in seldom_met(independent(conditions(outlined)), met) for fact in group]
+    framed = _in_own_frames(facts)
+    masks = {
+        there.node: met[here.node] for here, there in zip(facts, framed, strict=True) if here.node in met
+    }
+    return contract(outlined.graph, framed, masks)
 
 
 def _in_own_frames(facts: Sequence[Fact]) -> list[Fact]:

@@ -11,7 +11,8 @@ All work is counted, never timed: the result decides which scenes a seed gives.
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -88,8 +89,17 @@ def prune(graph: Graph, conditions: Sequence[Fact]) -> Domain:
     return contract(graph, conditions).domain
 
 
-def contract(graph: Graph, conditions: Sequence[Fact]) -> Pruning:
-    """Narrow the cube of ``graph`` to where all conditions can hold. Never samples."""
+def contract(
+    graph: Graph, conditions: Sequence[Fact], met: Mapping[Node, Mask] = MappingProxyType({})
+) -> Pruning:
+    """Narrow the cube of ``graph`` to where all conditions can hold. Never samples.
+
+    Args:
+        graph: what the conditions are about.
+        conditions: what must hold.
+        met: which of some candidates met a condition, ``(n,)``, where that is known: what most of them meet is not paved.
+
+    """
     network = _Network(graph, conditions)
     whole = Domain.whole(graph.dimension)
     if not network.axes:
@@ -97,21 +107,25 @@ def contract(graph: Graph, conditions: Sequence[Fact]) -> Pruning:
     boxes = network.contract(Boxes(whole.lower, whole.upper))
     if len(boxes.lower) == 0:
         return Pruning(whole, _impossible_alone(graph, conditions))
-    pavings = _pave(graph, conditions, boxes)
+    pavings = _pave(graph, conditions, boxes, met)
     if pavings is None:
         return Pruning(whole, _impossible_alone(graph, conditions))
     return Pruning(_product(boxes, pavings), ())
 
 
-def _pave(graph: Graph, conditions: Sequence[Fact], hull: Boxes) -> list[Boxes] | None:
+def _pave(
+    graph: Graph, conditions: Sequence[Fact], hull: Boxes, met: Mapping[Node, Mask]
+) -> list[Boxes] | None:
     """Pavings of the hull, each of axes of its own: of groups of conditions that share no axis with other groups.
 
     ``None`` where some group cannot hold.
     """
-    groups = [part for group in _groups(conditions) for part in _small_groups(graph, group, hull)]
+    groups = [part for group in independent(conditions) for part in _small_groups(graph, group, hull, met)]
     pavings: list[Boxes] = []
     vain: Counter[tuple[int, ...]] = Counter()
     for group in groups:
+        if _share_met(group, met) >= FACTOR_GAIN:
+            continue
         network = _Network(graph, group, VISITS // len(groups))
         shape = len(group), len(network.inner), len(network.axes)
         if vain[shape] == STRIKES:
@@ -125,7 +139,14 @@ def _pave(graph: Graph, conditions: Sequence[Fact], hull: Boxes) -> list[Boxes] 
     return pavings
 
 
-def _small_groups(graph: Graph, group: list[Fact], hull: Boxes) -> list[list[Fact]]:
+def _share_met(conditions: Sequence[Fact], met: Mapping[Node, Mask]) -> float:
+    """The share of candidates that met all of some conditions; 0 where that is not known."""
+    masks = [met.get(condition.node) for condition in conditions]
+    known = [mask for mask in masks if mask is not None]
+    return float(np.mean(np.logical_and.reduce(known))) if len(known) == len(masks) else 0.0
+
+
+def _small_groups(graph: Graph, group: list[Fact], hull: Boxes, met: Mapping[Node, Mask]) -> list[list[Fact]]:
     """The group itself; if it is about too many axes to be paved, groups of those of its conditions that seldom hold.
 
     A condition that often holds, as that things lie in a wide room, tells little, but joins all that is asked of them.
@@ -133,15 +154,18 @@ def _small_groups(graph: Graph, group: list[Fact], hull: Boxes) -> list[list[Fac
     if len(group) == 1 or len(_Network(graph, group).axes) <= SPLIT_AXES or len(group) > LARGEST_GROUP:
         return [group]
     seldom = []
+    is_whole = float((hull.upper - hull.lower).prod()) > 1 - PROGRESS
     for condition in group:
+        if is_whole and _share_met([condition], met) >= RARE:
+            continue  # in a narrower hull it may be met less often
         network = _Network(graph, [condition])
         axes = np.array(sorted(network.axes.values()), dtype=np.intp)
         if 0 < len(axes) <= SPLIT_AXES and share_that_may_hold(network.once, hull, axes, FEW_POINTS) < RARE:
             seldom.append(condition)
-    return _groups(seldom)
+    return independent(seldom)
 
 
-def _groups(conditions: Sequence[Fact]) -> list[list[Fact]]:
+def independent(conditions: Sequence[Fact]) -> list[list[Fact]]:
     """The conditions in groups, in order, such that no axis is below conditions of two of them."""
     leader: dict[Node, int] = {}
     groups: dict[int, list[Fact]] = {}
@@ -195,7 +219,7 @@ def _impossible_alone(graph: Graph, conditions: Sequence[Fact]) -> tuple[Fact, .
     if alone:
         return tuple(alone)
     left = _Network(graph, conditions).contract(Boxes(whole.lower, whole.upper))
-    impossible = len(left.lower) == 0 or _pave(graph, conditions, left) is None
+    impossible = len(left.lower) == 0 or _pave(graph, conditions, left, {}) is None
     return tuple(conditions) if impossible else ()
 
 
@@ -295,6 +319,8 @@ class _Network:
             return boxes
         are_few = self._combinations() <= LARGEST_ENUMERATION
         share = 1.0 if are_few else share_that_may_hold(self.once, boxes, axes)
+        if share >= FACTOR_GAIN and not are_few:
+            return boxes
         if share < RARE:
             return pave_by_trial(self._narrow, boxes, axes, share, self._cuts, lambda: self._visits <= 0)
         volume = boxes.volume(axes)

@@ -26,7 +26,7 @@ from scenic.graph.node import Graph, Node
 from scenic.graph.schedule import Scheduler
 from scenic.language.errors import RejectionException, ScenicError
 from scenic.runtime.geometry.ragged import expand, first_of_each
-from scenic.runtime.sampling.checks import Check
+from scenic.runtime.sampling.checks import Check, Mask, Verdict
 from scenic.runtime.sampling.pace import Pace
 from scenic.runtime.sampling.pending import Pending, Task, soft_address
 from scenic.runtime.sampling.profiling import Meter, Profile
@@ -186,6 +186,8 @@ class Engine:
         """Processor time of all rounds so far."""
         self.rehearsed: int | None = None
         """Number of candidates of the rehearsal that passed; `None` where no rehearsal went through all checks."""
+        self.met: dict[int, Mask] = {}
+        """Candidates of the rehearsal that met a check, by the number of the check; only of checks that it could ask."""
         self._pace = Pace(
             max(64, min(DEFAULT_LANES, BATCH_BYTES // max(1, plan.lane_bytes))),
             any(node.runs_python for node in plan.graph.nodes),
@@ -223,15 +225,15 @@ class Engine:
             if len(clear) < len(nodes):
                 known = set(clear)
                 batch.need(clear)
-                for check in checks:
+                for index, check in enumerate(checks):
                     if known.issuperset(check.nodes):
-                        check.test(batch)
+                        self._note(index, check.test(batch))
                 return
             stages = self._stages.expected(_FIRST_LANES[-1])
             for stage in stages:
                 batch.follow(stage.schedule, stage.nodes)
                 for index in stage.checks:
-                    checks[index].test(batch)
+                    self._note(index, checks[index].test(batch))
             made = time.thread_time()
             self._pace.add(len(keys), 0, made - begun)
             # What the first turn has made, the second one finds: that one is measured.
@@ -239,6 +241,9 @@ class Engine:
             self._judge(batch, stages[:-1], None)
             self.rehearsed = len(batch)
             self._pace.add(len(keys), len(batch), time.thread_time() - made)
+
+    def _note(self, index: int, verdict: Verdict) -> None:
+        self.met[index] = verdict.holds if verdict.failed is None else verdict.holds & ~verdict.failed
 
     def scenes(
         self,

@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 
 from scenic.graph.domain import Domain
 from scenic.graph.draws import Counter, Lanes, Points, Source
+from scenic.graph.node import Node
 from scenic.graph.points import PointSet
+from scenic.runtime.sampling.checks import NodeCheck
 from scenic.runtime.sampling.components import Components, components_of, divided
 from scenic.runtime.sampling.driving import driven
 from scenic.runtime.sampling.engine import Accepted, Engine, Plan
@@ -78,6 +80,15 @@ class Sampler:
             return
         self._finder.prepare()
         self._may_divide = self.engine.rehearsed == 0
+
+    def met(self) -> dict[Node, NDArray[np.bool_]]:
+        """The candidates of the rehearsal that met a requirement, ``(n,)``, by its node; without requirements that it could not ask."""
+        checks = self.plan.checks
+        return {
+            check.node: mask
+            for index, mask in self.engine.met.items()
+            if isinstance(check := checks[index], NodeCheck)
+        }
 
     def fixed(self, numbers: Mapping[int, float], words: Mapping[int, int]) -> "Sampler":
         """A sampler in which these draws are fixed, too.

@@ -91,8 +91,7 @@ class Scenario(Generating):
         workspace: Workspace,
         names: Mapping[int, str],
         regions: Mapping[str, Region],
-        domain: Domain | None = None,
-        impossible: Sequence[str] = (),
+        sampler: Sampler,
         digest: Callable[[], str] = str,
         services: Services | None = None,
     ) -> None:
@@ -114,7 +113,7 @@ class Scenario(Generating):
             )
         }
         self._names = names
-        self._sampler = Sampler(outline, domain, impossible=impossible)
+        self._sampler = sampler
         self._foreseen = Foreseen(self._foresee)
         self._choosing: Sampler | None = None
         self._external_sampler: Any = None
@@ -147,7 +146,7 @@ class Scenario(Generating):
             workspace=self.workspace,
             names=self._names,
             regions=self._regions,
-            domain=domain,
+            sampler=Sampler(self.outline, domain),
             digest=self._digest,
             services=self._services,
         )
