@@ -96,7 +96,7 @@ def ours(path: Path) -> Row:
 
 
 def theirs(command: str, path: Path, scenes: int, seed: int) -> Row:
-    """One turn of the other implementation; of each scene but the first it says itself how long it took."""
+    """One turn of the other implementation; it measures the time of each scene but the first itself."""
     start = shlex.split(command)
     sampled = [*start, str(path), "--seed", str(seed), "--max-iterations", "100000", "--observe", "x=1"]
     first = spent([*sampled, "-n", "1"])

@@ -237,7 +237,7 @@ class _Judge:
                 print(f"  {path.name} refuses the map itself: not asked")
 
     def breaks(self, text: str) -> bool:
-        """Tell whether a map breaks the standard."""
+        """Return whether a map breaks the standard."""
         if self._schemas:
             from lxml import etree
 

@@ -169,7 +169,7 @@ def release(name: str) -> str:
 
 
 def machine() -> str:
-    """The processor, as far as the system tells."""
+    """The processor, as far as the system names it."""
     model = platform.processor() or platform.machine()
     try:
         for line in Path("/proc/cpuinfo").read_text().splitlines():

@@ -70,7 +70,7 @@ def generated(count: int) -> list[str]:
 
 
 def has_scenes(path: Path) -> bool:
-    """Tell whether sampling finds a scene of a program, without analysis."""
+    """Return whether sampling finds a scene of a program, without analysis."""
     try:
         scenario = scenic.load(path, prune=False)
         scenario.sample(1, seed=1, max_attempts=ATTEMPTS, time_limit=SECONDS)

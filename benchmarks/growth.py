@@ -48,7 +48,7 @@ def collisions(count: int, *, exhaustive: bool) -> float:
 
 
 def program(count: int) -> tuple[float, float]:
-    """Seconds to load a program of so many fixed boxes and a moving one, and microseconds for a candidate."""
+    """Seconds to load a program of a number of fixed boxes and a moving one, and microseconds for a candidate."""
     side = math.isqrt(count) + 1
     lines = [f"new Object at ({3 * (i % side)}, {3 * (i // side)}, 0)" for i in range(count)]
     lines += [f"ego = new Object at (Range(0, {3 * side}), Range(0, {3 * side}), Range(0, 2))"]

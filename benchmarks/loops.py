@@ -22,7 +22,7 @@ HERE = Path(__file__).parent
 PROGRAMS = ("ten_boxes", "large_meshes", "mesh_on_slab", "four_cars")
 LOOP = 200
 LONG = 1000
-"""Scenes of the loop that goes on: more than may have been sampled ahead when it begins."""
+"""Number of scenes of the second loop: more than may have been sampled ahead when it begins."""
 BATCH = 500
 THEIRS = 200
 """Scenes of the other implementation in a turn: some cost a hundred times as much as most, and its first one warms up."""

@@ -59,11 +59,11 @@ for line in sys.stdin:
     else:
         print(json.dumps(time.perf_counter() - start), flush=True)
 """
-"""Run by the reference's Python: parses each file it is told, and says how many seconds that took."""
+"""Run by the reference's Python: parses each file that it is given, and prints the seconds."""
 
 
 class Driver:
-    """A process that parses files when it is told to."""
+    """A process that parses files on request."""
 
     def __init__(self, command: Sequence[str], environment: Mapping[str, str], folder: Path) -> None:
         self._process = subprocess.Popen(

@@ -318,7 +318,7 @@ def _after_simple(program: Program, random: Random) -> int | None:
 
 
 def _in_specifiers(program: Program, number: int) -> bool:
-    """Tell whether the line is a line of specifiers but the last, which no statement may follow."""
+    """Return whether the line is a line of specifiers but the last, which no statement may follow."""
     before = program.tokens.texts[program.logical[number].start - 1] if number else ""
     return before == "," or program.tokens.texts[program.logical[number].end - 1] == ","
 
@@ -335,7 +335,7 @@ def _inserted(kind: str, choices: tuple[tuple[str, ...], ...], extra: tuple[int,
 
 
 def _follows_specifiers(program: Program, number: int) -> bool:
-    """Tell whether the line is a line of specifiers, so that a statement after it has another indentation."""
+    """Return whether the line is a line of specifiers, so that a statement after it has another indentation."""
     logical, texts = program.logical, program.tokens.texts
     return number > 0 and texts[logical[number - 1].end - 1] == ","
 
@@ -476,7 +476,7 @@ def plant(program: Program, count: int, random: Random) -> tuple[str, list[tuple
 
 
 def _close(first: Mistake, second: Mistake) -> bool:
-    """Tell whether fewer than one logical line lies between two mistakes."""
+    """Return whether fewer than one logical line lies between two mistakes."""
     return first.touched[0] - 1 <= second.touched[1] and second.touched[0] - 1 <= first.touched[1]
 
 

@@ -25,7 +25,7 @@ RESOURCES = 200_000
 """z3's count for one box, at most."""
 
 BOXES = 1024
-"""Boxes asked about, at most, the largest first."""
+"""Largest number of boxes given to the solver, the largest boxes first."""
 
 
 @dataclass(frozen=True)

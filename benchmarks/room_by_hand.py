@@ -80,7 +80,7 @@ class Room:
         self.left = 0
 
     def round(self, lanes: int) -> int:
-        """Scenes found among so many candidates."""
+        """Scenes found among a number of candidates."""
         things: list[Thing] = []
         self.left = lanes
         sofa = self.sofa()
@@ -219,7 +219,7 @@ class Room:
 
 
 def overlap(one: Thing, two: Thing) -> Array:
-    """Tell whether the outlines of the boxes share a point, by the four axes of their sides."""
+    """Return whether the outlines of the boxes share a point, by the four axes of their sides."""
     dx, dy = two.x - one.x, two.y - one.y
     apart = np.zeros(len(dx), dtype=bool)
     turn = two.yaw - one.yaw
@@ -234,7 +234,7 @@ def overlap(one: Thing, two: Thing) -> Array:
 
 
 def pierces(one: Thing, two: Thing, lanes: Array) -> Array:
-    """Tell whether some known point of one lies in a cell that is known to be filled by the other."""
+    """Return whether some known point of one lies in a cell that is known to be filled by the other."""
     x, y, z = (one.shape.probes[:, axis] * one.size[lanes, axis, None] for axis in range(3))
     turn = (one.yaw - two.yaw)[lanes, None]
     dx, dy = (one.x - two.x)[lanes], (one.y - two.y)[lanes]

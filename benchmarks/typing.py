@@ -131,7 +131,7 @@ class Score:
     def count(
         self, text: str, first: int, last: int, accepted: frozenset[tuple[str, str]] = frozenset()
     ) -> None:
-        """Check a state; ``accepted`` is what is said of the right program too."""
+        """Check a state; ``accepted`` are the diagnostics of the right program."""
         self.states += 1
         wrong = [
             each
@@ -162,7 +162,7 @@ def _is_error(each: Diagnostic) -> bool:
 
 
 def measure(seed: int) -> tuple[Score, Score, int]:
-    """The scores of the phrases and of the lines typed anew, and how often a name in an open string was reported."""
+    """The scores of the phrases and of the lines typed again, and how often a name in an open string was reported."""
     phrases = Score()
     named = 0
     for text, first, last in _states():

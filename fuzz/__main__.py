@@ -23,7 +23,7 @@ _SECONDS: Final = 30.0
 _OF_PARSING: Final = ("making", "making mutants", "parsing_gives_a_tree", "nodes_lie_in_the_text")
 """Steps whose time makes up the rate of the parsing properties: there is a tree, and its parts lie in the text."""
 _REQUIRED: Final = (100.0, 95.0)
-"""Shares of Scenic's and of Python's alternatives, in percent, that ``--require-coverage`` asks for."""
+"""Shares of Scenic's and of Python's alternatives, in percent, that ``--require-coverage`` requires."""
 _SHOWN: Final = 20
 
 
@@ -153,7 +153,7 @@ def _quote(text: str) -> None:
 
 
 def _summary(report: Report, died: Sequence[WorkerDied], seconds: float, seed: int) -> bool:
-    """Print what a run did; tell whether its coverage falls short."""
+    """Print the report of a run; return whether its coverage falls short."""
     total = report.programs + report.mutants + report.formulas
     print(
         f"\n{report.programs} programs ({report.tokens} tokens), {report.mutants} mutants and {report.formulas} formulas "

@@ -25,7 +25,7 @@ from scenic.compiler.precedence import (
 __all__ = ["TABLE", "Climber", "Table", "Tree", "climb"]
 
 RESERVED: Final = frozenset({*HARD_KEYWORDS, "NEWLINE"})
-"""Words that are no names, and what stands after the last token."""
+"""Words that are not names, and the mark after the last token."""
 
 _DIRECTIONS: Final = frozenset({"_ left of _", "_ right of _"})
 _CORNERS: Final = frozenset({"front", "back", "top", "bottom"})
@@ -65,7 +65,7 @@ class Table:
 _BOTH: Final = (Ladder.ORDINARY, Ladder.TEMPORAL)
 
 SHARED: Final = 1 + max(LADDERS[Ladder.TEMPORAL].values())
-"""Here the temporal ladder goes on as the ordinary one."""
+"""Level at which the temporal ladder continues as the ordinary ladder."""
 
 TABLE: Final = Table(FORMS)
 """The table that the generator read from the grammar."""
@@ -175,7 +175,7 @@ class Climber:
     def _parts(
         self, form: Form, index: int, at: int, done: tuple[Tree, ...]
     ) -> Iterator[tuple[int, tuple[Tree, ...]]]:
-        """The first way to go on with the rest of a form, if there is one."""
+        """The first way to continue with the rest of a form, or ``None``."""
         if index == len(form.parts):
             yield at, done
             return

@@ -17,7 +17,7 @@ _ORIGINAL: Final = ".original"
 
 
 class Entry(NamedTuple):
-    """A program of the corpus; ``of_grammar`` tells whether the grammar made it, or a mutation did.
+    """A program of the corpus; ``of_grammar`` is true if the grammar made it, and false if a mutation did.
 
     ``of_formulas`` tells whether it is a formula, and broke a property of these. ``original`` is the program that a
     mutation started from.

@@ -86,7 +86,7 @@ def replayed(choices: Sequence[int]) -> ExampleDatabase:
 
 
 class _Replay(ExampleDatabase):
-    """Holds one example of whatever is asked for, and forgets what is saved."""
+    """A database for Hypothesis that always returns one example, and stores nothing."""
 
     def __init__(self, example: bytes) -> None:
         super().__init__()

@@ -58,7 +58,7 @@ _FAR: Final = 1 << 20
 _SCALE: Final = SCALE
 _LAYOUTS: Final = 1 << 16
 _WILD: Final = 5
-"""One of so many programs is wild."""
+"""Number of programs among which one is wild."""
 _TRIES: Final = 8
 _ASYNC: Final = Token("async", literal=True)
 _HARMLESS: Final = "Range"
@@ -298,7 +298,7 @@ class _Generator:
         state.around = around
 
     def _nearest(self, rule: str, aim: _Aim) -> tuple[Plan | None, int | None]:
-        """An option on a shortest way to what is aimed at, and the item where the way goes on."""
+        """An option on a shortest path to the aim, and the item where the path continues."""
         best: list[tuple[Plan, int | None]] = []
         # Every step has to lead nearer, or there would be no end.
         least = aim.distances.get(rule, 0) - 1

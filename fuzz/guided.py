@@ -41,7 +41,7 @@ class Progress:
         self.kept = 0
 
     def note(self, line: str) -> bool:
-        """Take in a line; tell whether it is about this."""
+        """Read a line of output; return whether it reports progress."""
         found = _STATUS.match(line)
         if found is None:
             return False
@@ -85,7 +85,7 @@ def _options() -> argparse.ArgumentParser:
 
 
 def _watch(folder: Path, options: argparse.Namespace) -> int:
-    """Run the fuzzing process, and tell what it did: libFuzzer ends its process itself."""
+    """Run the fuzzing process, and report on it: libFuzzer ends its process itself."""
     command = [
         sys.executable,
         "-m",

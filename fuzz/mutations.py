@@ -22,7 +22,7 @@ _ODD: Final = (
 _LETTERS: Final = "aeiourst"
 _INDENTATIONS: Final = ("", " ", "    ", "\t", "        ", " \t", "\f ")
 _MOST: Final = 3
-"""Half of the mutants have one mutation, the others up to so many."""
+"""Largest number of mutations of a mutant; half of the mutants have one."""
 
 
 @dataclass(frozen=True, slots=True)

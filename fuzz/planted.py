@@ -14,7 +14,7 @@ from typing import Final
 __all__ = ["FAULTS", "GENERATED", "Change", "Fault"]
 
 GENERATED: Final = ("parser", "recording")
-"""The generated modules that a change in ``grammar/`` makes wrong, if nothing else is said."""
+"""The generated modules that a change in ``grammar/`` affects by default."""
 
 _GRAMMAR: Final = "grammar/scenic.gram"
 _LEXER: Final = "scenic/compiler/lexer.py"
@@ -35,7 +35,7 @@ class Change:
     new: str
 
     def apply(self, root: Path) -> None:
-        """Make the change below ``root``; raises `LookupError` if there is no such text, or more than one."""
+        """Make the change below ``root``; raises `LookupError` if the text occurs never, or more than once."""
         file = root / self.path
         text = file.read_text(encoding="utf-8")
         found = text.count(self.old)

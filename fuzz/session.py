@@ -32,7 +32,7 @@ MUTANTS: Final = 100
 FORMULAS: Final = 20
 """The sizes of a round."""
 _LONGEST: Final = 40.0
-"""For so many seconds a failure is shrunk at most."""
+"""Largest number of seconds for which a failure is shrunk."""
 _ENDLESS: Final = 0.5
 """Seconds beyond which a shorter text still takes far too long, when a text that takes too long is shrunk."""
 _UNFINISHED: Final = frozenset({"SC900", "SC120", "SC214", "SC404"})
@@ -243,7 +243,7 @@ def try_text(
     choices: Sequence[int],
     seed: int,
 ) -> bool:
-    """Try a text on ``properties``; tell whether all hold. At most one new failure is shrunk and entered in ``report``.
+    """Try ``properties`` on a text; return whether all hold. At most one new failure is shrunk and entered in ``report``.
 
     ``again`` makes the text from the numbers ``choices``, and shorter ones from others.
     """

@@ -1,4 +1,4 @@
-"""Shorter texts that still fail, for texts that nothing says how they were made: lines are left out, then tokens, then characters."""
+"""Shrinking of failing texts of unknown origin: lines are removed, then tokens, then characters."""
 
 import re
 from collections.abc import Callable, Sequence

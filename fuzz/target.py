@@ -30,7 +30,7 @@ _SLOW: Final = 10.0
 
 
 def text_of(data: bytes) -> str:
-    """The text that bytes stand for, as in the corpus; what is no UTF-8 becomes question marks."""
+    """The text of some bytes, as in the corpus; bytes that are not UTF-8 become question marks."""
     try:
         return data.decode("utf-8", "surrogatepass")
     except UnicodeDecodeError:
@@ -65,7 +65,7 @@ class Finding(Exception):
 
 
 class Target:
-    """Tries texts on ``properties``. ``report`` is told of what fails, once for each way to fail, and then the run goes on."""
+    """Tries texts on ``properties``. ``report`` is called once for each kind of failure, and then the run continues."""
 
     def __init__(self, report: Callable[[Finding], None], properties: Sequence[Property] = OF_TEXTS) -> None:
         self._report = report

@@ -176,7 +176,7 @@ class _Maker:
             self._emit(item, depth - 1)
 
     def _share(self, rule: str) -> float:
-        """A number from 0 to 1, as fine as the number of options asks for."""
+        """A number from 0 to 1, as fine as the number of options requires."""
         count = len(self._variety.derivations.options[rule])
         if count == 1:
             return 0.0

@@ -33,7 +33,7 @@ _ENOUGH: Final = 120.0
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """The amount of work: until the time ``deadline`` (of `time.time`), and at most so many programs and mutants.
+    """The amount of work: until the time ``deadline`` (of `time.time`), and at most the given numbers of programs and mutants.
 
     Round ``k`` has the seed ``seed + k``. If ``first``, a worker stops when it has found something, and the others after their rounds.
     ``only`` names the properties to be tried; without names, all are.
@@ -97,7 +97,7 @@ def usable_processors() -> int:
 def run(
     budget: Budget, *, jobs: int, on_failure: Callable[[Failure], None]
 ) -> tuple[Report, tuple[WorkerDied, ...]]:
-    """Run rounds until the budget is spent, or the user interrupts; ``on_failure`` is told of each new failure at once.
+    """Run rounds until the budget is spent, or the user interrupts; ``on_failure`` is called immediately for each new failure.
 
     ``jobs`` processes share the work; with none, this one does it all.
     """
@@ -148,7 +148,7 @@ def _rounds(
 
 
 class _Team:
-    """Worker processes, and what they said."""
+    """Worker processes, and their messages."""
 
     def __init__(self, budget: Budget, jobs: int, on_failure: Callable[[Failure], None]) -> None:
         # New interpreters: what this one has in memory is not to matter.

@@ -188,7 +188,7 @@ class Trace:
 
 
 class TracingParser:
-    """A parser that tells which alternatives of ``grammar`` a text uses."""
+    """A parser that records the alternatives of ``grammar`` that a text uses."""
 
     def __init__(self, grammar: Grammar) -> None:
         self._grammar = grammar

@@ -135,7 +135,7 @@ def _is_dead(
     roots: Sequence[Node],
     facts: Sequence[Fact],
 ) -> bool:
-    """Tell whether no scene meets the requirements and all conditions that lead to a branch."""
+    """Return whether no scene meets the requirements and all conditions that lead to a branch."""
     parts = []
     for (test, holds), readings in zip(branch.path, told, strict=True):
         if readings:  # conditions that may change say nothing

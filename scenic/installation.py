@@ -113,7 +113,7 @@ def _cache() -> Finding:
 
 
 def _rendering() -> Finding:
-    """Tell whether an image can be made without a graphics card."""
+    """Return whether an image can be made without a graphics card."""
     # These bring in NumPy and the geometry libraries.
     from scenic.formats.instances import picture
     from scenic.formats.render import render

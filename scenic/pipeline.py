@@ -70,16 +70,16 @@ def load(
 
     Args:
         path: a ``.scenic`` file; ``-`` reads the program from standard input.
-        params: values for global parameters, which win over the program's own.
-        model: a world model to use in place of the program's.
-        scenario: which scenario of the file, where it defines several.
+        params: values for global parameters, which replace the program's own.
+        model: a world model to use instead of the program's.
+        scenario: the scenario to use, if the file defines several.
         mode2D: compile in the 2D compatibility mode.
-        prune: narrow the distributions to what the requirements allow, which changes nothing but speed.
-        extra_params: accept values of parameters that the program does not have; its scenes have them, too.
+        prune: narrow the distributions to the values that the requirements allow. The distribution of the scenes is the same.
+        extra_params: accept values of parameters that the program does not have, and add them to its scenes.
 
     Raises:
         ScenicSyntaxError: if the program cannot be compiled.
-        InvalidScenarioError: if it describes no scenario, or a parameter is unknown.
+        InvalidScenarioError: if it does not describe a scenario, or a parameter is unknown.
         ScenicError: for the other mistakes of section 14 of the specification.
 
     """
@@ -105,7 +105,7 @@ def scenarioFromFile(
     Parameters that the program does not use are accepted, and appear among the parameters of its scenes.
 
     Raises:
-        RuntimeError: if the file's name ends otherwise than in ``.scenic`` or ``.sc``.
+        RuntimeError: if the file's name does not end in ``.scenic`` or ``.sc``.
 
     """
     source = read_source(Path(path))
@@ -146,14 +146,14 @@ def analyze(
 
     Args:
         program: a ``.scenic`` file, or a scenario.
-        params: as for `load`, like the next ones; they go without a scenario.
-        model: a world model to use in place of the program's.
+        params: as for `load`, like the next three; not allowed if ``program`` is a scenario.
+        model: a world model to use instead of the program's.
         scenario: which scenario of the file.
         mode2D: compile in the 2D compatibility mode.
-        candidates: how many are tried at most to estimate how many pass; 20,000 by default.
+        candidates: largest number of candidates for estimating how many pass; 20,000 by default.
 
     Raises:
-        ScenicError: what is wrong with the program, as `load` and `Scenario.sample` raise it.
+        ScenicError: if the program has an error, as `load` and `Scenario.sample` raise it.
 
     """
     from scenic.assessment.assessing import CANDIDATES, assess

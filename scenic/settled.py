@@ -128,7 +128,7 @@ class Settled:
     # Names
 
     def _is_known(self, name: str, binding: Binding | None) -> bool:
-        """Tell whether a name keeps a value that was known when the program had run."""
+        """Return whether a name keeps a value that was known when the program had run."""
         if name in self._rebound:
             return False
         if binding is not None and self._top is not None and binding.scope.node is self._top:
@@ -264,19 +264,19 @@ class _Places:
             self._uses.add(value)
 
     def is_use(self, name: ast.AST) -> bool:
-        """Tell whether a name stands for what an object of the scene does, or for a monitor of the scene."""
+        """Return whether a name stands for what an object of the scene does, or for a monitor of the scene."""
         return name in self._uses
 
 
 def _is_settled(value: Any) -> bool:
-    """Tell whether a value is a constant or drawn with the scene, and not a thing that may change beneath its name."""
+    """Return whether a value is a constant or drawn with the scene, and not a thing that may change beneath its name."""
     if isinstance(value, RandomBase):
         return value.node.kind in _COMPUTED or value.node.kind is Kind.OTHER
     return isinstance(value, bool | int | float | str)
 
 
 def _operates_on_values(test: ast.expr, values: Mapping[str, Any]) -> bool:
-    """Tell whether the operators of Scenic in a condition read nothing but numbers, vectors and orientations."""
+    """Return whether the operators of Scenic in a condition read nothing but numbers, vectors and orientations."""
     for operation in walk(test):
         if not isinstance(operation, scenic.Operation):
             continue

@@ -47,7 +47,7 @@ def _drawn(region: Oracle, ego: Ego, rng: np.random.Generator) -> Floats:
 
 
 def rejected(name: str, question: str, count: int, rng: np.random.Generator) -> Floats:
-    """Rows of what `found` reads, of so many candidates that are accepted."""
+    """Rows of the values that `found` reads, from a number of accepted candidates."""
     is_drawn = question in ("drawn", "contained in")
     rows: list[Sequence[float]] = []
     while len(rows) < count:

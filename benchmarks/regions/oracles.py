@@ -1,4 +1,4 @@
-"""The regions of the table at an ego, asked by NumPy, SciPy and shapely alone: what plain rejection needs to know of them.
+"""The regions of the table at an ego, by NumPy, SciPy and shapely alone: the queries that plain rejection needs.
 
 Things are unit cubes, turned about the vertical by a heading. Nothing here is shared with the package.
 """
@@ -29,16 +29,16 @@ class Oracle(Protocol):
 
     @property
     def is_flat(self) -> bool:
-        """Tell whether it lies in the plane."""
+        """Return whether it lies in the plane."""
 
     def covers(self, points: Floats) -> NDArray[np.bool_]:
         """Return a mask ``(n,)`` of the points ``(n, 3)`` that lie in the region."""
 
     def holds(self, place: Floats, heading: float) -> bool:
-        """Tell whether the region holds a whole thing."""
+        """Return whether the region holds a whole thing."""
 
     def meets(self, place: Floats, heading: float) -> bool:
-        """Tell whether the region shares a point with a thing."""
+        """Return whether the region shares a point with a thing."""
 
     def distance(self, point: Floats) -> float:
         """Return the distance of a point from the region."""

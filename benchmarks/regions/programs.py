@@ -1,4 +1,4 @@
-"""Programs of two objects: a region that moves with the ego, and one thing that is asked of it."""
+"""Programs of two objects: a region that moves with the ego, and one use of it."""
 
 from collections.abc import Mapping
 from types import MappingProxyType

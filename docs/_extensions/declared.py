@@ -1,4 +1,4 @@
-"""Pages that tell what `scenic.language` declares: each directive shows one element, or all of a kind.
+"""Pages made from the declarations of `scenic.language`: each directive shows one element, or all of a kind.
 
 - ``specifier``, ``operator``, ``statement``, ``provided``: one of them, by its name; ``temporal``: all temporal operators.
 - ``class``: the properties and attributes of a built-in class.
@@ -141,12 +141,12 @@ def _listed(names: Iterable[str]) -> str:
 
 
 def _code(text: str) -> str:
-    """A default as code, unless it is said in words."""
+    """A default as code, unless it is given in words."""
     return text if re.match(r"(a|an|no|the|parent\w+ turned)\b", text) else f"`{text}`"
 
 
 class _Declared(SphinxDirective):
-    """Shows what a function says of an element."""
+    """Shows the text that a function returns for an element."""
 
     optional_arguments = 1
     final_argument_whitespace = True

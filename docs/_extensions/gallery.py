@@ -47,7 +47,7 @@ def themes() -> Iterator[tuple[str, str, list[Path]]]:
 
 
 def header(path: Path) -> str:
-    """The text at the beginning of a program that says what it shows."""
+    """The description at the beginning of a program."""
     quoted, _, _ = path.read_text(encoding="utf-8").removeprefix('"""').partition('"""')
     return " ".join(ast.literal_eval(f'"""{quoted}"""').split())
 

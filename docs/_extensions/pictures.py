@@ -55,7 +55,7 @@ class Shot:
 
     @classmethod
     def of(cls, path: Path, options: Mapping[str, str], size: tuple[int, int] | None = None) -> "Shot":
-        """The shot of a program that the options of a code block ask for."""
+        """The shot of a program that the options of a code block describe."""
         azimuth, _, elevation = options.get("from", "-35,33").replace("above", "0,90").partition(",")
         return cls(
             path,

@@ -30,7 +30,7 @@ class ScenicBlock(SphinxDirective):
     final_argument_whitespace = True
 
     def run(self) -> list[nodes.Node]:
-        """The code, and a picture if the block asks for one."""
+        """The code, and a picture if the block's options request it."""
         code = "\n".join(self.content) + "\n"
         options = options_of(self.arguments[0]) if self.arguments else {}
         shown = "\n".join(self.content)

@@ -24,7 +24,7 @@ class WrongCommandError(Exception):
 
 
 def commands_of(text: str) -> list[list[str]]:
-    """The words of each command of a block; comments are left out, and lines that end in a backslash go on."""
+    """The words of each command of a block; comments are omitted, and lines that end in a backslash continue."""
     lines = text.replace("\\\n", " ").splitlines()
     return [words for line in lines if (words := _words(line))]
 

@@ -33,7 +33,7 @@ FILENAME: Final = "<fuzz>"
 
 
 class Violation(AssertionError):
-    """A property does not hold; the message says where."""
+    """Raised if a property does not hold; the message gives the place."""
 
 
 class Change(Protocol):
@@ -132,7 +132,7 @@ def is_syntax_error(diagnostic: Diagnostic) -> bool:
 
 
 def spans_of(diagnostic: Diagnostic) -> Iterator[tuple[str, Span | None]]:
-    """All places that a diagnostic speaks of, with what they are."""
+    """All places in a diagnostic, each with a description."""
     yield "span", diagnostic.span
     for label in diagnostic.labels:
         yield "label", label.span

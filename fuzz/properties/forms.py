@@ -1,4 +1,4 @@
-"""Operators are read as the table of precedence says, which the generator extracts from the grammar by other means."""
+"""Operators are parsed by the table of precedence, which the generator extracts from the grammar by other means."""
 
 import ast
 from bisect import bisect_left

@@ -1,4 +1,4 @@
-"""The code of programs without errors: that there is some, and where it says it comes from."""
+"""The code of programs without errors: its existence, and its places in the source."""
 
 import ast
 import re

@@ -22,7 +22,7 @@ __all__ = ["OF_TEXTS"]
 
 
 def parsing_gives_a_tree(case: Case) -> None:
-    """Parsing never raises, and says of a tree with gaps that there is an error."""
+    """Parsing never raises, and reports an error for a tree with gaps."""
     result = case.result
     if not isinstance(result.tree, ast.Module):
         raise Violation(f"the tree is a {type(result.tree).__name__}")
@@ -31,7 +31,7 @@ def parsing_gives_a_tree(case: Case) -> None:
 
 
 def diagnostics_lie_in_the_text(case: Case) -> None:
-    """Every place that a diagnostic of the parser or of the static check speaks of lies in the text.
+    """Every place in a diagnostic of the parser or of the static check lies in the text.
 
     So do the places of labels and of the changes that repair it; these do not overlap. The check says what the parser says,
     and never raises.
@@ -55,7 +55,7 @@ def diagnostics_lie_in_the_text(case: Case) -> None:
 
 
 def parsing_is_deterministic(case: Case) -> None:
-    """Parsing once more gives the same tree and says the same, and so does parsing the text with other line ends."""
+    """Parsing again gives the same tree and diagnostics, and so does parsing the text with other line ends."""
     plain = case.source.text
     for text in (case.text, plain, plain.replace("\n", "\r\n"), plain.replace("\n", "\r"), f"\ufeff{plain}"):
         again = parse(text)

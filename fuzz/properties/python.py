@@ -129,7 +129,7 @@ _AROUND: Final = ("pass", "class Around: pass", "def around(): pass", "class Aro
 
 
 def _within(node: ast.stmt, around: str) -> ast.Module:
-    """A module of a statement that is put in the place of `pass` in the text ``around``."""
+    """A module in which a statement replaces `pass` in the text ``around``."""
     tree = ast.parse(around)
     block: list[ast.stmt] = tree.body
     while not isinstance(block[0], ast.Pass):

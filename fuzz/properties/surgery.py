@@ -89,7 +89,7 @@ def _empty_block(nodes: list[ast.AST], draw: random.Random) -> None:
 
 
 def _put_gap(nodes: list[ast.AST], draw: random.Random) -> None:
-    """An error in the place of a statement, which may still hold the statement, or those in it."""
+    """An error node instead of a statement, which may still contain the statement, or its inner statements."""
     blocks = _blocks(nodes)
     if not blocks:
         return
@@ -121,7 +121,7 @@ def _lose_part(nodes: list[ast.AST], draw: random.Random) -> None:
 
 
 def _exchange(nodes: list[ast.AST], draw: random.Random) -> None:
-    """One expression takes the place of another that is read, or two statements change places."""
+    """One expression replaces another that is read, or two statements are exchanged."""
     if draw.random() < 0.3:
         blocks = _blocks(nodes)
         if len(blocks) > 1:

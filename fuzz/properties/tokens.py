@@ -1,4 +1,4 @@
-"""Tokens are where they say they are: the places of nodes, which are made of theirs, cannot tell."""
+"""Tokens have the right places: the places of nodes, which are derived from them, cannot show this."""
 
 import re
 import unicodedata

@@ -71,7 +71,7 @@ def load(text: str, *, prune: bool = True) -> scenic.Scenario:
 
 
 def sampled(scenario: scenic.Scenario, *, lanes: int | None) -> Outcome:
-    """The outcome of sampling a scenario; what is not reported with a code goes on as an exception."""
+    """The outcome of sampling a scenario; an error without a code is raised as an exception."""
     found = []
     try:
         results = scenario.stream(_SCENES, seed=_SEED, max_attempts=_ATTEMPTS, lanes=lanes)

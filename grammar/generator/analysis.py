@@ -295,11 +295,11 @@ class Analysis:
         return kinds, seconds
 
     def continuations(self, name: str) -> frozenset[int]:
-        """The tokens with which something can go on after an operand of the step ``name`` itself."""
+        """The tokens that can continue an expression after an operand of the step ``name`` itself."""
         return frozenset().union(*(self.first_of(tail.items) for tail in self.steps[name].tails))
 
     def all_continuations(self, name: str) -> frozenset[int]:
-        """The tokens that go on after the bottom's operand, in the step ``name`` or one below it."""
+        """The tokens that continue after the bottom's operand, in the step ``name`` or a step below it."""
         return frozenset().union(*(self.continuations(each) for each in self.ladder(name)[:-1]))
 
     # Choices that have to be tried, and what must be memoised for them.

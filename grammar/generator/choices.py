@@ -244,7 +244,7 @@ class ChoiceWriter(ItemWriter):
             self.reset(mark)
 
     def step(self, group: list[Branch], mode: Mode) -> None:
-        """Match the next item of ``group``, which is not a token, and go on with what follows it."""
+        """Match the next item of ``group``, which is not a token, and continue with the items after it."""
         item = self.next_of(group[0]).item
         variable = self.variable_of(group)
         match item:

@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 
 class GrammarError(Exception):
-    """The grammar cannot be used; the message names the rule and says why."""
+    """The grammar cannot be used; the message gives the rule and the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,7 +144,7 @@ class Vocabulary:
 
 @dataclass(frozen=True, slots=True)
 class Grammar:
-    """All rules in order, the start rule, and the rules after whose mistakes a loop goes on."""
+    """All rules in order, the start rule, and the rules after whose mistakes a loop continues."""
 
     rules: Mapping[str, Rule]
     start: str
@@ -168,7 +168,7 @@ KINDS = {
 """The kinds that the lexer fixes."""
 
 ERROR = 9
-"""The kind of what is no token; nothing in a grammar matches it."""
+"""The kind of text that is not a token; nothing in a grammar matches it."""
 
 FIRST_WORD_KIND = 16
 NAME = KINDS["NAME"]

@@ -35,7 +35,7 @@ SPECIFIER: Final = "specifier"
 """The rule whose alternatives are the specifiers, the other place where words stand between operands."""
 
 OPERATOR_FIELDS: Final = ("op", "ops", "operator", "specifier")
-"""The fields of nodes that tell one operator from another."""
+"""The fields of nodes that distinguish operators."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class Slot:
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """The place of something that is no operand: parameters, arguments, a name."""
+    """The place of a part that is not an operand: parameters, arguments, a name."""
 
     rule: str
     optional: bool
@@ -295,7 +295,7 @@ class Precedence:
         return found
 
     def _expand(self, item: Item, name: str | None, before: _Expansion) -> list[_Expansion]:
-        """All ways to go on with an item whose value gets the name ``name``."""
+        """All ways to continue with an item whose value gets the name ``name``."""
         match item:
             case Token(literal=True):
                 return [before.add(item.text, _UNKNOWN, name)]
@@ -415,7 +415,7 @@ def _evaluate(node: ast.expr, variables: Mapping[str, Any]) -> Any:
 
 
 def _with_node(form: Form, value: object) -> Form:
-    """A form with what its action says about the node that it makes."""
+    """A form with its action's facts about the node that it makes."""
     if isinstance(value, _Operand):
         return replace(form, node="", targets=(None,))
     if not isinstance(value, tuple):

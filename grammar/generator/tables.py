@@ -38,7 +38,7 @@ def emit_tables(analysis: Analysis, header: str) -> str:
         '"""The words that start statements: hard keywords, and soft ones that may."""',
         "",
         f"INFIX_KINDS = frozenset({operators!r})",
-        '"""The kinds of tokens with which an expression can go on."""',
+        '"""The kinds of tokens that can continue an expression."""',
         "",
         f"SPECIFIER_KINDS = frozenset({specifiers!r})",
         '"""The kinds of tokens with which a specifier starts."""',
@@ -50,7 +50,7 @@ def emit_tables(analysis: Analysis, header: str) -> str:
 
 
 def _precedence(precedence: Precedence) -> list[str]:
-    """The lines that hold the ladders and the forms; `scenic.compiler.precedence` says what the places mean."""
+    """The lines with the ladders and the forms; `scenic.compiler.precedence` defines their fields."""
     lines = ["LADDERS = {"]
     lines += [f"    {ladder!r}: {tuple(steps)!r}," for ladder, steps in precedence.ladders.items()]
     lines += ["}", '"""The rules of each ladder of operators with their levels, loosest first."""', ""]
@@ -96,7 +96,7 @@ def _ladder_of(analysis: Analysis) -> list[str]:
 
 
 def _starting_words(analysis: Analysis) -> set[str]:
-    """The words with which a statement starts that is no expression."""
+    """The first words of statements that are not expressions."""
     words: set[str] = set()
     seen: set[str] = set()
     roots = ["statement"] if "statement" in analysis.rules else []

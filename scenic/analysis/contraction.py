@@ -40,7 +40,7 @@ VISITS: Final = 20_000
 """Nodes looked at in all passes over all sets of boxes, at most (but for the first passes)."""
 
 PROGRESS: Final = 1e-3
-"""Contraction goes on while some axis of some box loses at least this share."""
+"""Contraction continues while some axis of some box loses at least this share."""
 
 LARGEST_PAVING: Final = 256
 """Boxes of a paving, at most."""
@@ -64,7 +64,7 @@ LARGEST_GROUP: Final = 32
 """Conditions of one group, at most, that are looked at one by one where the group is about too many axes."""
 
 FEW_POINTS: Final = 64
-"""Points that tell of one of these how often it may hold."""
+"""Number of points that estimate how often a condition may hold."""
 
 GAIN: Final = 0.7
 """Pavings are used if they leave less than this share of their hull together."""
@@ -185,7 +185,7 @@ def independent(conditions: Sequence[Fact]) -> list[list[Fact]]:
 
 
 def _product(hull: Boxes, pavings: Sequence[Boxes]) -> Domain:
-    """The part of the cube that lies in all pavings; where one hardly says more than its hull, that takes its place."""
+    """The part of the cube that lies in all pavings; a paving that is hardly smaller than its hull is replaced by the hull."""
     lower, upper = hull.lower.copy(), hull.upper.copy()
     unions: list[tuple[Mask, Boxes]] = []
     left = 1.0
@@ -224,7 +224,7 @@ def _impossible_alone(graph: Graph, conditions: Sequence[Fact]) -> tuple[Fact, .
 
 
 def _moved(before: Boxes, after: Boxes, alive: Mask) -> bool:
-    """Tell whether some axis of a box that is still alive lost enough to go on."""
+    """Return whether some axis of a remaining box lost enough to continue."""
     old = before.upper[alive] - before.lower[alive]
     new = after.upper[alive] - after.lower[alive]
     return bool((new < (1 - PROGRESS) * old).any())
@@ -480,7 +480,7 @@ class _State:
 
 
 def _same(before: Sequence[Bounds | None] | None, now: Sequence[Bounds | None]) -> bool:
-    """Tell whether bounds are the same objects as when they were last read."""
+    """Return whether bounds are the same objects as when they were last read."""
     return before is not None and all(a is b for a, b in zip(before, now, strict=True))
 
 

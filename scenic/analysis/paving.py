@@ -24,7 +24,7 @@ RARE: Final = 0.5
 """Boxes are split by trial where fewer than this share of their points may meet the conditions."""
 
 POINTS: Final = 256
-"""Points that tell this share."""
+"""Number of points that estimate this share."""
 
 MOST: Final = 1024
 """Boxes, at most; three times as many where hardly any point may meet the conditions."""
@@ -130,7 +130,7 @@ Way = Sequence[tuple[int, int]]
 
 
 def _ways(axes: Sequence[int], count: int) -> Iterator[list[Way]]:
-    """Ways to cut so many boxes, cheap ones first: in halves, in sections, in sections along two axes."""
+    """Ways to cut a number of boxes, cheap ones first: in halves, in sections, in sections along two axes."""
     yield [[(axis, 2)] for axis in axes]
     if count * SECTIONS <= CUT:
         yield [[(axis, SECTIONS)] for axis in axes]

@@ -44,7 +44,7 @@ def prove(graph: Graph, conditions: Sequence[Fact]) -> tuple[Diagnostic, ...]:
 def prove_in_time(
     requirements: Sequence[Required], told: Collection[Span | None] = ()
 ) -> tuple[Diagnostic, ...]:
-    """Temporal requirements that no simulation meets (SC700); ``told`` are places of requirements that no scene meets."""
+    """Temporal requirements that no simulation meets (SC700); ``told`` are the places of requirements that no scene meets, which are reported already."""
     found = []
     for core, length in contradictions(requirements):
         *others, last = core
@@ -95,7 +95,7 @@ def _place(condition: Fact) -> tuple[bool, Span]:
 
 
 def _always_holds(condition: Fact) -> bool:
-    """Tell whether intervals show that a requirement of the program holds in every scene."""
+    """Return whether intervals show that a requirement of the program holds in every scene."""
     bounds = None if condition.built_in else overall(condition.node)
     return bounds is not None and bounds.lower.shape == (1,) and bool(bounds.lower[0] >= 1)
 

@@ -117,7 +117,7 @@ class Encoding:
         return self._terms_of[node]
 
     def truth(self, node: Node) -> Term:
-        """The term of a condition; anything goes where it is no boolean node."""
+        """The term of a condition; an unconstrained term if the condition is not a boolean node."""
         term = self._terms_of[node]
         return term if node.kind is Kind.BOOLEAN else self.terms.fresh(Kind.BOOLEAN)
 

@@ -97,7 +97,7 @@ class SolverTerms:
 
 
 class Questions:
-    """A fixed set of formulas: the solver tells which of them can hold together, given what always holds."""
+    """A fixed set of formulas: the solver decides which of them can hold together, given the facts that always hold."""
 
     def __init__(self, terms: SolverTerms, always: Sequence[Term], formulas: Sequence[Term]) -> None:
         import z3

@@ -22,7 +22,7 @@ MOST_ATOMS: Final = 8
 """Different atoms in a group of requirements, at most."""
 
 MOST_STATES: Final = 20_000
-"""States that are added to monitors in one search, at most; then nothing is said."""
+"""Largest number of states added to monitors in one search, after which the search gives up."""
 
 
 _CALLED: Final = (FunctionType, BuiltinFunctionType, MethodType, type)
@@ -108,7 +108,7 @@ def _groups(requirements: Sequence[Required]) -> list[list[Required]]:
 
 
 def _is_fixed(atom: Kept) -> bool:
-    """Tell whether an atom is made of constants alone."""
+    """Return whether an atom is made of constants alone."""
     function = atom.function
     return isinstance(function, FunctionType) and not atom.captured and not function.__code__.co_names
 

@@ -35,7 +35,7 @@ class ValueRow:
 
     @property
     def before(self) -> str:
-        """The range that the value could have by itself."""
+        """The range of the value without the requirements."""
         if self.support.options:
             return ", ".join(self.support.options)
         return _interval(self.support.before)
@@ -56,11 +56,11 @@ class Assessment:
     Attributes:
         filename: the program.
         values: its random values.
-        places: where its objects may be.
-        kept: the share of all combinations of draws that analysis leaves, 0 to 1.
-        components: what was estimated of each independent component.
+        places: the possible places of its objects.
+        kept: the share of all combinations of draws that analysis keeps, 0 to 1.
+        components: the estimates for each independent component.
         impossible: labels of requirements that are proven to fail in every scene.
-        approximation: how probable scenes are by approximate ones, where no candidate of some component was accepted.
+        approximation: the probability of scenes, estimated by approximate scenes, if no candidate of some component was accepted.
 
     """
 
@@ -81,7 +81,7 @@ class Assessment:
 
     @property
     def acceptance_before(self) -> float:
-        """The same without analysis: what it removes holds no scene."""
+        """The same probability without analysis, which removes only combinations without scenes."""
         return self.acceptance * self.kept
 
     @property
@@ -201,7 +201,7 @@ class Assessment:
         return json.dumps(self.to_data(), indent=2)
 
     def png(self, path: str | Path) -> None:
-        """Write a drawing of where each object may be, from above and from the side.
+        """Write a drawing of the possible places of each object, from above and from the side.
 
         Raises `MissingLibraryError` if Pillow is not installed.
         """

@@ -274,7 +274,7 @@ def _made(scenario: Scenario, encoder: Encoder, job: Job, engine: Engine | None)
 
 
 def _kept(folder: Path, manifest: Manifest, *, resume: bool) -> Manifest:
-    """The manifest to go on with: that in the folder, for as many scenes as are wanted now."""
+    """The manifest to continue with: the manifest of the folder, with the number of scenes wanted now."""
     if not (folder / NAME).exists():
         return manifest
     earlier = Manifest.load(folder)

@@ -29,7 +29,7 @@ class DatasetError(Located):
 
 
 class NoDatasetError(DatasetError):
-    """There is no data set in a folder."""
+    """The error for a folder without a data set."""
 
     code = "SC600"
 
@@ -160,7 +160,7 @@ class Manifest:
         return None
 
     def beside(self, folder: Path, program: str) -> "Manifest":
-        """The manifest of a data set in ``folder``, which tells where its program is."""
+        """The manifest of a data set in ``folder``, which contains the place of its program."""
         try:
             source = os.path.relpath(Path(program).absolute(), folder.absolute())
         except ValueError:  # on another drive

@@ -52,7 +52,7 @@ class Portable:
 
 
 class _Pickler(pickle.Pickler):
-    """Pickles scenarios with what tells whether another process has the same."""
+    """Pickles scenarios with digests that show whether another process has the same files."""
 
     def reducer_override(self, value: Any) -> Any:
         if not isinstance(value, Scenario):

@@ -84,7 +84,7 @@ class SimulationRow:
 
 
 class SimulationError(RuntimeError):
-    """A simulation that failed; ``row`` tells which, and its ``error`` why."""
+    """A simulation that failed; ``row`` identifies it, and its ``error`` has the reason."""
 
     def __init__(self, row: SimulationRow) -> None:
         assert row.error is not None
@@ -283,7 +283,7 @@ class Simulations:
         return simulate(keep_course=True)
 
     def _looks_back(self) -> bool:
-        """Tell whether the program's text names something that needs the whole course."""
+        """Return whether the program's text names something that needs the whole course."""
         if self._looking_back is None:
             self._looking_back = any(name in self._scenario.text for name in ("trajectory", "actionSequence"))
         return self._looking_back

@@ -157,7 +157,7 @@ def _door(connection: Connection) -> socket.socket:
 
 @contextlib.contextmanager
 def _no_interruption() -> Iterator[None]:
-    """Lets a new process inherit that Ctrl-C waits, until it has said that it ignores it."""
+    """Blocks Ctrl-C in a new process by inheritance, until the process reports that it ignores it."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

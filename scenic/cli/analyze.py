@@ -26,14 +26,14 @@ __all__ = ["analyze"]
     type=click.IntRange(min=1),
     default=20_000,
     show_default=True,
-    help="Candidates of each component, at most, from which probabilities are estimated.",
+    help="Number of candidates of each component, at most, for estimating probabilities.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Write the findings as JSON.")
 @click.option(
     "--png",
     metavar="PATH",
     type=click.Path(path_type=Path, dir_okay=False),
-    help="Draw where each object may be, from above and from the side.",
+    help="Draw the possible places of each object, from above and from the side.",
 )
 def analyze(
     file: str,
@@ -45,7 +45,7 @@ def analyze(
     as_json: bool,
     png: Path | None,
 ) -> int:
-    """Tell what a program costs to sample, and where its objects may be.
+    """Report the cost of sampling a program, and the possible places of its objects.
 
     Exit codes: 0 success, 1 the program has errors or no scene exists, 2 wrong usage.
     """

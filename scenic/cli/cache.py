@@ -9,12 +9,12 @@ __all__ = ["cache"]
 
 @click.group()
 def cache() -> None:
-    """Look at the cache, or empty it: results about meshes and maps that save time, and nothing else."""
+    """Inspect or empty the cache of results about meshes and maps, which only saves time."""
 
 
 @cache.command()
 def info() -> int:
-    """Tell where the cache is, and how large."""
+    """Show the folder of the cache and its size."""
     from scenic.runtime.geometry.store import MOST_BYTES, kept_files, store_folder
 
     folder = store_folder()
@@ -31,7 +31,7 @@ def info() -> int:
 
 @cache.command()
 def clear() -> int:
-    """Remove all that is kept. Later runs compute it again."""
+    """Empty the cache. Later runs compute its contents again."""
     from scenic.runtime.geometry.store import clear as clear_store
 
     click.echo(f"{clear_store() / 2**20:.1f} MiB removed")

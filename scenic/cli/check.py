@@ -58,14 +58,15 @@ def _selectors(_context: click.Context, option: click.Parameter, given: tuple[st
     type=click.Choice(list(FORMATS)),
     default="text",
     show_default=True,
-    help="How to print what is found.",
+    help="Format of the output.",
 )
 @click.option(
     "--select",
     metavar="CODES",
     multiple=True,
     callback=_selectors,
-    help="Show these codes only: SC304, SC3 for all that begin so, or ALL; with commas between, or repeated.",
+    help="Show these codes only: SC304, SC3 for all codes that begin with it, or ALL; separated by commas, or "
+    "repeated.",
 )
 @click.option(
     "--ignore", metavar="CODES", multiple=True, callback=_selectors, help="Do not show these codes."
@@ -74,12 +75,12 @@ def _selectors(_context: click.Context, option: click.Parameter, given: tuple[st
 @click.option("--diff", is_flag=True, help="Show these repairs as a patch instead, and change nothing.")
 @click.option("--deep", is_flag=True, help="Run the programs, and add what analysis proves about them.")
 @click.option(
-    "--strict", is_flag=True, help="What is wrong with a part of a road map is an error, not a warning."
+    "--strict", is_flag=True, help="Report problems of a part of a road map as errors, not warnings."
 )
-@click.option("--config", metavar="FILE", help="Take [tool.scenic] from this file, for all programs.")
+@click.option("--config", metavar="FILE", help="Read [tool.scenic] from this file, for all programs.")
 @click.option("--no-config", is_flag=True, help="Read no configuration.")
 @click.option(
-    "--stdin-filename", metavar="NAME", help="What to call standard input; its configuration is that of NAME."
+    "--stdin-filename", metavar="NAME", help="Name of standard input, which also selects the configuration."
 )
 @click.option(
     "-j",
@@ -88,17 +89,15 @@ def _selectors(_context: click.Context, option: click.Parameter, given: tuple[st
     type=click.IntRange(min=1),
     help="Use up to N processes.  [default: usable CPUs]",
 )
-@click.option(
-    "-v", "--verbose", is_flag=True, help="Say also which imports bring names that cannot be known."
-)
-@click.option("--exit-zero", is_flag=True, help="Exit with 0 although there are findings.")
-@click.option("--statistics", is_flag=True, help="Show only how many findings there are of each code.")
+@click.option("-v", "--verbose", is_flag=True, help="Report also imports whose names cannot be known.")
+@click.option("--exit-zero", is_flag=True, help="Exit with 0 even if there are findings.")
+@click.option("--statistics", is_flag=True, help="Show only the number of findings for each code.")
 @click.option(
     "-o",
     "--output-file",
     metavar="FILE",
     type=click.Path(path_type=Path, dir_okay=False),
-    help="Write what is found to this file.",
+    help="Write the report to this file.",
 )
 @click.option("-w", "--watch", "watching", is_flag=True, help="Check again whenever a file changes.")
 def check(
@@ -120,10 +119,10 @@ def check(
     output_file: Path | None,
     watching: bool,
 ) -> int:
-    """Report what is wrong with programs and road maps (.xodr).
+    """Report mistakes in programs and road maps (.xodr).
 
-    Each PATH is a file, a folder that is searched for *.scenic and *.sc, or - for standard input; without any, the
-    current folder is searched. Runs none of the programs' code, unless --deep is given.
+    Each PATH is a file, a folder that is searched for *.scenic and *.sc, or - for standard input; by default the
+    current folder is searched. The command runs no code of the programs, unless --deep is given.
 
     Exit codes: 0 clean, 1 findings (errors or warnings; with --diff: something to repair), 2 wrong usage, or a file
     that cannot be read, 70 an internal error, 130 interrupted.
@@ -259,7 +258,7 @@ def _results(tasks: Sequence[Task], jobs: int | None) -> Iterator[tuple[int, Out
 
 
 def _pays(tasks: Sequence[Task]) -> bool:
-    """Tell whether the tasks take longer than to start other processes."""
+    """Return whether the tasks take longer than to start other processes."""
     total = 0
     for task in tasks:
         try:
@@ -279,7 +278,7 @@ def _lost(task: Task, code: int) -> Outcome:
 
 @contextmanager
 def _progress(count: int) -> "Iterator[_Advance]":
-    """A line on the error stream that says how far it is, if that is a terminal and it takes long."""
+    """A line of progress on the error stream, if this is a terminal and the check takes long."""
     advance = _Advance(count)
     try:
         yield advance

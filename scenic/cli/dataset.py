@@ -18,13 +18,13 @@ __all__ = ["dataset"]
 
 @click.group()
 def dataset() -> None:
-    """Look at, verify and merge data sets, the folders that `scenic sample -o FOLDER/` makes."""
+    """Describe, verify and merge data sets, the folders that `scenic sample -o FOLDER/` makes."""
 
 
 @dataset.command()
 @click.argument("folder", metavar="FOLDER", type=click.Path(path_type=Path))
 def info(folder: Path) -> int:
-    """Show how a data set was made, and how much of it is there."""
+    """Show how a data set was made, and how much of it is complete."""
     from rich.console import Console
     from rich.table import Table
 
@@ -57,7 +57,7 @@ def info(folder: Path) -> int:
 
 @dataset.command()
 @click.argument("folder", metavar="FOLDER", type=click.Path(path_type=Path))
-@click.option("--program", metavar="FILE", help="The program.  [default: where it was]")
+@click.option("--program", metavar="FILE", help="The program.  [default: its place in the manifest]")
 @click.option(
     "--share",
     metavar="P%",
@@ -66,7 +66,7 @@ def info(folder: Path) -> int:
     help="Share of the scenes to make again and compare; 0 compares only the files with their digests.",
 )
 def verify(folder: Path, program: str | None, share: str) -> int:
-    """Check that a data set is whole, and that its scenes are those of the program.
+    """Check that a data set is undamaged, and that the program gives the same scenes.
 
     Exit codes: 0 all is well, 1 something is damaged, 2 wrong usage.
     """
@@ -122,7 +122,7 @@ def _share(text: str) -> float:
     help="The joined data set.",
 )
 def merge(folders: tuple[Path, ...], output: Path) -> int:
-    """Join data sets of one program and seed, made by `--first` on several machines."""
+    """Join data sets of one program and seed, made with `--first` on several machines."""
     from scenic.batch.verifying import merge as joined
 
     manifest = joined(folders, output)

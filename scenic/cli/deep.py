@@ -9,7 +9,7 @@ __all__ = ["call_deep"]
 
 
 def call_deep(function: Callable[[], str], filename: str, *, frames: int) -> str:
-    """The result of ``function``, which may recurse by so many frames.
+    """The result of ``function``, which may recurse by a number of frames.
 
     Raises `ScenicError` with code SC112 if that is not enough.
     """

@@ -75,7 +75,7 @@ def _in_folder(
 
 
 def _is_passed_over(folder: "os.DirEntry[str]") -> bool:
-    """Tell whether a folder holds nothing that its user wrote."""
+    """Return whether a folder holds nothing that its user wrote."""
     name = folder.name
     return (
         name.startswith(".")

@@ -11,9 +11,9 @@ __all__ = ["doctor"]
 
 @click.command()
 def doctor() -> int:
-    """Tell versions, extras, the state of the cache, and what gets in the way of this installation.
+    """List versions, extras, the state of the cache, and problems of this installation.
 
-    Exit codes: 0 all is well, 1 there is a problem.
+    Exit codes: 0 no problem, 1 there is a problem.
     """
     from rich.console import Console
     from rich.text import Text

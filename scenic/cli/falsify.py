@@ -57,47 +57,47 @@ _SHOWN: Final = 12
     "objectives",
     metavar="NAME",
     multiple=True,
-    help="A requirement, a record or a parameter to make small. Repeatable.  [default: the least robustness]",
+    help="A requirement, a record or a parameter to minimise. Repeatable.  [default: the least robustness]",
 )
 @click.option(
     "--minimize",
     "expressions",
     metavar="EXPR",
     multiple=True,
-    help="An expression over records, or over parameters, to make small. Repeatable.",
+    help="An expression over records, or over parameters, to minimise. Repeatable.",
 )
 @click.option(
     "--threshold",
     metavar="X",
     type=float,
     default=0.0,
-    help="Up to which value a run is a counterexample.  [default: 0]",
+    help="Largest value of a counterexample.  [default: 0]",
 )
 @click.option(
-    "--stop-after", metavar="K", type=click.IntRange(min=1), help="End after so many counterexamples."
+    "--stop-after", metavar="K", type=click.IntRange(min=1), help="End after this number of counterexamples."
 )
 @click.option(
     "--time-limit",
     metavar="T",
     type=float,
     callback=seconds,
-    help="Seconds after which no generation begins.",
+    help="Seconds after which no new generation of points begins.",
 )
 @click.option(
     "--space",
     type=click.Choice(["auto", "external", "scene"]),
     default="auto",
     show_default=True,
-    help="What is searched: external parameters, or all draws of the scene.",
+    help="The space to search: external parameters, or all draws of the scene.",
 )
 @click.option(
     "--batch",
     metavar="B",
     type=click.IntRange(min=1),
-    help="Points asked for at a time.  [default: the sampler's]",
+    help="Points that the sampler gives at a time.  [default: the sampler's]",
 )
 @seed_option("Searches")
-@click.option("--static", is_flag=True, help="Search scenes by themselves, without simulations.")
+@click.option("--static", is_flag=True, help="Search scenes alone, without simulations.")
 @simulator_option
 @steps_option
 @timestep_option
@@ -111,7 +111,7 @@ _SHOWN: Final = 12
     type=click.Path(path_type=Path),
     help="Keep runs and counterexamples in this folder.",
 )
-@click.option("--resume", is_flag=True, help="Go on with the search in the folder.")
+@click.option("--resume", is_flag=True, help="Continue the search in the folder.")
 @click.option(
     "--report", metavar="PAGE.html", type=click.Path(path_type=Path), help="Make a page about the search."
 )
@@ -144,11 +144,11 @@ def falsify(
 ) -> int:
     """Search for scenes and simulations in which requirements fail.
 
-    Given the folder of a search in place of a program, makes its report again.
+    If FILE is the folder of a search instead of a program, the command makes the report of the search again.
 
-    A run is a counterexample if its value is at most the threshold; of a requirement the value is its robustness.
+    A run is a counterexample if its value is at most the threshold. The value of a requirement is its robustness.
 
-    Where parameters have several values (-p toys=0,4,16), one search is made for each, in a folder of its own.
+    If a parameter has several values (-p toys=0,4,16), each value gets a search in a folder of its own.
 
     Exit codes: 0 counterexamples were found, 1 the program has errors, 2 wrong usage, 3 none was found, 130 interrupted.
     """
@@ -212,7 +212,7 @@ def falsify(
 
 
 def _show(label: str, result: "FalsificationResult") -> None:
-    """Print what a search has found; ``label`` tells it from others."""
+    """Print the findings of a search; ``label`` distinguishes it from other searches."""
     if label:
         print(f"{label}:")
     share, low, high = result.share()

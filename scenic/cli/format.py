@@ -24,13 +24,13 @@ __all__ = ["format_command"]
     "--check", is_flag=True, help="Change nothing; exit with 1 if a file is not in the usual style."
 )
 @click.option("--diff", is_flag=True, help="Show the changes as a patch instead of making them.")
-@click.option("--stdin-filename", metavar="NAME", default="<stdin>", help="What to call standard input.")
+@click.option("--stdin-filename", metavar="NAME", default="<stdin>", help="Name of standard input.")
 def format_command(paths: tuple[str, ...], check: bool, diff: bool, stdin_filename: str) -> int:
-    """Put programs into the usual style, keeping comments and what they mean.
+    """Format programs in the usual style, keeping comments and meaning.
 
     Each PATH is a file, a folder that is searched for *.scenic and *.sc, or - for standard input, whose formatted text
-    is written to standard output; without any, the current folder is searched. Programs with mistakes of syntax are left
-    alone.
+    is written to standard output; by default the current folder is searched. Programs with syntax
+    errors are not changed.
 
     Exit codes: 0 all is in the usual style now, 1 a program has mistakes, or would change (--check, --diff), 2 wrong
     usage, or a file that cannot be read or written.

@@ -6,7 +6,7 @@ __all__ = ["lsp"]
 
 
 @click.command()
-@click.option("--stdio", is_flag=True, help="Use standard input and output, as without any option.")
+@click.option("--stdio", is_flag=True, help="Use standard input and output; this is the default.")
 @click.option("--tcp", "tcp", metavar="[HOST:]PORT", help="Wait for one client that connects to a port.")
 @click.option(
     "--ws", "websocket", metavar="[HOST:]PORT", help="Wait for one client that connects by a web socket."
@@ -21,8 +21,8 @@ __all__ = ["lsp"]
 def lsp(stdio: bool, tcp: str | None, websocket: str | None, origins: tuple[str, ...]) -> int:
     """Start the language server on standard input and output.
 
-    Editors start it themselves. It shows what `scenic check` reports, and runs a program only when the user asks for
-    that in a workspace that the user trusts, and never for a client that has come by a port.
+    Editors start it themselves. It reports the same as `scenic check`. It runs a program only when the user requests it
+    in a trusted workspace, and never for a client that connects to a port.
     """
     if stdio + (tcp is not None) + (websocket is not None) > 1:
         raise click.UsageError("choose one of --stdio, --tcp and --ws")

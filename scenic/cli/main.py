@@ -27,8 +27,8 @@ __all__ = ["main", "scenic"]
 _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
     {
         "new": ("scenic.cli.new", "new", "Make a folder with a program to start from."),
-        "check": ("scenic.cli.check", "check", "Report what is wrong with programs, without running them."),
-        "format": ("scenic.cli.format", "format_command", "Put programs into the usual style."),
+        "check": ("scenic.cli.check", "check", "Report mistakes in programs, without running them."),
+        "format": ("scenic.cli.format", "format_command", "Format programs in the usual style."),
         "explain": ("scenic.cli.explain", "explain", "Explain a diagnostic by its code."),
         "playground": ("scenic.cli.playground", "playground", "Write and sample programs in the browser."),
         "lsp": ("scenic.cli.lsp", "lsp", "Start the language server, for editors."),
@@ -36,30 +36,34 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
         "analyze": (
             "scenic.cli.analyze",
             "analyze",
-            "Tell what a program costs to sample, and where its objects may be.",
+            "Report the cost of sampling a program, and the places of its objects.",
         ),
-        "view": ("scenic.cli.view", "view", "Show scenes that were saved: a page, 3D files, images."),
-        "dataset": ("scenic.cli.dataset", "dataset", "Look at, verify and merge data sets."),
-        "map": ("scenic.cli.map", "map_command", "Show what is in a road map, or draw it."),
+        "view": ("scenic.cli.view", "view", "Show saved scenes: a page, 3D files, images."),
+        "dataset": ("scenic.cli.dataset", "dataset", "Describe, verify and merge data sets."),
+        "map": ("scenic.cli.map", "map_command", "Show the contents of a road map, or draw it."),
         "simulate": ("scenic.cli.simulate", "simulate", "Simulate scenes of a program."),
         "falsify": ("scenic.cli.falsify", "falsify", "Search for scenes and simulations that fail."),
-        "replay": ("scenic.cli.replay", "replay", "Make a run that was kept again, and compare it."),
-        "doctor": ("scenic.cli.doctor", "doctor", "Tell whether this installation is complete."),
-        "cache": ("scenic.cli.cache", "cache", "Look at the cache, or empty it."),
+        "replay": ("scenic.cli.replay", "replay", "Repeat a saved run, and compare it."),
+        "doctor": ("scenic.cli.doctor", "doctor", "Check whether this installation is complete."),
+        "cache": ("scenic.cli.cache", "cache", "Inspect or empty the cache."),
         "completion": ("scenic.cli.completion", "completion", "Let a shell complete commands and options."),
         "ast": ("scenic.cli.syntax_tree", "syntax_tree", "Show the syntax tree of a program."),
-        "python": ("scenic.cli.python_code", "python_code", "Show the Python code that a program becomes."),
+        "python": (
+            "scenic.cli.python_code",
+            "python_code",
+            "Show the Python code that a program is compiled to.",
+        ),
         "preview": ("scenic.cli.preview", "preview", ""),
     }
 )
-"""By name: module, function in it, and what the list of commands says; nothing of those that are for programs only."""
+"""By name: module, function in it, and its line in the list of commands; empty for commands that only programs use."""
 
 _GROUPS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
     {
         "Write programs": ("new", "check", "format", "explain", "playground", "lsp"),
         "Make scenes": ("sample", "analyze", "view", "dataset", "map"),
         "Run simulations": ("simulate", "falsify", "replay"),
-        "Look behind": ("doctor", "cache", "completion", "ast", "python"),
+        "Inspect the tools": ("doctor", "cache", "completion", "ast", "python"),
     }
 )
 """The commands as the help lists them."""
@@ -73,7 +77,7 @@ _EXAMPLES: Final = (
 )
 
 _FRAMES: Final = 6
-"""So many frames of an internal error are shown."""
+"""Number of frames of an internal error that are shown."""
 
 
 class _Commands(click.Group):

@@ -33,9 +33,9 @@ __all__ = ["map_command"]
     help="Of the drawing.",
 )
 def map_command(file: Path, output: Path | None, width: int) -> int:
-    """Show what is in a road map, or draw it.
+    """Show the contents of a road map, or draw it.
 
-    Problems of the map are listed by `scenic check FILE`.
+    `scenic check FILE` lists the problems of the map.
     """
     from scenic.domains.driving.drawing import png, svg
     from scenic.formats.files import check_writable, write

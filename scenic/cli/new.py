@@ -24,7 +24,7 @@ __all__ = ["new"]
 def new(folder: Path, template: str) -> int:
     """Make a folder with a program to start from, and a README with the commands for it.
 
-    Exit codes: 0 success, 2 the folder holds something already, or cannot be written.
+    Exit codes: 0 success, 2 the folder is not empty, or cannot be written.
     """
     try:
         names = copy(template, folder)

@@ -1,4 +1,4 @@
-"""The established command line, ``scenic [options] FILE.scenic [options]``: read, and said in the words of this one.
+"""The established command line, ``scenic [options] FILE.scenic [options]``: parsed, and translated to the present one.
 
 It names no command: whoever has a habit of it, or a script, gets what was meant, and one line that says how it is written here.
 """
@@ -40,7 +40,7 @@ _VALUES: Final[Mapping[str, str | None]] = MappingProxyType(
         "--max-sims-per-scene": None,
     }
 )
-"""Options with a value, and what they are here; ``None`` where there is no counterpart."""
+"""Options with a value, and their counterparts; ``None`` if there is no counterpart."""
 
 _SHOWS: Final[Mapping[str, str]] = MappingProxyType(
     {"--dump-scenic-ast": "ast", "--dump-ast": "ast", "--dump-python": "python"}

@@ -148,7 +148,7 @@ no_cache_option = click.option(
     is_flag=True,
     expose_value=False,
     callback=_without_store,
-    help="Neither read nor keep on disk what is computed of meshes.",
+    help="Neither read nor store results about meshes on disk.",
 )
 
 
@@ -218,7 +218,7 @@ steps_option = click.option(
 sobol_option = click.option(
     "--sobol",
     is_flag=True,
-    help="Spread scenes, and what happens in them, evenly: rows of Sobol's sequence rather than random points.",
+    help="Spread scenes, and the draws of simulations, evenly: rows of the Sobol sequence instead of random points.",
 )
 
 
@@ -239,7 +239,7 @@ timestep_option = click.option(
 extra_params_option = click.option(
     "--extra-params",
     is_flag=True,
-    help="Accept values for parameters that the program does not have; its scenes have them, too.",
+    help="Accept values for parameters that the program does not have, and add them to its scenes.",
 )
 
 
@@ -280,10 +280,8 @@ def _program_options(command: _Command, parameters: Callable[[_Command], _Comman
     for option in (
         no_cache_option,
         click.option("--2d", "mode_2d", is_flag=True, help="Use the 2D compatibility mode."),
-        click.option("--model", metavar="MODULE", help="A world model to use in place of the program's."),
-        click.option(
-            "--scenario", metavar="NAME", help="Which scenario of the file, where it defines several."
-        ),
+        click.option("--model", metavar="MODULE", help="A world model to use instead of the program's."),
+        click.option("--scenario", metavar="NAME", help="The scenario to use, if the file defines several."),
         parameters,
     ):
         command = option(command)

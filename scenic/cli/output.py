@@ -38,7 +38,7 @@ _OF_USAGE: Final = frozenset({"SC600", "SC601", "SC603", "SC604", "SC605", "SC60
 
 
 def exit_code(diagnostics: Iterable[Diagnostic], *, failing: Collection[Severity] = (Severity.ERROR,)) -> int:
-    """The exit code that these ask for: the worst of them; ``failing`` are the severities that count."""
+    """The exit code for diagnostics: the worst of them decides; ``failing`` are the severities that count."""
     codes = {item.code for item in diagnostics if item.severity in failing}
     if not codes:
         return CLEAN

@@ -18,14 +18,16 @@ __all__ = ["playground"]
 @click.argument(
     "file", metavar="[FILE]", required=False, type=click.Path(exists=True, dir_okay=False, path_type=Path)
 )
-@click.option("--port", type=click.IntRange(0, 65535), default=0, help="Listen here.  [default: a free port]")
+@click.option(
+    "--port", type=click.IntRange(0, 65535), default=0, help="The port to listen on.  [default: a free port]"
+)
 @click.option("--no-browser", is_flag=True, help="Only show the address, open no browser.")
 def playground(file: Path | None, port: int, no_browser: bool) -> int:
-    """Write a program in the browser, see what is wrong with it, and turn its scenes.
+    """Write a program in the browser, with its mistakes marked, and view its scenes in 3D.
 
     The page begins with FILE, or with an example; FILE itself is never changed. The program runs only when "Sample" is
-    pressed, in a process with limits of time and memory. The page can be reached from this machine only, by the address
-    that is shown, which holds a secret.
+    pressed, in a process with limits on time and memory. The page can be opened on this machine only, by the address
+    that is shown, which contains a secret.
     """
     if importlib.util.find_spec("websockets") is None:
         raise click.ClickException(f"the playground needs another package: {installation('playground')}")

@@ -18,10 +18,10 @@ _MEMORY: Final = 8 << 30
 
 
 @click.command(hidden=True)
-@click.option("--filename", required=True, help="What the program is called; its modules are beside it.")
-@click.option("--scenario", help="Which scenario of the program.")
+@click.option("--filename", required=True, help="Name of the program; its modules are beside it.")
+@click.option("--scenario", help="The scenario of the program.")
 @click.option("--seed", type=int, default=0, help="The seed of the scenes.")
-@click.option("-n", "count", type=click.IntRange(1, 100), default=1, help="How many scenes.")
+@click.option("-n", "count", type=click.IntRange(1, 100), default=1, help="The number of scenes.")
 @click.option("--time-limit", type=click.FloatRange(min=0, min_open=True), default=20.0, help="In seconds.")
 def preview(filename: str, scenario: str | None, seed: int, count: int, time_limit: float) -> int:
     """Write a page with scenes of a program from standard input to standard output, within limits of time and memory."""

@@ -22,7 +22,7 @@ _FRAMES: Final = 10_000
 @click.command()
 @program_argument
 def python_code(file: str) -> int:
-    """Show the Python code that a program becomes."""
+    """Show the Python code that a program is compiled to."""
     source = read_source(file)
     lowered = lower_text(source.text, filename=file)
     found = in_order(lowered.diagnostics, filename=file)

@@ -53,14 +53,14 @@ __all__ = ["sample"]
 @click.option(
     "--resume",
     is_flag=True,
-    help="Go on with the JSON Lines of a run that was ended: OUT.part, or OUT with fewer scenes.",
+    help="Continue the JSON Lines of an interrupted run: OUT.part, or OUT with fewer scenes.",
 )
 @click.option(
     "--properties",
     type=click.Choice(["all", "changed"]),
     default="all",
     show_default=True,
-    help="Which properties of objects JSON Lines tell: all, or those that the program gives.",
+    help="Properties of objects to write in JSON Lines: all, or only properties that the program gives.",
 )
 @seed_option("Scenes")
 @sobol_option
@@ -68,20 +68,25 @@ __all__ = ["sample"]
     "--approximate",
     metavar="N",
     type=click.IntRange(min=2),
-    help="For requirements that are hardly ever met: make N scenes together, whose law comes the closer to the program's the larger N is.",
+    help="For requirements that are hardly ever met: make N scenes together. The larger N, the closer their "
+    "distribution is to the program's.",
 )
 @program_options
 @extra_params_option
 @click.option(
-    "--no-prune", is_flag=True, help="Do not narrow the distributions first. The same scenes are as likely."
+    "--no-prune",
+    is_flag=True,
+    help="Do not narrow the distributions first. The distribution of the scenes is the same.",
 )
 @click.option(
     "--max-attempts",
     metavar="M",
     type=click.IntRange(min=1),
-    help="Give a scene up after so many candidates.",
+    help="Give up a scene after this number of candidates.",
 )
-@click.option("--time-limit", metavar="T", type=float, callback=seconds, help="Stop after so many seconds.")
+@click.option(
+    "--time-limit", metavar="T", type=float, callback=seconds, help="Stop after this number of seconds."
+)
 @click.option(
     "-o",
     "--output",
@@ -111,7 +116,7 @@ __all__ = ["sample"]
     "--minimize",
     "minimized",
     metavar="EXPR",
-    help="With --sampler: an expression over parameters, `ego` and `objects` that samplers which learn make small.",
+    help="With --sampler: an expression over parameters, `ego` and `objects` that learning samplers minimise.",
 )
 @click.option(
     "--view", metavar="PAGE.html", help="Make a page in which the scenes can be turned and stepped through."
@@ -122,7 +127,7 @@ __all__ = ["sample"]
 @click.option(
     "--camera",
     metavar="NAME",
-    help="Make a data set of labelled images: what the sensor of this name sees, or the object of a variable.",
+    help="Make a data set of labelled images, as the sensor of this name sees them, or the object of a variable.",
 )
 @click.option(
     "--overlay", is_flag=True, help="With --camera: make images with the labels drawn into them, too."
@@ -138,24 +143,25 @@ __all__ = ["sample"]
     "outlook",
     metavar="AZ,EL",
     callback=outlook_option,
-    help="Where --png looks from: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
+    help="Viewpoint of --png: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
 )
 @click.option(
     "--frame",
     type=click.Choice(["workspace", "objects"]),
     default="workspace",
-    help="What --png shows whole: the workspace, so that all scenes are seen alike, or the objects.",
+    help="The contents that --png fits into the image: the workspace, so that all scenes are seen alike, or the "
+    "objects.",
     show_default=True,
 )
 @click.option(
     "--show-params",
     is_flag=True,
-    help="Print the parameters of each scene; on the error stream where the scenes are on the standard output.",
+    help="Print the parameters of each scene, on the error stream if the scenes go to standard output.",
 )
 @click.option(
     "--profile",
     is_flag=True,
-    help="Show where the time of sampling goes, by operation, line and requirement, in place of the scenes.",
+    help="Show the time of sampling by operation, line and requirement, instead of the scenes.",
 )
 def sample(
     file: str,
@@ -194,7 +200,7 @@ def sample(
     """Sample scenes from a program.
 
     On a terminal scenes are shown as tables, elsewhere as JSON Lines. Files for several scenes are numbered: room-000.glb,
-    room-001.glb, ... Files are complete or absent; what an interrupted run has made is kept in OUT.part.
+    room-001.glb, ... Files are complete or absent; an interrupted run keeps its scenes in OUT.part.
 
     Exit codes: 0 success, 1 the program has errors, 2 wrong usage (also a file that cannot be read or written, and an
     unknown parameter), 3 some scenes were not found within the limits (the others are written), 130 interrupted.
@@ -434,7 +440,7 @@ def _profiled(
 
 @contextmanager
 def _told_what_is_kept(grown: GrowingFile | None, dataset: Path | None, count: int) -> Iterator[None]:
-    """Says, when a run is interrupted, how many scenes are kept and how to go on."""
+    """Print, when a run is interrupted, the number of kept scenes and the way to continue."""
     try:
         yield
     except KeyboardInterrupt:
@@ -487,7 +493,7 @@ def _to_output(lines: "ReadableBuffer") -> None:
 
 @contextmanager
 def _limited(seconds: float | None, what: str, help: str) -> Iterator[None]:
-    """Ends running Python code of a program that takes longer than so many seconds, where the system can.
+    """Ends Python code of a program that runs longer than a number of seconds, if the system supports it.
 
     Raises `TimeLimitError` with the place that was reached; ``what`` says what was done for too long.
     """

@@ -54,21 +54,21 @@ __all__ = ["simulate"]
     metavar="M",
     type=click.IntRange(min=1),
     default=20,
-    help="Simulate a scene so often before giving it up as rejected.  [default: 20]",
+    help="Number of tries before a scene is given up as rejected.  [default: 20]",
 )
 @click.option(
     "--keep",
     type=click.Choice(["all", "violations", "none"]),
     default="none",
     show_default=True,
-    help="Which simulations that violate a requirement are kept, rather than rejected and tried again: none of them, all"
-    " simulations whatever they do, or in the folder and page those with a violation alone.",
+    help="Simulations to keep although they violate a requirement: none (they are rejected and tried again), all, or "
+    "violations (then the folder and the page contain only simulations with a violation).",
 )
 @click.option(
     "--table",
     metavar="FILE.csv",
     type=click.Path(path_type=Path),
-    help="Write a row for each simulation: verdict, robustness, why it ended.",
+    help="Write a row for each simulation: verdict, robustness, reason of its end.",
 )
 @click.option(
     "--plot",
@@ -89,7 +89,7 @@ __all__ = ["simulate"]
 @swept_program_options
 @extra_params_option
 @click.option("--show-params", is_flag=True, help="Print the parameters of each simulation's scene.")
-@click.option("--show-records", is_flag=True, help="Print what each simulation records.")
+@click.option("--show-records", is_flag=True, help="Print the records of each simulation.")
 @jobs_option("Processes.")
 @dask_option("Simulate")
 @click.option(
@@ -97,7 +97,7 @@ __all__ = ["simulate"]
     "--output",
     metavar="DIR",
     type=click.Path(path_type=Path),
-    help="Keep the trajectories in this folder; those that are there already are not made again.",
+    help="Keep the trajectories in this folder; existing ones are not made again.",
 )
 @click.option(
     "--format",
@@ -105,7 +105,8 @@ __all__ = ["simulate"]
     type=click.Choice(["jsonl", "parquet", "openscenario"]),
     default="jsonl",
     show_default=True,
-    help="How to keep them: JSON Lines, columns (extra `parquet`), or OpenSCENARIO XML (extra `openscenario`).",
+    help="Format of the trajectories: JSON Lines, columns (extra `parquet`), or OpenSCENARIO XML (extra "
+    "`openscenario`).",
 )
 @click.option(
     "--view",
@@ -142,11 +143,11 @@ def simulate(
 ) -> int:
     """Simulate scenes of a program.
 
-    Simulation K of a seed is always the same, whatever the number of processes. Files are complete or absent, so that a run
-    that was ended can be called again and goes on.
+    Simulation K of a seed is always the same, whatever the number of processes. Files are complete or absent, so that
+    an interrupted run continues when it is called again.
 
-    Exit codes: 0 success, 1 the program has errors, 2 wrong usage, 3 some simulations were rejected (the others are
-    there), 130 interrupted.
+    Exit codes: 0 success, 1 the program has errors, 2 wrong usage, 3 some simulations were rejected (the others were
+    made), 130 interrupted.
     """
     # These bring in NumPy and the geometry libraries.
     import_lasting("scenic.pipeline")
@@ -271,12 +272,12 @@ def _total(rows: "Sequence[SimulationRow]", max_steps: int) -> str:
 
 
 def _is_late(about: Mapping[str, Any]) -> bool:
-    """Tell whether the limit of the command ended a simulation, rather than one of the program."""
+    """Return whether the limit of the command ended a simulation, rather than one of the program."""
     return bool(about["reason"] == f"reached time limit ({about['steps']} steps)")
 
 
 def _show(row: "SimulationRow") -> int:
-    """Print what came of a simulation; the exit code that it asks for."""
+    """Print the outcome of a simulation; return its exit code."""
     if row.error is not None:
         sys.stderr.write(f"simulation {row.k} failed:\n")
         show_diagnostics([row.error])
@@ -315,6 +316,6 @@ def _show_records(row: "SimulationRow") -> None:
 
 
 def _is_series(value: Any) -> bool:
-    """Tell whether a recorded value is a list of steps with what was recorded then."""
+    """Return whether a recorded value is a list of steps with what was recorded then."""
     pairs = isinstance(value, list) and all(isinstance(item, list) and len(item) == 2 for item in value)
     return pairs and all(isinstance(step, int) for step, _ in value)

@@ -68,7 +68,7 @@ def is_lines(path: Path) -> bool:
 
 
 def check_lines(path: Path) -> None:
-    """Raises ``OutputChoiceError`` if a file of JSON Lines has a name that tells of something else."""
+    """Raises ``OutputChoiceError`` if a file of JSON Lines has a name with the ending of another format."""
     suffix = path.suffix.lower()
     if path != STANDARD_OUTPUT and suffix not in {"", ".jsonl"} and not is_special(path):
         known = ", ".join(sorted({".jsonl", ".parquet", *_FILES}))
@@ -92,7 +92,7 @@ def scene_file(path: Path, count: int, first: int = 0) -> Sink:
 
 
 def check_page(path: Path) -> None:
-    """Raises ``OutputError`` if a page cannot be written there, ``OutputChoiceError`` if the name tells of another format."""
+    """Raises ``OutputError`` if a page cannot be written there, ``OutputChoiceError`` if the name has the ending of another format."""
     check_writable(path)
     suffix = path.suffix.lower()
     if suffix not in _PAGES:

@@ -26,12 +26,12 @@ _ALL_FIELDS: Final[dict[str, Any]] = {"show_empty": True} if sys.version_info >=
 @click.command()
 @program_argument
 @click.option(
-    "--positions", is_flag=True, help="Show where each node stands: lines from 1, columns in UTF-8 bytes."
+    "--positions", is_flag=True, help="Show the place of each node: lines from 1, columns in UTF-8 bytes."
 )
 def syntax_tree(file: str, positions: bool) -> int:
     """Show the syntax tree of a program.
 
-    Of a program with syntax errors, the parts that could be read are shown, and the exit code is 1.
+    If the program has syntax errors, the parts that could be parsed are shown, and the exit code is 1.
     """
     source = read_source(file)
     parsed = parse(source.text, filename=file)

@@ -32,17 +32,23 @@ _PAGES: Final = frozenset({".html", ".htm"})
     "outputs",
     metavar="OUT",
     multiple=True,
-    help="What to make, by its ending: one page of all scenes (.html), or a file for each scene: .glb, .obj or .png; "
-    "any other name is a folder for images. Repeatable.  [default: a page beside SCENES.jsonl]",
+    help="The output, by its ending: one page of all scenes (.html), or a file for each scene: .glb, .obj or "
+    ".png; any other name is a folder for images. Repeatable.  [default: a page beside SCENES.jsonl]",
 )
 @click.option(
     "--first",
     metavar="K",
     type=click.IntRange(min=0),
     default=0,
-    help="Leave out scenes with k less than this.",
+    help="Omit scenes with k less than this.",
 )
-@click.option("-n", "count", metavar="N", type=click.IntRange(min=1), help="At most so many.  [default: all]")
+@click.option(
+    "-n",
+    "count",
+    metavar="N",
+    type=click.IntRange(min=1),
+    help="The largest number of scenes.  [default: all]",
+)
 @click.option(
     "--image-size",
     metavar="WxH",
@@ -54,7 +60,7 @@ _PAGES: Final = frozenset({".html", ".htm"})
     "outlook",
     metavar="AZ,EL",
     callback=outlook_option,
-    help="Where images look from: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
+    help="Viewpoint of images: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
 )
 @click.option(
     "--watch",
@@ -76,9 +82,9 @@ def view(
 ) -> int:
     """Show scenes that `scenic sample -o SCENES.jsonl` has saved; - reads them from standard input.
 
-    The program is not run, unless --watch is given. Meshes of files are read again; a form that cannot be had any more is shown as its box.
+    The program is not run, unless --watch is given. Mesh files are read again; a shape whose mesh is missing is shown as its box.
 
-    Exit codes: 0 success, 2 a file cannot be read or written or holds no scenes.
+    Exit codes: 0 success, 2 a file cannot be read or written or contains no scenes.
     """
     source = Path(file)
     if watch:

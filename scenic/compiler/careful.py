@@ -171,7 +171,7 @@ class _CarefulLexer(Lexer):
             pos = self.conflict(marker)
 
     def is_afresh(self) -> bool:
-        """Tell whether the lexer has nothing in mind at the beginning of a line."""
+        """Return whether the lexer has nothing in mind at the beginning of a line."""
         return (
             len(self.indents) == 1
             and self.shifted is None
@@ -252,7 +252,7 @@ class _CarefulLexer(Lexer):
         self.indents.pop()
 
     def block_begins(self, end: int) -> bool:
-        """Tell whether the logical line before begins a block, or the line at ``end`` looks like one of specifiers."""
+        """Return whether the logical line before begins a block, or the line at ``end`` looks like one of specifiers."""
         kinds = self.tokens.kinds
         if len(kinds) < 2 or kinds[-1] != NEWLINE:
             return False
@@ -281,7 +281,7 @@ class _CarefulLexer(Lexer):
     # Brackets.
 
     def line_in_brackets(self, start: int, end: int) -> int | None:
-        """A line starts in brackets, with its first token at ``end``: does it go on with them?
+        """Decide whether a line inside brackets, with its first token at ``end``, continues the brackets.
 
         ``start`` is the line end before. Returns where to go on if it does not.
         """
@@ -422,7 +422,7 @@ class _CarefulLexer(Lexer):
         return stop
 
     def text_is_open(self, start: int, end: int) -> bool:
-        """Tell whether the quotes that end a text of several lines look like those that begin the next one."""
+        """Return whether the quotes that end a text of several lines look like those that begin the next one."""
         text = self.text
         if text[end - 3 : end] not in ('"""', "'''"):
             return False
@@ -435,7 +435,7 @@ class _CarefulLexer(Lexer):
         return before[-1:] in ("=", "(", ",", "[") and _STATEMENT.match(before + "\n") is not None
 
     def is_code_again(self, line_start: int, first: int) -> bool:
-        """Tell whether a line in a text that is never closed looks like a statement that follows it."""
+        """Return whether a line in a text that is never closed looks like a statement that follows it."""
         text = self.text
         if not _STATEMENT.match(text, first):
             return False
@@ -443,7 +443,7 @@ class _CarefulLexer(Lexer):
         return not before.strip() or _AFTER_TEXT.match(text, first) is not None
 
     def open_text(self, start: int, end: int) -> int:
-        """A text is not closed: go on at the next line that looks like a statement; ``end`` is after its quotes."""
+        """Recover from a string that is not closed: continue at the next line that looks like a statement; ``end`` is after its quotes."""
         text = self.text
         quote = text[end - 3 : end]
         self.report(lexical_errors.open_string(quote, self.here(start, end)))

@@ -1,4 +1,4 @@
-"""The static check of a program: all that can be said about it without running any of it.
+"""The static check of a program: all diagnostics that need no run of the program.
 
 This one function is what ``scenic check`` and the language server show.
 """

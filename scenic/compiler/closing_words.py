@@ -89,7 +89,7 @@ class Operand(NamedTuple):
 
 
 class _Open(NamedTuple):
-    """An operator begins whose operand at ``first`` may go on to the closing word ``wants``; it may be a must."""
+    """Begin an operator whose operand at ``first`` may extend to the closing word ``wants``, which may be required."""
 
     wants: int
     must: bool
@@ -280,7 +280,7 @@ class _Scan:
             frame.new = None
 
     def _open(self, wants: int, first: int) -> _Open:
-        """An operator with the operand at ``first``; where that is no operand for its short form, it is a must."""
+        """An operator with the operand at ``first``; if its short form cannot have this operand, the closing word is required."""
         kind = self._kinds[first]
         must = kind == _LAMBDA or (kind == _NOT and self._kinds[first + 1] != _VISIBLE)
         return _Open(wants, must, first)

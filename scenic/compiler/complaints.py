@@ -43,7 +43,7 @@ _HARMLESS: Final = frozenset(
         ),
     }
 )  # fmt: skip
-"""Nodes of which nothing is said but what is looked for here; mistakes of placement are found by our own check."""
+"""Nodes about which Python complains only in the cases handled here; the project's own check finds mistakes of placement."""
 
 _VARIABLE: Final = (ast.Attribute, ast.Call, ast.Name, ast.Subscript)
 """Expressions whose value may be anything; Python warns of literals that are called, indexed or compared by
@@ -51,7 +51,7 @@ identity instead."""
 
 
 def suspects(resolution: Resolution, source: Source, *, longest_line: int) -> list[ast.stmt]:
-    """The statements of the top level that have to be compiled to know what Python says of them, in order.
+    """The statements of the top level that have to be compiled to get Python's complaints, in order.
 
     ``resolution`` are the names of a program without errors, ``longest_line`` is the number of tokens of its longest
     logical line. Where what is said of one statement depends on others, they are all of them.
@@ -68,7 +68,7 @@ def suspects(resolution: Resolution, source: Source, *, longest_line: int) -> li
 
 
 def _is_suspect_anywhere(stretch: Stretch, source: Source) -> bool:
-    """Tell whether something may be said of a stretch, wherever it stands."""
+    """Return whether Python may complain about a stretch, wherever it is."""
     return (
         not stretch.contents.classes <= _HARMLESS
         or _is_suspect(stretch)
@@ -78,7 +78,7 @@ def _is_suspect_anywhere(stretch: Stretch, source: Source) -> bool:
 
 
 def _joins(stretch: Stretch) -> bool:
-    """Tell whether what Python says of one statement of the top level depends on others."""
+    """Return whether Python's complaints about one statement of the top level depend on others."""
     return any(
         isinstance(node, ast.Global) or (isinstance(node, ast.ImportFrom) and node.module == "__future__")
         for node in stretch.statements
@@ -86,7 +86,7 @@ def _joins(stretch: Stretch) -> bool:
 
 
 def _is_suspect(stretch: Stretch) -> bool:
-    """Tell whether there is a node of which something may be said."""
+    """Return whether there is a node about which Python may complain."""
     for cls, test in _TESTS.items():
         if any(test(node) for node, _ in stretch.nodes(cls)):
             return True
@@ -101,7 +101,7 @@ _PARAMETERS: Final = frozenset({BindingKind.PARAMETER})
 
 
 def _is_repeated(sites: Iterable[ast.AST]) -> bool:
-    """Tell whether two parameters have a name; behaviors and monitors bind theirs, by their own node, to ``self``."""
+    """Return whether two parameters have a name; behaviors and monitors bind theirs, by their own node, to ``self``."""
     return sum(isinstance(site, ast.arg | scenic.BehaviorDef | scenic.MonitorDef) for site in sites) > 1
 
 
@@ -114,7 +114,7 @@ def _class(node: Any) -> bool:
 
 
 def _repeats(keywords: Sequence[ast.keyword]) -> bool:
-    """Tell whether a keyword is given twice."""
+    """Return whether a keyword is given twice."""
     return len(keywords) > 1 and len({each.arg for each in keywords if each.arg is not None}) < sum(
         each.arg is not None for each in keywords
     )
@@ -140,7 +140,7 @@ _TESTS: Final[Mapping[type[ast.AST], Callable[[Any], bool]]] = {
 
 
 def _has_suspect_words(statements: Sequence[ast.stmt], source: Source) -> bool:
-    """Tell whether there are comprehensions that wait, indentation that is hidden, or special names, however spelt."""
+    """Return whether there are comprehensions that wait, indentation that is hidden, or special names, however spelt."""
     if not statements:
         return False
     first, last = statements[0], statements[-1]
@@ -156,7 +156,7 @@ def _has_suspect_words(statements: Sequence[ast.stmt], source: Source) -> bool:
 
 
 def _is_deep(statements: Iterable[ast.stmt]) -> bool:
-    """Tell whether blocks are nested deeply, those of ``elif`` included."""
+    """Return whether blocks are nested deeply, those of ``elif`` included."""
     level: list[Any] = list(statements)
     for _ in range(_DEEPEST):
         level = [

@@ -22,7 +22,7 @@ _MOST_ROUNDS: Final = 20
 
 @dataclass(frozen=True, slots=True)
 class Repaired:
-    """A text after its repairs: how many were made, and what is still to be said about it."""
+    """A text after its repairs, with their number and the remaining diagnostics."""
 
     text: str
     count: int
@@ -81,7 +81,7 @@ def _attempt(text: str, fixes: Sequence[Fix], before: Sequence[Diagnostic], chec
 def _one_by_one(
     text: str, fixes: Sequence[Fix], before: Sequence[Diagnostic], check: _Check
 ) -> _Attempt | None:
-    """The text with the first repair that does no harm by itself."""
+    """The text with the first repair that alone adds no errors."""
     if len(fixes) == 1:
         return None
     return next(filter(None, (_attempt(text, [fix], before, check) for fix in fixes)), None)
@@ -92,7 +92,7 @@ def _errors(diagnostics: Iterable[Diagnostic]) -> int:
 
 
 def apply_fixes(text: str, fixes: Iterable[Fix]) -> tuple[str, int]:
-    """Make all repairs that do not overlap, the earlier in the text first; also says how many those are."""
+    """Make all repairs that do not overlap, earlier ones first; return the text and the number of repairs."""
     starts = [len(text) - len(text.lstrip("\ufeff")), *(found.end() for found in _LINE_END.finditer(text))]
     line_end = found[0] if (found := _LINE_END.search(text)) is not None else "\n"
 
@@ -120,7 +120,7 @@ def apply_fixes(text: str, fixes: Iterable[Fix]) -> tuple[str, int]:
 
 
 def _clash(edit: tuple[int, int, str], taken: Sequence[tuple[int, int, str]]) -> bool:
-    """Tell whether an edit touches one of those taken, which are in order; two insertions at one place do."""
+    """Return whether an edit touches one of those taken, which are in order; two insertions at one place do."""
     start, end, _ = edit
     index = bisect_right(taken, start, key=lambda each: each[0])
     before = taken[index - 1] if index else None

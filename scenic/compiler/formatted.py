@@ -187,7 +187,7 @@ def replacement_field(
 
 
 def _is_raw(tokens: Tokens, index: int) -> bool:
-    """Tell whether the f-string around the token ``index`` is raw."""
+    """Return whether the f-string around the token ``index`` is raw."""
     depth = 0
     while index >= 0:
         kind = tokens.kinds[index]

@@ -1,4 +1,4 @@
-"""The forms of specifiers and operators as they are declared, each with what the grammar says of its words.
+"""The declared forms of specifiers and operators, each with the grammar's facts about its words.
 
 A declaration writes operands by their names (``facing toward target``); which of the words are operands, only the grammar
 knows.
@@ -16,7 +16,7 @@ __all__ = ["DeclaredForm", "declared_forms"]
 
 @dataclass(frozen=True, slots=True)
 class DeclaredForm:
-    """A form of a declaration: ``node`` and ``name`` tell which one.
+    """A form of a declaration, which ``node`` and ``name`` identify.
 
     ``words`` are all of its words, and ``is_word`` tells of each whether it is written as it stands, and names no operand.
     """

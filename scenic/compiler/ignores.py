@@ -95,11 +95,11 @@ class _Comment:
 
     @property
     def says_something(self) -> bool:
-        """Tell whether it can silence anything."""
+        """Return whether it can silence anything."""
         return self.problem is None or bool(self.codes)
 
     def silences(self, diagnostic: Diagnostic) -> bool:
-        """Tell whether it silences a diagnostic at its place, which is noted; it must say something."""
+        """Return whether it silences a diagnostic at its place, which is noted; it must say something."""
         if not self.codes and self.brackets is None:
             if diagnostic.severity is Severity.ERROR or diagnostic.code in _OWN:
                 return False

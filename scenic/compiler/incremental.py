@@ -221,7 +221,7 @@ def _lines_of(problem: Problem) -> set[int]:
 
 
 def _shifted(node: ast.stmt, by: int) -> ast.stmt:
-    """A copy of a tree, so many lines further down, however deep it is."""
+    """A copy of a tree of any depth, moved down by a number of lines."""
     new: ast.stmt = _empty(node)
     stack: list[tuple[ast.AST, ast.AST]] = [(node, new)]
     while stack:

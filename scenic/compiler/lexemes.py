@@ -85,7 +85,7 @@ STATEMENT_WORD: Final = re.compile(
     r"(?:assert|break|class|continue|def|del|except|finally|global|import|nonlocal|pass|raise"
     r"|require|return|try|while)(?=[ \t:(\n])"
 )
-"""A line that starts so cannot go on inside brackets: one must have been left open."""
+"""Starts of lines that cannot continue a bracket: a bracket before must be unclosed."""
 
 NUMBER: Final = re.compile(_NUMBER)
 LEADING_ZERO: Final = re.compile(r"0[0-9_]*[1-9][0-9_]*")

@@ -118,7 +118,7 @@ class Lexer(LineReader):
         return self.tokens
 
     def run_from(self, pos: int) -> int | None:
-        """Tokenise from ``pos``; return where to go on after a leap, ``None`` at the end.
+        """Tokenise from ``pos``; return the position to continue from after a leap, ``None`` at the end.
 
         Iterating over the matches is nearly twice as fast as asking for each, but cannot leap.
         """
@@ -400,7 +400,7 @@ class Lexer(LineReader):
         return self.stray(start)
 
     def odd_word(self, start: int, end: int) -> None:
-        """A name with characters beyond ASCII, or a word in front of a quote that is no prefix of it."""
+        """A name with characters beyond ASCII, or a word before a quote that is not a prefix of the string."""
         name = self.text[start:end]
         if name.isascii():
             self.add(self.words.get(name, NAME), start, end)
@@ -446,7 +446,7 @@ class Lexer(LineReader):
         return end
 
     def bad_number(self, start: int, end: int, number: str) -> None:
-        """``text[start:end]`` is no number, although its beginning ``number`` may be one."""
+        """Report that ``text[start:end]`` is not a number, although its beginning ``number`` may be one."""
         self.report(lexical_errors.bad_number(self.text[start:end], number, self.here(start, end)))
         self.add(ERROR, start, end)
 

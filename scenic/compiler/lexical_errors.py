@@ -62,7 +62,7 @@ def open_string(quote: str, span: Span) -> Diagnostic:
 
 
 def is_open_text(diagnostic: Diagnostic) -> bool:
-    """Return whether it says that a string of several lines is not closed, which all of the text after it may change."""
+    """Return whether a diagnostic reports an unclosed string of several lines, which any later text may change."""
     return diagnostic.code == "SC101" and (diagnostic.help or "").endswith(('"""`', "'''`"))
 
 

@@ -73,7 +73,7 @@ class LineReader:
         self.line_start = line_start
 
     def lines_within(self, start: int, end: int) -> None:
-        """The token added last goes from ``start`` to ``end`` over line ends: go on to its last line."""
+        """Advance to the last line of the token added last, which extends from ``start`` to ``end`` over line ends."""
         tokens = self.tokens
         self.fill_lines()
         self.line += self.text.count("\n", start, end)

@@ -23,7 +23,7 @@ _HEXADECIMAL: Final = re.compile(r"[0-9a-fA-F]+")
 
 
 class LiteralError(ValueError):
-    """A literal that has no value; the message says why."""
+    """The error for a literal that has no value; the message gives the reason."""
 
 
 def number_value(text: str) -> int | float | complex:
@@ -49,7 +49,7 @@ def _integer(text: str) -> int:
 
 
 def string_value(text: str) -> str | bytes:
-    """The value of a string token that is no f-string; raises `LiteralError` for an impossible escape."""
+    """The value of a string token that is not an f-string; raises `LiteralError` for an impossible escape."""
     quote = text[-1]
     start = text.index(quote)
     end = -1

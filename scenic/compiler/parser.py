@@ -70,8 +70,8 @@ Reread: TypeAlias = Callable[[str], Tokens]
 def parse(text: str, *, filename: str = "<string>") -> ParseResult:
     """Parse a Scenic program.
 
-    Never raises because of ``text``, which may hold anything. Statements that cannot be parsed are
-    `scenic.compiler.tree.ErrorStatement` nodes in the tree, and what is wrong with them is in the diagnostics.
+    Never raises, whatever ``text`` contains. Statements that cannot be parsed are
+    `scenic.compiler.tree.ErrorStatement` nodes in the tree, and the diagnostics describe their errors.
     """
     with no_garbage_collection():
         parsed = parse_tokens(lex(text, WORDS))
@@ -266,7 +266,7 @@ def _order(diagnostic: Diagnostic) -> tuple[int, int, str, str]:
 
 
 class _Recursion:
-    """The limit of recursion, which all threads share: raised as long as any of them asks for that."""
+    """The limit of recursion, which all threads share: raised as long as any of them needs it."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()

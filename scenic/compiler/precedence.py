@@ -112,7 +112,7 @@ class Slot:
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """The place of what is no operand, by the name of its rule in the grammar, or of a kind of token."""
+    """A part that is not an operand, by the name of its rule in the grammar, or of a kind of token."""
 
     rule: str
     optional: bool

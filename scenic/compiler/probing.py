@@ -1,4 +1,4 @@
-"""The possible continuations at a place of a text: the parser is run up to there and asked what it wanted.
+"""The possible continuations at a place of a text: the parser runs up to the place and records the tokens that it expects there.
 
 The text after the place does not count. Of the text before it, only the statement around the place has to be right;
 where this has a mistake, the line alone.
@@ -23,7 +23,7 @@ _MARK: Final = "$"
 _MOST_LINES: Final = 400
 """So many lines before a place are looked at."""
 CLAUSES: Final = frozenset(BLOCK_STARTERS - first_words((Reference("statement"),)))
-"""The first words of lines that go on with the statement before them."""
+"""The first words of lines that continue the statement before them."""
 _GOING_ON: Final = (*sorted(CLAUSES), ")", "]", "}")
 """Beginnings of lines that continue the statement before them."""
 _ALONE: Final = ("statement", "class_item", "specifier_line")
@@ -83,9 +83,7 @@ def wanted_at(text: str, line: int, column: int) -> Wanted | None:
 
 
 def _around(lines: list[str], here: str) -> list[str]:
-    """The lines before a place that matter: the headers of the blocks around it, and before each line the statement
-    before, which it may go on.
-    """
+    """The relevant lines before a place: headers of the blocks around it, and statements that they may continue."""
     level = _indentation(here)
     kept = [here]
     is_whole = not _goes_on(here)
@@ -114,7 +112,7 @@ def _indentation(text: str) -> int:
 
 
 def _goes_on(text: str) -> bool:
-    """Tell whether a line goes on with the statement before it."""
+    """Return whether a line continues the statement before it."""
     return text.lstrip().startswith(_GOING_ON)
 
 

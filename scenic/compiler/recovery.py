@@ -250,7 +250,7 @@ class Recovery:
         return kind == _CASE and self._has_block(position)
 
     def _has_block(self, position: int) -> bool:
-        """Tell whether the line at ``position`` has a block."""
+        """Return whether the line at ``position`` has a block."""
         kinds = self._kinds
         while kinds[position] not in (NEWLINE, ENDMARKER):
             position += 1
@@ -368,7 +368,7 @@ class Recovery:
         return body, end, False
 
     def _forget_closer(self, start: int, previous: int) -> None:
-        """A line that starts with a bracket that closes nothing, after a statement that was wrong already, is no news."""
+        """Suppress the report of a line that starts with a bracket that closes nothing, after a wrong statement."""
         tokens = self.tokens
         place = (tokens.lines[start], tokens.columns[start])
         lines = (tokens.lines[previous], tokens.lines[start])
@@ -409,7 +409,7 @@ class Recovery:
         self._last_reported = max(self._last_reported, token)
 
     def _lexical_between(self, start: int, end: int) -> bool:
-        """Tell whether the lexer found something wrong on the lines from one token to another."""
+        """Return whether the lexer found something wrong on the lines from one token to another."""
         lines, wrong = self.tokens.lines, self._lexical_lines
         index = bisect_left(wrong, lines[start])
         return index < len(wrong) and wrong[index] <= lines[end]
@@ -452,7 +452,7 @@ class Recovery:
         return make(tree.ErrorStatement, place, body=body)
 
     def _is_gap(self, position: int) -> bool:
-        """Tell whether a token only says that something is missing; it may stand after the end of the source."""
+        """Return whether a token only marks a gap; it may be after the end of the source."""
         return self._kinds[position] == ERROR and not self.tokens.texts[position]
 
     def _line_end(self, position: int) -> int:
@@ -497,7 +497,7 @@ class Recovery:
         return position + (kinds[position] == DEDENT), [] if rule == "specifier_line" else [*body]
 
     def _is_specifier(self, position: int) -> bool:
-        """Tell whether the line at ``position`` looks like one of specifiers."""
+        """Return whether the line at ``position`` looks like one of specifiers."""
         kinds = self._kinds
         if kinds[position] not in SPECIFIER_KINDS or kinds[position + 1] in _NO_OPERAND:
             return False
@@ -528,7 +528,7 @@ class Recovery:
         return body, end + (self._kinds[end] == DEDENT), header is not None
 
     def _may_take_specifiers(self, last: int) -> bool:
-        """Tell whether the line that ends with the token ``last`` may be one that makes an instance."""
+        """Return whether the line that ends with the token ``last`` may be one that makes an instance."""
         kinds = self._kinds
         if kinds[last] == _COMMA:
             return True

@@ -71,7 +71,7 @@ class Lexed:
 def lex_again(
     text: str, lines: Sequence[str], before: Lexed, change: Change, lex: Callable[[str], Lexed]
 ) -> tuple[Lexed, Splice] | None:
-    """The tokens of a text as ``lex`` finds them, with the help of an earlier result; ``None`` if that is no help.
+    """The tokens of a text as ``lex`` finds them, with the help of an earlier result; ``None`` if the earlier result does not help.
 
     ``lines`` are those of the text.
     """
@@ -163,7 +163,7 @@ def _line(diagnostic: Diagnostic) -> int:
 
 
 def _shifted(diagnostic: Diagnostic, by: int) -> Diagnostic:
-    """A diagnostic, so many lines further down."""
+    """A diagnostic, moved down by a number of lines."""
     if not by:
         return diagnostic
     fix = diagnostic.fix

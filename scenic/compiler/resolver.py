@@ -136,7 +136,7 @@ def _collector(module: Scope) -> Callable[[Stretch], Contents]:
 
 
 def _brings_names(line: str) -> bool:
-    """Tell whether a line that could not be parsed may have been one that brings names that the text does not show."""
+    """Return whether a line that could not be parsed may have been one that brings names that the text does not show."""
     words = line.split(maxsplit=1)
     if not words:
         return False

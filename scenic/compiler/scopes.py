@@ -205,7 +205,7 @@ _IMPORTS: Final = (ast.Import, ast.ImportFrom, scenic.Model)
 
 
 class Stretch:
-    """Successive statements of the top level, and all that can be said of them without what stands around them.
+    """Successive statements of the top level, with all facts that do not depend on the statements around them.
 
     What has been found out without saying where is handed on to the same statements further down (`moved`); their
     ``contents`` are looked at only when somebody asks for nodes.

@@ -41,7 +41,7 @@ _Positions = tuple[int | None, int | None, int | None, int | None]
 
 
 class Locator:
-    """Finds places, and remembers those that it has found: for whoever asks often."""
+    """Finds places, and caches them for repeated calls."""
 
     def __init__(self) -> None:
         self._positions: dict[int, tuple[CodeType, list[_Positions]]] = {}
@@ -64,7 +64,7 @@ class Locator:
         return self._places[key]
 
     def name(self, where: FrameType) -> tuple[str, int] | None:
-        """A name that tells a place from others, and stays the same when lines are added elsewhere.
+        """A name that identifies a place, and stays the same when lines are added elsewhere.
 
         The text of the line without its comment, and the column in it.
         """

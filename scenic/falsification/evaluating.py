@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["Evaluation", "Task"]
 
 _ATTEMPTS: Final = 1000
-"""Candidates tried for one point of external parameters, the other draws anew each time."""
+"""Number of candidates tried for one point of external parameters, with new values of the other draws each time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class Evaluation:
         objectives: what is to become small.
         space: the coordinates of the search.
         seed: of all draws that are not searched.
-        threshold: up to which value a run is a counterexample.
+        threshold: largest value of a counterexample.
         folder: where counterexamples are kept, if anywhere.
 
     """

@@ -127,7 +127,7 @@ class VerifaiSampler(ExternalSampler):
 
 
 def external_sampler(scenario: "Scenario") -> ExternalSampler:
-    """The sampler that a program asks for.
+    """The sampler that a program selects.
 
     Raises `InvalidScenarioError` if ``externalSampler`` is no class of samplers.
     """

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["sampled_by"]
 
 _TOGETHER: Final = 64
-"""Points asked for at a time where the sampler does not care."""
+"""Number of points requested at a time, if the sampler has no preference."""
 _ATTEMPTS: Final = 1000
 
 

@@ -1,4 +1,4 @@
-"""The search: ask a sampler for points, evaluate them, tell it what came of them."""
+"""The search: ask a sampler for points, evaluate them, and tell it their values."""
 
 import math
 import random
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["FalsificationResult", "Plan", "SearchError", "falsify", "search"]
 
 _GENERATION: Final = 8
-"""Points asked for at a time where a sampler does not care and simulations take long."""
+"""Number of points requested at a time, if a sampler has no preference and simulations take long."""
 
 _STATIC_GENERATION: Final = 512
 """The same for scenes by themselves."""
@@ -40,7 +40,7 @@ _FAILURES: Final = 10
 
 
 class SearchError(Located):
-    """A search that cannot go on."""
+    """The error for a search that cannot continue."""
 
     code = "SC503"
 
@@ -354,17 +354,17 @@ def falsify(
         sampler_options: its options.
         n: runs at most.
         seed: any integer; drawn from Python's ``random`` if not given.
-        threshold: up to which value a run is a counterexample.
+        threshold: largest value of a counterexample.
         stop_after: counterexamples after which the search ends.
-        time_limit: seconds after which no generation begins.
+        time_limit: seconds after which no new generation of points begins.
         space: ``external``, ``scene``, or ``auto``: external parameters if there are any, else all draws of the scene.
-        batch: points asked for at a time; results depend on it.
+        batch: points that the sampler gives at a time; results depend on it.
         max_steps: steps of a simulation at most.
         timestep: seconds in a step.
-        static: search scenes by themselves, without simulations.
-        processes: how many processes simulate; changes speed, never results.
-        folder: where runs and counterexamples are kept.
-        resume: go on with the search in the folder.
+        static: search scenes alone, without simulations.
+        processes: number of processes that simulate; changes speed, never results.
+        folder: folder that stores runs and counterexamples.
+        resume: continue the search in the folder.
 
     """
     given = (

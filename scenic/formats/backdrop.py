@@ -1,4 +1,4 @@
-"""Sky and ground of pictures, which are no part of the scene."""
+"""Sky and ground of pictures, which are not part of the scene."""
 
 from typing import Final
 

@@ -47,7 +47,7 @@ class Shot:
 
 
 class Photographer:
-    """Takes labelled images of scenes; if it is told all classes, each of them depends on its scene alone.
+    """Takes labelled images of scenes; if all classes are given, the entries of an image depend on its scene alone.
 
     Args:
         camera: a sensor of some object, or the variable of an object.

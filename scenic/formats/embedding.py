@@ -40,7 +40,7 @@ def embedded_simulation(simulation: Any) -> str:
 
 
 def scene_bundle(scene: Scene) -> dict[str, str]:
-    """A scene by type of media, as notebooks ask for it."""
+    """A scene by type of media, in the form that notebooks use."""
     return {"text/html": embedded_scenes([scene], "scene"), "text/plain": repr(scene)}
 
 

@@ -30,7 +30,7 @@ def _reason(error: OSError) -> str:
 
 
 def is_special(path: Path) -> bool:
-    """Return whether the path names a device or a pipe, to which a name cannot be given anew."""
+    """Return whether the path names a device or a pipe, which cannot be renamed."""
     try:
         mode = path.stat().st_mode
     except OSError:

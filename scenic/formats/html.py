@@ -178,7 +178,7 @@ def _points(line: Array) -> list[list[float]]:
 
 
 def _view(instance: Instance) -> list[list[list[float]]] | None:
-    """Lines that show what an object has in view: of the ego, and of others that ask for it."""
+    """Lines that show the view of an object: of the ego, and of objects with ``showVisibleRegion``."""
     thing = instance.thing
     if not (instance.is_ego or thing.properties.get("showVisibleRegion", False)):
         return None

@@ -37,7 +37,7 @@ PALETTE: tuple[Triple, ...] = (
 """Colours of objects that have none of their own: one for each class, in order of appearance, or for each plain object."""
 
 _SHADES = (1.0, 0.72, 1.12, 0.86, 0.6)
-"""Brightness of successive objects of one class, so that neighbours can be told apart."""
+"""Brightness of successive objects of one class, so that neighbours can be distinguished."""
 
 _PLAIN: Final = "Object"
 """The class of objects that have no class of their own."""

@@ -156,7 +156,7 @@ def _list_of(values: Iterable[float]) -> str:
 
 
 def _real(value: float) -> str:
-    """A real number as JSON, as `number` and Python's own writer tell it."""
+    """A real number as JSON, as `number` and Python's own writer write it."""
     return repr(value + 0.0) if math.isfinite(value) else _text_of(number(value))
 
 

@@ -38,7 +38,7 @@ class Light:
 
 
 def own_light(stage: Stage, eye: Singles, seen: Seen, pattern: Index) -> Light:
-    """The light on what rays from an eye see, each estimated by itself; `pattern` as for `Stage.sunlit`."""
+    """The light on the surfaces that rays from an eye hit, estimated for each ray separately; `pattern` as for `Stage.sunlit`."""
     sun, sky = np.zeros(len(pattern), np.float32), np.ones(len(pattern), np.float32)
     lit = np.flatnonzero(seen.group != SKY)
     places = seen.take(lit), pattern[lit]
@@ -49,7 +49,7 @@ def own_light(stage: Stage, eye: Singles, seen: Seen, pattern: Index) -> Light:
 
 
 def coarse_light(stage: Stage, eye: Singles, seen: Seen, shape: tuple[int, int]) -> Light:
-    """The light on all of a coarse image of so many rows and columns."""
+    """The light on all of a coarse image with a number of rows and columns."""
     rows, columns = (np.minimum(np.arange(-(-length // _NODE) + 1) * _NODE, length - 1) for length in shape)
     index = (rows[:, None] * shape[1] + columns).reshape(-1)
     size = (len(rows), len(columns))

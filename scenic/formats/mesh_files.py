@@ -60,7 +60,7 @@ class MeshPaths:
 
 
 def resolved(shape: Any, folder: Path) -> Any:
-    """A shape as it was told, with the absolute path of its mesh file; anything else as it is."""
+    """A shape as given, with the absolute path of its mesh file; any other value unchanged."""
     if not isinstance(shape, Mapping) or shape.get("kind") != "mesh" or "path" not in shape:
         return shape
     return {**shape, "path": os.path.normpath(folder.absolute() / shape["path"])}

@@ -32,7 +32,7 @@ Floats = NDArray[np.float64]
 Poses = Sequence[tuple[Any, Any]]
 
 _PROPERTY: Final = "scenic-simulation"
-"""Property of the file header that holds what a trajectory file of ours says of the whole simulation."""
+"""Property of the file header that contains the first line of a trajectory file."""
 
 _MASS: Final = 65.0
 """Kilograms of a pedestrian that states none."""
@@ -297,7 +297,7 @@ class OpenScenarioFile:
 
 
 def openscenario_about(path: Path) -> Any:
-    """Read what a file of ours says of the whole simulation; ``None`` in files of others.
+    """Read the data about the whole simulation from a file of this package; ``None`` for other files.
 
     Raises ``OSError`` or ``ValueError`` where it cannot be read.
     """

@@ -64,7 +64,7 @@ def read_scenes(path: str | Path) -> Iterator[ReadScene]:
 
     Raises:
         MissingFileError: if the file cannot be read.
-        SceneFileError: at a line that holds no scene.
+        SceneFileError: if a line is not a scene.
 
     """
     try:

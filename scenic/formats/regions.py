@@ -43,12 +43,12 @@ _MOST_POINTS: Final = 1000
 _CLOUD: Final = 300
 """So many points stand for a region of which nothing but its points is known."""
 _STEPS: Final = 400
-"""The diagonal of what is cut is so many times as long as the places that are tested."""
+"""Number of tested places along the diagonal of a cut area."""
 _HATCHES: Final = 24
 
 
 def outlines(region: Any) -> list[Array]:
-    """Lines ``(k, 3)`` that show where a fixed region is; none for what is no region, or has no bounds.
+    """Lines ``(k, 3)`` that show where a fixed region is; none for a value that is not a region, or a region without bounds.
 
     Regions made of others are drawn as those parts of the others' lines that bound them; in the plane they are hatched, since
     a volume cuts them along lines that no member has. Of kinds that are not known here, some points are shown.
@@ -134,7 +134,7 @@ def _composed(region: Composite) -> list[Array]:
 
 
 def _cut(lines: Sequence[Array], keep: Keep) -> list[Array]:
-    """The parts of lines that are to be kept, told at short steps along them."""
+    """The parts of lines to keep, decided at short steps along the lines."""
     if not lines:
         return []
     points = np.concatenate(lines)

@@ -1,4 +1,4 @@
-"""Runs that go on with the JSON Lines of an earlier one."""
+"""Runs that continue the JSON Lines of an earlier run."""
 
 import json
 
@@ -9,7 +9,7 @@ __all__ = ["ResumeError", "continued"]
 
 
 class ResumeError(Located):
-    """Lines that a run cannot go on with."""
+    """The error for lines that a run cannot continue."""
 
     code = "SC609"
 

@@ -28,7 +28,7 @@ class RevivedObject:
 
 
 class RevivedScene:
-    """A scene that was read back. Files of scenes tell no workspace."""
+    """A scene that was read back. Files of scenes do not contain a workspace."""
 
     workspace = None
 
@@ -46,7 +46,7 @@ class RevivedScene:
         )
 
     def origin(self, thing: RevivedObject) -> "RevivedOrigin":
-        """The facts about an object: the properties that its line tells."""
+        """The facts about an object: the properties in its line."""
         return RevivedOrigin(thing)
 
 

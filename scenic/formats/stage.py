@@ -176,7 +176,7 @@ class Stage:
         return factor
 
     def sunlit(self, places: Singles, normals: Singles, pattern: npt.NDArray[np.int64], rays: int) -> Singles:
-        """The part of the sun seen from places ``(n, 3)``, by so many rays each; 0 where it is behind the surface.
+        """The share of the sun seen from places ``(n, 3)``, by a number of rays each; 0 if it is behind the surface.
 
         Places of another ``pattern``, ``(n,)``, use other rays; those of one are neighbours in the sequence of samples,
         and so are spread evenly by themselves.

@@ -90,7 +90,7 @@ class Texture:
 def texture_of(
     value: Any, color: tuple[float, ...], folder: Path | None = None
 ) -> Texture | ImageTexture | None:
-    """The texture that a property says, of an object of a colour; ``None`` for none.
+    """The texture that a property describes, for an object of a colour; ``None`` for no texture.
 
     Args:
         value: the value of the property.

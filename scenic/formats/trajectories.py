@@ -108,7 +108,7 @@ class TrajectoryFile(Protocol):
         """The next state, as `step_document` gives it."""
 
     def finish(self, about: Mapping[str, Any]) -> None:
-        """Complete the file with what `course_document` says of the whole."""
+        """Complete the file with the data of `course_document` about the whole simulation."""
 
     def close(self) -> None:
         """Give up what is not finished."""

@@ -77,7 +77,7 @@ def read_trajectory(path: str | Path) -> Trajectory:
 
     Raises:
         MissingFileError: the file cannot be read.
-        TrajectoryFileError: there is no simulation in it.
+        TrajectoryFileError: if it does not contain a simulation.
 
     """
     file = Path(path)

@@ -1,4 +1,4 @@
-"""Simulations as Parquet files (extra ``parquet``): one row for each object at each step; what is said of the whole in the metadata.
+"""Simulations as Parquet files (extra ``parquet``): one row for each object at each step; data about the whole simulation in the metadata.
 
 The column ``actions`` is the JSON of what the object then did, as in JSON Lines, or null.
 """
@@ -20,7 +20,7 @@ KEY: Final = b"scenic-simulation"
 """Of the metadata: a JSON object with the fields of the first line of JSON Lines."""
 
 GROUP: Final = 1 << 15
-"""About so many rows are kept in memory until they are written."""
+"""Approximate number of rows kept in memory until they are written."""
 
 _PLACES: Final = ("x", "y", "z")
 _TURNS: Final = ("qx", "qy", "qz", "qw")

@@ -34,7 +34,7 @@ from scenic.graph.schedule import (
 
 
 class _Group:
-    """The columns of a group's members: ``column`` of shape (members, lanes or 1, ...), ``status`` likewise."""
+    """The columns of a group's members: ``column`` of shape (members, lanes or 1, ...), ``status`` of the same shape."""
 
     __slots__ = ("column", "generation", "status")
 
@@ -207,11 +207,11 @@ class Batch:
         return self._operand(gather)[0]
 
     def value(self, node: Node, lane: int = 0) -> Any:
-        """The Python value of ``node`` in one lane; the same object whenever it is asked for."""
+        """The Python value of ``node`` in one lane; the same object on every call."""
         return self.read(lane, node)
 
     def read(self, lane: int, node: Node) -> Any:
-        """`value` in one lane, as samples ask for it."""
+        """`value` in one lane, with the signature that samples use."""
         values = self._values_of(node)
         return values[lane if len(values) > 1 else 0]
 

@@ -52,7 +52,7 @@ def forward(node: Node, operands: Sequence[Bounds | None]) -> Bounds | None:
 
 
 def read(operation: Operation, kind: Kind, payload: Any, operands: Sequence[Bounds | None]) -> Bounds | None:
-    """The operation's bounds reading where it says something, else the bounds of the kind."""
+    """The result of the operation's bounds reading, or else the bounds of the kind."""
     default = of_kind(kind)
     blind = operation.strict and not operation.partial
     if operation.bounds is None or (blind and any(operand is None for operand in operands)):

@@ -30,7 +30,7 @@ def _aligned(*operands: Bounds) -> list[Bounds]:
 
 
 def _are_finite(lower: Floats, upper: Floats) -> bool:
-    """Tell whether no end is infinite or NaN; may say no where ends are huge."""
+    """Return whether no end is infinite or NaN; may say no where ends are huge."""
     return bool(np.isfinite(upper - lower).all())
 
 

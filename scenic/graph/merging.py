@@ -19,7 +19,7 @@ from scenic.graph.operations.distributions import LOOKUP, SELECT, Table
 __all__ = ["Merger", "is_choice_of_draws"]
 
 _LEAST: Final = 8
-"""Options from which on merging pays; it also pays if there are so many options to a class of alike ones."""
+"""Options from which on merging pays; it also pays with this number of options for each class of similar options."""
 
 _DEEPEST: Final = 64
 """Operations one upon the other down to which options are compared."""

@@ -15,7 +15,7 @@ from scenic.graph.operation import Call, Operation, always
 Consumers = WeakValueDictionary[Hashable, "Node"]
 
 UNREAD: Final = object()
-"""In the place of bounds that nobody has asked for."""
+"""Marks bounds that have not been computed."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)

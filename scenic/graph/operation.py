@@ -87,7 +87,7 @@ class Call:
         self._mark(mask, REJECTED)
 
     def fault(self, mask: Column, error: Exception) -> None:
-        """Let the lanes where ``mask`` holds fail with ``error``, should they ever be asked for."""
+        """Let the lanes where ``mask`` holds fail with ``error``, if their values are used."""
         if self._mark(mask, FAULT) and self.error is None:
             self.error = error
 

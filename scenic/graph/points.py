@@ -1,4 +1,4 @@
-"""Points of the unit cube that are chosen, not hashed: by a low-discrepancy sequence, or by whoever asks.
+"""Points of the unit cube that are chosen, not hashed: by a low-discrepancy sequence, or by the caller.
 
 Scene ``k`` is made of row ``k``: the number of a draw is that of the draw's *dimension*. Which dimension that is, whoever
 samples decides (`scenic.runtime.sampling.driving`).
@@ -29,21 +29,21 @@ class PointSet(Protocol):
         """
 
     def of_simulations(self, draws: NDArray[np.intp], count: int, lanes: Lanes) -> Floats:
-        """The numbers ``(draws, lanes)`` of draws in simulations, likewise; of scenes of ``count`` axes.
+        """The numbers ``(draws, lanes)`` of draws in simulations of scenes with ``count`` axes.
 
         The attempt of a lane is that at a simulation of its scene.
         """
 
 
 _BITS: Final = 20
-"""Bits of a Sobol number that tell rows from one another: so many rows are one sequence, the next ones another."""
+"""Bits of a Sobol number that identify its row: this many bits of rows form one sequence, later rows form others."""
 
 _DIMENSIONS: Final = 21201
 """The dimensions for which Joe and Kuo give direction numbers."""
 
 _FIRST_DIMENSIONS: Final = 64
 _FIRST_BITS: Final = 10
-"""Dimensions and bits of the direction numbers that are made at once; more are made when they are asked for."""
+"""Dimensions and bits of the direction numbers that are made at once; more are made on demand."""
 
 _DRAWS: Final = 512
 """Draws of a simulation that have dimensions of their own."""
@@ -53,12 +53,12 @@ _CHUNK: Final = 1 << 16
 
 
 class Sobol:
-    """Rows of Sobol's sequence, which fill the cube more evenly than random points do.
+    """Rows of a Sobol sequence, which fill the cube more evenly than random points.
 
     Scene ``k`` is made of row ``k`` of a scrambled sequence of many dimensions: those of the first candidate come first, then those
     of the second, should the first not meet the requirements, and so on; the first 512 draws of a simulation have others. What
     comes after all 21,201 dimensions is hashed. The scrambling, by the seed, is nested (Owen, "Randomly permuted (t,m,s)-nets
-    and (t,s)-sequences", 1995): every scene by itself has the law that the program says, and depends on seed and number alone.
+    and (t,s)-sequences", 1995): each scene alone follows the program's distribution, and depends on seed and number alone.
 
     Direction numbers are those of SciPy (Joe and Kuo, "Constructing Sobol sequences with better two-dimensional
     projections", 2008). Every 2**20 rows another sequence begins.
@@ -138,11 +138,11 @@ def _scrambled(points: Words, keys: Words) -> Words:
 
 
 class GivenPoints:
-    """Rows that somebody gives, as an optimiser does: scene ``k`` is made of row ``k``, or not at all.
+    """Rows given by the caller, such as an optimiser: scene ``k`` is made from row ``k``, or not at all.
 
     Args:
         rows: numbers ``(n, d)`` of the open unit interval, one row for each scene. The first columns are those of
-            `scenic.Scenario.axes`; further ones are for the draws of a simulation, in order. What is not given is hashed.
+            `scenic.Scenario.axes`; further ones are for the draws of a simulation, in order. Numbers that are not given are hashed.
 
     Raises:
         ValueError: numbers that lie elsewhere, or rows of different lengths.

@@ -19,7 +19,7 @@ Parts: TypeAlias = tuple[Any, Any, Any, Any]
 """Components x, y, z, w: arrays of one shape, or plain floats."""
 
 Triple: TypeAlias = tuple[Any, Any, Any]
-"""Components of a vector, likewise."""
+"""Components of a vector, in the same form."""
 
 TAU: Final = 2 * np.pi
 

@@ -104,7 +104,7 @@ def _edits(old: Sequence[Token], new: Sequence[tuple[Token, int, int]]) -> list[
 
 
 def _groups(old: Sequence[Token], pair: _Pair) -> bool:
-    """Tell whether parentheses show what an operator takes: an operation in them, and an operator beside them."""
+    """Return whether parentheses show what an operator takes: an operation in them, and an operator beside them."""
     around = [old[index] for index in (pair.opening - 1, pair.closing + 1) if 0 <= index < len(old)]
     return any(map(_is_operator, around)) and any(
         map(_is_operator, _at_top(old[pair.opening + 1 : pair.closing]))

@@ -76,7 +76,7 @@ _BLOCKS: Final[Mapping[str, str]] = {
     "try": "try:\n\t${1:pass}\nexcept ${2:Exception}:\n\t$0",
     "with": "with ${1:context}:\n\t$0",
 }
-"""Python's statements with blocks, which are no forms of the language's declarations."""
+"""Python's statements with blocks, which the language does not declare."""
 
 
 def completions(project: Project, snapshot: Snapshot, line: int, column: int) -> Completions:
@@ -469,7 +469,7 @@ def _kind_of_binding(project: Project, module: Module, binding: Binding) -> tupl
 def _is_scenic(
     project: Project, module: Module, snapshot: Snapshot, item: Completion, line: int, column: int
 ) -> bool:
-    """Tell whether ``new`` can make instances of a class."""
+    """Return whether ``new`` can make instances of a class."""
     if item.key[:1] == ("provided",):
         return item.label in CLASSES
     symbol = _symbol_named(project, module, snapshot, item.label, [str(line), str(column)])
@@ -558,7 +558,7 @@ def _escaped(text: str) -> str:
 
 
 def _modules(project: Project, snapshot: Snapshot, before: tuple[str, ...]) -> Iterator[Completion]:
-    """The modules whose names can go on here."""
+    """The modules whose names can continue the text here."""
     words = [word for word in before[1:] if word != ","]
     parts: list[str] = []
     while len(words) >= 2 and words[-1] == ".":
@@ -583,7 +583,7 @@ def _modules(project: Project, snapshot: Snapshot, before: tuple[str, ...]) -> I
 
 
 def _leads_to_models(found: Found, *, beside: bool) -> bool:
-    """Tell whether a module is one of Scenic, or a folder with such modules: for installed packages, right in it."""
+    """Return whether a module is one of Scenic, or a folder with such modules: for installed packages, right in it."""
     if found.kind is ModuleKind.SCENIC or found.filename is None:
         return found.kind is ModuleKind.SCENIC
     is_package = os.path.basename(found.filename).startswith("__init__.")

@@ -63,7 +63,7 @@ def _indentation(line: str) -> int:
 
 
 def _begins(snapshot: Snapshot, line: int) -> bool:
-    """Tell whether a line begins a statement: not in the middle of a string, or of brackets."""
+    """Return whether a line begins a statement: not in the middle of a string, or of brackets."""
     tokens = snapshot.tokens
     found = [index for index in snapshot.tokens_of_line(line) if tokens.kinds[index] not in (INDENT, DEDENT)]
     if not found or _word(snapshot.source.line(line)) != tokens.texts[found[0]]:

@@ -26,7 +26,7 @@ _MOST_MEMBERS: Final = 30
 
 
 def describe(project: Project, symbol: Symbol) -> str:
-    """A symbol: how it is called or made, what its author says of it, and where it comes from."""
+    """The description of a symbol: its signature, its documentation, and its origin."""
     if symbol.is_builtin:
         known = documentation.of_name(symbol.name) or documentation.of_property(symbol.name)
         if known is not None:
@@ -57,7 +57,7 @@ def describe(project: Project, symbol: Symbol) -> str:
 
 
 def header(project: Project, symbol: Symbol) -> str:
-    """One line that says what a symbol is."""
+    """A line that describes a symbol."""
     word = _WORDS.get(symbol.kind)
     if symbol.kind is SymbolKind.MODULE:
         return f"module {symbol.name}"

@@ -42,7 +42,7 @@ def operand_before(tokens: Sequence[str]) -> str:
 def expression(
     project: Project, snapshot: Snapshot, text: str, line: int, column: int
 ) -> tuple[Module, ast.expr] | None:
-    """An expression with its names bound as at a place, and a module in which it can be asked about."""
+    """An expression with its names bound as at a place, and a module for queries about it."""
     module = project.module(snapshot.filename)
     parsed = parse(text)
     if module is None or parsed.diagnostics or len(parsed.tree.body) != 1:

@@ -409,7 +409,7 @@ class _Layout:
         return min(levels, key=lambda level: (abs(len(_INDENTATION) * level - column), -level))
 
     def _ended_definition(self, depth: int) -> bool:
-        """Tell whether the block that has just ended, at this depth, was a definition."""
+        """Return whether the block that has just ended, at this depth, was a definition."""
         for line in reversed(self._lines):
             if line.strip() and not line.lstrip().startswith("#"):
                 indentation = len(line) - len(line.lstrip())
@@ -496,7 +496,7 @@ def _lines_in_strings(tokens: Tokens) -> Iterator[int]:
 
 
 def _same(tree: ast.Module, tokens: Tokens, result: str) -> bool:
-    """Tell whether a text has this tree, and the comments of these tokens."""
+    """Return whether a text has this tree, and the comments of these tokens."""
     again = revise(result)
     if again.result.diagnostics:
         return False
@@ -506,7 +506,7 @@ def _same(tree: ast.Module, tokens: Tokens, result: str) -> bool:
 
 
 def _equal(one: ast.AST, other: ast.AST) -> bool:
-    """Tell whether two trees say the same, wherever their nodes stand."""
+    """Return whether two trees say the same, wherever their nodes stand."""
     pairs: list[tuple[Any, Any]] = [(one, other)]
     while pairs:
         left, right = pairs.pop()

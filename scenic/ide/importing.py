@@ -119,7 +119,7 @@ def _modules_with(project: Project, importer: str, name: str) -> list[str]:
 
 
 def _defines(module: Module, name: str) -> bool:
-    """Tell whether a module itself binds a name at its top level, and not by an import."""
+    """Return whether a module itself binds a name at its top level, and not by an import."""
     binding = module.resolution.names.get(name)
     return binding is not None and not any(isinstance(site, ast.alias) for site in binding.sites)
 

@@ -30,7 +30,7 @@ _UNITS: Final = MappingProxyType(
         "viewRayDensity": "rays/deg",
     }
 )
-"""Units of properties that are no angles."""
+"""Units of properties that are not angles."""
 _DISTANCES: Final = frozenset({"distance"})
 """Operands that are lengths."""
 
@@ -46,7 +46,7 @@ class HintKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Hint:
-    """A few words at a place (``line`` from 1, ``column`` in characters), and more about them for who asks."""
+    """A few words at a place (``line`` from 1, ``column`` in characters), and details for a tooltip."""
 
     line: int
     column: int
@@ -168,7 +168,7 @@ def _priorities(snapshot: Snapshot, node: scenic.New) -> Iterator[Hint]:
 
 
 def _is_number(node: ast.expr) -> bool:
-    """Tell whether a value is a number that is written out, maybe with a sign."""
+    """Return whether a value is a number that is written out, maybe with a sign."""
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
         node = node.operand
     return isinstance(node, ast.Constant) and type(node.value) in (int, float) and node.value != 0

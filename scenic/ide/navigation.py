@@ -410,7 +410,7 @@ def _ego(module: Module | None, found: Occurrence | None) -> tuple[Target, ...]:
 
 
 def _is_own(project: Project, filename: str | None, beside: str) -> bool:
-    """Tell whether a file belongs to the workspace; without one, whether it is the document itself."""
+    """Return whether a file belongs to the workspace; without one, whether it is the document itself."""
     return filename == beside or filename in set(project.files())
 
 

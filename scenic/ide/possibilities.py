@@ -10,7 +10,7 @@ __all__ = ["Completion", "CompletionKind", "Completions", "kind_of_symbol"]
 
 
 class CompletionKind(StrEnum):
-    """The kinds of completions, as far as editors tell them apart."""
+    """The kinds of completions that editors distinguish."""
 
     KEYWORD = "keyword"
     SPECIFIER = "specifier"
@@ -50,7 +50,7 @@ class Completion:
 
 @dataclass(frozen=True, slots=True)
 class Completions:
-    """The possibilities, and the word that they take the place of."""
+    """The possibilities, and the word that they replace."""
 
     span: Span
     items: tuple[Completion, ...]

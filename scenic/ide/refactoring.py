@@ -24,7 +24,7 @@ _SOMETIMES: Final = (
     ast.BoolOp, ast.IfExp, ast.Lambda, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp, ast.NamedExpr,
     ast.Compare, ast.JoinedStr, ast.Await, ast.Yield, ast.YieldFrom, ast.Starred, scenic.Temporal,
 )  # fmt: skip
-"""Expressions that do not evaluate all parts of themselves just once, or of which a part is no expression of its own."""
+"""Expressions that do not evaluate all parts of themselves just once, or that have a part which is not an expression of its own."""
 _ATOMS: Final = (ast.Name, ast.Constant, ast.Attribute, ast.Call, ast.Subscript, ast.List, ast.Dict, ast.Set)
 
 
@@ -130,7 +130,7 @@ def _holds(outer: Span, inner: Span) -> bool:
 
 
 def _own_names(snapshot: Snapshot, expression: ast.AST) -> bool:
-    """Tell whether an expression reads ``self`` of the object that a specifier is about, or binds a name."""
+    """Return whether an expression reads ``self`` of the object that a specifier is about, or binds a name."""
     for node in walk(expression):
         if isinstance(node, ast.NamedExpr):
             return True

@@ -1,4 +1,4 @@
-"""Running a program because its user asked for that: in a process of its own, within limits of time and size."""
+"""Running a program at its user's request: in a process of its own, within limits on time and size."""
 
 import os
 import signal

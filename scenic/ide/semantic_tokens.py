@@ -45,7 +45,7 @@ MODIFIERS: Final = (
     "documentation",
     "defaultLibrary",
 )
-"""The protocol's names for what can be said of a token besides."""
+"""The protocol's names for modifiers of tokens."""
 
 _MARKS: Final = frozenset({"(", ")", "[", "]", "{", "}", ",", ":", ";", "."})
 _OPERATOR_KINDS: Final = {kind for mark, kind in OPERATORS.items() if mark not in _MARKS}
@@ -95,7 +95,7 @@ _OF_NAME: Final = {
 
 
 class SemanticToken(NamedTuple):
-    """A stretch of one line: ``line`` from 1, columns in characters, what it is and what else can be said of it."""
+    """A stretch of one line: ``line`` from 1, columns in characters, with its type and modifiers."""
 
     line: int
     column: int

@@ -94,7 +94,7 @@ def _call_around(snapshot: Snapshot, line: int, column: int) -> tuple[str, int, 
 
 
 def _is_defined(tokens: Tokens, name: int) -> bool:
-    """Tell whether a name is not called but defined: the word before it begins the line."""
+    """Return whether a name is not called but defined: the word before it begins the line."""
     if name < 1 or tokens.texts[name - 1] not in _DEFINING:
         return False
     return (

@@ -1,4 +1,4 @@
-"""One version of a document, and all that is known of it: made once, whichever features ask, in any thread."""
+"""One version of a document, and the facts derived from it: computed once, for all features and threads."""
 
 import ast
 import re
@@ -86,7 +86,7 @@ class Snapshot:
         return self._once("resolution", self._resolve)
 
     def derived(self, key: str, make: Callable[[], _T], *, stamp: object = None) -> _T:
-        """A value that a feature derives from this version, made when it is first asked for and kept.
+        """A value that a feature derives from this version, computed on first use and kept.
 
         It is made anew when ``stamp``, which stands for whatever else it depends on, is another one than last time.
         """
@@ -160,7 +160,7 @@ class Snapshot:
             path.append(inner)
 
     def scope_at(self, line: int, column: int) -> Scope:
-        """The innermost scope at a place; after the last statement of a block, the one that the indentation tells."""
+        """The innermost scope at a place; after the last statement of a block, the scope that the indentation selects."""
         resolution = self.resolution
         found = resolution.module
         path = self.path_to(line, column)
@@ -252,7 +252,7 @@ class PythonSnapshot(Snapshot):
 
     @property
     def tree(self) -> ast.Module:
-        """The tree; empty if the text is no Python."""
+        """The tree; empty if the text is not Python."""
         return self._tree
 
 

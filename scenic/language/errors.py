@@ -143,7 +143,7 @@ _BY_CODE: Mapping[str, type[ScenicSyntaxError]] = MappingProxyType(
 
 
 def compile_error(diagnostics: Sequence[Diagnostic], *, filename: str | None = None) -> ScenicSyntaxError:
-    """The exception of a program that cannot be compiled, of the class that its first problem asks for."""
+    """The exception of a program that cannot be compiled, of the class for its first problem."""
     return _BY_CODE.get(diagnostics[0].code, ScenicSyntaxError)(diagnostics, filename=filename)
 
 
@@ -154,7 +154,7 @@ class InvalidScenarioError(ScenicError):
 
 
 class UnknownParameterError(InvalidScenarioError, AttributeError, KeyError):
-    """A global parameter that the program does not set; also what ``hasattr`` and mappings ask for."""
+    """A global parameter that the program does not set; also the error that ``hasattr`` and mappings expect."""
 
 
 class UndefinedSamplingException(InvalidScenarioError):
@@ -276,7 +276,7 @@ class PreconditionViolation(GuardViolation):
 
 
 class InvariantViolation(GuardViolation):
-    """An invariant does not hold when a behavior or scenario starts or goes on."""
+    """An invariant does not hold when a behavior or scenario starts or continues."""
 
     violationType = "invariant"
 
@@ -288,7 +288,7 @@ class SimulationCreationError(Located):
 
 
 class SimulationError(Located):
-    """The simulator cannot go on."""
+    """The simulator cannot continue."""
 
     code = "SC505"
 

@@ -22,7 +22,7 @@ def no_garbage_collection() -> Iterator[None]:
 
 
 def import_lasting(name: str) -> ModuleType:
-    """Import a module that brings many others, and tell Python's collector that all of them are to stay.
+    """Import a module that brings many others, and exempt all their objects from Python's garbage collector.
 
     With NumPy they are some forty thousand objects, which it would look through twelve times: in the midst of whatever
     the program does next.
@@ -37,6 +37,6 @@ def import_lasting(name: str) -> ModuleType:
 
 
 def promote_young() -> None:
-    """Tell Python's collector that what was made lately is to stay: it would look through it while the next things are made."""
+    """Exempt recent objects from Python's garbage collector, which would otherwise traverse them while the next objects are made."""
     if gc.isenabled():
         gc.collect(1)  # what is young is old from now on

@@ -144,7 +144,7 @@ _ALL = (
     ),
     _class(
         "Vector(x, y, z=0)",
-        "A vector of three coordinates; `x @ y` and tuples do as well nearly everywhere.",
+        "A vector of three coordinates; `x @ y` and tuples can be used instead nearly everywhere.",
         "values.definite",
         operation="vector",
         result=VECTOR,
@@ -173,10 +173,12 @@ _ALL = (
         "regions.spaces",
     ),
     _class(
-        "Region", "Base class of all regions, for `isinstance` and for regions of one's own.", "regions.base"
+        "Region",
+        "Base class of all regions, for `isinstance` and for regions written in Python.",
+        "regions.base",
     ),
     _class("Shape", "Base class of all shapes, for `isinstance`.", "elements.shapes"),
-    _class("Mutator", "Base class of what adds noise to mutated objects.", "instances.mutators"),
+    _class("Mutator", "Base class of mutators, which add noise to mutated objects.", "instances.mutators"),
     _class("Behavior", "Base class of all behaviors.", "dynamics.definitions"),
     _class("Monitor", "Base class of all monitors.", "dynamics.definitions"),
     _class("Distribution", "Base class of distributions written in Python.", "python.custom_distributions"),
@@ -233,7 +235,7 @@ _ALL = (
     _function("abs(x)", "The absolute value.", None, lifted=True, operation="absolute"),
     _function(
         "round(number, ndigits=None)",
-        "The nearest integer, or number with so many decimals.",
+        "The nearest integer, or the nearest number with `ndigits` decimals.",
         lifted=True,
         operation="round",
         is_complete=True,
@@ -276,12 +278,12 @@ _ALL = (
     ),
     _function(
         "distributionFunction(function)",
-        "Makes a Python function accept random arguments: it is then called with sampled ones.",
+        "Makes a Python function accept random arguments: it is then called with their sampled values.",
         is_complete=True,
     ),
     _function(
         "distributionMethod(method)",
-        "Makes a method written in Python accept random arguments: it is then called with sampled ones.",
+        "Makes a method written in Python accept random arguments: it is then called with their sampled values.",
         "scenic.runtime.python.custom_distributions",
         is_complete=True,
     ),
@@ -355,7 +357,7 @@ _ALL = (
     _external("VerifaiOptions(options)", "An option that an external sampler may choose.", is_complete=True),
     _external("VerifaiParameter", "Base of the values that an external sampler may choose."),
     _external(
-        "TimeSeries(param)", "An external parameter that has another value at every step.", is_complete=True
+        "TimeSeries(param)", "An external parameter that has a new value at every step.", is_complete=True
     ),
     # Shapes
     _shape("BoxShape(dimensions=(1, 1, 1), scale=1)", "A cuboid."),

@@ -176,8 +176,8 @@ def _direction(words: str, condition: str) -> Operator:
         (Operand("target", (VECTOR,)), Operand("base", (ORIENTED_POINT,))),
         "boolean",
         (f"target {words} base",),
-        f"Whether the apparent heading to the target from the base is {condition}. On a border, within a hundredth of "
-        "a degree, it is neither this nor the opposite.",
+        f"True if the apparent heading to the target from the base is {condition}. On a border, within a "
+        "hundredth of a degree, neither this operator nor the opposite one is true.",
     )
 
 
@@ -222,7 +222,7 @@ _ALL = (
         (Operand("base", FRAMES), Operand("offset", FRAMES)),
         "the type of the operands",
         ("base offset by offset",),
-        "The same as `relative to`, reading more naturally for vectors.",
+        "The same as `relative to`, but more natural to read for vectors.",
     ),
     Operator(
         "offset along",
@@ -305,7 +305,7 @@ _ALL = (
         (Operand("target", (VECTOR,)), Operand("base", (ORIENTED_POINT,), EGO)),
         "scalar",
         ("distance past target", "distance past target of base"),
-        "How far the base is ahead of the target, measured along the heading of the base.",
+        "The distance by which the base is ahead of the target, measured along the heading of the base.",
         functions=(Function("DistancePast(X, Y=None)"),),
     ),
     Operator(
@@ -350,7 +350,7 @@ _ALL = (
         (Operand("region", (REGION,)), Operand("viewer", (POINT,), EGO)),
         "region",
         ("visible region", "region visible from viewer"),
-        "The part of a region that the viewer's view volume covers; nothing occludes here.",
+        "The part of a region that the viewer's view volume covers; occlusion is ignored.",
         functions=(
             Function("Visible(region)"),
             Function("VisibleFromOp(region, base)"),
@@ -361,7 +361,7 @@ _ALL = (
         (Operand("region", (REGION,)), Operand("viewer", (POINT,), EGO)),
         "region",
         ("not visible region", "region not visible from viewer"),
-        "The part of a region that the viewer's view volume does not cover; nothing occludes here.",
+        "The part of a region that the viewer's view volume does not cover; occlusion is ignored.",
         functions=(
             Function("NotVisible(region)"),
             Function("NotVisibleFromOp(region, base)"),
@@ -372,7 +372,7 @@ _ALL = (
         (Operand("viewer", (POINT,)), Operand("target", (VECTOR, POINT))),
         "boolean",
         ("viewer can see target",),
-        "Whether the viewer sees the target past the other objects. For requirements and dynamic code only.",
+        "True if the viewer sees the target past the other objects. For requirements and dynamic code only.",
         reads_scene=True,
         functions=(Function("CanSee(X, Y)"),),
     ),
@@ -381,7 +381,7 @@ _ALL = (
         (Operand("first", (OBJECT, REGION)), Operand("second", (OBJECT, REGION))),
         "boolean",
         ("first intersects second",),
-        "Whether two objects or regions share a point.",
+        "True if two objects or regions share a point.",
         functions=(Function("Intersects(X, Y)"),),
     ),
     *(

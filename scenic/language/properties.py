@@ -153,7 +153,7 @@ _POINT = BuiltinClass(
             "Horizontal and vertical angle of view.",
             unit="rad",
         ),
-        _P("visibleDistance", (SCALAR,), Constant(50), "How far it sees, in metres.", unit="m"),
+        _P("visibleDistance", (SCALAR,), Constant(50), "Range of the view, in metres.", unit="m"),
         _P(
             "viewRayDensity",
             (SCALAR,),
@@ -170,7 +170,7 @@ _POINT = BuiltinClass(
             "viewRayDistanceScaling",
             (BOOLEAN,),
             Constant(False),
-            "Whether more rays are sent to things farther away.",
+            "True if more rays are cast towards more distant things.",
         ),
         _P(
             "regionContainedIn",
@@ -307,7 +307,10 @@ _ORIENTED_POINT = BuiltinClass(
             is_method=True,
         ),
         Attribute(
-            "distancePast", "scalar", "How far this is ahead of a point, along its heading.", is_method=True
+            "distancePast",
+            "scalar",
+            "The distance by which this is ahead of a point, along its heading.",
+            is_method=True,
         ),
     ),
 )
@@ -355,9 +358,9 @@ _OBJECT = BuiltinClass(
             "present",
             (BOOLEAN,),
             Constant(True),
-            "Whether it takes part in the scene at all; random for a random number of objects.",
+            "True if the object is in the scene; random for a random number of objects.",
         ),
-        _P("allowCollisions", (BOOLEAN,), Constant(False), "Whether it may overlap other objects."),
+        _P("allowCollisions", (BOOLEAN,), Constant(False), "True if it may overlap other objects."),
         _P(
             "regionContainedIn",
             (REGION, NONE),
@@ -381,19 +384,19 @@ _OBJECT = BuiltinClass(
             "sideComponentThresholds",
             (_words("three pairs of scalars"),),
             Constant(((-0.5, 0.5),) * 3, "((-0.5, 0.5),) * 3"),
-            "How steep a face may be and still belong to the surface of a side, per axis.",
+            "Limits of the components of a normal, per axis, beyond which a face belongs to the surface of a side.",
         ),
-        _P("cameraOffset", (VECTOR,), Constant((0, 0, 0)), "Where it sees from, in its own frame."),
+        _P("cameraOffset", (VECTOR,), Constant((0, 0, 0)), "The position of its eye, in its own frame."),
         _P(
             "visionSensorOffset",
             (VECTOR,),
             "(0, length / 2, 0)",
-            "Where vision sensors are mounted.",
+            "The default position of its vision sensors, in its own frame.",
             ("length",),
         ),
-        _P("requireVisible", (BOOLEAN,), Constant(False), "Whether the ego must see it."),
-        _P("occluding", (BOOLEAN,), Constant(True), "Whether it hides what is behind it."),
-        _P("showVisibleRegion", (BOOLEAN,), Constant(False), "Whether pictures show its view volume."),
+        _P("requireVisible", (BOOLEAN,), Constant(False), "True if the ego must see it."),
+        _P("occluding", (BOOLEAN,), Constant(True), "True if it hides things behind it."),
+        _P("showVisibleRegion", (BOOLEAN,), Constant(False), "True if pictures show its view volume."),
         _P(
             "color",
             (COLOR, NONE),
@@ -431,13 +434,13 @@ _OBJECT = BuiltinClass(
             "behavior",
             (_words("behavior"), NONE),
             Constant(None),
-            "What it does during a simulation.",
+            "Its behavior in simulations.",
         ),
         _P(
             "lastActions",
             (_words("tuple of actions"),),
             Constant(()),
-            "The actions that it took last; none while it decides.",
+            "The actions that it took last; empty while it decides.",
         ),
         _P("sensors", (_words("dictionary of sensors"),), Constant({}), "Its sensors by name."),
         _P(
@@ -463,25 +466,25 @@ _OBJECT = BuiltinClass(
             "inradius", "scalar", "A distance from the position within which everything is inside the object."
         ),
         Attribute("planarInradius", "scalar", "The same within the footprint."),
-        Attribute("visibleRegion", "region", "The volume that it sees, if nothing occludes."),
+        Attribute("visibleRegion", "region", "The volume that it sees if nothing occludes it."),
         Attribute("occupiedSpace", "region", "The volume that it fills."),
         Attribute("boundingBox", "region", "The box along the global axes around the volume that it fills."),
         Attribute("surface", "region", "The whole surface."),
         Attribute(
             "onSurface",
             "region",
-            "The surface that `on` this object means; the top surface unless a class overrides it.",
+            "The surface for things placed `on` this object; the top surface unless a class overrides it.",
         ),
         *(
-            Attribute(f"{side}Surface", "region", f"The part of the surface that looks to the {side}.")
+            Attribute(f"{side}Surface", "region", f"The part of the surface on the {side}.")
             for side in _SIDES[0]
         ),
         Attribute(
-            "intersects", "boolean", "Whether it shares a point with an object or region.", is_method=True
+            "intersects", "boolean", "True if it shares a point with an object or region.", is_method=True
         ),
-        Attribute("containsPoint", "boolean", "Whether a point is inside.", is_method=True),
+        Attribute("containsPoint", "boolean", "True if a point is inside.", is_method=True),
         Attribute("distanceTo", "scalar", "Distance from the position to a point.", is_method=True),
-        Attribute("canSee", "boolean", "Whether it sees a point or an object.", is_method=True),
+        Attribute("canSee", "boolean", "True if it sees a point or an object.", is_method=True),
         Attribute(
             "startDynamicSimulation",
             "None",

@@ -93,7 +93,7 @@ def _beside(name: str, axis: str, extent: str, function: str) -> SpecifierDeclar
         "position",
         (f"{name} reference", f"{name} reference by distance"),
         f"Places the object on the {axis} side of the reference, in the reference's frame, so that their bounding "
-        "boxes are the given distance apart. Next to an object and without a distance they all but touch.",
+        "boxes are the given distance apart. Next to an object and without a distance they nearly touch.",
         needs_beside_vector=("orientation",),
         functions=(Function(f"{function}(pos, dist=None)"),),
     )
@@ -141,7 +141,7 @@ _ALL = (
         (),
         "position",
         ("contained in region",),
-        "Like `in`, and the whole object must lie in the region.",
+        "Like `in`, but the whole object must lie in the region.",
         functions=(Function("ContainedIn(region)"),),
     ),
     SpecifierDeclaration(
@@ -151,8 +151,9 @@ _ALL = (
         ("baseOffset", "contactTolerance", "onDirection"),
         "position",
         ("on target",),
-        "Stands the object with its base on a surface: uniformly at random, or, next to another specifier of the "
-        "position, at the projection of that position onto the surface. An object means its top surface.",
+        "Puts the object with its base on a surface: uniformly at random, or, together with another specifier "
+        "of the position, at the projection of that position onto the surface. For an object the surface is its "
+        "top surface.",
         modifies=("position",),
         functions=(Function("On(thing)"),),
     ),
@@ -199,8 +200,8 @@ _ALL = (
         ("regionContainedIn",),
         "position",
         ("visible", "visible from viewer"),
-        "The viewer must see the object. Without another specifier of the position it is uniformly at random among "
-        "the positions where the viewer can.",
+        "Requires that the viewer sees the object. Without another specifier of the position, the position is "
+        "uniformly random among those where the viewer sees the object.",
         reads_workspace=True,
         functions=(
             Function("VisibleFrom(base)"),
@@ -214,8 +215,8 @@ _ALL = (
         ("regionContainedIn",),
         "position",
         ("not visible", "not visible from viewer"),
-        "The viewer must not see the object. Without another specifier of the position it is uniformly at random in "
-        "the object's container.",
+        "Requires that the viewer does not see the object. Without another specifier of the position, the "
+        "position is uniformly random in the object's container.",
         reads_workspace=True,
         functions=(
             Function("NotVisibleFrom(base)"),
@@ -239,7 +240,8 @@ _ALL = (
         (),
         "position",
         ("following field for distance", "following field from start for distance"),
-        "Places the object where following a vector field for a distance leads to, aligned with the field there.",
+        "Places the object at the point reached by following a vector field for a distance, aligned with the "
+        "field there.",
         functions=(Function("Following(field, dist, fromPt=None)", "field fromPt dist"),),
     ),
     SpecifierDeclaration(

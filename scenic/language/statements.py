@@ -81,8 +81,8 @@ _ALL = (
         "model",
         ("model module",),
         frozenset({Place.TOP}),
-        "Uses a world model: everything that the module defines becomes available, and a model given on the command "
-        "line takes its place.",
+        "Uses a world model: all names that the module defines become available. A model given on the command "
+        "line replaces it.",
     ),
     Statement(
         "Param",
@@ -96,7 +96,7 @@ _ALL = (
         "simulator",
         ("simulator value",),
         _TOP_AND_SETUP,
-        "Says which simulator runs the scenes; evaluated only when a simulation is asked for.",
+        "Selects the simulator of the scenes; evaluated only if scenes are simulated.",
         later=frozenset({"value"}),
     ),
     Statement(
@@ -104,7 +104,8 @@ _ALL = (
         "require",
         ("require condition", "require[probability] condition", "require condition as name"),
         _BLOCKS,
-        "Keeps only scenes in which the condition holds. With a probability, it holds at least that often.",
+        "Keeps only scenes in which the condition holds. With a probability p in brackets, the condition holds "
+        "in at least that share of the scenes.",
     ),
     Statement(
         "RequireMonitor",
@@ -126,7 +127,7 @@ _ALL = (
         "mutate",
         ("mutate", "mutate object, ... by scale"),
         _TOP_AND_SETUP,
-        "Adds noise to the position and orientation of objects, of all objects so far if none is named.",
+        "Adds noise to the position and orientation of the named objects, or of all objects so far.",
     ),
     Statement(
         "TerminateWhen",
@@ -141,7 +142,8 @@ _ALL = (
         "terminate after",
         ("terminate after duration",),
         _TOP_AND_SETUP,
-        "Ends the scenario after a number of seconds or steps. Of several, the earliest counts.",
+        "Ends the scenario after a number of seconds or steps. If there are several such statements, the "
+        "earliest end counts.",
     ),
     Statement(
         "Terminate",
@@ -176,7 +178,7 @@ _ALL = (
         "wait for",
         ("wait for duration",),
         _DYNAMIC,
-        "Takes no action for so many seconds or steps.",
+        "Takes no action for a number of seconds or steps.",
         suspends=True,
         effect=Effect.DELEGATE,
         method="wait",
@@ -250,7 +252,7 @@ _ALL = (
         "behavior",
         ("behavior name(parameters): ...",),
         _TOP_AND_SETUP,
-        "Defines what an agent does during a simulation.",
+        "Defines the actions of an agent during a simulation.",
     ),
     Statement(
         "MonitorDef",
@@ -271,15 +273,15 @@ _ALL = (
         "guard",
         ("precondition: condition", "invariant: condition"),
         frozenset({Place.BEHAVIOR, Place.SETUP}),
-        "A condition of a behavior or scenario, before its other statements: a precondition must hold when it starts, "
-        "an invariant whenever it goes on.",
+        "A condition of a behavior or scenario, before its other statements: a precondition must hold when it "
+        "starts, an invariant whenever it continues.",
     ),
     Statement(
         "PropertyDef",
         "property definition",
         ("name: default", "name[additive]: default", "name[dynamic]: default", "name[final]: default"),
         frozenset({Place.CLASS}),
-        "Defines a property of the class with its default, which is evaluated for every instance afresh and may read "
+        "Defines a property of the class with its default, which is evaluated for each instance and may read "
         "other properties as `self.name`.",
     ),
 )

@@ -75,7 +75,7 @@ SCALAR_OR_VECTOR: Final = Type(
     kinds=INSTANCES | {"vector", "number", "boolean"},
     lengths=frozenset({2, 3}),
 )
-"""Either, not converted: a tuple is no vector here."""
+"""Either, not converted: a tuple is not a vector here."""
 HEADING: Final = Type(
     "heading",
     "a heading",

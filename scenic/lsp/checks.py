@@ -1,4 +1,4 @@
-"""When documents are checked, and who is told what was found.
+"""The schedule of checks of documents, and the publication of their findings.
 
 A check begins a moment after a change, beside the loop. A change that arrives while it runs makes it worthless, unless
 the client has waited too long for any result.
@@ -52,9 +52,9 @@ class Checks:
         self._since: dict[str, float] = {}
         """By document: when the first change came that no result has covered yet."""
         self._pulled: set[str] = set()
-        """The documents that the client asks for itself."""
+        """The documents whose problems the client requests itself."""
         self._told: set[str] = set()
-        """The documents of which the client has been told something that it should forget one day."""
+        """The documents with published problems that have to be withdrawn later."""
         self._others: asyncio.TimerHandle | None = None
         self._troubled: dict[str, tuple[Diagnostic, ...]] = {}
         """By document: the problems of its settings that are shown."""
@@ -124,7 +124,7 @@ class Checks:
             self._session.have_asked_again("diagnostics")
 
     def pulled(self, uri: str) -> None:
-        """The client asks for a document's problems: they are no longer sent as well, or it would show them twice.
+        """Stop sending the problems of a document that the client requests itself, which it would show twice.
 
         A client that does not say that it can ask goes by what it is sent, whatever it tries besides.
         """

@@ -17,7 +17,7 @@ _BREATH: Final = 0.05
 """Seconds after a check without a message after which the young objects are looked at."""
 
 _OFTEN: Final = 100
-"""After so many checks, all garbage is looked for."""
+"""Number of checks between full garbage collections."""
 
 
 class Garbage:

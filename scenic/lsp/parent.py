@@ -15,7 +15,7 @@ INTERVAL: Final = 1.0
 
 
 def watch(process: int, gone: Callable[[], None]) -> None:
-    """Call ``gone`` once, in a thread of its own, when there is no process of this number any more."""
+    """Call ``gone`` once, in a thread of its own, when no process has this number any more."""
 
     def look() -> None:
         while is_alive(process):
@@ -26,7 +26,7 @@ def watch(process: int, gone: Callable[[], None]) -> None:
 
 
 def is_alive(process: int) -> bool:
-    """Return whether a process of this number runs. One that has ended, but that nobody has asked for, does not."""
+    """Return whether a process of this number runs. A process that has ended, but whose exit code nobody has read, does not run."""
     if sys.platform == "win32":
         return _is_alive_on_windows(process)
     if process <= 0:

@@ -79,7 +79,7 @@ class Protocol(LanguageServerProtocol):
         self.stage = Stage.NEW
         self.loop: asyncio.AbstractEventLoop | None = None
         self.exited: Callable[[], None] = lambda: None
-        """Called when the client says to exit."""
+        """Called when the client sends ``exit``."""
         self.touched: Callable[[], None] = lambda: None
         """Called when a message comes."""
         self.log: Callable[[str], None] = lambda _message: None
@@ -113,7 +113,7 @@ class Protocol(LanguageServerProtocol):
         return data
 
     def unreadable(self, error: Exception) -> None:
-        """Answer what is no JSON."""
+        """Answer a message that is not JSON."""
         wrong = JsonRpcParseError(f"the message cannot be read: {error}")
         self._send_response(None, error=wrong.to_response_error())
 
@@ -281,7 +281,7 @@ class Protocol(LanguageServerProtocol):
             )
 
     def _send_data(self, data: Any) -> None:
-        """Send a message, from any thread. A client that has gone is not told; the reader notices."""
+        """Send a message, from any thread. If the client is gone, nothing is raised; the reader notices it."""
         try:
             # Escapes for what is not ASCII also carry lone surrogates, which programs may hold.
             body = json.dumps(data, default=self._serialize_message, separators=(",", ":"))

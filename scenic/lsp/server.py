@@ -138,7 +138,7 @@ def _listens(kind: str, address: Any) -> None:
 
 
 def serve() -> int:
-    """Serve one client over standard input and output until it says to exit, or goes away; returns the exit code."""
+    """Serve one client over standard input and output until it sends ``exit`` or disconnects; return the exit code."""
     with os.fdopen(os.dup(sys.stdout.fileno()), "wb") as output, redirect_stdout(sys.stderr):
         # Whatever else is printed must not get between the messages.
         return _serve(Server(), lambda server: server.start_io(None, output))

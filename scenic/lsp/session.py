@@ -46,7 +46,7 @@ _REFRESHED: Final = {
 
 
 class Results:
-    """The last result of each document for which a client may ask what has changed since."""
+    """The last result for each document, from which a client may request the changes."""
 
     def __init__(self) -> None:
         self._kept: dict[str, tuple[str, list[int]]] = {}
@@ -75,9 +75,9 @@ class Session:
     def __init__(self, protocol: "Protocol", idle: threading.Event, *, trusting: bool) -> None:
         self.protocol = protocol
         self.trusting = trusting
-        """True if the client can be believed when it says that programs may be run."""
+        """True if the client's statement that programs may be run can be trusted."""
         self.client = types.ClientCapabilities()
-        """The capabilities of the client, as it says at the beginning."""
+        """The capabilities that the client reports at the beginning."""
         self.encoding = Encoding.UTF16
         self.documents: dict[str, Document] = {}
         self.folders: dict[str, str] = {}
@@ -93,7 +93,7 @@ class Session:
         """For work that mostly waits."""
         self.tokens = Results()
         self.generation = 0
-        """Grows whenever what one document says of others may have changed."""
+        """A number that grows whenever the facts that one document implies for others may have changed."""
         self.project = Project()
         self._in_project: dict[str, Document] = {}
         """By file name: the version of each open document that the project knows."""
@@ -155,7 +155,7 @@ class Session:
         return document
 
     def close(self, uri: str) -> bool:
-        """Give a document up; tells whether it was open."""
+        """Close a document; return whether it was open."""
         document = self.documents.pop(uri, None)
         if document is None:
             return False
@@ -183,7 +183,7 @@ class Session:
         self.have_asked_again(*_REFRESHED)
 
     def have_asked_again(self, *features: str) -> None:
-        """Tell the client, if it can be told, that answers about some features may be others now."""
+        """Notify the client, if it supports that, that answers for some features may have changed."""
         for what in features:
             if self.can(f"workspace.{what}.refresh_support"):
                 self.ask(_REFRESHED[what], None)
@@ -207,7 +207,7 @@ class Session:
         return self.project
 
     def workspace_snapshots(self) -> list[tuple[str, Callable[[], Snapshot]]]:
-        """The files of the workspace, each with what gives its snapshot: made when it is first asked for."""
+        """The files of the workspace, each with a function that returns its snapshot, made on first use."""
         opened = {
             each.snapshot.filename: each.snapshot for each in self.documents.values() if each.is_program
         }
@@ -310,7 +310,7 @@ class Session:
         return future
 
     def outdate(self, uri: str) -> None:
-        """Give up what is being worked out for a version of a document that is no longer there."""
+        """Cancel the computations for an outdated version of a document."""
         for future, document in list(self._working.items()):
             if document == uri and not future.done():
                 code = types.LSPErrorCodes.ServerCancelled
@@ -318,7 +318,7 @@ class Session:
                 future.set_exception(JsonRpcException("the document has changed", code, again))
 
     def later(self, delay: float, action: Callable[[], None]) -> asyncio.TimerHandle:
-        """Have an action done in the event loop after so many seconds."""
+        """Schedule an action in the event loop after a number of seconds."""
         return asyncio.get_running_loop().call_later(delay, action)
 
     # Messages to the client
@@ -328,7 +328,7 @@ class Session:
         self.protocol.notify(method, params)
 
     def ask(self, method: str, params: Any) -> "Future[Any]":
-        """Ask the client something; the future has what it says, as JSON."""
+        """Send the client a request; return a future of its answer, as JSON."""
         return self.protocol.send_request(method, params)
 
     def log(self, message: str, *, error: bool = False) -> None:

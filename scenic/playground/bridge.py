@@ -17,7 +17,7 @@ __all__ = ["connect_language_server"]
 
 _LARGEST: Final = 64 << 20
 _PATIENCE: Final = 2.0
-"""Seconds in which a server whose client has gone may end by itself."""
+"""Seconds that a server has to end after its client has gone."""
 
 
 async def connect_language_server(connection: ServerConnection, *, folder: Path) -> None:

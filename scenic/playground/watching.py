@@ -37,7 +37,7 @@ class View:
 
 
 class Watch:
-    """Follows a program, and samples it anew when it or a module beside it is saved.
+    """Follows a program, and samples it again when it or a module beside it is saved.
 
     Args:
         path: the program.

@@ -119,7 +119,7 @@ def _class(project: Project, symbol: Symbol, depth: int) -> Class | None:
 
 
 def _built_in(symbol: Symbol) -> Class:
-    """A class of the language; of those that are no classes of objects, members are not declared."""
+    """A class of the language; only classes of objects have declared members."""
     name = symbol.name
     if name not in CLASSES:
         return Class(symbol, (), (), False, False)
@@ -221,7 +221,7 @@ def _set_by_methods(module: Module, symbol: Symbol, node: ast.ClassDef) -> list[
 
 
 def meaning(project: Project, module: Module, node: ast.expr) -> Symbol | None:
-    """The meaning of a name or an attribute of a program; ``None`` if that cannot be told."""
+    """The meaning of a name or an attribute of a program; ``None`` if it is unknown."""
     return _meaning(project, module, node, 0)
 
 
@@ -292,7 +292,7 @@ def module_behind(project: Project, module: Module, node: ast.expr) -> Found | N
 
 
 def class_of(project: Project, module: Module, node: ast.expr) -> Symbol | None:
-    """The class of the value of an expression, where the text tells it.
+    """The class of the value of an expression, if the text shows it.
 
     That is so of ``new C`` and ``C(...)``, of what is annotated, of elements of sequences, and of names of such values.
     """
@@ -344,12 +344,12 @@ def _alike(values: Iterable[_Value | None]) -> _Value | None:
 
 
 def _single(value: _Value | None) -> Symbol | None:
-    """The class of a value that is no sequence."""
+    """The class of a value that is not a sequence."""
     return None if value is None or value.is_sequence else value.cls
 
 
 def _of_attribute(project: Project, meant: Symbol | None, depth: int) -> _Value | None:
-    """The value of an attribute that means this; long chains of attributes ask for the meaning of each once."""
+    """The value of an attribute with this meaning; in long chains of attributes, each meaning is computed once."""
     return None if meant is None else _annotated_symbol(project, meant, depth, called=False)
 
 

@@ -94,7 +94,7 @@ class Imports:
         )
 
     def is_missing(self, alias: ast.alias) -> bool:
-        """Return whether there is no such module, or the module is not known to have such a name."""
+        """Return whether the module does not exist, or is not known to have the name."""
         statement = self._statements.get(alias)
         if statement is None:
             return self._project.find(alias.name, importer=self._source.filename).is_missing
@@ -153,7 +153,7 @@ class Imports:
     # What is wrong with them
 
     def findings(self) -> Iterator[Diagnostic]:
-        """SC212 (a module lacks a name), SC213 (nothing is known of a module) and SC406 (there is no such module)."""
+        """SC212 (a module lacks a name), SC213 (nothing is known about a module) and SC406 (a module does not exist)."""
         for model in self._models:
             yield from self._module_findings(self.found(model), model, model.name, 0)
         for plain in self._plain:
@@ -286,7 +286,7 @@ class Imports:
             yield self._without(home.name, node.attr, exports, place)
 
     def _is_stored(self, node: ast.Attribute) -> bool:
-        """Tell whether the program gives a module such an attribute somewhere."""
+        """Return whether the program gives a module such an attribute somewhere."""
         return any(
             other.attr == node.attr and not isinstance(other.ctx, ast.Load)
             for other, _ in self._resolution.nodes(ast.Attribute)
@@ -325,7 +325,7 @@ class Imports:
         return Fix(f"Write `{near}`", tuple(edits), is_slip(name, near))
 
     def _is_guarded(self, node: ast.AST) -> bool:
-        """Tell whether a node stands in a ``try`` that catches errors, so that its failure may be provided for."""
+        """Return whether a node stands in a ``try`` that catches errors, so that its failure may be provided for."""
         return any(first <= position(node) <= last for first, last in self._guards)
 
     @cached_property

@@ -93,7 +93,7 @@ class _Gathering:
 
 
 class Project:
-    """The modules of a project, found and parsed when they are first asked for.
+    """The modules of a project, found and parsed on first use.
 
     ``roots`` are the folders of the workspace, ``python_path`` the folders that its settings name besides. Files that an
     editor holds are given by `open`; those on disk are taken to stay as they are until `refresh`. `Module` objects are
@@ -150,7 +150,7 @@ class Project:
             self._forget()
 
     def refresh(self) -> bool:
-        """Look at the files again, and read those that have changed; tells whether any has."""
+        """Check the files again, and read the changed ones; return whether any has changed."""
         changed = False
         for filename, entry in list(self._entries.items()):
             if _stamp(filename) != entry.stamp:
@@ -338,7 +338,7 @@ class Project:
         return exported if inner.is_missing else inner
 
     def _is_own_module(self, exported: Exported, found: Found) -> bool:
-        """Tell whether ``from . import name`` in a package itself binds a name: it can only bring the module of that name."""
+        """Return whether ``from . import name`` in a package itself binds a name: it can only bring the module of that name."""
         module, binding = exported.module, exported.binding
         if module is None or binding is None or module.filename != found.filename:
             return False
@@ -415,7 +415,7 @@ def _compiled(found: Found) -> Exports:
 
 
 def _is_foreign(found: Found) -> bool:
-    """Tell whether a compiled module lies outside of Python's own library, whatever its name."""
+    """Return whether a compiled module lies outside of Python's own library, whatever its name."""
     library = os.path.dirname(os.path.abspath(os.__file__))
     inside = found.filename is None or found.filename.startswith(library + os.sep)
     return not inside or "site-packages" in (found.filename or "")

@@ -1,4 +1,4 @@
-"""Road maps that a program names, looked at as far as the text tells which file is meant."""
+"""Checks of the road maps that a program names, if its text shows which file is meant."""
 
 import ast
 import os

@@ -26,7 +26,7 @@ _EMPTY: Final = ast.Module(body=[], type_ignores=[])
 
 @dataclass(frozen=True, eq=False)
 class Module:
-    """A parsed module; ``is_scenic`` tells the language, ``broken`` whether parts of it could not be parsed."""
+    """A parsed module; ``is_scenic`` gives its language, and ``broken`` is true if parts of it could not be parsed."""
 
     source: Source
     tree: ast.Module = field(repr=False)
@@ -130,7 +130,7 @@ class Module:
         return name in self._derived
 
     def derived(self, name: str, compute: Callable[[], _T]) -> _T:
-        """The result of a computation from the module, made when it is first asked for, under a name."""
+        """The result of a computation from the module, computed on first use and kept under a name."""
         known = self._derived.get(name)
         if known is None:
             known = self._derived[name] = compute()
@@ -190,7 +190,7 @@ class Module:
 def read_module(
     source: Source, *, tree: ast.Module | None = None, resolution: Resolution | None = None
 ) -> Module:
-    """Parse and bind a module; the ending of the filename tells the language. Never raises.
+    """Parse and bind a module; the ending of the filename selects the language. Never raises.
 
     ``tree`` is the tree of the text, and ``resolution`` what its names are bound to, where that is already known.
     """

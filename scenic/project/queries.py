@@ -104,7 +104,7 @@ def _occurrences(
 
 
 def _words(node: Any, module: Module) -> Iterator[Occurrence]:
-    """The names in a node that are no nodes of their own."""
+    """The names in a node that are not nodes of their own."""
     if not isinstance(node, _WITH_WORDS):
         return
     match node:

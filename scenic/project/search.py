@@ -214,7 +214,7 @@ class Finder:
         return entries
 
     def _is_folder(self, base: str, parts: list[str]) -> bool:
-        """Tell whether ``parts`` lead from ``base`` to a folder, of exactly these names also where case does not matter."""
+        """Return whether ``parts`` lead from ``base`` to a folder, of exactly these names also where case does not matter."""
         for part in parts:
             if part not in self._list(base):
                 return False
@@ -234,7 +234,7 @@ class Finder:
         return self._initial(os.path.join(home, parts[-1]), SUFFIXES) if parts[-1] in entries else None
 
     def _enters(self, base: str, parts: list[str]) -> bool:
-        """Tell whether the folders exist that a dotted name goes through."""
+        """Return whether the folders exist that a dotted name goes through."""
         for part in parts[:-1]:
             if part not in self._list(base):
                 return False

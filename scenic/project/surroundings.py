@@ -24,7 +24,7 @@ __all__ = ["surroundings_in"]
 
 
 def surroundings_in(project: Project, *, verbose: bool = False) -> SurroundingsOf:
-    """Finds out about the imports of programs of a project; if ``verbose``, also says which ones nothing is known of."""
+    """Resolves the imports of programs of a project; if ``verbose``, also reports unknown ones."""
 
     def surroundings_of(tree: ast.Module, source: Source, resolution: Resolution) -> Surroundings:
         return _Surroundings(project, tree, source, resolution, verbose)

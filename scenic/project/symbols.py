@@ -73,7 +73,7 @@ class Symbol:
 
     @property
     def documentation(self) -> str | None:
-        """Its docstring, or what the language says about it."""
+        """Its docstring, or the language's documentation of it."""
         return documentation_of(self)
 
 
@@ -183,7 +183,7 @@ def symbols_of(module: Module) -> tuple[Symbol, ...]:
 
 
 def documentation_of(symbol: Symbol) -> str | None:
-    """The docstring of a symbol, or what the language says about it; ``None`` if there is none."""
+    """The docstring of a symbol, or the language's documentation of it; ``None`` if it has neither."""
     if symbol.is_builtin:
         declared = NAMES.get(symbol.name)
         if declared is None:

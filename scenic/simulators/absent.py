@@ -9,7 +9,7 @@ __all__ = ["AbsentSimulator"]
 
 
 class AbsentSimulator(DrivingSimulator):
-    """Stands for a simulator that there is no adapter to: its scenes can be sampled, and not run.
+    """Placeholder for a simulator without an adapter: its scenes can be sampled, but not run.
 
     Args:
         name: of the simulator.

@@ -9,7 +9,7 @@ __all__ = ["Action"]
 
 
 class Action(Carrier, ABC):
-    """Base of actions. What a program has made before the simulation holds sampled values within it."""
+    """Base of actions. In a simulation, an action made by the program before it contains sampled values."""
 
     def canBeTakenBy(self, agent: Any) -> bool:
         """Return whether an agent is able to take the action."""

@@ -27,7 +27,7 @@ class SimulatorChoiceError(Located):
 
 @dataclass(frozen=True, slots=True)
 class Numbered:
-    """Simulation ``k`` of a seed: none if there is no scene or all tries were rejected."""
+    """Simulation ``k`` of a seed, without a simulation if there is no scene or all tries were rejected."""
 
     k: int
     seed: int

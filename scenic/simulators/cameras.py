@@ -63,5 +63,5 @@ class Present:
         self.folder = scene.folder
 
     def origin(self, thing: Any) -> Any:
-        """Raise ``KeyError``: nobody asks for the origins of objects while images are made."""
+        """Raise ``KeyError``: origins of objects are not needed while images are made."""
         raise KeyError(thing)

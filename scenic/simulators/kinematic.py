@@ -1,4 +1,4 @@
-"""A simulator without forces: agents move as their model says, and pass through each other.
+"""A simulator without forces: agents move by their model, and pass through each other.
 
 The model of an object is its property ``dynamics``: ``"point"`` (the default), ``"differential"``, ``"bicycle"`` or
 ``"quadrotor"``; ``"free"`` and ``"guided"``, which other simulators tell apart, are points here, and ``"static"`` is one that

@@ -69,16 +69,16 @@ class Replay:
 
 
 class Conditioned:
-    """Draws of an earlier simulation where they are wanted, new ones elsewhere; for the ``source`` of `Simulator.simulate`.
+    """Selected draws of an earlier simulation, and new draws otherwise; for the ``source`` of `Simulator.simulate`.
 
     Args:
         replay: the bytes of the earlier simulation's `getReplay`.
-        until: only draws of the steps before this one are kept: all that happened before happens again.
+        until: only draws of the steps before this one are kept, so that these steps are the same.
         agents: only draws of the behaviors of these objects are kept, by their places in the simulation; ``None`` among them
             stands for scenarios and monitors.
-        keep: only draws for which this holds are kept; it is asked when something is drawn.
+        keep: only draws for which this function returns true are kept; it is called at each draw.
 
-    What a new simulation draws where the earlier one did not is new in any case.
+    Draws that the earlier simulation did not make are always new.
 
     """
 

@@ -57,7 +57,7 @@ class SimulationState(tuple[Any, ...]):
 
 
 class NotKeptError(LookupError):
-    """Somebody asked for what a simulation does not keep of its course."""
+    """The error for reading a part of a simulation's course that is not kept."""
 
     @classmethod
     def behind(cls, error: BaseException | None) -> bool:
@@ -83,7 +83,7 @@ class Latest(Sequence[Any]):
         self.newest: list[Any] = []
         """The newest member, if there is one."""
         self.missed = False
-        """True if somebody asked for a member that is not kept."""
+        """True if a member that is not kept has been read."""
 
     def append(self, value: Any) -> None:
         """The next member."""

@@ -55,25 +55,25 @@ class Simulation(ABC):
 
     Args:
         scene: what to simulate.
-        maxSteps: after how many steps to end at the latest; ``None`` for no limit.
+        maxSteps: largest number of steps; ``None`` for no limit.
         name: of the simulation, for files and messages.
         timestep: seconds in a step (1 if ``None``).
         replay: the bytes of an earlier simulation's `getReplay`, whose random draws are used again.
-        enableReplay: whether to keep what `getReplay` needs.
-        allowPickle: accepted for compatibility; replays hold numbers only.
+        enableReplay: keep the data that `getReplay` needs.
+        allowPickle: accepted for compatibility; replays contain numbers only.
         enableDivergenceCheck: whether to keep the dynamic properties of all steps, and to compare with those of a replay.
-        divergenceTolerance: by how much numbers may differ.
-        continueAfterDivergence: whether to go on with other draws then, rather than to raise `DivergenceError`.
+        divergenceTolerance: largest difference between numbers that is not a divergence.
+        continueAfterDivergence: continue with new draws after a divergence, rather than raise `DivergenceError`.
         verbosity: what to print, 3 for objects, steps and actions.
         key: decides all random draws; drawn from Python's ``random`` if ``None``.
-        source: what random numbers come from, given the source that hashes with the key; that one if ``None``.
-        robustness: whether to compute by how much requirements hold.
+        source: function that returns the source of random numbers, given the source that hashes with the key; ``None`` for the latter.
+        robustness: compute the robustness of the requirements.
         keep_violations: let a simulation in which a requirement is violated run to its end, rather than reject it.
         stuck_after: seconds that the program's code may run in one step before `StuckBehaviorWarning` names its line; 0 for ever,
             `patience` by default.
         stuck_is_error: raise `StuckBehaviorError` then.
-        keep_course: keep all states and actions, and what is recorded to files; if not, memory does not grow with the steps but
-            by other records, and the result holds the last state and the last actions.
+        keep_course: keep all states and actions, and records in files. If false, only other records need more memory with
+            each step, and the result contains the last state and the last actions.
         keep_poses: keep position and orientation of every object at every step in `poses`.
         on_state: called for each state.
         deferred: do not run now: the caller calls `begin`, then `advanceOnce` until it returns false.
@@ -82,8 +82,8 @@ class Simulation(ABC):
         objects: the objects, first those of the scene. While the simulation runs they are copies, whose properties change; then
             again those of the scene.
         agents: those with behaviors.
-        result: once it has ended; a `SimulationResult`.
-        records: what has been recorded so far.
+        result: a `SimulationResult`, once the simulation has ended.
+        records: the records so far.
         currentTime: steps made.
         trajectory: the states so far.
 
@@ -306,7 +306,7 @@ class Simulation(ABC):
             )
 
     def _restore(self) -> None:
-        """Put the scene's own objects in the place of the copies that the simulation has changed."""
+        """Replace the copies that the simulation has changed by the scene's own objects."""
         copied = list(self.scene.objects) if self.scene is not self._original else []
         back = {id(copy): item for copy, item in zip(copied, self._original.objects, strict=False)}
         self.objects = [back.get(id(item), item) for item in self.objects]
@@ -337,7 +337,7 @@ class Simulation(ABC):
         """The present values of exactly these properties of an object."""
 
     def scheduleForAgents(self) -> Sequence[Any]:
-        """The agents, in the order in which they decide what to do."""
+        """The agents, in the order in which they choose their actions."""
         return self.agents
 
     def actionsAreCompatible(self, agent: Any, actions: Sequence[Any]) -> bool:
@@ -371,7 +371,7 @@ class Simulation(ABC):
     # What the program calls
 
     def add(self, obj: Any) -> None:
-        """Create an object in the simulator, and let it take part."""
+        """Create an object in the simulator, and add it to the simulation."""
         if self.verbosity >= 3:
             self._tell(f"      Creating object {obj!r}")
         self.objects.append(obj)
@@ -511,7 +511,7 @@ class Simulation(ABC):
     # Replay
 
     def getReplay(self) -> bytes:
-        """The random draws of the simulation, and what is needed to notice another course, as bytes.
+        """The random draws of the simulation, with the data for detecting a divergence, as bytes.
 
         Raises:
             RuntimeError: the simulation ran with ``enableReplay=False``.

@@ -20,7 +20,7 @@ class Simulator(ABC):
     def __init__(self, verbosity: int = 0) -> None:
         self._destroyed = False
         self.verbosity = verbosity
-        """Verbosity of simulations where `simulate` is not told otherwise, from 0 to 3."""
+        """Default verbosity of simulations, from 0 to 3."""
 
     def __enter__(self) -> Self:
         return self
@@ -49,20 +49,20 @@ class Simulator(ABC):
         onRejection: Callable[[Exception], None] | None = None,
         **options: Any,
     ) -> Simulation | None:
-        """Run a scene until a simulation is not rejected; ``None`` if all are.
+        """Simulate a scene until a simulation is not rejected; return ``None`` if all tries are rejected.
 
         Args:
             scene: what to simulate.
             maxSteps: steps of a simulation at most.
             maxIterations: simulations tried.
             timestep: seconds in a step; the simulator's own if ``None``.
-            name: of the simulation; where several may be tried the number of the try is appended.
-            verbosity: what to print, from 0 to 3; that of the simulator if ``None``.
+            name: name of the simulation; if several tries are allowed, the number of the try is appended.
+            verbosity: amount of output, from 0 to 3; the simulator's if ``None``.
             raiseGuardViolations: let a violated guard that nothing catches be raised, rather than reject the simulation.
             replay: bytes of an earlier simulation's `getReplay`.
             enableReplay: see `Simulation`, as all that follow.
             enableDivergenceCheck: keep and compare states.
-            divergenceTolerance: by how much numbers may differ.
+            divergenceTolerance: largest difference between numbers that is not a divergence.
             continueAfterDivergence: go on with other draws.
             allowPickle: has no effect.
             source: what random numbers come from, if they are not hashed: `scenic.Sobol`, `scenic.GivenPoints` (the row of the
@@ -117,7 +117,7 @@ class Simulator(ABC):
     def simulateStepped(
         self, scene: Scene, maxSteps: int | None = None, *, name: str | None = None, **options: Any
     ) -> SteppedSimulation:
-        """A simulation that its caller advances, to be entered by ``with``: it begins there, and is cleaned up at the end.
+        """A simulation that the caller advances. It is a context manager: it begins on entry, and is cleaned up on exit.
 
         Args:
             scene: what to simulate.
@@ -136,7 +136,7 @@ class Simulator(ABC):
         )
 
     def replay(self, scene: Scene, replay: bytes, **options: Any) -> Simulation | None:
-        """Run a scene as an earlier simulation ran, given the bytes of its `getReplay`."""
+        """Repeat an earlier simulation of a scene, given the bytes of its `getReplay`."""
         return self.simulate(scene, replay=replay, **options)
 
     def _runSingleSimulation(
@@ -153,7 +153,7 @@ class Simulator(ABC):
 
     @abstractmethod
     def createSimulation(self, scene: Scene, **options: Any) -> Simulation:
-        """A simulation of a scene, which has run; ``options`` are for the constructor of `Simulation`."""
+        """Run and return a simulation of a scene; ``options`` are for the constructor of `Simulation`."""
 
     def destroy(self) -> None:
         """Clean up, once; the simulator cannot be used any more."""

@@ -12,7 +12,7 @@ __all__ = ["Report"]
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """The diagnostics of a run, in order, with the texts they speak of.
+    """The diagnostics of a run, in order, with the texts that they refer to.
 
     ``files`` is how many files were checked, ``fixed`` how many repairs were made in them, ``exit_code`` what the
     command ends with; ``colour`` says whether the output is for a terminal that has colours.

@@ -1,4 +1,4 @@
-"""The source texts that diagnostics speak of, read when they are first shown."""
+"""The source texts that diagnostics refer to, read when they are first shown."""
 
 from collections.abc import Iterable
 

@@ -51,7 +51,7 @@ class StatementActions(DefinitionActions, ExpressionActions):
                 )
 
     def _may_precede_guards(self, statement: ast.stmt) -> bool:
-        """Tell whether a statement is documentation, or the beginning of a guard that is being typed."""
+        """Return whether a statement is documentation, or the beginning of a guard that is being typed."""
         match statement:
             case ast.Expr(value=ast.Constant(value=str())):
                 return True

@@ -79,7 +79,7 @@ _LINTS: Final[tuple[PieceRule, ...]] = (
 _PROGRAM_RULES: Final[tuple[ProgramRule, ...]] = (flow.check_end, order.check_order, uses.check_uses)
 
 MOST_OF_ONE_CODE: Final = 200
-"""So many findings of one kind are told."""
+"""Largest number of findings of one kind that are reported."""
 
 NOTED: Final = frozenset(
     {

@@ -1,4 +1,4 @@
-"""Degrees where radians are meant: numbers that are no angle in radians, in places declared to take one."""
+"""Degrees where radians are meant: numbers too large for an angle in radians, in places declared to take one."""
 
 import ast
 import math

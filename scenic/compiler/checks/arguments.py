@@ -259,7 +259,7 @@ def _uncalled(value: ast.expr | None, context: Context) -> Iterator[Diagnostic]:
 
 
 def _returns(function: ast.FunctionDef, context: Context) -> bool:
-    """Tell whether calls of a function may give anything else than ``None``."""
+    """Return whether calls of a function may give anything else than ``None``."""
     scope = context.resolution.scope(function)
     return any(
         where is scope and (cls is not ast.Return or node.value is not None)

@@ -77,7 +77,7 @@ _SHORTEST: Final = 5
 
 
 def _is_slip(name: str, meant: str) -> bool:
-    """Tell whether a new property is more likely an old one mistyped: a letter missing, doubled or swapped, no other word."""
+    """Return whether a new property is more likely an old one mistyped: a letter missing, doubled or swapped, no other word."""
     if len(meant) < _SHORTEST or name[0] != meant[0] or not name.isalpha() or meant + "s" == name:
         return False
     if distance(name, meant, limit=1) > 1:

@@ -1,4 +1,4 @@
-"""The properties of the classes that a program uses, as far as its text tells."""
+"""The properties of the classes that a program uses, as far as its text shows them."""
 
 import ast
 from collections.abc import Callable, Iterator, Mapping

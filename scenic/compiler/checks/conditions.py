@@ -1,4 +1,4 @@
-"""Conditions that are the same whatever happens, as far as their literals tell."""
+"""Conditions that are always the same, judged by their literals."""
 
 import ast
 import operator
@@ -28,7 +28,7 @@ _COMPARISONS: Final[Mapping[type[ast.cmpop], Callable[[Any, Any], Any]]] = Mappi
 
 
 def truth(condition: ast.expr) -> bool | None:
-    """Return whether a condition always or never holds, by its literals alone; ``None`` if that cannot be told."""
+    """Return whether a condition always or never holds, by its literals alone; ``None`` if the literals do not decide it."""
     negated = False
     while isinstance(condition, ast.UnaryOp) and isinstance(condition.op, ast.Not):
         negated = not negated
@@ -116,7 +116,7 @@ def _loop(node: ast.While, _scope: Scope, context: Context) -> Iterator[Diagnost
 
 
 def _makes_generator(body: list[ast.stmt]) -> bool:
-    """Tell whether a block holds a lone ``yield``: it may be there to make a generator of a function."""
+    """Return whether a block holds a lone ``yield``: it may be there to make a generator of a function."""
     return len(body) == 1 and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Yield)
 
 
@@ -149,7 +149,7 @@ def _constant(condition: ast.expr, context: Context, what: str, *, literals: boo
 
 
 def _comparison(node: ast.Compare, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
-    """``x == x``; ``x != x`` is how one asks for a value that is not a number."""
+    """``x == x``; ``x != x`` is excepted, since it tests for a value that is not a number."""
     left = node.left
     for op, right in zip(node.ops, node.comparators, strict=False):
         if type(op) is not ast.NotEq and _same(left, right):
@@ -166,7 +166,7 @@ def _comparison(node: ast.Compare, _scope: Scope, context: Context) -> Iterator[
 
 
 def _same(first: ast.expr, second: ast.expr) -> bool:
-    """Tell whether two expressions are the same name, or the same attribute of the same name."""
+    """Return whether two expressions are the same name, or the same attribute of the same name."""
     while isinstance(first, ast.Attribute) and isinstance(second, ast.Attribute):
         if first.attr != second.attr:
             return False

@@ -50,7 +50,7 @@ HEADED: Final = (
     scenic.MonitorDef,
     scenic.ScenarioDef,
 )
-"""Statements after which what could not be parsed is no longer taken for the header of what follows."""
+"""Statements after which an unparsed text no longer counts as the header of the following block."""
 
 Definition = (
     ast.FunctionDef
@@ -63,7 +63,7 @@ Definition = (
 
 
 class Context:
-    """A program under examination. What several rules need is computed once, when it is first asked for."""
+    """A program under examination. Facts that several rules need are computed once, on first use."""
 
     def __init__(
         self,
@@ -90,7 +90,7 @@ class Context:
         self.said: Final[dict[tuple[str, tuple[object, ...]], Said]] = {}
         """Findings of each group of rules about each stretch."""
         self.asked: Final[set[str]] = set()
-        """The facts about the whole program that rules have asked for."""
+        """The facts about the whole program that rules have read."""
         self._facts: Final[dict[str, Any]] = {}
         self._foreign: Final[dict[ast.expr, Foreign | None]] = {}
 
@@ -186,7 +186,7 @@ class Context:
     # Facts about the whole program
 
     def fact(self, name: str) -> Any:
-        """One of the facts below by its name; that it was asked for is noted."""
+        """Return one of the facts below by its name, and record that it was read."""
         self.asked.add(name)
         if name not in self._facts:
             self._facts[name] = _FACTS[name](self)
@@ -194,7 +194,7 @@ class Context:
 
     @property
     def broken(self) -> bool:
-        """Return whether parts could not be parsed: then nothing can be said to be missing or unused."""
+        """Return whether parts could not be parsed: then nothing can be reported as missing or unused."""
         found: bool = self.fact("broken")
         return found
 
@@ -270,7 +270,7 @@ class Context:
         return site if self._stands(name.id, site) else None
 
     def _stands(self, name: str, site: ast.AST) -> bool:
-        """Tell whether no names that the text does not show may replace what is bound to a name there."""
+        """Return whether no names that the text does not show may replace what is bound to a name there."""
         if position(site) >= self._last_wildcard:
             return True
         return not self.resolution.wildcard and name not in self.brought
@@ -414,7 +414,7 @@ class Context:
         )
 
     def replacement(self, title: str, place: ast.AST | Span, text: str, *, certain: bool = True) -> Fix:
-        """A repair that puts a text in the place of a node."""
+        """A repair that replaces a node by a text."""
         span = place if isinstance(place, Span) else self.source.span(place)
         return Fix(title, (Edit(span, text),), certain)
 

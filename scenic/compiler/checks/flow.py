@@ -97,7 +97,7 @@ def _unreachable(context: Context, ending: Any, rest: Sequence[Any]) -> Iterator
 
 
 def _ends(statement: Any, where: Where) -> bool:
-    """Tell whether nothing after a statement of its block ever runs; misplaced statements are taken for nothing."""
+    """Return whether nothing after a statement of its block ever runs; misplaced statements are taken for nothing."""
     match statement:
         case ast.Raise():
             return True
@@ -124,7 +124,7 @@ def _ends(statement: Any, where: Where) -> bool:
 
 
 def _breaks(loop: ast.While) -> bool:
-    """Tell whether a ``break`` in a loop may leave this loop, or something in it ends differently than it looks."""
+    """Return whether a ``break`` in a loop may leave this loop, or something in it ends differently than it looks."""
     stack: list[tuple[Any, bool]] = [(statement, True) for statement in loop.body]
     while stack:
         node, own = stack.pop()
@@ -141,7 +141,7 @@ def _breaks(loop: ast.While) -> bool:
 
 
 def _gives_way(loop: ast.While, context: Context) -> bool:
-    """Tell whether a loop may let time pass or end."""
+    """Return whether a loop may let time pass or end."""
     if _breaks(loop):
         return True
     stack: list[ast.AST] = [*loop.body]
@@ -207,7 +207,7 @@ def _lasts(body: list[Any], context: Context) -> bool:
 
 
 def _is_begun(node: ast.AST, context: Context) -> bool:
-    """Tell whether a statement is a `take` of which only the word is written, or a word that may be a misspelt `wait`."""
+    """Return whether a statement is a `take` of which only the word is written, or a word that may be a misspelt `wait`."""
     if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Name):
         return False
     name = node.value
@@ -215,7 +215,7 @@ def _is_begun(node: ast.AST, context: Context) -> bool:
 
 
 def _is_forgotten(node: ast.AST, context: Context) -> bool:
-    """Tell whether a statement makes a behavior or scenario without `do`, of which SC312 tells."""
+    """Return whether a statement makes a behavior or scenario without `do`, which SC312 reports."""
     if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Call):
         return False
     function = node.value.func

@@ -47,13 +47,13 @@ def _misspelt(context: Context, body: Sequence[Any], index: int, statement: Any)
 
 
 def _used(context: Context, target: ast.Name) -> bool:
-    """Tell whether a name is assigned elsewhere or read: then it is meant to be a variable."""
+    """Return whether a name is assigned elsewhere or read: then it is meant to be a variable."""
     binding = context.binding(target)
     return binding is not None and (len(binding.sites) > 1 or context.resolution.is_read(binding))
 
 
 def _is_alone(context: Context, statement: ast.stmt) -> bool:
-    """Tell whether a statement has its line for itself."""
+    """Return whether a statement has its line for itself."""
     span = context.source.span(statement)
     before = context.source.line(span.line)[: span.column]
     return (

@@ -22,7 +22,7 @@ class Values(Protocol):
 
 
 class Program(Protocol):
-    """The part of a `Context` that is asked."""
+    """The part of a `Context` that this module uses."""
 
     resolution: Resolution
     brought: Collection[str]

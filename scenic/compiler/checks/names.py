@@ -40,7 +40,7 @@ _IMPORTS: Final = ("import", "from", "model")
 _BUILTINS: Final = frozenset(dir(builtins))
 
 _NOT_SCENIC: Final = frozenset({NameKind.DISTRIBUTION, NameKind.FUNCTION, NameKind.REGION, NameKind.SHAPE})
-"""Kinds of provided names that are no classes of objects, whatever they are in Python."""
+"""Kinds of provided names that are not classes of objects, even if they are classes in Python."""
 
 
 def check_reserved(context: Context, reserved: Iterable[tuple[str, ast.AST]]) -> Iterator[Diagnostic]:
@@ -186,17 +186,17 @@ def _last_words(context: Context) -> set[str]:
 
 
 def _may_become(word: str, name: str) -> bool:
-    """Tell whether a word that binds nothing, where something should be bound, was meant to bind a name."""
+    """Return whether a word that binds nothing, where something should be bound, was meant to bind a name."""
     return name.startswith(word) or (len(word) > 2 and distance(word, name, limit=2) <= 2)
 
 
 def _is_import(word: str) -> bool:
-    """Tell whether a word is the beginning of an import."""
+    """Return whether a word is the beginning of an import."""
     return any(keyword.startswith(word) for keyword in _IMPORTS)
 
 
 def _is_import_broken(context: Context) -> bool:
-    """Tell whether an import could not be parsed, which may bind anything."""
+    """Return whether an import could not be parsed, which may bind anything."""
     lines = (context.source.line(node.lineno).split() for node, _ in context.nodes(scenic.ErrorStatement))
     return any(words and words[0] in _IMPORTS for words in lines)
 
@@ -261,7 +261,7 @@ def _out_of_reach(context: Context, reference: Reference, binding: Binding) -> D
 
 
 def _names_property(context: Context, reference: Reference) -> bool:
-    """Tell whether a name in the default of a property can only mean another property of the same object."""
+    """Return whether a name in the default of a property can only mean another property of the same object."""
     for scope in reference.scope.ancestors():
         if scope.kind is ScopeKind.PROPERTY and scope.parent is not None:
             properties = context.classes.of(scope.parent.node)

@@ -107,7 +107,7 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
 
 
 def _reads_at_once(stretch: Stretch, name: str) -> Iterator[ast.Name]:
-    """The reads of a name that no scope within the module binds, that are no part of any definition."""
+    """The reads of a name that no scope within the module binds, outside of definitions."""
     return (
         each.node
         for each in stretch.named.get(name, ())
@@ -132,7 +132,7 @@ def _read_early(stretch: Stretch) -> frozenset[str]:
 
 
 def _ego(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic]:
-    """SC209: a use of the ego, said or implied, before the first assignment to it."""
+    """SC209: an explicit or implicit use of the ego before the first assignment to it."""
     if context.resolution.reflective or any("ego".startswith(name.id) for name in begun_names(context)):
         return  # It may be set in ways that the text does not show, or be about to be.
     brings = (lambda _: True) if context.surroundings is None else context.surroundings.sets_ego
@@ -212,7 +212,7 @@ def _ego_of(
 
 
 def _in_scenario(scope: Scope) -> bool:
-    """Tell whether code in a scope sets the ego of a scenario of its own, not that of the module."""
+    """Return whether code in a scope sets the ego of a scenario of its own, not that of the module."""
     own = (ScopeKind.SCENARIO, ScopeKind.BEHAVIOR, ScopeKind.MONITOR)
     return any(outer.kind in own for outer in scope.ancestors())
 
@@ -253,7 +253,7 @@ def _title(node: Any) -> str:
 
 
 def _in_value(statement: ast.stmt, node: ast.AST) -> bool:
-    """Tell whether a node stands in the value of an assignment, which is computed before the ego is set."""
+    """Return whether a node stands in the value of an assignment, which is computed before the ego is set."""
     return isinstance(statement, ast.Assign) and position(node) >= position(statement.value)
 
 

@@ -1,4 +1,4 @@
-"""Rules that look at one stretch of the top level at a time, and are asked again only of what has changed."""
+"""Rules that examine one stretch of the top level at a time, and run again only for changed stretches."""
 
 import ast
 from collections.abc import Callable, Collection, Iterator, Sequence

@@ -23,7 +23,7 @@ NOTED: Final = (ast.Await, ast.Yield, ast.YieldFrom)
 
 
 def check_placement(piece: Piece, context: Context) -> Iterator[tuple[ast.AST, Diagnostic | None]]:
-    """SC201: every node that stands where it must not, and what is to be said about it.
+    """SC201: the misplaced nodes, each with its diagnostic.
 
     Nothing is said where that follows from another mistake.
     """

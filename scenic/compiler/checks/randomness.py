@@ -22,7 +22,7 @@ _DEEPEST: Final = 20
 
 
 def _is_random(value: ast.AST | None, context: Context, depth: int = 0) -> bool:
-    """Tell whether a value is certainly random."""
+    """Return whether a value is certainly random."""
     if depth > _DEEPEST or value is None:
         return False
     match value:
@@ -58,7 +58,7 @@ def _assigned(name: ast.Name, context: Context) -> ast.expr | None:
 
 
 def _is_asked_now(node: ast.expr | ast.stmt, scope: Scope, context: Context) -> bool:
-    """Tell whether a node is evaluated while the scenario is being built, and nothing there catches what that raises."""
+    """Return whether a node is evaluated while the scenario is being built, and nothing there catches what that raises."""
     if scope is not context.resolution.module or where_of(node, scope).place is not Place.TOP:
         return False
     caught = (each for each in context.nodes_around(node, ast.Try) if each.handlers and each.body)
@@ -121,7 +121,7 @@ def _truth(node: ast.BoolOp | ast.UnaryOp, scope: Scope, context: Context) -> It
 
 
 def _in_condition(node: ast.expr | ast.stmt, context: Context) -> bool:
-    """Tell whether an expression is a part of what is evaluated later, on samples."""
+    """Return whether an expression is a part of what is evaluated later, on samples."""
     if not isinstance(node, ast.expr):
         return False
     later = (statement for cls in _LATER for statement in context.nodes_around(node, cls))
@@ -139,7 +139,7 @@ def _presences(node: ast.expr, context: Context) -> Iterator[ast.expr]:
 
 
 def _lies_in(node: ast.expr | ast.stmt, first: ast.expr | ast.stmt, last: ast.expr | ast.stmt) -> bool:
-    """Tell whether a node stands between the beginning of a statement and the end of another."""
+    """Return whether a node stands between the beginning of a statement and the end of another."""
     begin, end = (first.lineno, first.col_offset), (last.end_lineno or 0, last.end_col_offset or 0)
     return begin <= (node.lineno, node.col_offset) < end
 

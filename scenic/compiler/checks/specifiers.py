@@ -169,7 +169,7 @@ def _needs(specifier: scenic.SpecifierPhrase) -> tuple[str, ...]:
 
 
 def _is_vector(node: ast.expr | None) -> bool:
-    """Tell whether a value can only be a position, without an orientation."""
+    """Return whether a value can only be a position, without an orientation."""
     if isinstance(node, scenic.Operation):
         return node.operator == "@"
     return isinstance(node, ast.Tuple | ast.List)

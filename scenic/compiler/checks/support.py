@@ -109,7 +109,7 @@ def _refused(node: Any) -> str | None:
 
 
 def _carried(node: ast.AST, scope: Scope) -> bool:
-    """Tell whether a node stands in code that only simulations run."""
+    """Return whether a node stands in code that only simulations run."""
     for outer in scope.ancestors():
         if outer.kind in (ScopeKind.BEHAVIOR, ScopeKind.MONITOR):
             return True

@@ -123,7 +123,7 @@ def _is_imported(binding: Binding) -> bool:
 
 
 def _is_of_concern(binding: Binding, context: Context) -> bool:
-    """Tell whether it would be a mistake not to read a binding."""
+    """Return whether it would be a mistake not to read a binding."""
     # What is assigned to the word of a guard was meant to be compared, as the parser says.
     if binding.name.startswith("_") or binding.name in scenic.GUARDS:
         return False
@@ -153,7 +153,7 @@ def _unused(binding: Binding, scope: Scope, context: Context) -> Iterator[Diagno
 
 
 def _plain(value: ast.expr | None) -> bool:
-    """Tell whether a value is assigned to a name alone, and is none of those whose making alone has a purpose."""
+    """Return whether a value is assigned to a name alone, and is none of those whose making alone has a purpose."""
     return value is not None and not isinstance(value, scenic.New)
 
 
@@ -180,7 +180,7 @@ def _unused_import(binding: Binding, scope: Scope, context: Context) -> Iterator
 
 
 def _is_library(context: Context) -> bool:
-    """Tell whether a file defines things and makes no scene: then others may take from it what it imports."""
+    """Return whether a file defines things and makes no scene: then others may take from it what it imports."""
     module = context.resolution.module
     return any(isinstance(statement, DEFINITIONS) for statement in context.tree.body) and not (
         bool(context.nodes(scenic.ScenarioDef))
@@ -190,7 +190,7 @@ def _is_library(context: Context) -> bool:
 
 
 def _has_no_effects(statement: Any, site: ast.alias, context: Context) -> bool:
-    """Tell whether nothing is lost without this name: not even the objects that importing a Scenic module creates."""
+    """Return whether nothing is lost without this name: not even the objects that importing a Scenic module creates."""
     if isinstance(statement, ast.Import):
         return site.name.partition(".")[0] in _PYTHON_MODULES
     module = statement.module or ""

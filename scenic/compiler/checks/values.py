@@ -80,7 +80,7 @@ def _specifiers(node: scenic.New | scenic.Override, scope: Scope, context: Conte
 
 
 def _is_cut(node: ast.AST, context: Context) -> bool:
-    """Tell whether a comma separates an object from the rest of its last operand, of which SC311 tells."""
+    """Return whether a comma separates an object from the rest of its last operand, which SC311 reports."""
     return any(
         isinstance(assign.value, ast.Tuple) and assign.value.elts[:1] == [node]
         for assign in context.nodes_around(node, ast.Assign)
@@ -88,7 +88,7 @@ def _is_cut(node: ast.AST, context: Context) -> bool:
 
 
 def _may_be_meant(node: ast.AST, scope: Scope, context: Context) -> bool:
-    """Tell whether what fails may be expected to: in a function without a name, or where exceptions are caught."""
+    """Return whether what fails may be expected to: in a function without a name, or where exceptions are caught."""
     if isinstance(scope.node, ast.Lambda):
         return True
     place = position(node)

@@ -52,7 +52,7 @@ def sliceable(node: ast.Subscript) -> ast.expr:
 
 
 def _is_plain(node: ast.expr) -> bool:
-    """Tell whether an expression is a constant, perhaps with a sign."""
+    """Return whether an expression is a constant, perhaps with a sign."""
     return isinstance(node.operand if isinstance(node, ast.UnaryOp) else node, ast.Constant)
 
 

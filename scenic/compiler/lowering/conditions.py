@@ -45,7 +45,7 @@ _COMPARISONS: Final[dict[type[ast.cmpop], str]] = {
     ast.GtE: ">=",
 }
 _MEASURED: Final = {**_COMPARISONS, ast.In: "in", ast.NotIn: "not in"}
-"""Comparisons of which it can be said by how much they hold."""
+"""Comparisons that have a margin."""
 
 _MADE: Final = frozenset({"Point", "OrientedPoint"})
 """Classes of which a condition may make instances that become part of the value graph."""
@@ -165,7 +165,7 @@ class Conditions:
                 yield part
 
     def _may_be_bound(self, identifier: str) -> bool:
-        """Tell whether a name that the text does not bind may come from a module."""
+        """Return whether a name that the text does not bind may come from a module."""
         return self._resolution.wildcard and identifier not in PROVIDED
 
 
@@ -193,7 +193,7 @@ def assigns(node: ast.expr) -> bool:
 
 
 def _is_temporal(node: ast.expr) -> bool:
-    """Tell whether a condition is about more than one state."""
+    """Return whether a condition is about more than one state."""
     return any(isinstance(part, scenic.Temporal) and part.operator != "implies" for part in walk(node))
 
 

@@ -1,4 +1,4 @@
-"""Known mistakes: one small rule each, which says what a person may have meant.
+"""Known mistakes: one small rule each, which suggests the intended text.
 
 A rule looks at a `Situation` and gives a problem, or ``None`` if it is not its mistake. The first of `RULES` that gives
 one is believed, so they go from the unmistakable to the merely likely.

@@ -1,4 +1,4 @@
-"""Mistakes in what begins a block, belongs to one, or goes on after one."""
+"""Mistakes in headers of blocks, in their contents, and in clauses that continue a statement after a block."""
 
 from dataclasses import replace
 from typing import Final
@@ -64,7 +64,7 @@ def missing_colon(at: Situation) -> Problem | None:
 
 
 def _has_colon(at: Situation) -> bool:
-    """Tell whether the header has its colon, and the mistake is after it, in ``if a: b c``; of lambdas come others."""
+    """Return whether the header has its colon, and the mistake is after it, in ``if a: b c``; of lambdas come others."""
     depth = colons = 0
     for word in at.tokens.texts[at.first : at.token]:
         if word in ("(", "[", "{"):

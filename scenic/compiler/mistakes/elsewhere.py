@@ -53,7 +53,7 @@ _FIRST_WORDS: Final = {
 """The first words of statements of other languages, and those of ours that mean the same."""
 
 OTHER_WORDS: Final = frozenset(_FIRST_WORDS)
-"""The first words of statements of other languages, which are no misspelt words of ours."""
+"""The first words of statements of other languages, which are not misspelt words of Scenic."""
 
 _TYPES: Final = frozenset(
     ("var", "let", "const", "auto", "int", "float", "double", "string", "bool", "str", "def")

@@ -96,7 +96,7 @@ class Situation:
         return self.end - self.first > LONGEST
 
     def at_end(self) -> bool:
-        """Return whether the line ends where it should go on."""
+        """Return whether the line ends where it should continue."""
         return self.token >= self.end
 
     def expects(self, *wanted: str) -> bool:

@@ -216,7 +216,7 @@ def missing_word(at: Situation) -> Problem | None:
 
 
 def _fits(at: Situation, word: str) -> bool:
-    """Tell whether a word that has several uses can be meant."""
+    """Return whether a word that has several uses can be meant."""
     first = at.word(at.first)
     if word == "as":
         return first in ("with", "except")
@@ -234,7 +234,7 @@ def _fits(at: Situation, word: str) -> bool:
 
 
 def _phrase(at: Situation) -> int | None:
-    """The first token of the form that goes on at the mistake."""
+    """The first token of the form that continues at the mistake."""
     depth, found = 0, None
     for index in range(at.token - 1, at.first - 1, -1):
         word = at.word(index)

@@ -1,4 +1,4 @@
-r"""The places in which operands are written: what the table of precedence says, made ready for quick use.
+r"""The places in which operands are written: the table of precedence, prepared for quick look-up.
 
 A place is described by four values, which the writers of expressions hand on from node to node:
 
@@ -331,7 +331,7 @@ _BEFORE_OPERANDS: Final[Mapping[int, frozenset[str]]] = MappingProxyType(
         CONDITION: _TEMPORAL_WORDS,
     }
 )
-"""Words that are no names if an operand follows, by place."""
+"""Words that are not names if an operand follows, by place."""
 
 WATCHED: Final = frozenset(chain(_SECOND_WORDS, _WHOLE_STATEMENTS, *_BEFORE_OPERANDS.values()))
 """The names that are not names everywhere."""
@@ -396,7 +396,7 @@ _FIRST_FIELDS: Final[Mapping[type[ast.AST], str]] = MappingProxyType(
 
 
 def absorbs_comma(after: After) -> bool:
-    """Return whether a list of specifiers would go on after a comma with the node that follows it."""
+    """Return whether a list of specifiers would continue after a comma with the node that follows it."""
     if not isinstance(after, ast.AST):
         return False
     return hasattr(after, "specifier") or first_word(after) in SPECIFIER_STARTS

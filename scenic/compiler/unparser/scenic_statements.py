@@ -168,7 +168,7 @@ class ProgramWriter(StatementWriter):
 
 
 def _needs_header(node: tree.ScenarioDef) -> bool:
-    """Tell whether the set-up, if it were all of the scenario, would begin with what means something else."""
+    """Return whether the set-up, if it were all of the scenario, would begin with what means something else."""
     setup = node.setup or []
     if not setup:
         return node.docstring is None

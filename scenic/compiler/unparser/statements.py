@@ -345,7 +345,7 @@ def _aliases(nodes: Sequence[ast.alias]) -> str:
 
 
 def _ends_its_line(node: ast.stmt) -> bool:
-    """Tell whether no `;` may stand after a statement: it has a block, or a line of its own."""
+    """Return whether no `;` may stand after a statement: it has a block, or a line of its own."""
     blocks = ("body", "cases", "setup")
     return any(hasattr(node, field) for field in blocks) or isinstance(node, tree.PropertyDef | tree.Guard)
 

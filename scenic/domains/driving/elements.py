@@ -471,7 +471,7 @@ class Road(LinearElement):
         return found
 
     def shiftLanes(self, point: Any, offset: int) -> Any:
-        """The point at the same share of its lane section, ``offset`` lanes to the left; ``None`` where there is no such lane."""
+        """The point at the same share of its lane section, ``offset`` lanes to the left; ``None`` if no such lane exists."""
         section = self.laneSectionAt(point)
         if section is None:
             return None

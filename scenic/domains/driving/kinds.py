@@ -21,7 +21,7 @@ class VehicleType(Enum):
 
 
 class ManeuverType(Enum):
-    """A way to go on at the end of a lane."""
+    """A continuation at the end of a lane."""
 
     STRAIGHT = auto()
     LEFT_TURN = auto()

@@ -118,7 +118,7 @@ class FollowedLine:
         return distance if side >= 0 else -distance
 
     def ahead(self, distance: float) -> tuple[float, float]:
-        """The place on the line a distance in metres beyond `progress`; past its ends the line goes on straight.
+        """The place on the line a distance in metres beyond `progress`; beyond its ends the line is continued straight.
 
         A negative distance looks against the direction of the line.
         """

@@ -106,7 +106,7 @@ class _Linker:
             self._one_sided.add(other.record.id)
 
     def _look_up_road(self, id: str, line: int) -> None:
-        """Note a link to a road that is not there, unless it is left out for something that has been told."""
+        """Report a link to a missing road, unless the road was omitted for a reported fault."""
         if id not in self._names and not {f"road {id}", "road ?"} & self._map.left_out:
             self._missing[f"road {id}"].append(line)
 
@@ -116,7 +116,7 @@ class _Linker:
             self._missing[f"junction {id}"].append(line)
 
     def _look_up_lane(self, road: BuiltRoad, end: str, id: int, line: int) -> None:
-        """Note a link to a lane that is not there; one that is not for traffic, or left out, is no mistake."""
+        """Report a link to a missing lane; a lane that was omitted, or is not for traffic, is not a mistake."""
         section = road.record.sections[0 if end == "start" else -1]
         if section.is_whole and all(lane.id != id for lane in section.lanes):
             self._missing[f"lane {id} at the {end} of road {road.record.id}"].append(line)
@@ -159,7 +159,7 @@ class _Linker:
             self._join(before, after)
 
     def _back_link(self, other: BuiltRoad, contact: str, id: int) -> int | None:
-        """The lane at an end of another road that says it leads to a lane of this one."""
+        """The lane at an end of another road whose link leads to a lane of this road."""
         section = other.record.sections[0 if contact == "start" else -1]
         for item in section.lanes:
             if (item.predecessor if contact == "start" else item.successor) == id:
@@ -277,7 +277,7 @@ class _Linker:
             self._network.connectingRoads += (road.road,)
 
     def _tell_of_end(self, connecting: BuiltRoad, end: str, lane_id: int) -> None:
-        """Report a connecting road of which a lane leads nowhere, unless the cause has been told."""
+        """Report a connecting road with a lane that leads nowhere, unless the cause has been reported."""
         record = connecting.record
         link = record.predecessor if end == "start" else record.successor
         section = record.sections[0 if end == "start" else -1]

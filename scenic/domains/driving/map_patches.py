@@ -35,7 +35,7 @@ _LIFTS: Final = MappingProxyType(
 
 
 class MapPatches:
-    """Makes the tiles of a network when they are asked for, each once.
+    """Makes the tiles of a network on demand, each once.
 
     Args:
         network: the road network.

@@ -86,7 +86,7 @@ def _standing(agent: Any, others: Iterable[Any]) -> Iterator[tuple[float, float,
 
 
 def _is_free(heading: float, standing: Iterable[tuple[float, float, float]], left: float) -> bool:
-    """Tell whether an agent can walk three metres, or as far as is left, in a direction."""
+    """Return whether an agent can walk three metres, or as far as is left, in a direction."""
     dx, dy = -math.sin(heading), math.cos(heading)
     for a, b, radius in standing:
         along = a * dx + b * dy
@@ -104,7 +104,7 @@ def _moving(others: Iterable[Any]) -> Iterator[Any]:
 
 
 def _meets(agent: Any, velocity: tuple[float, float], car: Any) -> bool:
-    """Tell whether an agent that keeps a velocity comes too near to a car that keeps its own one."""
+    """Return whether an agent that keeps a velocity comes too near to a car that keeps its own one."""
     ahead, aside = -math.sin(car.heading), math.cos(car.heading)
     reach = (agent.width + agent.length) / 4 + _SWATHE
     half_length, half_width = car.length / 2 + reach, car.width / 2 + reach

@@ -1,4 +1,4 @@
-"""Questions of behaviors about places, asked at each step: exact answers that are mostly known from the last one.
+"""Queries of behaviors about places at each step: exact answers, mostly derived from the answer of the last step.
 
 A distance changes by no more than the point has moved. So geometry is looked at only where the answer could have changed.
 """

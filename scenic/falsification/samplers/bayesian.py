@@ -1,4 +1,4 @@
-"""Bayesian optimisation: a Gaussian process of what was told, by scikit-learn, and expected improvement."""
+"""Bayesian optimisation: a Gaussian process of the observed values, by scikit-learn, and expected improvement."""
 
 import warnings
 from typing import Any, Final
@@ -11,11 +11,11 @@ from scenic.falsification.space import Floats, Space
 __all__ = ["Bayesian"]
 
 _CANDIDATES: Final = 1024
-"""Points compared for each one that is asked for; a quarter of them near the best ones."""
+"""Number of points compared for each requested point; a quarter of them near the best points."""
 _MOST: Final = 300
 """Values that the process is fitted to: the best half of them, and the newest; the time of a fit grows with their cube."""
 _REFIT: Final = 10
-"""After so many values the parameters of the process are fitted again; always up to `_EAGER` values."""
+"""Number of values after which the parameters of the process are fitted again; up to `_EAGER` values, they always are."""
 _EAGER: Final = 40
 _LEAST: Final = 1e-12
 

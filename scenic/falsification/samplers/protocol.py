@@ -1,4 +1,4 @@
-"""The protocol of samplers: ask for points, tell what came of them."""
+"""The protocol of samplers: ask for points, tell the values of their runs."""
 
 from collections.abc import Mapping
 from typing import Any, Protocol
@@ -24,7 +24,7 @@ class Sampler(Protocol):
 
     @property
     def batch(self) -> int | None:
-        """Number of points that the sampler wants to be asked for at a time; ``None`` if that does not matter."""
+        """Number of points that the sampler prefers to give at a time; ``None`` if that does not matter."""
 
     def ask(self, count: int) -> Floats:
         """The next points ``(count, d)``; raises `Exhausted` if there are none."""

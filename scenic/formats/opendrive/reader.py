@@ -46,7 +46,7 @@ _BEHIND: Final = 0.1
 """Metres by which something may lie behind the end of its road without a word."""
 _CODES: Final = MappingProxyType({"road": "SC621", "lane": "SC622", "link": "SC623", "junction": "SC624"})
 _ALIKE: Final = 5
-"""Problems of one kind that are told one by one."""
+"""Number of problems of one kind that are reported one by one."""
 
 
 class _Wrong(Exception):
@@ -66,7 +66,7 @@ class _Wrong(Exception):
 
 
 class _NoLanes(Exception):
-    """A road that has no lanes because of faults that are told by themselves."""
+    """A road that has no lanes because of faults that are reported separately."""
 
 
 def read_map(content: bytes, filename: str) -> MapRecords:
@@ -86,7 +86,7 @@ def read_map(content: bytes, filename: str) -> MapRecords:
 
 
 class _Reader:
-    """Reads one file; what violates the standard is told once, with what follows from it where that is known."""
+    """Reads one file, and reports each violation of the standard once, with its known consequences."""
 
     def __init__(self, filename: str, root: Element) -> None:
         self._filename = filename

@@ -126,7 +126,7 @@ class LaneSection:
     lanes: tuple[Lane, ...]
     line: int
     is_whole: bool = True
-    """True if no lane of the file is missing here because something is wrong with it, which has been told."""
+    """True if no lane of the file was omitted for a fault, which has been reported."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,7 +230,7 @@ class Connection:
 
 @dataclass(frozen=True, slots=True)
 class Junction:
-    """A junction; ``type`` is ``default`` unless the file says otherwise."""
+    """A junction; ``type`` is ``default`` unless the file gives another type."""
 
     id: str
     name: str

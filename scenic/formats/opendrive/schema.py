@@ -1,4 +1,4 @@
-"""The structure that the OpenDRIVE standard asks of a file, for the elements that are read, and what violates it.
+"""The structure that the OpenDRIVE standard requires of a file, for the elements that are read, and the search for violations.
 
 Attributes that only later versions of the standard require are optional here.
 """
@@ -208,7 +208,7 @@ _ASCENDING: Final = MappingProxyType(
         "border": "sOffset",
     }
 )
-"""Elements that follow each other along the road, and the attribute that says where they begin."""
+"""Elements that follow each other along the road, and the attribute with their start."""
 
 
 class _Rule:

@@ -177,12 +177,12 @@ def _negative_scalar(_payload: Any, a: Any) -> Any:
 
 
 def _is_number(operand: Node, number: float) -> bool:
-    """Tell whether an operand is this number, of a kind that makes no float of a whole number."""
+    """Return whether an operand is this number, of a kind that makes no float of a whole number."""
     return operand.is_constant and operand.kind.is_number and operand.value == number
 
 
 def _keeps(operand: Node, other: Node) -> bool:
-    """Tell whether arithmetic with ``other``, a number that changes no value, leaves ``operand`` as it is."""
+    """Return whether arithmetic with ``other``, a number that changes no value, leaves ``operand`` as it is."""
     return operand.kind in (Kind.SCALAR, Kind.VECTOR) or (operand.kind is other.kind is Kind.INTEGER)
 
 

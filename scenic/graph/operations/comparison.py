@@ -255,7 +255,7 @@ def _extreme_solver(better: Callable[[Any, Any], Any]) -> SolverReading:
 
 
 def _orders_vectors(operands: Sequence[Node], _payload: Any) -> bool:
-    """Tell whether an operand is no number, so that Python knows no order."""
+    """Return whether an operand is not a number, so that Python has no order for it."""
     return any(operand.kind.trailing for operand in operands)
 
 

@@ -99,7 +99,7 @@ def _truth_solver(terms: Terms, _payload: Any, value: Any) -> Any:
 
 
 def _may_miss(operands: Sequence[Node], _payload: Any) -> bool:
-    """Tell whether an index may lie outside a vector."""
+    """Return whether an index may lie outside a vector."""
     limits = operands[1].limits
     return limits is None or limits[0] < -3 or limits[1] > 2
 

@@ -203,18 +203,18 @@ def _constants(operands: Sequence[Node], _payload: Any) -> Node | None:
 
 
 def _may_be_endless(operands: Sequence[Node], _payload: Any) -> bool:
-    """Tell whether an end of a range may be infinite."""
+    """Return whether an end of a range may be infinite."""
     return not (is_finite(operands[1]) and is_finite(operands[2]))
 
 
 def _may_be_narrow(operands: Sequence[Node], _payload: Any) -> bool:
-    """Tell whether a deviation may be zero."""
+    """Return whether a deviation may be zero."""
     bounds = overall(operands[2])
     return bounds is None or bool(bounds.lower[0] <= 0 <= bounds.upper[0])
 
 
 def _may_be_large(operands: Sequence[Node], _payload: Any) -> bool:
-    """Tell whether an end of a range of integers may be too large for 64 bits."""
+    """Return whether an end of a range of integers may be too large for 64 bits."""
     return any(
         operand.kind is Kind.SCALAR and not _is_below(overall(operand), 2.0**61) for operand in operands[1:]
     )
@@ -225,7 +225,7 @@ def _is_below(bounds: Bounds | None, limit: float) -> bool:
 
 
 def _may_be_empty(operands: Sequence[Node], _payload: Any) -> bool:
-    """Tell whether a range of integers may hold none."""
+    """Return whether a range of integers may hold none."""
     low, high = (overall(operand) for operand in operands[1:])
     return low is None or high is None or bool(np.ceil(low.upper[0]) > np.floor(high.lower[0]))
 

@@ -40,7 +40,7 @@ class Explanation:
 
 
 def explanation_file(code: str) -> str | None:
-    """The file with the page of ``code``; ``None`` if there is none, or the package is no folder."""
+    """The file with the page of ``code``; ``None`` if there is none, or if the package is not a folder."""
     page = resources.files(__name__).joinpath(f"{code}.md")
     return os.fspath(page) if isinstance(page, Path) and page.is_file() else None
 

@@ -1,4 +1,4 @@
-"""Problems that the client asks for: of one document, and of all files of the workspace."""
+"""Problems that the client requests: of one document, and of all files of the workspace."""
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future

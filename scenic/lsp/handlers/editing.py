@@ -140,7 +140,7 @@ def _changes(session: Session, document: Document, edits: Sequence[Edit]) -> typ
 
 
 def _wanted(kind: str, only: Sequence[str]) -> bool:
-    """Tell whether the editor asks for actions of this kind: kinds are parts with dots between, the first ones wider."""
+    """Return whether the editor requests actions of this kind: kinds are parts with dots between, the first ones wider."""
     return not only or any((kind + ".").startswith(asked + ".") for asked in only if asked) or "" in only
 
 

@@ -1,4 +1,4 @@
-"""The beginning of a conversation: what the client says of itself, and what it is asked to report."""
+"""The beginning of a session: the client's capabilities, and the reports that it is asked for."""
 
 from typing import Final
 
@@ -30,7 +30,7 @@ def _folders(params: types.InitializeParams) -> dict[str, str]:
 
 
 def _initialized(session: Session, _params: types.InitializedParams) -> None:
-    """The client is ready: now it may be asked to report more."""
+    """Register for further reports, once the client is ready."""
     wanted = registrations(session.client)
     if wanted:
         session.ask(types.CLIENT_REGISTER_CAPABILITY, types.RegistrationParams(wanted))

@@ -32,7 +32,7 @@ _DEEPEST: Final = 50
 
 
 class Copies(Sample):
-    """Makes the copies, one of each value however often it is asked for.
+    """Makes the copies: one of each value, however often it is requested.
 
     Args:
         lanes: the values of nodes.

@@ -46,7 +46,7 @@ class _Driven:
 
 
 def driven(points: PointSet, axes: int, *, seed: int, scene: int, attempt: int) -> Sourcing:
-    """The draws of a simulation by the row of its scene, which has so many axes.
+    """The draws of a simulation, from the row of its scene, after the numbers of the scene's axes.
 
     ``attempt`` tells simulations of one scene from one another, of which the earlier ones were rejected.
     """
@@ -80,7 +80,7 @@ def kept(
     agents: Collection[int | None] | None = None,
     keep: Callable[[Draw], bool] | None = None,
 ) -> Sourcing:
-    """As an earlier simulation drew, where all that is given holds of a draw; anew elsewhere."""
+    """The draws of an earlier simulation for draws that meet all given conditions; new draws for the others."""
 
     def wanted(what: Draw) -> bool:
         return (

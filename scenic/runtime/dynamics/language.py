@@ -228,7 +228,7 @@ class Dynamics:
         return self._program.declared if run is None else run.current.declared
 
     def _require_now(self, requirement: Required, chance: float) -> None:
-        """``require`` while values are definite: followed from now on if it speaks of time, else checked at once."""
+        """``require`` while values are definite: a temporal condition is followed from now on, any other is checked immediately."""
         run, context = self._run, self._context
         if run is not None and is_temporal(requirement.formula):
             run.current.require(requirement)

@@ -1,4 +1,4 @@
-"""``override``: other values for properties of an object, until the scenario that asked for them stops."""
+"""``override``: new values for properties of an object, until the scenario that set them stops."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any

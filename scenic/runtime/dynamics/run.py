@@ -329,7 +329,7 @@ class Run:
         top.go()
 
     def end(self, reason: str) -> None:
-        """A compose block asks for the end of the simulation."""
+        """End the simulation, from a compose block."""
         self._remember("scenarioComplete", reason)
 
     def _remember(self, kind: str, reason: str) -> None:
@@ -337,7 +337,7 @@ class Run:
             self.ending = Ending(kind, reason)
 
     def steps(self, max_steps: int | None) -> Iterator[None]:
-        """The steps of the simulation; at its end ``ending`` says why. Yields where the simulator is to advance."""
+        """Run the steps of the simulation; yields when the simulator has to advance. At the end ``ending`` has the reason."""
         simulation, top = self.simulation, self.top
         while True:
             # 1. Scenarios
@@ -389,7 +389,7 @@ class Run:
                     recording.finish()
 
     def _monitors(self) -> None:
-        """Resume all monitors; only then stop scenarios, so that every monitor sees the step whatever the others ask for."""
+        """Resume all monitors; only then stop scenarios, so that every monitor sees the step, whatever the other monitors do."""
         reasons: dict[ScenarioActivation, str] = {}
         end: str | None = None
         for scenario in list(self.scenarios):

@@ -148,7 +148,7 @@ def DiscreteRange(low: Any, high: Any, weights: Sequence[float] | None = None) -
 
 
 def _end(value: Any) -> Any:
-    """An end of a range of integers. Whole numbers stay whole: above 2**53 some of them are no floats."""
+    """An end of a range of integers. Integers stay integers: above 2**53 floats cannot represent all of them."""
     if isinstance(value, int) and abs(value) < _MOST_EXACT:
         return int(value)
     if isinstance(value, Random) and value.node.kind is Kind.INTEGER:

@@ -38,7 +38,7 @@ __all__ = [
 ]
 
 _BUCKETS: Final = 5
-"""Buckets that approximate a prior unless it is said otherwise."""
+"""Default number of buckets that approximate a prior."""
 
 
 def _make(operation: str, operands: Sequence[Any], payload: Any, choosable: Choosable) -> Any:

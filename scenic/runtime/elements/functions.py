@@ -130,7 +130,7 @@ def filter(function: Callable[[Any], Any] | None, values: Any) -> Any:
 
 
 def _note_empty(result: Any, count: int) -> None:
-    """Note where a filter left nothing of some elements: a choice from its result says so."""
+    """Record the place where a filter left none of some elements, for the error of a choice from its result."""
     context = current.get()
     if context is not None and context.is_symbolic:
         context.record.emptied.append((result, count, here()))

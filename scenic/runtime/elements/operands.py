@@ -97,7 +97,7 @@ def _place(value: Any) -> bool:
 
 
 def _is_measure(value: Any) -> bool:
-    """Tell whether a value is a number or a vector itself, not what stands for one."""
+    """Return whether a value is a number or a vector itself, not what stands for one."""
     return _number(value) or (is_vector(value) and isinstance(value, Random | Vector))
 
 

@@ -77,7 +77,7 @@ def _apparent_heading_to(target: Any, viewer: Any) -> Any:
 
 
 def _lies(direction: Direction) -> Callable[[Any, Any], Any]:
-    """The operator that tells whether a place lies in a direction of an oriented point."""
+    """Return the operator that tests whether a place lies in a direction from an oriented point."""
 
     def build(target: Any, base: Any) -> Any:
         bearing = _apparent_heading_to(target, base)

@@ -238,7 +238,7 @@ def on(target: Any) -> Specifier:
 
 
 def _may_be_surface(value: Any) -> bool:
-    """Tell whether some option of a choice is a region or an object."""
+    """Return whether some option of a choice is a region or an object."""
     return any(isinstance(option, Region | Object) or _may_be_surface(option) for option in options_of(value))
 
 
@@ -390,7 +390,7 @@ def apparently_facing(angle: Any, observer: Any) -> Specifier:
 
 
 def visible(workspace: Region, observer: Any, *, wanted: bool = True) -> Specifier:
-    """Section 11.4: who must see the object, or must not; and, if nothing else says so, any position in its container."""
+    """Section 11.4: the observer who must see the object, or must not; and, without another position, any position in its container."""
     name = "visible" if wanted else "not visible"
     context = current.get()
     mode_2d = context is not None and context.mode_2d
@@ -494,11 +494,11 @@ def specifier(
     """Define a specifier by a function.
 
     The function gets the object being built, and the arguments of the specifier; it returns the values of the properties.
-    It is used like a property that has a value: ``new Object with beside (tree, 3)``; a tuple holds several arguments.
+    It is used like a property that has a value: ``new Object with beside (tree, 3)``; a tuple passes several arguments.
 
     Args:
         reads: the properties of the new object that the function needs.
-        modifies: those of its properties whose value, given by another specifier, it may replace after having read it.
+        modifies: properties whose value, given by another specifier, it may read and replace.
         priorities: the properties that it specifies, each with its strength (1 is the strongest).
 
     >>> @specifier(position=1, parentOrientation=3, reads=("width",))

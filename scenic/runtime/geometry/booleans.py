@@ -9,17 +9,17 @@ from scenic.runtime.geometry.mesh import Mesh
 
 
 def union(solids: Sequence[Mesh]) -> Mesh | None:
-    """The union of proper volumes; ``None`` if one of them is no manifold or the result is empty."""
+    """The union of proper volumes; ``None`` if one of them is not a manifold or the result is empty."""
     return _combined(solids, "Add")
 
 
 def intersection(solids: Sequence[Mesh]) -> Mesh | None:
-    """The intersection of proper volumes; ``None`` if one of them is no manifold or the result is empty."""
+    """The intersection of proper volumes; ``None`` if one of them is not a manifold or the result is empty."""
     return _combined(solids, "Intersect")
 
 
 def difference(first: Mesh, others: Sequence[Mesh]) -> Mesh | None:
-    """The rest of ``first``; ``None`` if one operand is no manifold or the result is empty."""
+    """The rest of ``first``; ``None`` if one operand is not a manifold or the result is empty."""
     return _combined([first, *others], "Subtract")
 
 

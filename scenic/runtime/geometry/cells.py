@@ -95,7 +95,7 @@ def _touching(triangles: Floats, face: Indices, index: Indices, resolution: int)
 def _projections_overlap(
     triangles: Floats, edges: Floats, face: Indices, centre: Floats, half: float
 ) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Tell whether no edge line of the face separates it from the cell, in any of the three coordinate planes."""
+    """Return whether no edge line of the face separates it from the cell, in any of the three coordinate planes."""
     result = np.ones(len(face), dtype=np.bool_)
     for u, v in ((0, 1), (1, 2), (2, 0)):
         for i in range(3):

@@ -62,7 +62,7 @@ def in_convex_polygon(body: Body, corners: Floats, lanes: int) -> Booleans:
     has_area: Booleans = np.logical_or.reduce(doubled > 0, axis=1)
 
     def beside(images: Columns, chosen: Indices, numbers: Indices | int) -> Booleans:
-        """Tell whether all points are on the inner side of an edge, the same for all lanes or one for each."""
+        """Return whether all points are on the inner side of an edge, the same for all lanes or one for each."""
         edge, corner, length = (
             part[0 if len(part) == 1 else chosen, numbers] for part in (edges, corners, lengths)
         )
@@ -304,7 +304,7 @@ def _find_extreme_corners(mesh: Mesh) -> Floats:
 
 
 def _chunked(test: _Test, chosen: Indices, points: Floats) -> Booleans:
-    """``test`` with bounded memory; lanes go on only while all points so far are inside."""
+    """``test`` with bounded memory; a lane continues only while all points so far are inside."""
     result = np.ones(len(chosen), dtype=np.bool_)
     for some in rows(len(points), 1, 4096):
         left = np.flatnonzero(result)

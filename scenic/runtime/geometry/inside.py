@@ -163,7 +163,7 @@ def _cell(xy: Floats, lower: Floats, scale: Floats, cells: int) -> Indices:
 
 
 def _may_cross_above(boxes: Floats, points: Floats) -> Booleans:
-    """Tell whether points ``(..., 3)`` lie below or in the columns of boxes ``(..., 6)``."""
+    """Return whether points ``(..., 3)`` lie below or in the columns of boxes ``(..., 6)``."""
     x, y, z = points[..., 0], points[..., 1], points[..., 2]
     low_x, low_y, _, high_x, high_y, high_z = boxes.T
     result: Booleans = (low_x <= x) & (x <= high_x) & (low_y <= y) & (y <= high_y) & (z <= high_z)

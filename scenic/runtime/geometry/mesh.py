@@ -218,7 +218,7 @@ class Mesh:
 
     @cached_property
     def _is_its_hull(self) -> bool:
-        """Tell whether the solid is seen, without the hull, to be convex: no vertex lies above any face."""
+        """Return whether the solid is seen, without the hull, to be convex: no vertex lies above any face."""
         if len(self.vertices) * len(self.faces) > _MOST_HEIGHTS or not self.is_volume:
             return False
         slack = 1e-12 * float(self.extents.max())

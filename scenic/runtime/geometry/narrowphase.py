@@ -35,7 +35,7 @@ _MOST_LEAVES: Final = 1 << 16
 _CHUNK: Final = 1 << 17
 """Combinations of entry and probing point looked at together."""
 _TRIED: Final = 16
-"""Exact tests made together, at most, before it is asked again whether proofs pay; a few at first."""
+"""Largest number of exact tests made together before it is decided again whether proofs pay; fewer at first."""
 
 
 def recall(meshes: Iterable[Mesh]) -> None:
@@ -83,7 +83,7 @@ class Solids:
 
     @property
     def _can_prove(self) -> bool:
-        """Tell whether the cells pay, as far as can be told: exact tests have taken as long as making them does."""
+        """Return whether cells probably pay: exact tests have taken as long as making the cells would."""
         if self._patience is None:
             self._patience = sum(seconds_to_make(mesh) for mesh in self.meshes)
         return self._spent >= self._patience
@@ -152,7 +152,7 @@ class Solids:
         return _either(result)
 
     def touch(self, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses) -> Booleans:
-        """The same as `intersect` for at least one entry of which `prove` says nothing, by the exact test.
+        """The same as `intersect`, by the exact test, for entries (at least one) that `prove` leaves open.
 
         Should proofs come to pay on the way, they are tried on what is left.
         """

@@ -185,7 +185,7 @@ def _all_pairs(part: slice, faces: Indices) -> tuple[Indices, Indices]:
 
 
 def _crossings(mesh: Mesh, points: Floats, directions: Floats, faces: Indices) -> tuple[Booleans, Floats]:
-    """Tell whether lines ``(m, 3)`` cross faces ``(m,)``, and at what parameter.
+    """Return whether lines ``(m, 3)`` cross faces ``(m,)``, and at what parameter.
 
     Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", J. Graphics Tools 2(1), 1997;
     closed at the edges.

@@ -55,7 +55,7 @@ class Rectangles:
         return met
 
     def _overlap_along(self, other: "Rectangles") -> Booleans:
-        """Tell whether the shadows on both axes of the first overlap."""
+        """Return whether the shadows on both axes of the first overlap."""
         x, y = self.local(other.centre)
         cos = np.abs(self.axis[:, 0] * other.axis[:, 0] + self.axis[:, 1] * other.axis[:, 1])
         sin = np.abs(self.axis[:, 0] * other.axis[:, 1] - self.axis[:, 1] * other.axis[:, 0])

@@ -1,4 +1,4 @@
-"""One body on plain floats: what a running simulation asks step by step, without arrays of one lane.
+"""One body on plain floats, for running simulations, which would otherwise use arrays of one lane.
 
 Every answer here is either certain, by more than rounding can change, or ``None``: then whoever asked looks closely, by the readings
 over lanes. So an answer is the same however it was found.

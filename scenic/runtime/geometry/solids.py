@@ -118,7 +118,7 @@ def _joined(parts: list[Mesh]) -> Mesh:
 
 
 def _any_overlap(solids: list[Mesh]) -> bool:
-    """Tell whether the bounding boxes of two solids meet; sorted along x, so that many solids are quick."""
+    """Return whether the bounding boxes of two solids meet; sorted along x, so that many solids are quick."""
     lower = np.array([solid.bounds[0] for solid in solids])
     upper = np.array([solid.bounds[1] for solid in solids])
     order = np.argsort(lower[:, 0], kind="stable")

@@ -74,7 +74,7 @@ def is_kept(kind: str, content: bytes) -> bool:
 
 
 def store_folder() -> Path | None:
-    """The folder of the store; ``None`` where it is turned off, or there is no home to put it in."""
+    """The folder of the store; ``None`` if it is turned off, or if there is no home folder."""
     if os.environ.get("SCENIC_CACHE", "").lower() in ("off", "0", "no", "false"):
         return None
     chosen = os.environ.get("SCENIC_CACHE_DIR")

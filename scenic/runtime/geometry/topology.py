@@ -9,7 +9,7 @@ from scenic.runtime.geometry.ragged import distinct, first_of_each
 
 @dataclass(frozen=True, slots=True)
 class EdgeCensus:
-    """Counts of the edges of a mesh, which tell whether it bounds a solid.
+    """Counts of the edges of a mesh, which decide whether it bounds a solid.
 
     Attributes:
         open_edges: edges with a face on one side only (an odd number of faces).

@@ -43,7 +43,7 @@ def request(targets: Iterable[Any], scale: Any) -> None:
 
 
 def apply_noise(program: Program) -> None:
-    """Mutate all instances that ask for it, when the program has ended; requirements are then about what comes out."""
+    """Mutate all instances with a mutation scale, when the program has ended; requirements then apply to the mutated instances."""
     mutated = False
     context = current.get()
     for instance in program.instances:
@@ -62,7 +62,7 @@ def apply_noise(program: Program) -> None:
 
 
 def mutate_now(instance: Point) -> None:
-    """Add noise to an instance whose values are definite, if it asks for it."""
+    """Add noise to an instance whose values are definite, if it has a mutation scale."""
     scale = instance.mutationScale
     if scale == 0:
         return

@@ -83,7 +83,7 @@ def _combine_properties(cls: type["Point"]) -> None:
 
 
 PLACEMENT = ("position", "yaw", "pitch", "roll", "heading", "width", "length", "height")
-"""Properties that every object of a scene is sure to be asked for, in the order in which `put` unpacks them."""
+"""Properties that are read of every object of a scene, in the order in which `put` unpacks them."""
 
 
 def put(thing: Any, row: tuple[Any, ...]) -> None:

@@ -25,7 +25,7 @@ __all__ = ["complete", "may_mutate", "stand_in"]
 
 
 def may_mutate(code: CodeType) -> bool:
-    """Return whether the code of a module says ``mutate``, or gives a scale of mutation."""
+    """Return whether the code of a module contains ``mutate``, or sets a scale of mutation."""
     if "mutate" in code.co_names or "mutationScale" in code.co_names or "mutationScale" in code.co_consts:
         return True
     return any(may_mutate(item) for item in code.co_consts if isinstance(item, CodeType))
@@ -56,7 +56,7 @@ def _made(instance: Point) -> Point:
 
 
 def _late(value: Any) -> Any:
-    """A value of which only the kind is known so far; the value itself if it is no number, vector or orientation."""
+    """A value of which only the kind is known so far; the value itself if it is not a number, vector or orientation."""
     if isinstance(value, bool) or value is None or isinstance(value, str | tuple | list | dict):
         return value
     node = as_node(value)

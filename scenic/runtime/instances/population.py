@@ -80,7 +80,7 @@ class Population:
         self._makers = makers
         self._batch = batch
         self._kept: dict[int, Inhabitants] = {}
-        """Made together with those of another scene, and not asked for yet."""
+        """Instances that were made together with those of another scene, and have not been read yet."""
         self._started: set[int] = set()
 
     def take(self, lane: int) -> Inhabitants:

@@ -110,7 +110,7 @@ class Finals:
         return cls(builtin, tuple(sorted(inputs)), tuple(entry for entry in ordered if entry not in builtin))
 
     def renew_own(self, instance: Any) -> None:
-        """Give an instance the values of the program's own ones anew."""
+        """Compute the values of the program's own final properties of an instance again."""
         stored = instance.__dict__
         for entry in self.own:
             stored[entry.name] = normalised(entry.name, resolve(entry.default(instance), instance))

@@ -59,7 +59,7 @@ class Resolution:
     given: tuple[str, ...]
     """The properties that the program gives, by a specifier or in a class of its own."""
     is_doubtful: bool
-    """True if a name looks misspelt, which is told each time."""
+    """True if a name looks misspelt, which causes a warning each time."""
 
     def provider(self, name: str, reader: Specifier) -> Step:
         """The specifier that provides a property which ``reader`` reads."""
@@ -240,7 +240,7 @@ def _reject_duplicates(specifiers: Sequence[Specifier]) -> None:
 def _check_property(
     cls: type[Point], name: str, specifier: Specifier, properties: Mapping[str, Property]
 ) -> bool:
-    """Raise an error for a property that cannot be specified; returns whether its name looks misspelt, and says so."""
+    """Raise an error for a property that cannot be specified; return whether its name looks misspelt, with a warning if so."""
     if name in properties:
         if properties[name].final:
             hint = None

@@ -1,4 +1,4 @@
-"""Conditions of requirements: nodes of the graph where the compiler can tell, Python code on samples elsewhere.
+"""Conditions of requirements: nodes of the graph if the compiler understands them, otherwise Python code on samples.
 
 The compiler gives every leaf of a condition twice: as an expression that builds a value, and as a function of the names that
 it reads. If the first can be built it becomes the leaf's node. If not, the leaf is *opaque*: the function is called
@@ -82,7 +82,7 @@ def negated(part: Condition) -> Condition:
 
 
 def in_time(operator: str, parts: Sequence[Condition]) -> Condition:
-    """A temporal operator. What a scene alone can tell of it is what its first state decides."""
+    """A temporal operator. A scene alone decides it only as far as the first state does."""
     tree: Tree = (operator, *(part.tree for part in parts))
     if operator == "implies":
         either = connected("or", [negated(parts[0]), parts[1]])
@@ -138,7 +138,7 @@ def leaf(
 
 
 def truth(value: Any) -> Node:
-    """The truth value of a value, as a node; raises `NotSymbolicError` where it takes a sample to tell."""
+    """The truth value of a value, as a node; raises `NotSymbolicError` if only a sample decides it."""
     if is_answered_by_code(value, _OF_TRUTH):
         raise NotSymbolicError
     node = as_node(value)

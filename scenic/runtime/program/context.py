@@ -35,7 +35,7 @@ Namer = Callable[[FrameType], Hashable]
 
 
 class Site(NamedTuple):
-    """A call in generated code, the place of which is looked up only when somebody asks."""
+    """A call in generated code, whose place is looked up on demand."""
 
     frame: FrameType
     instruction: int
@@ -78,7 +78,7 @@ class Record:
     emptied: list[tuple[Any, int, Span | None]] = field(default_factory=list)
     """Results of filters in which nothing is left: the result, of how many elements, and where."""
     looks: bool = False
-    """True if some condition asks what is seen: it has to be made again when all objects are there."""
+    """True if some condition depends on visibility: it must be made again when all objects exist."""
 
     @property
     def has_later_elements(self) -> bool:
@@ -130,7 +130,7 @@ class Context:
 
     @property
     def present(self) -> Sequence[Any]:
-        """The objects that are there, as values of whoever asks: of the program, of a sample, of a simulation."""
+        """The existing objects, as values of the caller: of the program, of a sample, of a simulation."""
         if self.sample is None:
             return self.objects
         return [self.sample.value(item) for item in self.objects]

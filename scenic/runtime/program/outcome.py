@@ -56,7 +56,7 @@ class Program:
     """Instances that somebody must see, or must not."""
     parameters: dict[str, Any] = field(default_factory=dict)
     read_parameters: set[str] = field(default_factory=set)
-    """Parameters that the program has asked for by name."""
+    """Parameters that the program has read by name."""
     simulator: Callable[[], Any] | None = None
     declared: Declared = field(default_factory=Declared)
     """Declarations of the program about simulations, beside requirements."""

@@ -281,7 +281,7 @@ class Prelude(Symbolic, Dynamics):
         return convert(name, *args)
 
     def spread(self, function: Any, parts: Sequence[tuple[bool, Any]], keywords: Mapping[str, Any]) -> Any:
-        """``function(a, *b, k=c)``, where ``parts`` tells of each argument whether it is starred."""
+        """``function(a, *b, k=c)``; ``parts`` marks the starred arguments."""
         return spread(function, parts, keywords)
 
     sliceable = staticmethod(sliceable)
@@ -329,7 +329,7 @@ class Prelude(Symbolic, Dynamics):
             run.check_mutable(chosen)
 
     def simulator(self, make: Callable[[], Any]) -> None:
-        """``simulator expr``: kept, and evaluated when a simulator is asked for."""
+        """``simulator expr``: stored, and evaluated when a simulator is needed."""
         self._program.simulator = make
 
     def require(

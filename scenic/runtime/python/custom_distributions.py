@@ -38,11 +38,12 @@ class Distribution(Random, metaclass=_AnyLaw):
     """Base of distributions written in Python.
 
     A subclass passes the values that it depends on to the base's initialiser, and implements `sampleGiven`. It may draw from
-    Python's ``random`` and from ``numpy.random``: both are seeded for each sample. In a simulation, making one gives what it draws.
+    Python's ``random`` and from ``numpy.random``: both are seeded for each sample. In a simulation, creating
+    an instance returns the drawn value.
 
     Args:
         dependencies: values, random or not, that the draw depends on.
-        valueType: the type of what is drawn, if it is always the same; ``float`` makes the value known to be a number.
+        valueType: the type of the drawn values, if it is always the same; with ``float`` the value is known to be a number.
 
     """
 
@@ -75,7 +76,7 @@ class Distribution(Random, metaclass=_AnyLaw):
         raise NotImplementedError(f"{type(self).__name__} cannot be divided into buckets")
 
     def supportInterval(self) -> tuple[float | None, float | None]:
-        """The least and the greatest value, where known: analysis relies on them where ``valueType`` is ``float``."""
+        """The least and the greatest value, if known: analysis relies on them if ``valueType`` is ``float``."""
         return (None, None)
 
 

@@ -258,7 +258,7 @@ class Calls:
         return code.function, list(zip(*columns, strict=True)) if columns else [()] * self.call.lanes
 
     def _is_same(self, item: Any) -> bool:
-        """Tell whether something is the same object in every sample."""
+        """Return whether something is the same object in every sample."""
         if item is None or isinstance(item, int | float | str):
             return True
         if isinstance(item, tuple):

@@ -94,7 +94,7 @@ def _shareable(roots: list[Any]) -> Iterator[Any]:
 
 
 def _moves(item: Any, names: Globals) -> bool:
-    """Tell whether each sample or simulation has its own of a value, whatever that holds."""
+    """Return whether each sample or simulation has its own of a value, whatever that holds."""
     if isinstance(item, Random | Point):
         return True
     if isinstance(item, FunctionType):

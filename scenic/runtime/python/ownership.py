@@ -121,7 +121,7 @@ def functions_of(member: Any) -> list[Any]:
 
 
 def namespace(cls: type) -> dict[str, Any]:
-    """The members of a class, without what Python makes for each class anew."""
+    """The members of a class, without the members that Python makes for each class."""
     made = (GetSetDescriptorType, MemberDescriptorType)
     return {
         name: member

@@ -42,21 +42,21 @@ class Lanes(Protocol):
     """Values of nodes in a number of lanes."""
 
     def read(self, lane: int, node: Node) -> Any:
-        """The value of a node in one lane; the same object whenever it is asked for."""
+        """The value of a node in one lane; the same object on every call."""
 
     def tuples(self, nodes: tuple[Node, ...]) -> list[tuple[Any, ...]]:
         """The values of several nodes lane by lane, the objects that `read` gives; one row where all lanes agree."""
 
 
 Placement = tuple[dict[str, Any], tuple[Node, ...]]
-"""Of the values that are asked of every object: those that are the same in all samples, and the nodes of all of them.
+"""The values read of every object: the values that are the same in all samples, and the nodes of all values.
 
 There are no nodes where some value cannot be read from a column.
 """
 
 
 class Globals:
-    """Global names of the program's functions, each with the value that it had when it was first asked for.
+    """Global names of the program's functions, each with the value that it had when it was first read.
 
     A requirement keeps those of the moment at which its statement ran: the program may bind the names anew later.
     """
@@ -117,7 +117,7 @@ class Globals:
         return [module for module in prelude.modules if module.__name__.rpartition(".")[2] in words]
 
     def is_fixed(self, item: Any) -> bool:
-        """Return whether a function or class does the same in every sample: nothing that it reaches is random or bound anew."""
+        """Return whether a function or class does the same in every sample: nothing that it reaches is random or rebound."""
         known = self._fixed.get(id(item))
         if known is None:
             fixed = all(self._is_plain(value) for value in reachable([item], self))
@@ -159,7 +159,7 @@ class Globals:
         return self._varying[cls]
 
     def placement(self, instance: Point) -> Placement:
-        """The known values of the properties that every object is asked for."""
+        """The known values of the properties that are read of every object."""
         known = self._placements.get(id(instance))
         if known is None:
             values = {name: instance.__dict__.get(name) for name in PLACEMENT}
@@ -356,7 +356,7 @@ def kind_of_container(cls: type) -> Any:
 
 
 def contents_of(container: Any) -> list[Any]:
-    """The items of a container now, or the pairs of a dictionary, whatever its class says of them."""
+    """The present items of a container, or pairs of a dictionary, even if its class overrides the access to them."""
     kind = kind_of_container(type(container))
     return list(kind.items(container) if issubclass(kind, dict) else kind.__iter__(container))
 
@@ -429,7 +429,7 @@ class Sample:
         return known
 
     def member(self, member: Any, owner: type) -> Any:
-        """A member of a class of objects, of which it may ask for others."""
+        """A member of a class of objects, which may read other members."""
         if not self._varies(owner):
             return member
         known = self._memo.get(id(member))
@@ -499,15 +499,15 @@ class Sample:
         return value
 
     def _stays(self, item: Any) -> bool:
-        """Tell whether a function or class is the same in this sample."""
+        """Return whether a function or class is the same in this sample."""
         return self._names.is_fixed(item)
 
     def _varies(self, cls: type) -> bool:
-        """Tell whether members of a class of objects are not the same in this sample."""
+        """Return whether members of a class of objects are not the same in this sample."""
         return self._names.varies(cls)
 
     def _container(self, container: Any, kind: Any, cls: type) -> Any:
-        """A container over sampled values, whatever a class of the program says of how it is made and changed."""
+        """A container over sampled values, even if a class of the program overrides its construction and changes."""
         copy = kind.__new__(cls)
         if kind is deque:
             deque.__init__(copy, (), container.maxlen)

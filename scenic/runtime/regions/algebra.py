@@ -299,7 +299,7 @@ def intersects(first: Any, second: Any) -> Any:
 
 
 def _meet(a: Region, b: Region) -> bool:
-    """Tell whether two fixed regions share a point; raises `UnknownPairError` where that is not known."""
+    """Return whether two fixed regions share a point; raises `UnknownPairError` where that is not known."""
     return bool(_MEETS.ask(_unwrapped(a), _unwrapped(b)))
 
 

@@ -103,7 +103,7 @@ class Region(metaclass=_RegionType):
     has_closed_form: bool = True
     """True if it can be combined with others as a fixed geometry; surfaces that are not level cannot."""
     kindred: ClassVar[tuple[str, ...]] = ()
-    """Names of further classes whose instances are, to a program that asks with ``isinstance``, of this class."""
+    """Names of further classes whose instances count as instances of this class for ``isinstance`` in a program."""
 
     def __init__(self, *parameters: Any, name: str | None = None) -> None:
         self.parameters: tuple[Any, ...] = parameters
@@ -276,11 +276,11 @@ class Region(metaclass=_RegionType):
         return self.own_orientation(point) if self.has_orientation else None
 
     def own_orientation(self, point: Any) -> Any:
-        """The orientation that a point of the region has by itself (`orientations`)."""
+        """The orientation that the region itself gives one of its points (`orientations`)."""
         return apply(_ORIENTATION, to_vector(point), *self.parameters, payload=self)
 
     def orientation_asked(self, point: Any) -> Any:
-        """`own_orientation`, asked by a program of any point."""
+        """`own_orientation` for any point, called by programs."""
         return self.own_orientation(point)
 
     def random_parts(self) -> list[Any]:

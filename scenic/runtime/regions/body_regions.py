@@ -493,7 +493,7 @@ def _face_orientation(call: Call, *columns: Column) -> Column:
 
 
 def _may_have_no_face(operands: Sequence[Any], payload: Any) -> bool:
-    """Tell whether a side may have no face: a fixed object can be asked."""
+    """Return whether a side may have no face; for a fixed object this is known."""
     columns = [operand.payload.column for operand in operands[1:] if operand.is_constant]
     if len(columns) < len(operands) - 1:
         return True

@@ -75,7 +75,7 @@ class RegionChoice(VaryingRegion):
 
     @property
     def _has_no_field(self) -> bool:
-        """Tell whether the options tell orientations by themselves, so that they can be asked over lanes."""
+        """Return whether the options themselves give orientations, so that these can be computed over lanes."""
         return all(
             option._has_no_field
             if isinstance(option, RegionChoice)

@@ -55,13 +55,13 @@ def difference(first: Any, second: Any) -> Any:  # noqa: ARG001
 
 @singledispatch
 def intersects(first: Any, second: Any) -> Any:  # noqa: ARG001
-    """Tell whether a region shares a point with another or with an object; random where one of them is."""
+    """Return whether a region shares a point with another or with an object; random where one of them is."""
     raise _missing("the meeting", first)
 
 
 @singledispatch
 def contains_region(first: Any, second: Any, tolerance: float = 0) -> bool:  # noqa: ARG001
-    """Tell whether a fixed region contains another, up to a tolerance in metres; raises `UnknownPairError`."""
+    """Return whether a fixed region contains another, up to a tolerance in metres; raises `UnknownPairError`."""
     raise _missing("the containment", first)
 
 

@@ -164,7 +164,7 @@ def _is_near_the_edge(
 
 
 def _is_column(container: Bounds) -> bool:
-    """Tell whether a container reaches to every height."""
+    """Return whether a container reaches to every height."""
     return bool(np.isinf(container.lower[:, 2]).all() and np.isinf(container.upper[:, 2]).all())
 
 

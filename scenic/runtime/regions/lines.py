@@ -43,7 +43,7 @@ class LineRegion(Region):
 
     @property
     def _follows_segments(self) -> bool:
-        """Tell whether the orientations are the directions of its own segments, not those of a field or of another region."""
+        """Return whether the orientations are the directions of its own segments, not those of a field or of another region."""
         return isinstance(self.orientation, RegionField) and self.orientation.region is self
 
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
@@ -296,7 +296,7 @@ class PolylineRegion(LineRegion):
         return [self.pointAlongBy(part, normalized=True) for part in np.linspace(0, 1, num).tolist()]
 
     def pointsSeparatedBy(self, distance: float) -> list[Vector]:
-        """Points from the start on, so many metres apart along the line."""
+        """Points from the start on, spaced along the line by a distance in metres."""
         return [self.pointAlongBy(way) for way in np.arange(0, self.length, distance).tolist()]
 
     def defaultOrientation(self, point: Any) -> float:

@@ -86,7 +86,7 @@ def _surface_meets_solid(surface: SideSurface, other: Region) -> bool | None:
 
 
 def _crosses_plane(line: LineRegion, region: PlanarRegion) -> bool:
-    """Tell whether a line in space meets a region of the plane."""
+    """Return whether a line in space meets a region of the plane."""
     import shapely
 
     height, polygon = float(region.height), region.polygons
@@ -102,7 +102,7 @@ def _crosses_plane(line: LineRegion, region: PlanarRegion) -> bool:
 
 
 def _is_over(shell: Mesh, polygons: Any) -> bool:
-    """Tell whether a face of a surface, which may stand upright, has a point above or below polygons."""
+    """Return whether a face of a surface, which may stand upright, has a point above or below polygons."""
     import shapely
 
     seen = shapely.convex_hull(shapely.multipoints(shell.triangles[:, :, :2]))
@@ -110,7 +110,7 @@ def _is_over(shell: Mesh, polygons: Any) -> bool:
 
 
 def _edges_cross(one: Mesh, two: Mesh) -> bool:
-    """Tell whether an edge of one of two meshes meets a face of the other."""
+    """Return whether an edge of one of two meshes meets a face of the other."""
     for edges_of, faces_of in ((one, two), (two, one)):
         pairs = np.sort(edges_of.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
         for first, second in np.unique(pairs, axis=0).tolist():

@@ -30,7 +30,7 @@ def orientedRegion(region: Any) -> Region:
 
 
 def unorientedRegion(region: Any) -> Region:
-    """A region, perhaps random, of which `in` and `on` take the place alone, whether or not it has preferred orientations.
+    """A region, perhaps random, from which `in` and `on` take only the position, even if it has preferred orientations.
 
     Raises:
         ScenicTypeError: if it is no region.

@@ -1,4 +1,4 @@
-"""Regions on plain floats: whether a fixed region holds a point or a body, or meets one, as running simulations ask step by step.
+"""Regions on plain floats: tests, for running simulations, of whether a fixed region contains or meets a point or a body.
 
 Answers are certain, by more than rounding can change, or ``None``: then the readings over lanes decide. Regions of other kinds
 have no such readings.
@@ -73,7 +73,7 @@ class Flat:
 
 
 class Disc(Flat):
-    """A disc, or for bodies the polygon of so many corners in it."""
+    """A disc, or for bodies a polygon inscribed in it."""
 
     def __init__(self, center: Triple, radius: float, corners: int) -> None:
         x, y, z = center

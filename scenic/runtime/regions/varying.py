@@ -1,4 +1,4 @@
-"""Regions that are another one in each lane: what they hold is asked of that one, in the lanes that have it."""
+"""Regions that differ between lanes: each primitive calls the region of a lane, for all lanes that have it."""
 
 from abc import abstractmethod
 from collections.abc import Iterator, Sequence

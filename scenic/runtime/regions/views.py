@@ -49,7 +49,7 @@ from scenic.runtime.visibility.flat import FULL_ANGLE
 from scenic.runtime.visibility.seeing import view_operands
 
 VIEW_PARAMETERS: Final = 5
-"""The first so many of an observer's operands say what is in view: the others are about rays."""
+"""Number of an observer's first operands, which describe its view; the other operands are about rays."""
 
 _SLACK: Final = 1e-6
 """Share, or radians, by which boxes of views are larger: more than the slack of being in view."""

@@ -227,7 +227,7 @@ class VoxelRegion(Region):
         return np.array([len(self._cells) * float(self.pitch.prod())])
 
     def dilation(self, iterations: int, structure: Any = None) -> Region:
-        """The region grown by cells that touch a filled one, so many times; shrunk where negative, `nowhere` if nothing is left.
+        """The region after repeatedly adding the cells that touch a filled one, or removing them if the number is negative; `nowhere` if nothing is left.
 
         Args:
             iterations: how often.

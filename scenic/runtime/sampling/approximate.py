@@ -41,10 +41,10 @@ _STEPS: Final = (0.5, 0.1, 0.02)
 """Step sizes of moves along an axis of the cube; a step of 0.5 draws the coordinate again."""
 
 _OTHERS: Final = 4
-"""One in so many sweeps has another step than the one by which lanes have got furthest."""
+"""Number of sweeps among which one uses another step than the best one so far."""
 
 _OBJECTS: Final = 16
-"""Objects are evaluated in multiples of so many, in the order of the program: then few schedules do for all checks."""
+"""Objects are evaluated in multiples of this number, in the order of the program, so that a few schedules serve all checks."""
 
 _SWEEPS: Final = (4, 60)
 """Sweeps at the end, at least and at most."""
@@ -469,7 +469,7 @@ class _State:
             self._words[place] = words
 
     def redraw(self, random: np.random.Generator, block: _Block, step: float) -> None:
-        """Draw a block anew, at most so far from where it was; words, at random, where ``step`` is 0.5."""
+        """Draw a block again, within ``step`` of its place; words are drawn at random, if ``step`` is 0.5."""
         for place in block.numbers:
             shift = random.uniform(-step, step, self._lanes)
             self._numbers[place] = np.clip((self._numbers[place] + shift) % 1.0, 2.0**-60, 1 - 2.0**-53)

@@ -100,7 +100,7 @@ def blocks(units: Iterable[frozenset[int]]) -> list[frozenset[int]]:
 
 
 def merged(checks: Iterable[Check]) -> list[Check]:
-    """The checks, with all that is asked of collisions in one of them."""
+    """The checks, with all collisions in one of them."""
     others: list[Check] = []
     collisions: list[CollisionCheck] = []
     for check in checks:

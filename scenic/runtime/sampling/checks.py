@@ -42,7 +42,7 @@ class Verdict:
         return self.holds if self.failed is None else self.holds | self.failed
 
     def unless(self, inactive: Mask) -> "Verdict":
-        """The verdict of a soft requirement, which says nothing in lanes where it is not active."""
+        """The verdict of a soft requirement, which passes lanes where it is not active."""
         failed = None if self.failed is None else self.failed & ~inactive
         return Verdict(self.holds | inactive, failed)
 

@@ -140,7 +140,7 @@ def _index(item: tuple[Any, ...]) -> Any:
 
 
 def _merged(group: Sequence[tuple[int, Check]]) -> list[tuple[int, Check]]:
-    """The checks of a component; all that is asked of collisions in it is one check."""
+    """The checks of a component; all its collisions are one check."""
     merged: list[tuple[int, Check]] = []
     collisions: dict[int, list[CollisionCheck]] = {}
     for index, check in group:
@@ -166,7 +166,7 @@ def _part(plan: Plan, group: Sequence[tuple[int, Check]], places: Mapping[int, i
 
 
 def _always_holds(check: Check, bounds: Bounds | None) -> bool:
-    """Tell whether bounds of its node show that a check passes in every lane, and nothing below it may fail."""
+    """Return whether bounds of its node show that a check passes in every lane, and nothing below it may fail."""
     if (
         not isinstance(check, NodeCheck)
         or bounds is None
@@ -260,7 +260,7 @@ class _Joins:
         return member
 
     def would_join(self, nodes: Iterable[Node]) -> bool:
-        """Tell whether adding a set of nodes would join draws that are apart yet."""
+        """Return whether adding a set of nodes would join draws that are apart yet."""
         met: set[int | Node] = set()
         seen: set[Node] = set()
         stack = list(nodes)
@@ -278,7 +278,7 @@ class _Joins:
         return len(met) > 1
 
     def has_draws(self, member: int) -> bool:
-        """Tell whether any draw is below a set."""
+        """Return whether any draw is below a set."""
         return self._drawing[member]
 
     def leader(self, member: int) -> int:

@@ -348,7 +348,7 @@ class Engine:
         return other
 
     def profile(self, scenes: int) -> Profile:
-        """The measurements of this engine's meter while it found so many scenes."""
+        """The measurements of this engine's meter while it found a number of scenes."""
         assert self._meter is not None
         return self._meter.profile(scenes, self.plan.checks, self._scheduler)
 
@@ -480,7 +480,7 @@ class Engine:
         return self.batch(self._source(Lanes(pending.seed[owner], pending.k[owner], attempts, keys)))
 
     def note(self, number: int, lanes: int, passed: int, seconds: float) -> None:
-        """Let the meter know that a check has judged so many lanes."""
+        """Report to the meter the number of lanes that a check has tested."""
         if self._meter is not None:
             self._meter.check(number, lanes, passed, seconds)
 
@@ -491,7 +491,7 @@ class Engine:
             self._meter.round(lanes, passed, seconds)
 
     def evaluate(self, batch: Batch, nodes: tuple[Node, ...]) -> None:
-        """Evaluate nodes in a new batch; they can be read until others are asked for."""
+        """Evaluate nodes in a new batch; their values can be read until the next call."""
         (schedule,) = self._scheduler.chain([nodes])
         batch.follow(schedule, nodes)
 
@@ -501,7 +501,7 @@ class Engine:
         self._scheduler.after(self._scheduler.start, tuple(self.plan.outputs))
 
     def given_up(self, seed: int, k: int, attempts: int) -> Exhausted:
-        """The report on a scene that was not found among so many candidates."""
+        """The report on a scene that was not found among a number of candidates."""
         return Exhausted(seed, k, attempts, "attempts", self.report(Task(seed, k), attempts))
 
     def batch(self, source: Source, *, grouped: bool = True) -> Batch:

@@ -13,7 +13,7 @@ _ENOUGH = 1_000
 """Accepted candidates after which no more are tried: the estimate is off by 3%."""
 
 _REPORTED = 1_000
-"""Candidates on which every requirement is asked."""
+"""Number of candidates on which every requirement is tested."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class ComponentEstimate:
 
 
 def estimate(engines: Sequence[Engine], *, seed: int, candidates: int) -> tuple[ComponentEstimate, ...]:
-    """Estimates for components from so many candidates of each, at most. The result depends on the arguments alone."""
+    """Estimates for components, from a number of candidates of each at most. The result depends on the arguments alone."""
     return tuple(_estimated(engine, seed, candidates) for engine in engines)
 
 

@@ -30,7 +30,7 @@ TRIED: Final = 1024
 """Candidates for a component none of which may pass, or it is not divided."""
 
 RARE: Final = 1e-3
-"""A component is divided if fewer candidates pass, as far as estimates tell."""
+"""A component is divided if fewer candidates pass, by the estimates."""
 
 GAIN: Final = 5
 """The factor by which draws must become fewer then."""
@@ -205,7 +205,7 @@ def _joints(own: Sequence[Piece], numbers: Sequence[int], soft_places: dict[int,
 
 
 def _may_fault(plan: Plan) -> bool:
-    """Tell whether a value that a check reads may fail to be computed: then no part of a scene can be judged alone."""
+    """Return whether a value that a check reads may fail to be computed: then no part of a scene can be judged alone."""
     nodes = Graph(node for check in plan.checks for node in check.nodes).nodes
     return any(node.operation.may_fault(node.operands, node.payload, node.kind) for node in nodes)
 

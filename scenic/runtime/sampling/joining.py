@@ -69,7 +69,7 @@ def join(
 
 
 class _LateError(Exception):
-    """There is no time left."""
+    """Raised when no time is left."""
 
 
 class _Queue:
@@ -167,7 +167,7 @@ class _Search:
         return Joined(attempts, np.maximum.reduce(leaves), in_time)
 
     def _supply(self, queue: _Queue, wanted: Numbers) -> None:
-        """See to it that there are so many candidates for a part of each scene, or that a limit is reached."""
+        """Find the wanted number of candidates for a part of each scene, unless a limit is reached."""
         while True:
             scenes = np.flatnonzero((queue.count < wanted) & ~self._is_over)[: self._lanes]
             if not len(scenes):

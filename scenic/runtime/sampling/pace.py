@@ -16,16 +16,16 @@ _LIKELY_PYTHON: Final = 1e-4
 """The same where code of the program is called in each lane."""
 
 _FIXED_LANES: Final = 200
-"""A round costs about what so many lanes cost more, before rounds of several sizes have been measured."""
+"""Assumed fixed cost of a round, in lanes, before rounds of several sizes have been measured."""
 
 _LEAST_SHARE: Final = 0.25
-"""Lanes cost this part, at least, of what they would if a round cost as much as so many."""
+"""Lower bound of the fitted cost of a lane, as a share of the cost under the assumed fixed cost of a round."""
 
 _ROUND_SECONDS: Final = 2.0
 """Rounds are cut to about this time, so that limits and interrupts are noticed soon."""
 
 _TRUST: Final = 4
-"""Costs are believed for rounds up to so many times as large as any that was made."""
+"""Fitted costs are used for rounds up to this factor larger than any measured round."""
 
 _FIRST: Final = 512
 """Lanes of the first round, at most, if it has many attempts at a scene."""
@@ -42,7 +42,7 @@ _MOST_LEVELS: Final = 64
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """A round: so many scenes, each with so many attempts ahead."""
+    """The size of a round: the number of scenes, and of attempts ahead for each."""
 
     scenes: int
     ahead: int

@@ -124,7 +124,7 @@ class PiecewiseEngine:
         return other
 
     def profile(self, scenes: int) -> Profile:
-        """The measurements of the meter while so many scenes were found; candidates are those of all components together."""
+        """The measurements of the meter while a number of scenes were found; candidates of all components are counted together."""
         return self._whole.profile(scenes)
 
     def scenes(
@@ -247,7 +247,7 @@ class PiecewiseEngine:
                 block.missing.setdefault(row, replace(given_up, reason=reason))
 
     def _together(self, block: _Block, ahead: int) -> None:
-        """Try all components of the scenes that are not divided so many times."""
+        """Make a number of attempts at all components that are not divided."""
         begun = time.thread_time()
         pending = self._whole.pending(block.tasks)
         owner, offset = expand(np.full(len(block.tasks), ahead, dtype=np.int64))

@@ -54,7 +54,7 @@ class Outline:
     graph: Graph
     checks: tuple[Check, ...]
     outputs: tuple[Node, ...]
-    """Values that scenes show. Of the rest, as points, those that somebody asks for are evaluated then."""
+    """Values that scenes show. Other values, such as points, are evaluated on demand."""
     requirements: tuple[Requirement, ...]
     """The hard requirements of the program, for analysis."""
     built_in: tuple[NodeCheck, ...]
@@ -120,7 +120,7 @@ def _drawing(outputs: Sequence[Node]) -> list[Check]:
 
 
 def _may_mark(node: Node) -> bool:
-    """Tell whether a lane may fail at a node, or have no value there."""
+    """Return whether a lane may fail at a node, or have no value there."""
     if node.is_constant or node.is_drawn:
         return False
     operation = node.operation
@@ -155,7 +155,7 @@ def _finite(program: Program) -> list[Check]:
 
 
 def _may_be_infinite(root: Node, known: dict[Node, Bounds | None]) -> bool:
-    """Tell whether numbers below a node may overflow or be undefined; ``known`` keeps what has been found out.
+    """Return whether numbers below a node may overflow or be undefined; ``known`` keeps what has been found out.
 
     Operations that say nothing of their results are those of geometry, whose results are places.
     """
@@ -187,7 +187,7 @@ def _may_be_infinite(root: Node, known: dict[Node, Bounds | None]) -> bool:
 
 
 def _may_be_no_turn(node: Node, operands: Sequence[Bounds | None]) -> bool:
-    """Tell whether it is a rotation, or an angle of one, by what may be infinite: bounds of its parts do not tell."""
+    """Return whether a value is a rotation by an angle that may be infinite, or such an angle, which bounds of its parts do not show."""
     if node.kind is not Kind.ORIENTATION and node.operation.name != "euler":
         return False
     return any(bounds is not None and not _is_bounded(bounds) for bounds in operands)
@@ -372,7 +372,7 @@ def _collisions(program: Program) -> list[Check]:
 
 
 def _if_present(item: Any, condition: Node) -> Node:
-    """A condition that is only asked of an object where it takes part."""
+    """A condition that applies to an object only if it is present."""
     return condition if is_always_present(item) else connect("or", [as_node(absent(item)), condition])
 
 

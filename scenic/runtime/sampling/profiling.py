@@ -140,7 +140,7 @@ class Meter:
     _checks: dict[int, _Checked] = field(default_factory=dict)
 
     def step(self, step: AnyStep, lanes: int, seconds: float) -> None:
-        """Take a step of a batch of so many lanes into account."""
+        """Add the time of a step, with the number of lanes of its batch."""
         if not isinstance(step, Step):
             key: _Key = ("random numbers", None, False)
             self._seconds[key] += seconds
@@ -153,7 +153,7 @@ class Meter:
             self._values[key] += lanes
 
     def check(self, index: int, lanes: int, passed: int, seconds: float) -> None:
-        """Take a check of so many lanes into account, by its number."""
+        """Add the time of a check, by its number, with the number of lanes."""
         found = self._checks.setdefault(index, _Checked())
         found.candidates += lanes
         found.passed += passed

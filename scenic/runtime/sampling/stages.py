@@ -42,7 +42,7 @@ class _Measured:
 
 
 class Stages:
-    """The order of checks for any number of lanes, kept and now and then made anew from what was measured.
+    """The order of checks for any number of lanes, kept, and now and then made again from the measurements.
 
     Args:
         checks: the checks, in program order.
@@ -75,18 +75,18 @@ class Stages:
         measured.passed = _FADING * measured.passed + passed
 
     def renew(self) -> None:
-        """Forget the order, so that it is made anew from what was measured."""
+        """Discard the order, so that it is made again from the measurements."""
         self._plans.clear()
 
     def order(self, lanes: int) -> tuple[Stage, ...]:
-        """The stages for a batch of so many lanes; the last one has no checks: it gets the outputs."""
+        """The stages for a batch with a number of lanes. The last stage has no checks: it evaluates the outputs."""
         if self._rounds and self._rounds & (self._rounds - 1) == 0:
             self.renew()  # after 1, 2, 4, 8, ... rounds
         self._rounds += 1
         return self.expected(lanes)
 
     def expected(self, lanes: int) -> tuple[Stage, ...]:
-        """The same for a batch that may come: asked for before the first one, it spares that one the making."""
+        """Make the stages for a possible batch in advance, so that the first batch does not have to wait for them."""
         size = max(1, lanes).bit_length()
         plan = self._plans.get(size)
         if plan is None:

@@ -20,7 +20,7 @@ from scenic.runtime.values.random_values import Random
 __all__ = ["PLACES", "ObjectColumns", "SceneColumns", "ValueColumn"]
 
 PLACES = frozenset({"position", "orientation", "heading", "width", "length", "height", "shape"})
-"""Properties that tell where an object is, how it is turned and what form it has."""
+"""Properties of an object's position, orientation and shape."""
 
 
 @dataclass(frozen=True, slots=True)

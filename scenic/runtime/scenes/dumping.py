@@ -32,7 +32,7 @@ _LEFT_OUT = frozenset(
         "requireVisible",
     }
 )
-"""Properties that the placement gives, that follow from others, or that would make requirements anew: those of the scene were judged when it was sampled."""
+"""Properties that the placement gives, that follow from others, or that would add requirements again: the requirements of the scene were tested when it was sampled."""
 
 _DECLARED = frozenset(item.name for cls in CLASSES.values() for item in cls.properties)
 """The properties that the language declares."""

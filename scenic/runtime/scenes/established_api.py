@@ -384,7 +384,7 @@ def setDebuggingOptions(
     debugExceptions: bool = False,  # noqa: ARG001 - of the established call
     debugRejections: bool = False,  # noqa: ARG001 - of the established call
 ) -> None:
-    """Set how much is told (`verbosity`, from 0 to 3); the other options belong to the commands here."""
+    """Set the amount of output (`verbosity`, from 0 to 3); the other options belong to the commands here."""
     verbosity_now.set(verbosity)
 
 

@@ -12,7 +12,7 @@ __all__ = ["named", "naming", "unnamed", "whole"]
 
 @contextmanager
 def naming(path: Path) -> Iterator[None]:
-    """Errors of files that have no name tell this one."""
+    """Name for files without a name in errors."""
     try:
         yield
     except OSError as error:

@@ -228,7 +228,7 @@ class Generating(ABC):
         return self.workspace.region if own is None else own
 
     def resetExternalSampler(self) -> None:
-        """Let the sampler of the external parameters begin anew."""
+        """Restart the sampler of the external parameters."""
         self._external_sampler = None
 
     @property

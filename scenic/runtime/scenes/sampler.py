@@ -28,7 +28,7 @@ OPAQUE_ATTEMPTS = 1000
 """Candidates tried for one scene of a program whose only random numbers could be those of its own functions."""
 
 DEFAULT_ATTEMPTS = 100_000
-"""Candidates tried for one scene before giving up, unless the caller says otherwise."""
+"""Default number of candidates tried for one scene before giving up."""
 
 Results = Iterator[Accepted | Exhausted]
 
@@ -75,7 +75,7 @@ class Sampler:
         return self._finder.engines if isinstance(self._finder, PiecewiseEngine) else [self.engine]
 
     def prepare(self) -> None:
-        """Make what the first scene would otherwise wait for."""
+        """Do the one-time work that the first scene would otherwise wait for."""
         if self.impossible:
             return
         self._finder.prepare()
@@ -151,7 +151,7 @@ class Sampler:
         return engine.profile(sum(not isinstance(result, Exhausted) for result in some))
 
     def foresee(self, tasks: Iterable[tuple[int, int]], max_attempts: int, more: bool) -> Results:
-        """The scenes of tasks without end; ``more`` tells whether to expect that more than the first one is wanted."""
+        """The scenes of tasks without end; ``more`` is true if more than the first scene will probably be wanted."""
         if self.impossible:
             return self._not_found(tasks)
         self._divide()

@@ -136,7 +136,7 @@ class Scenario(Generating):
         self._unconditioned = {name: value for name, value in vars(self).items() if name not in _KEPT}
 
     def within(self, domain: Domain) -> "Scenario":
-        """The same scenario, sampled from another part of the cube, which must hold all points that meet the requirements."""
+        """The same scenario, sampled from another part of the cube, which must contain all points that meet the requirements."""
         return Scenario(
             self._program,
             self.outline,
@@ -163,7 +163,7 @@ class Scenario(Generating):
         return others if self.egoObject is None else (self.egoObject, *others)
 
     def variable(self, thing: Object) -> str | None:
-        """The variable of the program that holds one of the `objects`, where there is one."""
+        """The variable of the program that refers to one of the `objects`, if any."""
         return self._names.get(id(thing))
 
     @property
@@ -252,12 +252,12 @@ class Scenario(Generating):
         return self._sampler.impossible
 
     def estimates(self, *, seed: int, candidates: int) -> tuple[ComponentEstimate, ...]:
-        """Estimates of how often candidates pass, for each independent component of the scenes, from so many of each at most."""
+        """Estimates of how often candidates pass, for each independent component of the scenes, from a number of candidates of each at most."""
         with self._program.undisturbed():
             return estimate(self._sampler.engines, seed=seed, candidates=candidates)
 
     def prepare(self) -> None:
-        """Make what the first scene would otherwise wait for."""
+        """Do the one-time work that the first scene would otherwise wait for."""
         self._sampler.prepare()
 
     def stream(
@@ -281,7 +281,7 @@ class Scenario(Generating):
             max_attempts: candidates tried for one scene before it is given up as `Exhausted`.
             time_limit: seconds for all of them; scenes not found by then are `Exhausted`.
             lanes: candidates evaluated at a time. Changes speed and memory, never the scenes.
-            source: where random numbers come from, if they are not hashed: `scenic.Sobol` for scenes that are spread evenly,
+            source: the source of random numbers, if they are not hashed: `scenic.Sobol` for scenes that are spread evenly,
                 `scenic.GivenPoints` for points of the cube that somebody chose. The words that key draws which take tries
                 are hashed all the same.
             approximate: make so many scenes together, whose law comes the closer to the program's the more these are: for
@@ -492,22 +492,22 @@ class Scenario(Generating):
         return cause
 
     def validate(self) -> None:
-        """Nothing to do: whatever is fixed is checked when the program is loaded."""
+        """Do nothing: fixed values are checked when the program is loaded."""
 
     def setSampleChecker(self, checker: Any) -> None:
-        """Nothing to do: in which order requirements are checked follows what they cost and reject."""
+        """Do nothing: the order of checks follows their cost and rejections."""
 
     # Scenes as data
 
     def sceneToBytes(self, scene: Scene, allowPickle: bool = False) -> bytes:
-        """A scene as data, which `sceneFromBytes` takes up again. ``allowPickle`` is accepted for compatibility."""
+        """A scene as data, which `sceneFromBytes` reads. ``allowPickle`` is accepted for compatibility."""
         numbers, words = draws_of(scene.found, scene.lane)
         return SavedScene(
             scene.digest, scene.found.task(scene.lane), scene.attempts, numbers, words
         ).to_bytes()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """A scenario is pickled as its program, and compiled anew by whoever unpickles it."""
+        """A scenario is pickled as its program, which is compiled again when it is unpickled."""
         if self._services.recipe is None:
             raise TypeError("a scenario that was made by hand cannot be pickled")
         return self._services.recipe
@@ -542,7 +542,7 @@ class Scenario(Generating):
 
     @property
     def has_simulator(self) -> bool:
-        """Return whether the program says which simulator runs it."""
+        """Return whether the program selects its simulator."""
         return self._program.simulator is not None
 
     def getSimulator(self) -> Any:
@@ -557,7 +557,7 @@ class Scenario(Generating):
         objects: Sequence[Any] = (),
         params: Mapping[str, Any] | Sequence[str] = (),
     ) -> None:
-        """Let objects and parameters have certain values in all later scenes; those not named vary as before.
+        """Fix the values of objects and parameters in all later scenes; the others vary as before.
 
         Without arguments earlier conditions are lifted; otherwise they stay.
 

@@ -71,9 +71,9 @@ class Family:
 
 
 class Scene:
-    """Concrete objects and parameters. Values are taken from the sample when they are first looked at.
+    """Concrete objects and parameters. Values are read from the sample on first use.
 
-    Made for every scene, so of few attributes; what all scenes of a scenario share is in its ``family``.
+    It has few attributes, since many scenes are made; ``family`` contains the data that all scenes of a scenario share.
     """
 
     _sample: Copier | None = None
@@ -114,7 +114,7 @@ class Scene:
 
     @property
     def workspace(self) -> Workspace:
-        """The region in which everything takes place."""
+        """The region that contains all objects."""
         return self._family.workspace
 
     @property
@@ -169,7 +169,7 @@ class Scene:
 
     @property
     def objects(self) -> tuple[Any, ...]:
-        """All objects that take part: the ego first, then the others in order of creation."""
+        """All objects that are present: the ego first, then the others in order of creation."""
         if self._objects is None:
             cast = self.cast
             missing = self._missing()
@@ -180,7 +180,7 @@ class Scene:
 
     @property
     def cast(self) -> tuple[Any, ...]:
-        """An object for each of the program's `objects`, also those that take no part in this scene."""
+        """An object for each of the program's `objects`, also for objects that are not present in this scene."""
         if self._cast is None:
             sample = self._values()
             if self._cast is None:
@@ -221,7 +221,7 @@ class Scene:
 
     @property
     def names(self) -> dict[Any, str]:
-        """The variable of the program that holds each object, where there is one."""
+        """The variable of the program that refers to each object, if any."""
         return {
             item: name
             for item in self.objects
@@ -230,7 +230,7 @@ class Scene:
 
     @property
     def regions(self) -> dict[str, Region]:
-        """The regions that variables of the program hold, by name, as they are in this scene."""
+        """The regions in variables of the program, by name, with their values in this scene."""
         sample = self._values()
         return {name: sample.value(region) for name, region in self._family.regions.items()}
 
@@ -280,9 +280,9 @@ class Scene:
         return scene
 
     def save(self, path: str | Path) -> None:
-        """Write the scene to a file, from which `Scenario.replay` takes it up again; the file is complete or absent.
+        """Write the scene to a file, which `Scenario.replay` reads; the file is complete or absent.
 
-        Where its name ends in ``.wbt`` it is a world of Webots instead, with its meshes in a folder beside it.
+        If its name ends in ``.wbt``, the file is a world of Webots instead, with its meshes in a folder beside it.
         """
         if Path(path).suffix == ".wbt" and self._family.export is not None:
             self._family.export(self, Path(path))
@@ -304,7 +304,7 @@ class Scene:
 
 
 def _always(requirement: Requirement) -> bool:
-    """Tell whether a requirement needs no check, since it holds in every scene."""
+    """Return whether a requirement needs no check, since it holds in every scene."""
     return requirement.condition.is_constant and bool(requirement.condition.value)
 
 

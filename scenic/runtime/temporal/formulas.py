@@ -36,7 +36,7 @@ Formula: TypeAlias = "Atom | Compound"
 
 
 def is_temporal(formula: Formula) -> bool:
-    """Return whether a formula speaks of more than one state."""
+    """Return whether a formula depends on more than one state."""
     if isinstance(formula, Atom):
         return False
     return formula.operator in ("next", "always", "eventually", "until") or any(

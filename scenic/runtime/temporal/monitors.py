@@ -89,7 +89,7 @@ class Monitor:
 
     @property
     def left(self) -> Hashable:
-        """The formula that is left to hold, with the verdict: monitors of one formula that are equal in it go on alike."""
+        """The remaining obligation, with the verdict: monitors of one formula with equal obligations behave the same from now on."""
         return self.verdict, self._left
 
     def add(self, evaluate: Callable[[int], bool]) -> Verdict:

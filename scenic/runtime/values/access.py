@@ -125,7 +125,7 @@ _PARAMETERS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
         "truncated normal": ("mean", "stdDev"),
     }
 )
-"""Parameters of primitive laws that scripts ask for, in the order of their operands."""
+"""Parameters of primitive distributions that scripts read, in the order of their operands."""
 
 
 def attribute(value: RandomBase, name: str) -> Any:
@@ -175,7 +175,7 @@ def _draws(function: Any) -> bool:
 
 
 def _is_of_runtime(function: Any) -> bool:
-    """Tell whether a callable is one of the runtime's own, which take random arguments; what programs define does not."""
+    """Return whether a callable is one of the runtime's own, which take random arguments; what programs define does not."""
     defined = getattr(function, "__func__", function)
     module = getattr(defined, "__module__", None) or ""
     return module.startswith("scenic.runtime.")
@@ -221,7 +221,7 @@ def _attribute_of_option(option: Node, name: str, rejects: bool = False) -> Node
 
 @functools.lru_cache(maxsize=1024)
 def _is_computed(cls: type, name: str) -> bool:
-    """Tell whether an attribute is computed by code of the program, which has to see sampled values."""
+    """Return whether an attribute is computed by code of the program, which has to see sampled values."""
     found = member(cls, name)
     code = found.fget if isinstance(found, property) else getattr(found, "func", None)
     return isinstance(found, property | functools.cached_property) and not _is_of_runtime(code)

@@ -57,7 +57,7 @@ def apply(operation: Operation, *operands: Any, payload: Any = None) -> Any:
 
 
 def _is_of_code(operation: Operation, operands: Sequence[Any]) -> bool:
-    """Tell whether classes of the program define what Python's function gives for an operand: of samples it has to be asked."""
+    """Return whether classes of the program define what Python's function gives for an operand: of samples it has to be asked."""
     # Python's operators and functions have the names of the methods that they call: `operator.add`, `len`.
     name = operation.python.__name__.strip("_")  # type: ignore[union-attr] # it has one
     methods = (f"__{name}__", f"__r{name}__", *_INSTEAD.get(name, ()))
@@ -142,7 +142,7 @@ def folded(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:
 
 
 def _is_sampling() -> bool:
-    """Tell whether a sample is computed, or a simulation runs, rather than the program that describes them."""
+    """Return whether a sample is computed, or a simulation runs, rather than the program that describes them."""
     context = current.get()
     return context is not None and (not context.is_symbolic or context.sample is not None)
 

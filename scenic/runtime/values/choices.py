@@ -51,7 +51,7 @@ def over_options(operands: Sequence[Node], function: Callable[..., Any]) -> Any:
 
 
 def _is_choice_of_data(node: Node) -> bool:
-    """Tell whether a node is a choice among constants that are data of Python, in which nothing is random."""
+    """Return whether a node is a choice among constants that are data of Python, in which nothing is random."""
     if node.operation is not TABLE["select"]:
         return False
     return all(option.is_constant and _is_data(option.value) for option in node.operands[1:])

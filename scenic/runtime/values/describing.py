@@ -25,7 +25,7 @@ def describe(value: Any) -> str:
 
 
 def wrong_type(types: Type | Sequence[Type] | str, value: Any, what: str = "") -> ScenicTypeError:
-    """The error for a value that has none of the types, or is not what a noun says."""
+    """The error for a value that has none of the types, or does not match a noun."""
     noun, hint = (
         (types, None) if isinstance(types, str) else wanted((types,) if isinstance(types, Type) else types)
     )

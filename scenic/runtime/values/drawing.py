@@ -1,4 +1,4 @@
-"""One sample of a random value by itself, drawn now: for scripts that look at a law without a scenario."""
+"""A single sample of a random value, drawn now: for scripts that use a distribution without a scenario."""
 
 import random
 from collections.abc import Sequence

@@ -19,7 +19,7 @@ def call_later(function: Any, /, *args: Any, **keywords: Any) -> Any:  # noqa: A
 
 @singledispatch
 def sample_of(value: Any) -> Any:  # noqa: ARG001
-    """A sample of a value by itself, drawn now (`scenic.runtime.values.drawing`)."""
+    """A single sample of a value, drawn now (`scenic.runtime.values.drawing`)."""
     raise InternalError("no module has registered samples of values")
 
 

@@ -31,7 +31,7 @@ class Lazy:
         self._compute = compute
 
     def value_for(self, instance: Any) -> Any:
-        """The value for one instance: the same, however often it is asked for while the instance is built."""
+        """The value for one instance: the same on every call while the instance is built."""
         known = instance.__dict__.setdefault(MEMO, {})
         if id(self) not in known:
             known[id(self)] = (self, resolve(self._compute(instance), instance))

@@ -122,7 +122,7 @@ def _are_clear(views: Views, directions: Floats, limits: Floats, obstacles: Obst
 
 
 def _angle(some: Floats, others: Floats) -> float:
-    """The least angle between two sets of directions, radians; as far as is looked where there are no others."""
+    """The least angle between two sets of directions, radians; or the largest angle that is searched if the sets are farther apart."""
     from scipy.spatial import KDTree  # slow to import
 
     if not len(others):

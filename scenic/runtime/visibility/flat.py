@@ -117,7 +117,7 @@ def _within(points: Column, heading: Column, angle: Column, distance: Column) ->
 
 
 def _crosses(starts: Column, ends: Column, direction: Column, distance: Column) -> Column:
-    """Tell whether each edge crosses the segment from the camera along ``direction``."""
+    """Return whether each edge crosses the segment from the camera along ``direction``."""
     ray = direction[:, np.newaxis, :]
     along = ends - starts
     across = along[..., 0] * ray[..., 1] - along[..., 1] * ray[..., 0]

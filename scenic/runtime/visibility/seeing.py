@@ -69,7 +69,7 @@ def _sees(observer: Any, target: Any, occluders: Sequence[Any], certain: bool) -
 
 
 def _at_once(observer: Any, target: Any, occluders: Sequence[Any]) -> bool | None:
-    """Tell whether it is seen, if that needs no closer look; ``None`` also where something is random."""
+    """Return whether it is seen, if that needs no closer look; ``None`` also where something is random."""
     camera, orientation = camera_of(observer)
     angles = observer.viewAngles if _is_turned(observer) else (2 * np.pi, np.pi)
     distance = observer.visibleDistance
@@ -236,7 +236,7 @@ SEES = Operation(
 
 
 def looks(root: Node) -> bool:
-    """Return whether a condition asks what is seen, as far as that is not hidden in Python code."""
+    """Return whether a condition depends on visibility, unless the dependence is hidden in Python code."""
     return any(node.operation is SEES for node in Graph([root]).nodes if not node.is_axis)
 
 

@@ -19,7 +19,7 @@ class _ActorAction(Action):
     """An action on the simulator's actor."""
 
     def canBeTakenBy(self, agent: Any) -> bool:
-        """Tell whether the agent is an actor of CARLA."""
+        """Return whether the agent is an actor of CARLA."""
         return hasattr(agent, "carlaActor")
 
 

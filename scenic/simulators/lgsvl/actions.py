@@ -12,7 +12,7 @@ class _ActorAction(Action):
     """An action of an actor of LGSVL."""
 
     def canBeTakenBy(self, agent: Any) -> bool:
-        """Tell whether the agent is an actor of LGSVL."""
+        """Return whether the agent is an actor of LGSVL."""
         return hasattr(agent, "lgsvlObject")
 
     def applyTo(self, agent: Any, simulation: Any) -> None:

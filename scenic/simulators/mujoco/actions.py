@@ -40,7 +40,7 @@ class _Grip(Action):
     """An action for grippers."""
 
     def canBeTakenBy(self, agent: Any) -> bool:
-        """Tell whether the agent is a guided body."""
+        """Return whether the agent is a guided body."""
         return model_of(agent) == "guided"
 
 

@@ -28,7 +28,7 @@ _TRACK: Final = 0.98
 _WHEEL_MASS: Final = 0.05
 """Of each wheel, as a part of the robot's mass."""
 _SERVO: Final = 0.05
-"""In so many seconds the drive of a robot makes good most of a difference of speed."""
+"""Seconds in which the drive of a robot corrects most of a difference in speed."""
 _STIFF: Final = (0.01, 1.0)
 """Time constant (seconds) and damping ratio of welds."""
 _HARD: Final = (0.005, 1.0)
@@ -308,7 +308,7 @@ class Builder:
         part.mass = mass
 
     def _guide(self, body: Any, part: Part) -> None:
-        """A body that floats, welded to a frame that moves as it is told."""
+        """A floating body, welded to a frame that moves by commands."""
         body.gravcomp = 1.0
         name = f"{part.name} guide"
         self.spec.worldbody.add_body(

@@ -1,4 +1,4 @@
-"""A simulation in MuJoCo: its steps, what agents tell their bodies to do, and what is read back."""
+"""A simulation in MuJoCo: its steps, the commands of agents to their bodies, and the state that is read back."""
 
 import math
 from collections.abc import Mapping
@@ -181,7 +181,7 @@ class MujocoSimulation(Simulation):
         return [int(self.model.geom(name).id) for name in part.geoms or [part.name]]
 
     def _within(self, reach: float, first: int, second: int) -> bool:
-        """Tell whether two geoms are at most so many metres apart."""
+        """Return whether two geoms are within a distance in metres."""
         ends = np.zeros(6)
         found: float = library().mj_geomDistance(self.model, self.data, first, second, reach + 1e-6, ends)
         return found <= reach

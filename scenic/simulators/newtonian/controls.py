@@ -69,7 +69,7 @@ class Driven(_Moved, Steers):
 
 @dataclass(slots=True)
 class Gait:
-    """Direction (radians, anticlockwise from north) and speed (m/s) that a pedestrian has been told, if any."""
+    """Direction (radians, anticlockwise from north) and speed (m/s) that a pedestrian has been commanded, if any."""
 
     direction: float | None = None
     speed: float | None = None

@@ -1,4 +1,4 @@
-"""Wavefront OBJ: the lines ``v x y z`` and ``f a/b/c ...``; all else says nothing about the shape."""
+"""Wavefront OBJ: the lines ``v x y z`` and ``f a/b/c ...``; other lines do not affect the shape."""
 
 import re
 from typing import Final

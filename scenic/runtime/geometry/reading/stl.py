@@ -13,7 +13,7 @@ _VERTEX: Final = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
 
 
 def read_stl(data: bytes) -> Soup:
-    """The triangles of all solids. A file is binary if its length is what its number of triangles says."""
+    """The triangles of all solids. A file is binary if its length agrees with its number of triangles."""
     if len(data) >= _HEADER:
         count = int.from_bytes(data[_HEADER - 4 : _HEADER], "little")
         if len(data) == _HEADER + count * _RECORD.itemsize:

@@ -101,7 +101,7 @@ class Obstacles:
 
 
 def _meet_hull(offset: Floats, reach: Floats, way: Floats, radius: Floats) -> Booleans:
-    """Tell whether balls about ``offset`` meet the hull of the origin and a ball of a radius about ``way``; never wrongly no.
+    """Return whether balls about ``offset`` meet the hull of the origin and a ball of a radius about ``way``; never wrongly no.
 
     The hull is the union of the balls of radius ``t radius`` about ``t way``, for t from 0 to 1. What the ball about
     ``offset`` lacks to meet one of them is convex in t, so its least value is where the derivative vanishes, or at

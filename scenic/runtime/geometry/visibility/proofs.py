@@ -71,7 +71,7 @@ def shadowed(placed: Placed, lanes: Indices, directions: Floats, limits: Floats)
 
 
 def _inside(mesh: Mesh, origins: Floats) -> Booleans:
-    """Tell whether points in the unit frame are in the solid, ``(n,)``; its rays need not meet the surface then."""
+    """Return whether points in the unit frame are in the solid, ``(n,)``; its rays need not meet the surface then."""
     result = np.asarray((np.abs(origins) <= 0.5 + _MARGIN).all(axis=1))
     if not mesh.is_box:
         near = np.flatnonzero(result)
@@ -80,7 +80,7 @@ def _inside(mesh: Mesh, origins: Floats) -> Booleans:
 
 
 def _meets_box(origins: Floats, directions: Floats, low: Floats, high: Floats, limits: Floats) -> Booleans:
-    """Tell whether rays enter a box of the unit frame ahead of their origins and before their limits, ``(r,)``."""
+    """Return whether rays enter a box of the unit frame ahead of their origins and before their limits, ``(r,)``."""
     near, far = np.full(len(origins), -np.inf), np.full(len(origins), np.inf)
     with np.errstate(over="ignore"):
         for axis in range(3):

@@ -14,7 +14,7 @@ LEAST_ANGLE: Final = 0.017
 """Radians to which smaller view angles are raised, so that the region has a volume."""
 
 _CORE: Final = 8.0
-"""Within so many radii of a ball from the camera, every direction counts as near the view."""
+"""Distance from the camera, in radii of a ball, within which every direction to the ball counts as near the view."""
 
 _STEP: Final = np.radians(3.0)
 """The widest step between neighbouring corners of the mesh."""

@@ -1,4 +1,4 @@
-"""Visibility for one observer, on plain floats: what a running simulation asks step by step.
+"""Visibility for one observer, on plain floats, for running simulations.
 
 Answers are certain, by more than rounding can change, or ``None``: then rays decide (`scenic.runtime.geometry.visibility.seen_bodies`).
 The middle of a body shows that it is seen, a box before all corners of its box that it is not.
@@ -97,7 +97,7 @@ def sees_body(view: View, target: Placed, occluders: Sequence[Placed]) -> bool |
 
 
 def _blocks(occluder: Placed, start: Triple, end: Triple) -> bool | None:
-    """Tell whether the way from one point to another meets the surface of a body; ``None`` if its box leaves that open."""
+    """Return whether the way from one point to another meets the surface of a body; ``None`` if its box leaves that open."""
     if not is_near_way(start, end, occluder.position, occluder.radius):
         return False
     wx, wy, wz = end[0] - start[0], end[1] - start[1], end[2] - start[2]
