@@ -13,7 +13,7 @@ from scenic.dataclass import dataclass
 from scenic.falsification.evaluating import Evaluation, Task
 from scenic.falsification.objectives import Objective
 from scenic.falsification.space import space_of
-from scenic.falsification.store import manifest_of, read_rows
+from scenic.falsification.store import folders_of, manifest_of, read_rows
 from scenic.language.errors import Located, MissingFileError
 
 if TYPE_CHECKING:
@@ -88,6 +88,10 @@ def kept_run(path: Path, number: int | None = None) -> KeptRun:
         return _searched(path.parent.parent, int(path.name))
     files = sorted(path.glob("simulation-*.jsonl"))
     wanted = [item for item in files if number is None or int(item.stem.rpartition("-")[2]) == number]
+    if not files and (searches := folders_of(path)):
+        raise ReplayError(
+            f"'{path}' holds the searches of a sweep", help=f"name one of them: '{searches[0]}'"
+        )
     if not wanted:
         raise ReplayError(
             f"'{path}' holds no run" if number is None else f"'{path}' holds no run {number}",

@@ -80,10 +80,13 @@ def test_a_changed_program_departs_where_it_differs(place: Path) -> None:
 
 def test_what_is_no_run_is_said(place: Path) -> None:
     (place / "other.jsonl").write_text("{}\n")
+    (place / "sweep/more=1").mkdir(parents=True)
+    (place / "sweep/more=1/manifest.json").write_text((place / "found/manifest.json").read_text())
     for words, message in (
         (["missing"], "there is no such file or folder"),
         (["found", 99], "'found' holds no run 99"),
         (["runs", 99], "'runs' holds no run 99"),
+        (["sweep"], "'sweep' holds the searches of a sweep"),
         (["other.jsonl"], "holds no simulation that says how it was made"),
     ):
         again = run_here(["replay", *words], folder=place)
