@@ -10,7 +10,8 @@ from scenic.language.diagnostics import Diagnostic, Fix
 
 __all__ = ["OF_TEXTS"]
 
-_NO_CLAUSE: Final = "SC134"
+_NO_CLAUSE: Final = frozenset({"SC134", "SC132"})
+"""Codes for what is missing around the edit, and may be what is broken: a clause, the blocks of a scenario."""
 _MOST: Final = 3
 """So many repairs of one text are tried, one from every part of it."""
 
@@ -49,7 +50,7 @@ def _is_of_edit(diagnostic: Diagnostic, fix: Fix) -> bool:
     span = diagnostic.span
     # The line with the mistake could have been the clause that is missing before it.
     return (
-        diagnostic.code != _NO_CLAUSE
+        diagnostic.code not in _NO_CLAUSE
         and span is not None
         and any(
             edit.span.line == span.line and 0 <= span.column - edit.span.column < max(len(edit.text), 1)

@@ -8,6 +8,7 @@ bracket or a string was left open; it repairs indentation that belongs to no blo
 
 import re
 from collections.abc import Iterable, Mapping
+from functools import cache
 from typing import Final
 
 from scenic.compiler import lexemes, lexical_errors
@@ -77,31 +78,40 @@ _WITH_OPERAND: Final = frozenset(
 ) | {"else", "async"}
 """The words that begin blocks, but stand elsewhere as well or may be names: their lines end with a colon."""
 
-_STATEMENT: Final = re.compile(
-    # Words that start nothing but statements,
-    rf"{_any_of(sorted(STATEMENT_WORDS | {'from'}))}(?=[ \t:(\n\[])"
-    # those that start other things as well, if their line ends as it must,
-    rf"|{_any_of(sorted(_WITH_OPERAND))}\b[^\n]*+(?<=[:(\[{{])(?:[ \t]*+(?:\#[^\n]*+)?+)(?=\n)"
-    rf"|{_any_of(_soft_start(form) for form in STATEMENT_FORMS if form.is_soft and form.start not in _WITH_OPERAND)}"
-    r"|new[ \t]++[A-Z]|@[A-Za-z_]"
-    # and assignments.
-    rf"|(?:\*?{_TARGET}[ \t]*+,[ \t]*+){{0,8}}+\*?{_TARGET}[ \t]*+(?:[-+*/%&|^@]|//|\*\*|<<|>>)?=(?!=)"
-)
-"""A line that starts so is a statement if it is indented no more than the statement around it."""
 
-_AFTER_TEXT: Final = re.compile(
-    r"(?:def|class|behavior|monitor|scenario)[ \t]++\w++[ \t]*+[(:]"
-    r"|from[ \t]++[\w.]++[ \t]++import\b|(?:import|model)[ \t]++[\w.]++(?:[ \t]++as[ \t]++\w++)?+[ \t]*+(?=[#\n,;])"
-    r"|@[A-Za-z_]|(?:if|for|while|with|try|else|elif|setup|compose)\b[^\n]*+(?<=:)(?=\n)"
-    rf"|(?:param[ \t]++)?(?:{_TARGET}[ \t]*+,[ \t]*+){{0,8}}+{_TARGET}[ \t]*+=(?!=)"
-    r"|(?:\w++[ \t]++)?new[ \t]++[A-Z]|require\b[^\n]*+[<>=()\[]"
-)
-"""A line of a text that is never closed which starts so is hardly prose."""
+@cache
+def _statement() -> re.Pattern[str]:
+    """The pattern of a line that is a statement if it is indented no more than the statement around it."""
+    return re.compile(
+        # Words that start nothing but statements,
+        rf"{_any_of(sorted(STATEMENT_WORDS | {'from'}))}(?=[ \t:(\n\[])"
+        # those that start other things as well, if their line ends as it must,
+        rf"|{_any_of(sorted(_WITH_OPERAND))}\b[^\n]*+(?<=[:(\[{{])(?:[ \t]*+(?:\#[^\n]*+)?+)(?=\n)"
+        rf"|{_any_of(_soft_start(form) for form in STATEMENT_FORMS if form.is_soft and form.start not in _WITH_OPERAND)}"
+        r"|new[ \t]++[A-Z]|@[A-Za-z_]"
+        # and assignments.
+        rf"|(?:\*?{_TARGET}[ \t]*+,[ \t]*+){{0,8}}+\*?{_TARGET}[ \t]*+(?:[-+*/%&|^@]|//|\*\*|<<|>>)?=(?!=)"
+    )
 
-_CALL: Final = re.compile(
-    r"[A-Za-z_][\w.]*+\((?:[^\n]*+(?<=\)))?+[ \t]*+(?=\n)|[a-z]\w*+(?:\[[a-z, ]++\])?+:[ \t]++\S"
-)
-"""So is one that starts so, in a bracket but not in a string: a call on a line of its own, a property."""
+
+@cache
+def _after_text() -> re.Pattern[str]:
+    """The pattern of a line of a text that is never closed which is hardly prose."""
+    return re.compile(
+        r"(?:def|class|behavior|monitor|scenario)[ \t]++\w++[ \t]*+[(:]"
+        r"|from[ \t]++[\w.]++[ \t]++import\b|(?:import|model)[ \t]++[\w.]++(?:[ \t]++as[ \t]++\w++)?+[ \t]*+(?=[#\n,;])"
+        r"|@[A-Za-z_]|(?:if|for|while|with|try|else|elif|setup|compose)\b[^\n]*+(?<=:)(?=\n)"
+        rf"|(?:param[ \t]++)?(?:{_TARGET}[ \t]*+,[ \t]*+){{0,8}}+{_TARGET}[ \t]*+=(?!=)"
+        r"|(?:\w++[ \t]++)?new[ \t]++[A-Z]|require\b[^\n]*+[<>=()\[]"
+    )
+
+
+@cache
+def _call() -> re.Pattern[str]:
+    """The same for a line in a bracket but not in a string: a call on a line of its own, a property."""
+    return re.compile(
+        r"[A-Za-z_][\w.]*+\((?:[^\n]*+(?<=\)))?+[ \t]*+(?=\n)|[a-z]\w*+(?:\[[a-z, ]++\])?+:[ \t]++\S"
+    )
 
 
 def _specifier_start(form: Form) -> str:
@@ -114,9 +124,12 @@ def _specifier_start(form: Form) -> str:
     return r"[ \t]++".join(words)
 
 
-_SPECIFIER: Final = re.compile(
-    rf"{_any_of(map(_specifier_start, SPECIFIERS))}[ \t]++(?![=:,.])[^\n]*+(?<![:\n])\n"
-)
+@cache
+def _specifier() -> re.Pattern[str]:
+    """The pattern of a line that holds a specifier."""
+    return re.compile(rf"{_any_of(map(_specifier_start, SPECIFIERS))}[ \t]++(?![=:,.])[^\n]*+(?<![:\n])\n")
+
+
 _CONFLICT: Final = re.compile(r"(<{7}|={7}|>{7}|\|{7})(?:[ \t][^\n]*+)?+\n")
 _CONFLICT_END: Final = re.compile(r"^>{7}(?:[ \t][^\n]*+)?+\n", re.MULTILINE)
 _MARKS: Final = re.compile(r"\"[^\"\n]*+\"|'[^'\n]*+'|([()\[\]{}])|\#")
@@ -259,7 +272,7 @@ class _CarefulLexer(Lexer):
         if kinds[-2] in (_COLON, _COMMA):
             return True
         first = self.statement_start()
-        if kinds[first] in _HEADERS or _SPECIFIER.match(self.text, end) is not None:
+        if kinds[first] in _HEADERS or _specifier().match(self.text, end) is not None:
             return True
         # A header of which one word is being typed.
         word = self.tokens.texts[first]
@@ -306,7 +319,9 @@ class _CarefulLexer(Lexer):
     def broken_off(self, column: int, end: int) -> bool:
         text = self.text
         kinds = self.tokens.kinds
-        looks_new = column <= self.indents[-1][0] and (_STATEMENT.match(text, end) or _CALL.match(text, end))
+        looks_new = column <= self.indents[-1][0] and (
+            _statement().match(text, end) or _call().match(text, end)
+        )
         if not looks_new and kinds[-1] != _COLON:
             return False
         first = self.statement_start()
@@ -432,15 +447,15 @@ class _CarefulLexer(Lexer):
         if not line_start:
             return False  # Opened and closed on one line.
         before = text[line_start : end - 3].strip()
-        return before[-1:] in ("=", "(", ",", "[") and _STATEMENT.match(before + "\n") is not None
+        return before[-1:] in ("=", "(", ",", "[") and _statement().match(before + "\n") is not None
 
     def is_code_again(self, line_start: int, first: int) -> bool:
         """Return whether a line in a text that is never closed looks like a statement that follows it."""
         text = self.text
-        if not _STATEMENT.match(text, first):
+        if not _statement().match(text, first):
             return False
         before = text[text.rfind("\n", 0, max(0, line_start - 1)) + 1 : max(0, line_start - 1)]
-        return not before.strip() or _AFTER_TEXT.match(text, first) is not None
+        return not before.strip() or _after_text().match(text, first) is not None
 
     def open_text(self, start: int, end: int) -> int:
         """Recover from a string that is not closed: continue at the next line that looks like a statement; ``end`` is after its quotes."""
