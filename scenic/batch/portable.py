@@ -9,6 +9,7 @@ import io
 import pickle
 import platform
 import sys
+import threading
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
@@ -23,6 +24,10 @@ __all__ = ["ClusterError", "Portable", "versions"]
 
 _LIBRARIES: Final = ("numpy", "scipy", "trimesh", "manifold3d", "embreex", "shapely")
 """Libraries whose version may change a scene."""
+
+
+_LOADING: Final = threading.Lock()
+"""Held while a program is compiled, so that one of the threads of a worker does it for all."""
 
 
 class ClusterError(Located):
@@ -48,7 +53,9 @@ class Portable:
         self._payload = pickle.dumps((versions(), stream.getvalue()), protocol=5)
 
     def __call__(self, argument: Any) -> bytes:
-        return pickle.dumps(_unpacked(self._payload)(argument), protocol=5)
+        with _LOADING:  # a worker may have many threads
+            function = _unpacked(self._payload)
+        return pickle.dumps(function(argument), protocol=5)
 
 
 class _Pickler(pickle.Pickler):
