@@ -61,7 +61,7 @@ scenario Short():
 
 WARM = 400
 """Steps until Python's own reserves are filled."""
-STRETCH = 100
+STRETCH = 50
 """Steps between two counts."""
 
 

@@ -48,9 +48,9 @@ def check(mesh_a, poses_a, mesh_b, poses_b, count):
 @pytest.mark.parametrize(("first", "second"), PAIRS)
 def test_against_booleans(first, second, same_size):
     seed = PAIRS.index((first, second))
-    a = random_poses(24, seed, spread=0.6, same_size=same_size)
-    b = random_poses(24, seed + 100, spread=0.6, same_size=same_size)
-    check(SHAPES[first](), a, SHAPES[second](), b, 24)
+    a = random_poses(12, seed, spread=0.6, same_size=same_size)
+    b = random_poses(12, seed + 100, spread=0.6, same_size=same_size)
+    check(SHAPES[first](), a, SHAPES[second](), b, 12)
 
 
 @real_meshes
