@@ -190,8 +190,8 @@ class DaskCluster:
         remote = Portable(function)
         upcoming = Upcoming(arguments, spread)
         busy: dict[Any, tuple[int, _Argument]] = {}
-        # Results are fetched while others are waited for: asked for one by one, each takes a turn to the worker and back.
-        done = self._distributed.as_completed(loop=self._client.loop, with_results=True, raise_errors=False)
+        # It could fetch results as well, but where the scheduler is lost meanwhile, it would wait for them forever.
+        done = self._distributed.as_completed(loop=self._client.loop)
         token = os.urandom(6).hex()  # other commands may use the same cluster
 
         def give() -> None:
@@ -204,16 +204,17 @@ class DaskCluster:
         try:
             give()
             while busy:
-                future, packed = next(done)
+                future = next(done)
                 index, argument = busy.pop(future)
                 if future.status == "lost" or future.cancelled():
                     raise self._gone()
-                if future.status != "error":
-                    result = pickle.loads(packed)
-                elif isinstance(error := future.exception(), self._distributed.KilledWorker):
+                error = future.exception()
+                if isinstance(error, self._distributed.KilledWorker):
                     result = lost(argument, -9)
-                else:
+                elif error is not None:
                     raise error
+                else:
+                    result = pickle.loads(future.result())
                 upcoming.finish(index)
                 give()
                 yield index, result
