@@ -55,6 +55,8 @@ def test_a_road_has_lanes_in_both_directions(tmp_path: Path) -> None:
     assert forward.sidewalk.road is road
     section = road.sections[0]
     assert [part.openDriveID for part in section.lanes] == [-1, 1]
+    # Numbered from right to left, whatever the order in the file.
+    assert [(part.uid, part.id) for part in road.lanes] == [("road1_lane0", -1), ("road1_lane1", 1)]
     right, left = section.lanes
     assert right.laneToLeft is left
     assert left.laneToLeft is right
@@ -197,7 +199,7 @@ def test_lanes_follow_links_through_sections(tmp_path: Path) -> None:
     found = network(tmp_path, map_text([RoadText("a-b", 100.0, line(0, 0, 0, 100), first + second)]))
     [road] = found.roads
     assert road.id == "a-b"
-    main, merging = road.lanes
+    merging, main = road.lanes
     assert [section.openDriveID for section in main.sections] == [-1, -1]
     assert main.sections[0].successor is main.sections[1]
     assert merging._successor is main

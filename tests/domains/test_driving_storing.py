@@ -157,7 +157,7 @@ def test_levels_are_told_apart_by_element() -> None:
     assert (below.elevationAt(place), above.elevationAt(place)) == (0, 6)
     assert network.elevationAt((50.5, 1, 0.5)) == 0
     assert network.elevationAt((50.5, 1, 5)) == 6
-    assert above.lanes[0].elevationAt((50, 20, 0)) == 6
+    assert above.lanes[0].elevationAt((50.5, 20, 0)) == 6
     assert below.elevationAt((50, 20, 0)) is None
 
 

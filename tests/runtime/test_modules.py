@@ -386,6 +386,11 @@ def test_modules_of_one_package_are_all_found_by_its_name(tmp_path: Path) -> Non
     assert first(written(tmp_path, {**PACKAGE, "main.scenic": text})).params["x"] == (7, 1)
 
 
+def test_import_as_a_function_takes_its_arguments_by_name(tmp_path: Path) -> None:
+    text = 'param x = __import__("os.path", fromlist=["join"]).basename("a/b")\nego = new Object\n'
+    assert first(written(tmp_path, {"main.scenic": text})).params["x"] == "b"
+
+
 def test_what_is_imported_within_a_function_is_sampled(tmp_path: Path) -> None:
     text = """
 import lib as unused

@@ -319,7 +319,7 @@ class _RoadBuilder:
     ) -> None:
         """Join lane sections to lanes by their links, and give each its successor within the road."""
         lane_of: dict[int, list[LaneSection]] = {}
-        chains: list[list[LaneSection]] = []
+        begun: list[tuple[int, int, list[LaneSection]]] = []
         taken: set[int] = set()
         merging: list[tuple[LaneSection, LaneSection]] = []
         following = [self._following(number, sections) for number in range(len(sections) - 1)]
@@ -327,7 +327,7 @@ class _RoadBuilder:
             for key, section in row.items():
                 if id_of(section) not in lane_of:
                     chain = [section]
-                    chains.append(chain)
+                    begun.append((number, key, chain))
                     lane_of[id_of(section)] = chain
                 chain = lane_of[id_of(section)]
                 if number == len(following) or key not in following[number]:
@@ -342,7 +342,8 @@ class _RoadBuilder:
                 chain.append(after)
                 lane_of[id_of(after)] = chain
         lanes = []
-        for number, chain in enumerate(chains):
+        # Of the lanes that begin in one section the rightmost, as seen along the road, comes first, whatever their order in the file.
+        for number, (*_, chain) in enumerate(sorted(begun, key=lambda each: each[:2])):
             forward = chain[0].isForward
             parts = chain if forward else chain[::-1]
             lane: Lane = self._register(

@@ -441,7 +441,7 @@ class Loader:
         scope[PRELUDE] = prelude
         scope["__file__"] = state.filename
         scope["__builtins__"] = names.builtin_names(
-            self._program, state.filename, lambda *args: self._import(state, *args)
+            self._program, state.filename, partial(self._import, state)
         )
         if may_mutate(code):
             self._context.stand_ins.make = stand_in
