@@ -17,6 +17,7 @@ from scenic.project.classes import Class, class_of_symbol
 from scenic.project.imports import Imports
 from scenic.project.index import Exported, Exports, Project
 from scenic.project.maps import map_findings
+from scenic.project.members import member_findings
 from scenic.project.search import Found, ModuleKind
 from scenic.project.symbols import Symbol, symbol_of_exported
 
@@ -44,6 +45,7 @@ class _Surroundings:
         self._project = project
         self._tree = tree
         self._source = source
+        self._resolution = resolution
         self._imports = Imports(project, tree, source, resolution, verbose)
         self.state = project.state_beside(source.filename)
 
@@ -99,6 +101,7 @@ class _Surroundings:
     def findings(self) -> Iterator[Diagnostic]:
         yield from self._imports.findings()
         yield from map_findings(self._tree, self._source)
+        yield from member_findings(self._project, self._tree, self._source, self._resolution, self.names)
 
 
 def _foreign(project: Project, exported: Exported) -> Foreign | None:

@@ -164,3 +164,12 @@ def test_changes_of_a_module_are_seen(tmp_path: Path) -> None:
     assert codes() == []
     found.open(str(tmp_path / "m.scenic"), "def g(a, b): return a\n")
     assert codes() == ["SC202"]
+
+
+def test_slips_in_attributes_of_what_a_world_model_brings(tmp_path: Path) -> None:
+    text = (
+        "model scenic.domains.driving.model\nego = new Car\nx = network.lane, network.lanes, road.polygons\n"
+    )
+    (found,) = (each for each in findings(tmp_path / "program.scenic", text) if each.code == "SC214")
+    assert found.message == "a `Network` has no attribute `lane`"
+    assert found.fix is not None

@@ -75,7 +75,10 @@ def _number(value: ast.expr) -> int | float | None:
 
 
 def _require(node: scenic.Require, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
-    found = list(_constant(node.condition, context, "requirement", literals=True))
+    condition = node.condition
+    while isinstance(condition, scenic.Temporal) and len(condition.operands) == 1:
+        (condition,) = condition.operands
+    found = list(_constant(condition, context, "requirement", literals=True))
     yield from found
     if not found and node.probability in (0, 1):
         yield from _needless_probability(node, context)
@@ -133,6 +136,12 @@ def _constant(condition: ast.expr, context: Context, what: str, *, literals: boo
             message = f"this {what} {'always' if known else 'never'} holds"
             help_ = "remove it, or write what it depends on"
         yield context.warning("SC306", message, condition, help_)
+        return
+    provided = context.provided(condition)
+    kind = context.kind_of(condition) if provided is not None else None
+    if kind is not None and kind.name in ("function", "class"):
+        message = f"this {what} is `{provided}` itself, which is always true"
+        yield context.warning("SC306", message, condition, f"call it: `{provided}(...)`")
         return
     definition: Any = context.definition(condition)
     if isinstance(definition, ast.FunctionDef | ast.AsyncFunctionDef):
