@@ -213,8 +213,18 @@ class Polygons:
         """Distances of points of the plane from the polygons, ``(n,)``; 0 inside."""
         import shapely
 
-        distances: Floats = shapely.distance(self.polygon, shapely.points(x, y))
+        # Whether a point lies inside is read off an index, while a distance visits every edge.
+        outside = np.flatnonzero(~self.contains(x, y))
+        distances = np.zeros(len(x))
+        distances[outside] = shapely.distance(self.polygon, shapely.points(x[outside], y[outside]))
         return distances
+
+    def lie_farther(self, x: Floats, y: Floats, limits: Floats) -> Booleans:
+        """Return a mask ``(n,)`` of points whose distance from the polygons exceeds ``limits`` ``(n,)``; sooner than by `distances`."""
+        import shapely
+
+        shapely.prepare(self.polygon)
+        return np.asarray(~shapely.dwithin(self.polygon, shapely.points(x, y), limits), dtype=np.bool_)
 
     def depths(self, x: Floats, y: Floats) -> Floats:
         """Distances of points of the plane from what lies outside, ``(n,)``; 0 outside."""

@@ -200,6 +200,10 @@ class Region(metaclass=_RegionType):
         """Lower bounds of the distances ``(n,)`` of points ``(n, 3)`` from the region as a container; 0 where unknown."""
         return np.zeros(len(points))
 
+    def lie_farther(self, points: Points, limits: Column, *columns: Column) -> Mask:
+        """Return a mask ``(n,)`` of points ``(n, 3)`` whose distance from the region as a container certainly exceeds ``limits`` ``(n,)``."""
+        return self.gaps(points, *columns) > limits
+
     def depths(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         """Upper bounds of the distances ``(n,)`` of points ``(n, 3)`` from the outside of the region as a container.
 

@@ -139,8 +139,7 @@ def _is_away(region: "Region", boxes: Bounds, columns: Sequence[Floats], slack: 
     their points is from the centre.
     """
     centre, radius, known = _ball(boxes)
-    gaps = region.gaps(centre, *columns)
-    away: Mask = known & (gaps > radius + slack)
+    away: Mask = known & region.lie_farther(centre, radius + slack, *columns)
     return away
 
 
@@ -158,8 +157,12 @@ def _is_near_the_edge(
         position = Bounds(np.where(z, 0.0, position.lower), np.where(z, 0.0, position.upper))
         inradius = np.maximum(inradius, _inradius(payload, operands, upright=True))
     centre, radius, known = _ball(position)
-    depths = payload.region.depths(centre, *columns)
-    near: Mask = known & (depths + radius + SLACK < inradius)
+    spare = np.where(known, inradius - radius - SLACK, 0.0)
+    near: Mask = spare > 0  # A depth is not negative, and in large boxes that settles the answer.
+    asked = np.flatnonzero(near)
+    if len(asked):
+        centres = np.broadcast_to(centre, (len(near), 3))[asked]
+        near[asked] = payload.region.depths(centres, *columns) < spare[asked]
     return near
 
 

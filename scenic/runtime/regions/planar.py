@@ -278,6 +278,9 @@ class PolygonalRegion(PlanarRegion):
     def beside(self, points: Points, *columns: Column) -> Column:
         return self.outline.distances(points[:, 0], points[:, 1])
 
+    def lie_farther(self, points: Points, limits: Column, *columns: Column) -> Mask:
+        return self.outline.lie_farther(points[:, 0], points[:, 1], limits)
+
     def depths(self, points: Points, *columns: Column) -> Column:
         return self.outline.depths(points[:, 0], points[:, 1])
 
@@ -358,6 +361,9 @@ class Footprint(Region):
 
     def gaps(self, points: Points, *columns: Column) -> Column:
         return self.region.gaps(points, *columns)
+
+    def lie_farther(self, points: Points, limits: Column, *columns: Column) -> Mask:
+        return self.region.lie_farther(points, limits, *columns)
 
     def depths(self, points: Points, *columns: Column) -> Column:
         return self.region.depths(points, *columns)

@@ -155,6 +155,9 @@ class Workspace(Region):
     def gaps(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return self.region.gaps(points, *columns)
 
+    def lie_farther(self, points: Points, limits: Column, *columns: Column) -> Mask:
+        return self.region.lie_farther(points, limits, *columns)
+
     def depths(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return self.region.depths(points, *columns)
 

@@ -122,3 +122,15 @@ def test_too_few_points():
 
 def test_height_is_dropped():
     assert not Polygons(shapely.Polygon([(0, 0, 5), (1, 0, 5), (0, 1, 5)])).polygon.has_z
+
+
+@pytest.mark.parametrize("polygon", [HOLED, SEVERAL])
+def test_distances_and_limits_agree_with_those_of_shapely(polygon):
+    polygons, rng = Polygons(polygon), np.random.default_rng(71)
+    x, y = rng.uniform(-2, 13, (2, 3_000))
+    corners = shapely.get_coordinates(polygon)  # on the edge, the distance is 0
+    x, y = np.append(x, corners[:, 0]), np.append(y, corners[:, 1])
+    expected = shapely.distance(polygon, shapely.points(x, y))
+    assert (polygons.distances(x, y) == expected).all()
+    limits = np.append(rng.uniform(0, 5, 3_000), np.zeros(len(corners)))
+    assert (polygons.lie_farther(x, y, limits) == (expected > limits)).all()
