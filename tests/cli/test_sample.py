@@ -61,6 +61,8 @@ class Stub:
     def __init__(self) -> None:
         self.options: dict[str, Any] = {}
         self.digest = "0123"
+        self.filename = "room.scenic"
+        self.objects: list[Any] = []
         self.missing: set[int] = set()
         self.reason = "attempts"
         self.sampled = 0

@@ -1,6 +1,7 @@
 """``scenic simulate`` when things outside of the program go wrong: what is lost, what is said, and how it goes on."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -131,12 +132,10 @@ def test_folders_that_cannot_be_made(folder: Path, output: str, words: str) -> N
 
 
 def test_a_trajectory_that_does_not_fit_is_told(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from scenic.formats import files
-
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(files.shutil, "copyfileobj", full)
+    monkeypatch.setattr(shutil, "copyfileobj", full)
     (folder / "program.scenic").write_text("ego = new Object\n")
     result = run(folder)
     assert result.returncode == 1

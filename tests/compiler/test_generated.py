@@ -21,7 +21,8 @@ def checkout(tmp_path: Path) -> Path:
     shutil.copytree(ROOT / "scenic" / "compiler", tmp_path / "scenic" / "compiler", ignore=ignored)
     shutil.copytree(ROOT / "scenic" / "language", tmp_path / "scenic" / "language", ignore=ignored)
     # A regular package, lest an installed one be found in its place.
-    shutil.copy(ROOT / "scenic" / "__init__.py", tmp_path / "scenic")
+    for name in ("__init__.py", "dataclass.py"):
+        shutil.copy(ROOT / "scenic" / name, tmp_path / "scenic")
     return tmp_path
 
 

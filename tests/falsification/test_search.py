@@ -186,7 +186,7 @@ def test_the_command(tmp_path: Path) -> None:
         "--objective",
         "total",
         "--seed",
-        "1",
+        "2",
         "--sampler",
         "random",
         "-n",

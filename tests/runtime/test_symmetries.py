@@ -100,7 +100,7 @@ GROUPS = [
     ["at (Range(3, 4), 0, 0)", "with width Range(1, 2)", "facing field", "with parentOrientation (1, 0.5, 0)"],
     ["on slab", "with height Range(1, 2)", "with baseOffset (0.1, 0, -1)", "with yaw Range(0, 1)"],
     ["ahead of (1, 9, 9) by 2", "with length Range(1, 2)", "facing (0.4, 0.2, 0)", "with contactTolerance 0.5"],
-    ["contained in BoxRegion((9, 9, 9), position=(20, 0, 0))", "with pitch 0.2", "with yaw Range(0, 1)"],
+    ["contained in BoxRegion((40, 40, 40), position=(20, 0, 0))", "with pitch 0.2", "with yaw Range(0, 1)"],
     ["beyond (9, 9, 9) by Range(1, 2)", "apparently facing 0.3", "with roll 0.4", "with shape CylinderShape((1, 2, 3))"],
     ["visible from ego", "at (5, Range(5, 6), 3)", "facing directly away from slab", "with width 0.5"],
     ["following field from (5, 5, 5) for 3", "on slab", "with onDirection (0, 0, 1)", "facing 0.3"],
