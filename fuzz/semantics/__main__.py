@@ -6,6 +6,7 @@ import secrets
 import sys
 import time
 
+from fuzz.semantics.properties import PROPERTIES
 from fuzz.semantics.rounds import ROUND, Report, run_round
 
 __all__ = ["main"]
@@ -17,11 +18,15 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--programs", type=int, default=500, help="how many programs are made")
     parser.add_argument("--seed", type=int, help="the seed of the first round; drawn if not given")
     parser.add_argument("--jobs", type=int, default=1, help="how many processes run rounds")
+    parser.add_argument("--only", metavar="NAMES", help="try these properties alone, with commas between")
     options = parser.parse_args(arguments)
+    names = None if options.only is None else options.only.split(",")
+    if unknown := set(names or ()) - set(PROPERTIES):
+        parser.error(f"no property {', '.join(sorted(unknown))}; there are {', '.join(PROPERTIES)}")
     first = secrets.randbelow(1 << 32) if options.seed is None else options.seed
     print(f"{options.programs} typed programs with seed {first}", flush=True)
     rounds = [
-        (first + number, min(ROUND, options.programs - number * ROUND))
+        (first + number, min(ROUND, options.programs - number * ROUND), names)
         for number in range(-(-options.programs // ROUND))
     ]
     start, report = time.time(), Report()
