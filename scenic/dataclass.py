@@ -17,7 +17,11 @@ _MAKING: Final = threading.RLock()
 
 _TABLES: Final = ("__dataclass_fields__", "__dataclass_params__", "__match_args__")
 _COMPARISONS: Final = ("__lt__", "__le__", "__gt__", "__ge__")
-_NOT_TAKEN: Final = frozenset({"__dict__", "__weakref__"})
+_NOT_TAKEN: Final = frozenset(
+    {"__dict__", "__weakref__", "__annotate__", "__annotate_func__", "__annotations_cache__"}
+)
+"""Contents of a class that `type` makes itself; Python 3.14 keeps annotations as a function, and in a cache."""
+
 _NOTHING: Final[Mapping[str, bool]] = MappingProxyType(
     {"init": False, "repr": False, "eq": False, "order": False}
 )
@@ -34,9 +38,9 @@ def _dataclass(cls: type[Any] | None = None, /, **options: bool) -> Any:
     if cls is None:
         return lambda given: _dataclass(given, **options)
     own = {name: value for name, value in vars(cls).items() if name not in _NOT_TAKEN}
+    own["__annotations__"] = names = cls.__annotations__  # those of the class alone
     made = cls
     if options.get("slots", False):
-        names = own.get("__annotations__", ())
         slots = (*names, "__weakref__") if options.get("weakref_slot", False) else tuple(names)
         others = {name: value for name, value in own.items() if name not in names}
         made = _again(cls, {**others, "__slots__": slots})
@@ -130,7 +134,7 @@ class _Table:
 
 def _set_defaults(cls: type[Any], made: Mapping[str, Any]) -> None:
     """Leave the defaults of fields in a class without slots, but none that were given as fields."""
-    for name in vars(cls).get("__annotations__", ()):
+    for name in cls.__annotations__:
         if name in made:
             setattr(cls, name, made[name])
         elif name in vars(cls):

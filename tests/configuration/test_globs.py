@@ -1,7 +1,7 @@
 import fnmatch
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from scenic.configuration.globs import matches
@@ -51,5 +51,6 @@ def test_patterns(pattern: str, path: str, expected: bool) -> None:
 @given(
     st.text(st.sampled_from("ab*?.[]!"), min_size=1, max_size=8), st.text("ab.[]!", min_size=1, max_size=6)
 )
+@example("[!]", "[")
 def test_single_names_match_as_in_the_standard_library(pattern: str, name: str) -> None:
     assert matches([name], pattern) is fnmatch.fnmatchcase(name, pattern.replace("**", "*"))
