@@ -20,7 +20,7 @@ from scenic.batch.image_parts import ImageRows, ImageSink, join_indices
 from scenic.batch.manifest import NAME, DatasetError, Manifest, Part
 from scenic.batch.scenes import LONGEST, Job, Made, encoded_here, in_processes, method_of
 from scenic.dataclass import dataclass
-from scenic.formats.files import Waiting, make_folder, refusing, writing
+from scenic.formats.files import Waiting, discard_unfinished, make_folder, refusing, writing
 from scenic.formats.json_lines import SceneLines
 from scenic.formats.mesh_files import digest_of
 from scenic.formats.trajectory_tables import parquet_support
@@ -291,6 +291,7 @@ def _kept(folder: Path, manifest: Manifest, *, resume: bool) -> Manifest:
             f"the data set in '{folder}' was made otherwise: {differs}",
             help="give the same program, options and versions as before, or choose another folder",
         )
+    discard_unfinished(folder)
     wanted = replace(earlier, count=manifest.count)
     fitting = set(wanted.ranges())
     parts = tuple(

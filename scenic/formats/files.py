@@ -6,13 +6,17 @@ any error, Ctrl-C included, the temporary file is removed and what had the name 
 
 import contextlib
 import os
+import re
 import secrets
 import stat
 from collections.abc import Iterator
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, Final
 
 from scenic.language.errors import Located
+
+_UNFINISHED: Final = re.compile(r"\..+\.[0-9a-f]{12}\.part")
+"""Temporary names of `writing`."""
 
 
 class OutputError(Located):
@@ -121,6 +125,13 @@ def writing(path: Path) -> Iterator[BinaryIO]:
         with contextlib.suppress(OSError):
             os.unlink(temporary)
         raise
+
+
+def discard_unfinished(folder: Path) -> None:
+    """Remove the files that `writing` leaves in a folder if its process is killed; no other process may write there."""
+    for path in folder.glob(".*.part"):
+        if _UNFINISHED.fullmatch(path.name):
+            path.unlink(missing_ok=True)
 
 
 class Waiting:

@@ -5,7 +5,15 @@ from types import SimpleNamespace
 
 import pytest
 
-from scenic.formats.files import OutputError, check_folder, check_writable, numbered, write, writing
+from scenic.formats.files import (
+    OutputError,
+    check_folder,
+    check_writable,
+    discard_unfinished,
+    numbered,
+    write,
+    writing,
+)
 from scenic.formats.growing import GrowingFile
 
 
@@ -17,6 +25,18 @@ def test_a_file_appears_whole(tmp_path: Path) -> None:
         stream.write(b"second")
     assert path.read_bytes() == b"first second"
     assert os.listdir(tmp_path) == ["out.txt"]
+
+
+def test_a_killed_process_leaves_a_file_that_can_be_discarded(tmp_path: Path) -> None:
+    others = [".hidden.part", "of.someone.part", ".part"]
+    for name in others:
+        (tmp_path / name).touch()
+    with writing(tmp_path / "out.txt"):
+        [left] = [path for path in tmp_path.iterdir() if path.name not in others]
+        copy = left.with_name(left.name.replace(".part", "")[:-1] + "0.part")
+        copy.touch()  # as after a kill
+    discard_unfinished(tmp_path)
+    assert sorted(os.listdir(tmp_path)) == sorted([*others, "out.txt"])
 
 
 @pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt, SystemExit, GeneratorExit])
