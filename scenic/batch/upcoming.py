@@ -13,8 +13,8 @@ class Upcoming(Generic[_Argument]):
 
     Args:
         arguments: taken one by one, so that later ones may depend on earlier results.
-        spread: how far ahead of the oldest argument that is under way others are given out. Who puts results in order keeps
-            no more than so many. No limit if ``None``.
+        spread: how far ahead of the oldest argument that is under way others are given out. A consumer that
+            puts results in order keeps at most this many. No limit if ``None``.
 
     """
 

@@ -90,7 +90,7 @@ def _known(scenario: scenic.Scenario, _number: int, _argument: int) -> bool:
 
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_nothing_runs_far_ahead_of_the_oldest(jobs: int) -> None:
-    """Who puts results in order would keep them all."""
+    """A consumer that puts results in order would keep them all."""
     upcoming = Upcoming(range(9), spread=3)
     assert [upcoming.take() for _ in range(4)] == [(0, 0), (1, 1), (2, 2), None]
     upcoming.finish(1)

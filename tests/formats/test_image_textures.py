@@ -75,7 +75,7 @@ def photo(folder: Path, thing: str, seed: int = 1) -> Any:
 
 
 def hue(pixel: Any) -> tuple[bool, ...]:
-    """Which of red, green and blue are strong."""
+    """Return a mask of the strong channels among red, green and blue."""
     return tuple(bool(part > 0.7 * pixel.max()) for part in pixel)
 
 

@@ -24,7 +24,7 @@ PATIENCE = 60.0
 """Seconds to wait for an answer before the test fails."""
 
 PROGRAM = ("-m", "scenic.cli.main", "lsp")
-"""How Python starts a server."""
+"""The command by which Python starts a server."""
 
 FULL: dict[str, Any] = {
     "general": {"positionEncodings": ["utf-16"]},
