@@ -65,7 +65,7 @@ def main(arguments: Sequence[str]) -> None:
         leave(f"room-{room.k}.png", png(room, PICTURE), "a picture")
     for name in SMALL_PROGRAMS:
         (scene,) = sampled(name, 1)
-        leave(f"{name}.png", png(scene, PICTURE), f"examples/{name}.scenic")
+        leave(f"{name}.png", png(scene, PICTURE), f"examples/{program(name).parent.name}/{name}.scenic")
     print(f"done in {time.perf_counter() - started:.1f} s")
 
 
