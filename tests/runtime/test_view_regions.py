@@ -12,10 +12,11 @@ import scenic
 from scenic.runtime.geometry import body_points, primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
+from scenic.runtime.regions import views
 from scenic.runtime.regions.spaces import everywhere
 from scenic.runtime.regions.views import NearView, ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion
-from tests.runtime.programs import params, thing
+from tests.runtime.programs import params, scenario, thing
 from tests.runtime.test_sight import answers, view
 
 TURNED = (
@@ -309,3 +310,22 @@ def test_what_of_all_space_is_not_in_view() -> None:
         found = params(f"{head}{names}param{tail}".replace("PLACES", places))
         assert found["p"] == [True, False, False, True, False]
         assert found["q"] == [False, True, True, False, True]
+
+
+@pytest.mark.parametrize("rows", [1, 7])
+def test_places_in_view_are_those_of_one_attempt_after_the_other(
+    rows: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a disc that is a small part of what the first observer has in view, and most of it of the others."""
+    text = (
+        "workspace = Workspace(CircularRegion((5, 0), 2))\n"
+        "ego = new Object at (5, 0), with visibleDistance Uniform(2, 9, 40)\nparam place = (new Point visible).position\n"
+    )
+
+    def places() -> list[tuple[float, ...]]:
+        return [tuple(scene.params["place"]) for scene in scenario(text).sample(12, seed=2)]
+
+    expected = places()
+    assert len(set(expected)) == 12
+    monkeypatch.setattr(views, "_ROWS", rows)
+    assert places() == expected

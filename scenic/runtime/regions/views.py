@@ -57,6 +57,9 @@ _SLACK: Final = 1e-6
 _TRIES: Final = 1000
 """So often a point is drawn again until it lies in the right place; then the region counts as empty."""
 
+_ROWS: Final = 1024
+"""So many draws are made at once, where there are fewer lanes: most of the time of one is that of calling NumPy."""
+
 
 class ViewRegion(Region):
     """The places in view of an observer: a part of a ball."""
@@ -304,14 +307,21 @@ def _drawn_until_fit(uniforms: Column, keys: Column, draw: _Draw) -> tuple[Point
     lanes = np.arange(count)
     words = np.broadcast_to(keys, (count,))
     addresses = np.arange(len(uniforms), dtype=np.uint64)
-    for attempt in range(_TRIES):
-        mine = mix(words[lanes] ^ mix(np.full(1, attempt, dtype=np.uint64)))
-        numbers = uniforms[:, lanes] if attempt == 0 else open_unit(words_of(mine, addresses))
-        drawn, fits = draw(numbers, mine, lanes)
-        points[lanes], found[lanes] = drawn, fits
-        lanes = lanes[~fits]
-        if not len(lanes):
-            break
+    begun, together = 0, 1
+    while len(lanes) and begun < _TRIES:
+        attempts = np.arange(begun, min(begun + together, _TRIES), dtype=np.uint64)
+        mine = mix(words[lanes] ^ mix(attempts)[:, None]).reshape(-1)
+        numbers = uniforms[:, lanes] if begun == 0 else open_unit(words_of(mine, addresses))
+        drawn, fits = draw(numbers, mine, np.tile(lanes, len(attempts)))
+        # The first attempt that fits counts, as if one were made after the other.
+        fits = fits.reshape(len(attempts), -1)
+        fitting = fits.any(axis=0)
+        first = np.where(fitting, fits.argmax(axis=0), len(attempts) - 1)
+        points[lanes] = drawn.reshape(len(attempts), -1, 3)[first, np.arange(len(lanes))]
+        found[lanes] = fitting
+        lanes = lanes[~fitting]
+        begun += len(attempts)
+        together = max(1, min(2 * together, _ROWS // max(len(lanes), 1)))
     return points, found
 
 
