@@ -9,7 +9,8 @@ from collections import defaultdict
 from collections.abc import Iterator
 from itertools import product
 from pathlib import Path
-from typing import NamedTuple
+from types import SimpleNamespace
+from typing import Any, NamedTuple
 
 import pytest
 import scenic.syntax.translator
@@ -17,6 +18,10 @@ import scenic.syntax.translator
 from scenic.failures import diagnose
 from scenic.language.errors import InvalidScenarioError, RejectionException
 from scenic.runtime.instances.objects import Point
+from scenic.runtime.sampling.engine import CandidateError
+from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.piecewise import PiecewiseEngine
+from scenic.runtime.values.values import as_node
 from tests.recorded import FOLDER, hold, shown, unusual
 
 KINDS = {
@@ -81,6 +86,9 @@ def attempt(key, function):
 """
 
 
+SEED = 3
+
+
 def expressions(template: str) -> Iterator[tuple[str, str]]:
     """Each choice of operands of a template, as its name and its text."""
     places = {
@@ -115,24 +123,43 @@ def some(asked: list[str]) -> list[str | Refusal]:
     left = dict(enumerate(asked))
     while left:
         calls = "".join(f"attempt({number}, lambda: {text})\n" for number, text in left.items())
+        scenario = None
         try:
             scenario = scenic.scenarioFromString(f"{PREAMBLE}{calls}param answers = answers\n")
-            (scene,) = scenario.sample(1, seed=3, max_attempts=300)
+            (scene,) = scenario.sample(1, seed=SEED, max_attempts=60)
         except Exception as error:  # noqa: BLE001 - what is said of it is the answer
+            found = {} if scenario is None else faults(scenario)
             at_fault = [next(iter(left))] if len(left) == 1 else [*left][_line(error)]
-            for number in at_fault:
-                answers[number] = told(error)
-            if not at_fault:
+            found |= dict.fromkeys(at_fault, told(error))
+            if not found:
                 middle = len(left) // 2
                 halves = [[*left.values()][:middle], [*left.values()][middle:]]
-                answers |= zip(left, [answer for half in halves for answer in some(half)], strict=True)
-                at_fault = [*left]
-            for number in at_fault:
-                del left[number]
+                found = dict(zip(left, [answer for half in halves for answer in some(half)], strict=True))
+            answers |= found
+            left = {number: text for number, text in left.items() if number not in found}
         else:
             answers |= {number: told(value) for number, value in scene.params["answers"].items()}
             left = {}
     return [answers[number] for number in range(len(asked))]
+
+
+def faults(scenario: scenic.Scenario) -> dict[int, str | Refusal]:
+    """What is said of the attempts that fail in the first candidate, each evaluated alone: a program tells of the first."""
+    engine = scenario._sampler.engine
+    whole = engine._whole if isinstance(engine, PiecewiseEngine) else engine
+    batch = whole._alone(Task(SEED, 0), 0)
+    check: Any = SimpleNamespace(label="parameters", span=None, filename=None)
+    found: dict[int, str | Refusal] = {}
+    for number, value in scenario.params["answers"].items():
+        if isinstance(value, Point):
+            continue  # checks look at those in an order of their own
+        node = as_node(value)
+        batch.need([node])
+        if node in batch.errors:
+            error = CandidateError(check, 0, 1)
+            error.__cause__ = batch.errors[node]
+            found[number] = told(scenario._sampling_error(error))
+    return found
 
 
 def _line(error: Exception) -> slice:
