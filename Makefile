@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-fast lint types fuzz semantics generate docs docs-serve dist playground extension pythons clean
+.PHONY: demo test test-fast test-long lint types fuzz semantics generate docs docs-serve dist playground extension pythons clean
 
 $(STAMP): pyproject.toml hatch_build.py
 	$(PYTHON) -c 'import sys; sys.exit("Scenic needs Python 3.11 or newer; this is " + sys.version.split()[0]) if sys.version_info < (3, 11) else None'
@@ -22,6 +22,10 @@ test: $(STAMP)
 # What a change needs before it is committed.
 test-fast: $(STAMP)
 	$(BIN)/python -m pytest -q -n auto --dist worksteal -m 'not slow'
+
+# All tests with more cases, samples and seeds: what finds rare faults.
+test-long: $(STAMP)
+	SCENIC_TEST_LONG=1 $(BIN)/python -m pytest -q -n auto --dist worksteal
 
 lint: $(STAMP)
 	$(BIN)/ruff check .

@@ -18,6 +18,7 @@ from scenic.graph import node as graph
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
 from scenic.graph.operation import Operation, always
+from tests.amounts import amount
 
 POINTS = 2000
 
@@ -256,12 +257,12 @@ def check_random(items, seed):
         assert found.domain.contains(points[good]).all()
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", range(amount(35, 60)))
 def test_no_solution_of_a_random_program_is_lost(seed):
     check_random(conditions(seed), seed)
 
 
-SEEDS_OF_SPACE = [seed for seed in range(36) if seed not in (1, 12, 21, 31, 34, 35)]
+SEEDS_OF_SPACE = [seed for seed in range(amount(22, 36)) if seed not in (1, 12, 21, 31, 34, 35)]
 """But for those that take long."""
 
 
@@ -365,9 +366,9 @@ def test_pruned_and_unpruned_samples_follow_one_law():
         ]
         # Pruning never lowers the share that is accepted.
         assert len(pruned) >= 0.9 * len(plain)
-        if len(pvalues) > 60:
+        if len(pvalues) > amount(30, 60):
             break
-    assert len(pvalues) > 50
+    assert len(pvalues) > amount(25, 50)
     assert min(pvalues) > 1e-4 / len(pvalues)
 
 

@@ -9,6 +9,7 @@ from graph.programs import B, I, P, Q, S, U, V
 from graph.readings import CASES, bounds_of, has, kind_of, narrowed, values_of
 from scenic.graph.bounds import Bounds
 from scenic.graph.operations import TABLE
+from tests.amounts import amount
 from tests.each import each
 
 TINY, HUGE = 5e-324, 1.7e308
@@ -104,7 +105,7 @@ def inner_values(
 @each(BOUNDED)
 def test_bounds_hold_at_corners(case):
     rng = np.random.default_rng(41)
-    for _ in range(25 if case.name in SLOW else 40):
+    for _ in range(amount(12, 25) if case.name in SLOW else amount(15, 40)):
         ends = [corner_box(part, rng, small=case.name in SMALL_ONLY) for part in case.operands]
         columns = [inner_values(part, *box, rng, 40) for part, box in zip(case.operands, ends, strict=True)]
         for column in columns[1:]:
@@ -124,7 +125,7 @@ def test_bounds_hold_at_corners(case):
 def test_inverses_lose_no_corner(case):
     """Operands whose result is exactly the one asked for, or within a few units in the last place, are kept."""
     rng = np.random.default_rng(43)
-    for _ in range(25):
+    for _ in range(amount(10, 25)):
         ends = [corner_box(part, rng, small=case.name in SMALL_ONLY) for part in case.operands]
         columns = [inner_values(part, *box, rng, 24) for part, box in zip(case.operands, ends, strict=True)]
         for column in columns[1:]:

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import scenic
+from scenic import pipeline
 from scenic.failures import diagnose
 from scenic.runtime.elements.shapes import Shape
 from scenic.runtime.instances.objects import Point
@@ -19,6 +20,11 @@ FALSE_ALARM = 1e-6
 
 def scenario(text: str, **options: Any) -> scenic.Scenario:
     return scenic.scenarioFromString(text, **options)
+
+
+def unpruned(text: str) -> scenic.Scenario:
+    """A program whose draws are not narrowed, and for which nobody tries to."""
+    return pipeline._scenario(text, "<string>", pipeline._Options(prune=False))
 
 
 def scene(text: str, *, seed: int = 0, **options: Any) -> scenic.Scene:

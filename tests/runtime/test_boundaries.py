@@ -11,10 +11,14 @@ import pytest
 import shapely
 from scipy import stats
 
+from tests.amounts import amount
 from tests.runtime.boundaries import ROUNDING, Thing, apart, covers, flip, flips, holds, together, unit_mesh
 from tests.runtime.programs import FALSE_ALARM, euler, scenario
 
-SCENES = 10
+SCENES = amount(6, 10)
+PAIRS = amount(8, 14)
+WAYS = amount(6, 10)
+"""Directions in which a thing, or a point, leaves another."""
 NARROW, WIDE = 1e-3, 1e-2
 
 HALF = math.pi / 2
@@ -64,10 +68,10 @@ def compare(
 
 
 @pytest.mark.parametrize("width", [NARROW, WIDE])
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(amount(2, 3)))
 def test_things_that_nearly_touch(seed: int, width: float, tmp_path: Path) -> None:
     text, cases = "", []
-    for index, (one, other, way) in enumerate(pairs(seed, 12)):
+    for index, (one, other, way) in enumerate(pairs(seed, PAIRS)):
 
         def hits(d: float, one: Thing = one, other: Thing = other, way: Any = way) -> bool:
             return together(one, moved(other, way, d))
@@ -82,7 +86,7 @@ def test_things_that_nearly_touch(seed: int, width: float, tmp_path: Path) -> No
             f"hit{index} = a{index} intersects b{index}\n"
         )
         cases.append((f"hit{index}", f"d{index}", hits, lambda d, place=place: abs(d - place)))
-    assert len(cases) >= 8
+    assert len(cases) >= 0.6 * PAIRS
     compare(text, cases, seed)
 
 
@@ -90,7 +94,7 @@ def test_things_that_nearly_touch(seed: int, width: float, tmp_path: Path) -> No
 def test_things_that_grow_and_turn_until_they_touch(seed: int, tmp_path: Path) -> None:
     """Sizes and angles that are random: nothing about the pair is the same in two lanes."""
     text, cases = "", []
-    for index, (one, other, way) in enumerate(pairs(100 + seed, 14)):
+    for index, (one, other, way) in enumerate(pairs(100 + seed, PAIRS)):
         other = moved(other, way, 0.9)
         grows = index % 2
 
@@ -119,7 +123,7 @@ def test_things_that_grow_and_turn_until_they_touch(seed: int, tmp_path: Path) -
             return gap if gap > 0 else math.sqrt((one.solid() ^ changed(d).solid()).volume())
 
         cases.append((f"hit{index}", name, hits, margin))
-    assert len(cases) >= 6
+    assert len(cases) >= 0.4 * PAIRS
     compare(text, cases, seed)
 
 
@@ -236,7 +240,7 @@ def test_things_that_nearly_leave_an_object(outer: str, tmp_path: Path) -> None:
     room = Thing(outer, (4, 4, 6), (5, -7, 2), (3.7, 1.1, -HALF))
     text, cases = f"room = {room.text(tmp_path)}\n", []
     rng = np.random.default_rng(17)
-    for index in range(8):
+    for index in range(WAYS):
         thing = replace(INNER[index % 3], size=(0.5, 0.5, 0.3))
         way = tuple(rng.normal(size=3).round(4).tolist())
 
@@ -344,7 +348,7 @@ def test_points_that_nearly_leave_an_object(shape: str, tmp_path: Path) -> None:
     speck = Thing("box", (1e-7, 1e-7, 1e-7))
     text, cases = f"c = {body.text(tmp_path)}\n", []
     rng = np.random.default_rng(29)
-    for index in range(10):
+    for index in range(WAYS):
         way = tuple(rng.normal(size=3).round(4).tolist())
         face = unit_mesh(shape)[1][rng.integers(len(unit_mesh(shape)[1]))]
         start = replace(speck, position=tuple(body.vertices()[face].mean(axis=0).tolist()))
@@ -361,5 +365,5 @@ def test_points_that_nearly_leave_an_object(shape: str, tmp_path: Path) -> None:
             f"d{index} = Range({place - NARROW}, {place + NARROW})\nheld{index} = c.containsPoint({point})\n"
         )
         cases.append((f"held{index}", f"d{index}", inside, lambda d, place=place: abs(d - place) - 1e-6))
-    assert len(cases) >= 6
+    assert len(cases) >= 0.6 * WAYS
     compare(text, cases, 11)

@@ -15,7 +15,6 @@ from scipy import stats
 from scipy.spatial.transform import Rotation
 
 from scenic.graph.bounds import Bounds
-from scenic.graph.domain import Domain
 from scenic.graph.kinds import Kind
 from scenic.graph.operation import Call, Operation
 from scenic.language.errors import UnsupportedError
@@ -40,8 +39,9 @@ from scenic.runtime.values.values import Orientation, Random, Vector
 from scenic.runtime.visibility.flat import _SEES as SEES_IN_PLANE
 from scenic.runtime.visibility.flat import _SEES_POINT as SEES_POINT_IN_PLANE
 from scenic.runtime.visibility.seeing import SEES
+from tests.amounts import amount
 from tests.runtime.geometry.samples import SHAPES
-from tests.runtime.programs import scenario
+from tests.runtime.programs import scenario, unpruned
 from tests.runtime.test_region_readings import REGIONS, UNBOUNDED, around, columns_of
 
 CONTAINS, DISTANCE, DRAW = base.CONTAINS_POINT, base._DISTANCE, base._DRAW
@@ -263,7 +263,7 @@ def test_regions_with_random_parameters(name: str) -> None:
     others = [column.astype(float) for column in columns_of(other)]
     both = (region, other)
     index = Random(scenario("param i = DiscreteRange(0, 1)").params["i"].node)
-    for _ in range(6):
+    for _ in range(amount(3, 6)):
         rows = varied(region, random)
         uniforms, keys = random.random((3, 6)), np.arange(6, dtype=np.uint64)
         points, _ = region.draw_points(uniforms[: region.draws], keys, *rows)
@@ -348,7 +348,7 @@ def test_what_is_seen(angles: tuple[float, float]) -> None:
     random = np.random.default_rng(11)
     shape = shape_column("box")
     seen = unseen = 0
-    for number in range(14):
+    for number in range(amount(8, 14)):
         views = observer(random, angles, 4.0)
         frame = Rotation.from_quat(views[1][0])
         half = np.array(angles) / 2 * (1 + random.choice([-1e-6, 1e-6, -0.2, 0.2], 2))
@@ -430,14 +430,12 @@ MOST_TRIED = {"distance to a region": 3, "a random region": 5, "a place": 2, "in
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_pruning_changes_no_law(name: str) -> None:
-    places, tried = [], []
+    places, tried, count = [], [], amount(100, 150)
     for prune in (True, False):
-        program = scenario(PROGRAMS[name])
-        if not prune:
-            program = program.within(Domain.whole(program.outline.graph.dimension))
-        scenes = program.sample(150, seed=5)
+        program = (scenario if prune else unpruned)(PROGRAMS[name])
+        scenes = program.sample(count, seed=5)
         places.append(np.array([tuple(scene.objects[-1].position)[:2] for scene in scenes]))
-        tried.append(sum(scene.attempts for scene in scenes) / 150)
+        tried.append(sum(scene.attempts for scene in scenes) / count)
     for axis in range(2):
         assert stats.ks_2samp(places[0][:, axis], places[1][:, axis]).pvalue > 1e-3
     assert tried[0] < MOST_TRIED[name] < tried[1] / 20

@@ -22,6 +22,7 @@ from scenic.runtime.regions.planar import Footprint, PolygonalRegion
 from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.regions.sectors import SectorRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
+from tests.amounts import amount
 
 LANES = 96
 CORNER = shapely.Polygon([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)])
@@ -62,7 +63,7 @@ def world(body: Body, lane: int) -> Mesh:
 @pytest.mark.parametrize("name", MESHES)
 def test_outlines_and_cuts_are_those_of_each_solid(name: str) -> None:
     body = bodies(MESHES[name], np.random.default_rng(1), level=True)
-    some = np.arange(0, LANES, 5)
+    some = np.arange(0, LANES, amount(10, 5))
     heights = np.random.default_rng(2).normal(size=LANES) * 0.9
     seen, cut = shadows(body, some), cuts(body, some, heights[some])
     found = 0

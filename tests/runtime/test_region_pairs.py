@@ -27,6 +27,7 @@ from scenic.runtime.regions.lines import LineRegion
 from scenic.runtime.regions.planar import Footprint, PlanarRegion
 from scenic.runtime.regions.spaces import Workspace, nowhere
 from scenic.runtime.values.values import Orientation, Vector
+from tests.amounts import amount
 from tests.runtime.programs import thing
 
 TILT = Orientation.fromEuler(0.7, 0.4, -0.3)
@@ -76,7 +77,7 @@ def columns_of(region: Region) -> list[Any]:
     return region.fixed_columns("the region")
 
 
-def cloud(region: Region, count: int = 250) -> Floats:
+def cloud(region: Region, count: int = amount(100, 250)) -> Floats:
     """Points of a region; of a column, those near the ground."""
     random = np.random.default_rng(1)
     if isinstance(region, Footprint):

@@ -10,6 +10,7 @@ from scipy import stats
 
 import scenic
 from scenic.language.errors import RejectionException
+from tests.amounts import amount
 from tests.runtime.programs import FALSE_ALARM, draws, failure, fingerprint, scenario
 
 ROOT = Path(__file__).parents[2]
@@ -40,8 +41,9 @@ def test_a_rare_fault_that_a_rare_requirement_rejects(fault: str) -> None:
         assert max(scene.params["x"] for scene in scenes) < 0.9
         assert sum(scene.attempts for scene in scenes) > 3000
     for lanes in LANES:
-        others = scenario(text).sample(200, seed=3, lanes=lanes)
-        assert [fingerprint(scene) for scene in others] == [fingerprint(scene) for scene in scenes]
+        count = amount(25, 200) if lanes == 1 else 200
+        others = scenario(text).sample(count, seed=3, lanes=lanes)
+        assert [fingerprint(scene) for scene in others] == [fingerprint(scene) for scene in scenes[:count]]
 
 
 @pytest.mark.parametrize(

@@ -158,7 +158,7 @@ def test_specifiers_mean_what_they_mean_in_the_module_that_is_running() -> None:
         "import scenic.syntax.veneer as v\nfrom scenic import specifier\nmake = getattr(v, 'new')\n"
         "@specifier(tag=1)\ndef doubled(self, n): return {'tag': 2 * n}\n"
         "workspace = Workspace(CircularRegion((5, 0), 2))\nego = new Object at (5, 0)\n"
-        "param seen = [make(v.Point, [v.VisibleSpec()]).position for _ in range(20)]\n"
+        "param seen = [make(v.Point, [v.VisibleSpec()]).position for _ in range(5)]\n"
         "param tag = make(v.Point, [v.With('doubled', 3)]).tag\n"
     )
     found = scene(text).params

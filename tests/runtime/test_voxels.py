@@ -29,6 +29,7 @@ from scenic.runtime.geometry import primitives
 from scenic.runtime.geometry.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions.fields import VectorField
+from tests.amounts import amount
 from tests.runtime.programs import FALSE_ALARM, draws, params
 
 FILLED = np.array([[[1, 0], [0, 1]], [[1, 1], [0, 0]]], dtype=bool)
@@ -133,18 +134,21 @@ def test_containers_are_kept_in_batches_as_they_are_alone(name: str) -> None:
         " with regionContainedIn r\nparam r = r"
     )
     loaded = scenic.scenarioFromString(text)
-    scenes = loaded.sample(60, seed=4)
+    scenes = loaded.sample(amount(20, 60), seed=4)
     for scene in scenes:
         assert scene.params["r"].containsObject(scene.egoObject)
     free = scenic.scenarioFromString(
         text.replace("with regionContainedIn r", "with regionContainedIn everywhere")
     )
-    held = [scene.params["r"].containsObject(scene.egoObject) for scene in free.sample(150, seed=5)]
-    tried = sum(scene.attempts for scene in loaded.sample(60, seed=6))
+    count = amount(30, 60)
+    held = [
+        scene.params["r"].containsObject(scene.egoObject) for scene in free.sample(amount(100, 150), seed=5)
+    ]
+    tried = sum(scene.attempts for scene in loaded.sample(count, seed=6))
     share = np.mean(held)
     assert 0.05 < share < 0.95
-    if tried > 60:  # Containment may also have narrowed the distributions.
-        assert stats.binomtest(60, tried, float(share)).pvalue > 1e-6 or 60 / tried > share
+    if tried > count:  # Containment may also have narrowed the distributions.
+        assert stats.binomtest(count, tried, float(share)).pvalue > 1e-6 or count / tried > share
 
 
 def test_samples_drawn_now() -> None:
@@ -210,7 +214,7 @@ def test_distances_from_views_are_those_of_their_points(angles: tuple[float, flo
     )
     view = ego.visibleRegion
     random.seed(1)
-    inner = np.array([tuple(view.uniformPointInner()) for _ in range(4000)])
+    inner = np.array([tuple(view.uniformPointInner()) for _ in range(amount(1500, 4000))])
     for point in np.random.default_rng(2).uniform(-9, 12, (12, 3)):
         found = view.distanceTo(Vector(*point))
         nearest = np.linalg.norm(inner - point, axis=1).min()
@@ -249,7 +253,7 @@ def test_objects_in_cells_agree_with_their_points() -> None:
     cells = VoxelRegion(trimesh.voxel.VoxelGrid(rng.random((4, 4, 4)) < 0.8))
     text = "new Object at (Range(0, 3), Range(0, 3), Range(0, 3)), facing (Range(0, 3), Range(0, 3), 0), with width 0.4, with length 0.7, with height 0.3"
     answers = set()
-    for scene in scenic.scenarioFromString(text).sample(60, seed=1):
+    for scene in scenic.scenarioFromString(text).sample(amount(30, 60), seed=1):
         (item,) = scene.objects
         points = np.array([tuple(item.occupiedSpace.uniformPointInner()) for _ in range(60)])
         corners = np.array([tuple(corner) for corner in item.corners])

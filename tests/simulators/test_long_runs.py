@@ -70,6 +70,7 @@ def grown(text: str, folder: Path) -> float:
 
     What is kept of the steps grows in each stretch of them; what the process does besides, now and then, in one.
     """
+    gc.freeze()  # What other tests have left is not searched for garbage.
     scenario = scenic.scenarioFromString(text, params={"recordFolder": str(folder)})
     (scene,) = scenario.sample(1, seed=1)
     with closing(LinesFile(folder / "run.jsonl")) as file:

@@ -37,6 +37,7 @@ from scenic.runtime.geometry.visibility import hits, proving
 from scenic.runtime.geometry.visibility import seen_bodies as sight
 from scenic.runtime.geometry.visibility.proving import prove
 from scenic.runtime.geometry.visibility.seen_bodies import sees_bodies
+from tests.amounts import amount
 
 from .samples import bumpy, hollow, random_poses, table
 from .test_collision import crowd
@@ -63,7 +64,7 @@ AMOUNTS: dict[ModuleType, tuple[str, ...]] = {
     sight: ("_LANES", "_RAYS"),
     surface: ("_CHUNK", "_BLOCK"),
 }
-LANES = 24
+LANES = amount(12, 24)
 UP = (2, 1)
 
 
@@ -91,7 +92,7 @@ def colliding() -> list[np.ndarray]:
 
 
 def touching() -> list[np.ndarray]:
-    meshes, count = solids(), 24
+    meshes, count = solids(), LANES
     first, second = np.random.default_rng(1).integers(0, 5, (2, count))
     a, b = random_poses(count, 2, spread=0.6), random_poses(count, 3, spread=0.6)
     ways = [Solids(meshes, patience=patience) for patience in (0, np.inf, 1e-3)]
@@ -173,12 +174,12 @@ def test_amounts_change_no_answer(
     question: Callable[[], list[np.ndarray]], amounts: tuple[int, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     expected = question()
-    for amount in amounts:
+    for number in amounts:
         for module, names in AMOUNTS.items():
             for name in names:
-                monkeypatch.setattr(module, name, amount)
-        for number, (found, usual) in enumerate(zip(question(), expected, strict=True)):
-            np.testing.assert_allclose(found, usual, atol=1e-12, err_msg=f"answer {number} by {amount}")
+                monkeypatch.setattr(module, name, number)
+        for answer, (found, usual) in enumerate(zip(question(), expected, strict=True)):
+            np.testing.assert_allclose(found, usual, atol=1e-12, err_msg=f"answer {answer} by {number}")
 
 
 @pytest.mark.parametrize("question", QUESTIONS, ids=lambda question: question.__name__)

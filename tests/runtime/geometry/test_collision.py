@@ -12,10 +12,11 @@ from scenic.runtime.geometry.collision import Collider, collide
 from scenic.runtime.geometry.crowd import Crowd
 from scenic.runtime.geometry.narrowphase import meshes_intersect
 from scenic.runtime.geometry.poses import Poses
+from tests.amounts import amount
 
 from .samples import SHAPES, hollow, random_poses, table, yawed
 
-LANES = 60
+LANES = amount(24, 60)
 MESHES = [SHAPES[name]() for name in ("box", "table", "cylinder", "spheroid", "hollow")]
 
 
@@ -96,7 +97,7 @@ def test_some_pairs_in_any_order():
 
 def test_many_bodies_are_swept():
     lanes = 2
-    bodies = [body for body in crowd(600, 3, lanes) if not body.is_fixed]
+    bodies = [body for body in crowd(amount(350, 600), 3, lanes) if not body.is_fixed]
     pairs = np.array(list(itertools.combinations(range(len(bodies)), 2)))
     every = collide(bodies, None, lanes, exhaustive=True)
     spread = np.stack([np.broadcast_to(body.poses.position, (lanes, 3)) for body in bodies])
@@ -121,7 +122,7 @@ def test_still_pairs_decide_all_lanes(is_fixed):
 
 
 def test_a_cast_is_tested_batch_after_batch():
-    lanes = 40
+    lanes = amount(20, 40)
     bodies = crowd(9, 7, lanes)
     pairs = [(i, j) for i, j in itertools.combinations(range(9), 2) if i % 4 or j % 4]
     cast = Collider(bodies, pairs)
@@ -133,7 +134,7 @@ def test_a_cast_is_tested_batch_after_batch():
 
 
 def test_stacked_bodies_are_those_one_by_one():
-    lanes, count = 50, 6
+    lanes, count = amount(20, 50), 6
     poses = random_poses(lanes * count, 9, spread=1.2)
     sizes = random_poses(count, 10).size
     numbers = np.arange(lanes * count) % 3
@@ -169,13 +170,14 @@ def test_fixed_bodies_are_compared_once():
 
 def test_meshes_may_differ_from_batch_to_batch():
     """As many as before: what was learnt of the others says nothing about them."""
-    poses = random_poses(60, 12, spread=0.5)
+    count = amount(25, 60)
+    poses = random_poses(count, 12, spread=0.5)
     still = Body((table(),), None, yawed((0, 0, 0)))
     cast = Collider([Body((primitives.spheroid(),), None, poses), still])
     for mesh in (primitives.spheroid(), hollow(), primitives.cone(), table()):
         bodies = [Body((mesh,), None, poses), still]
         np.testing.assert_array_equal(
-            cast.test(bodies, 60).free, [not hit for (hit,) in one_by_one(bodies, [(0, 1)], 60)]
+            cast.test(bodies, count).free, [not hit for (hit,) in one_by_one(bodies, [(0, 1)], count)]
         )
 
 
@@ -283,7 +285,7 @@ def test_batches_do_not_matter(batch):
     bodies = crowd(8, 5, lanes)
     pairs = [(i, j) for i, j in itertools.combinations(range(8), 2) if i % 4 or j % 4]
     whole = collide(bodies, pairs, lanes, exhaustive=True)
-    for start in range(0, min(lanes, 60 * batch), batch):
+    for start in range(0, min(lanes, amount(30, 60) * batch), batch):
         part = slice(start, min(start + batch, lanes))
         some = [body.take(np.arange(part.start, part.stop)) for body in bodies]
         found = collide(some, pairs, part.stop - part.start, exhaustive=True)

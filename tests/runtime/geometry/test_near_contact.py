@@ -14,10 +14,11 @@ from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.narrowphase import Solids
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.voxels import voxels
+from tests.amounts import amount
 
 from .samples import FILES, SHAPES, common_volume, random_poses, solid, unit_mesh
 
-PAIRS = int(os.environ.get("SCENIC_TEST_PAIRS", "60"))
+PAIRS = int(os.environ.get("SCENIC_TEST_PAIRS", amount(30, 60)))
 CONTACT = 1e-6
 """Metres of gap within which either answer is right."""
 
