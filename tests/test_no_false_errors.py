@@ -18,6 +18,19 @@ TABLE: dict[str, Any] = json.loads((RECORDED / "table.json").read_text())
 RESULTS: dict[str, dict[str, Any]] = json.loads((RECORDED / "fixed.json").read_text())
 
 
+WRONG = {
+    "expression VectorField('f', 3)",
+    "mistake no width",
+    "prop width -1",
+    "specifier with height 0",
+    "specifier with width -1",
+    "prop width 0",
+    "prop length 0",
+    "prop height 0",
+}
+"""A field that fails as soon as it is used, and sizes that the specification refuses."""
+
+
 def _simulated() -> dict[str, str]:
     """The programs of which simulations were recorded that came to their end."""
     found = {}
@@ -45,6 +58,7 @@ def _sampled() -> dict[str, str]:
 def test_programs_that_run_have_no_errors(texts: dict[str, str]) -> None:
     surroundings_of = surroundings_in(Project())
     assert len(texts) > 400
+    texts = {name: text for name, text in texts.items() if name not in WRONG}
     wrong = {
         name: [f"{each.code} {each.message}" for each in found]
         for name, text in texts.items()

@@ -11,12 +11,13 @@ from typing import Final, Protocol
 
 from scenic.compiler import tree as scenic
 from scenic.dataclass import dataclass
+from scenic.language.members import INSTANCE_METHODS, MEMBERS, Member, members_of
 from scenic.language.names import NAMES, NameKind
 from scenic.language.operators import OPERATORS
 from scenic.language.properties import attributes_of, properties_of
 from scenic.language.types import INSTANCES, Type
 
-__all__ = ["Kind", "KindOf", "accepts", "kind_of_type"]
+__all__ = ["Kind", "KindOf", "accepts", "joint", "kind_of_type"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,12 +25,16 @@ class Kind:
     """A kind of values.
 
     ``name`` is the noun for messages. ``size`` is the number of elements of a tuple or list that stands in the text.
-    ``members`` are the attributes and methods of an object, ``None`` if they are not all known.
+    ``members`` are the attributes and methods of an object, ``None`` if they are not all known. ``items`` is the kind of all
+    elements of a sequence, and of all values of a dictionary, ``None`` if that is not certain; ``odd`` is the kind of an element that
+    is certainly not a number.
     """
 
     name: str
     size: int | None = None
     members: frozenset[str] | None = None
+    items: "Kind | None" = None
+    odd: "Kind | None" = None
 
     @property
     def phrase(self) -> str:
@@ -52,12 +57,26 @@ SHAPE: Final = Kind("shape")
 FIELD: Final = Kind("vector field")
 FUNCTION: Final = Kind("function")
 CLASS: Final = Kind("class")
-ORIENTED_POINT: Final = Kind("oriented point")
+RANGE: Final = Kind("range")
+
+
+def _built_in(name: str, cls: str) -> Kind:
+    """The kind of the direct instances of a built-in class."""
+    return Kind(name, members=frozenset(properties_of(cls)).union(attributes_of(cls)))
+
+
+ORIENTED_POINT: Final = _built_in("oriented point", "OrientedPoint")
+VECTORS: Final = Kind("tuple", items=VECTOR)
 
 _MADE_BY_CALLS: Final = (NameKind.SHAPE, NameKind.REGION, NameKind.DISTRIBUTION)
 """Names that stand for a value only when they are called."""
 
 _SEQUENCES: Final = frozenset({"tuple", "list"})
+_NUMBERS: Final = frozenset({"number", "boolean"})
+_RUN: Final = frozenset({"behavior", "monitor", "scenario"})
+"""Kinds of values that calls of their definitions make."""
+_MOST_PARTS: Final = 64
+"""Number of elements of a tuple or list that are examined."""
 
 _OF_TYPE: Final[Mapping[str, Kind]] = MappingProxyType(
     {
@@ -69,6 +88,9 @@ _OF_TYPE: Final[Mapping[str, Kind]] = MappingProxyType(
         "vector field": FIELD,
         "boolean": BOOLEAN,
         "oriented point": ORIENTED_POINT,
+        "tuple of vectors": VECTORS,
+        "list of points": Kind("list", items=VECTOR),
+        "text": TEXT,
     }
 )
 """The kinds of declared types; of others nothing is known."""
@@ -82,14 +104,40 @@ def kind_of_type(declared: str) -> Kind | None:
     return _OF_TYPE.get(declared)
 
 
+def joint(kinds: Sequence[Kind | None]) -> Kind | None:
+    """The kind of a value that has one of some kinds; ``None`` if they differ."""
+    first = kinds[0] if kinds else None
+    if first is None or any(each is None or each.name != first.name for each in kinds):
+        return None
+    known = [each for each in kinds if each is not None]
+    if all(each == first for each in known):
+        return first
+    members: frozenset[str] | None = frozenset()
+    for each in known:
+        members = None if members is None or each.members is None else members | each.members
+    sizes = {each.size for each in known}
+    return Kind(
+        first.name, sizes.pop() if len(sizes) == 1 else None, members, joint([each.items for each in known])
+    )
+
+
 def accepts(types: Sequence[Type], kind: Kind) -> bool:
     """Return whether values of a kind may be given where any of some types will do; true if that is not certain."""
     if any(each.kinds is None for each in types):
         return True
     if kind.name in _SEQUENCES:
-        lengths = {length for each in types for length in each.lengths}
-        return bool(lengths) and (kind.size is None or kind.size in lengths)
+        return any(_accepts_sequence(each, kind) for each in types)
     return any(kind.name in (each.kinds or ()) for each in types)
+
+
+def _accepts_sequence(wanted: Type, kind: Kind) -> bool:
+    """Return whether a tuple or list may be given where a type is wanted."""
+    if kind.name in (wanted.kinds or ()):
+        return True
+    if wanted.items is not None:
+        return kind.items is None or accepts((wanted.items,), kind.items)
+    fits = bool(wanted.lengths) and (kind.size is None or kind.size in wanted.lengths)
+    return fits and kind.odd is None and (kind.items is None or kind.items.name in _NUMBERS)
 
 
 class Meanings(Protocol):
@@ -106,6 +154,21 @@ class Meanings(Protocol):
 
     def members(self, cls: ast.expr) -> frozenset[str] | None:
         """All attributes and methods of the instances of a class of objects."""
+
+    def defined(self, name: ast.expr) -> str | None:
+        """The kind of what the program or a module that it imports defines under a name, in a word: function, behavior, ..."""
+
+    def returned(self, function: ast.expr) -> Sequence[ast.expr]:
+        """The expressions of which a function of the program certainly returns one; none if it may return others."""
+
+    def kind_of_brought(self, name: ast.expr) -> str | None:
+        """The kind of a value that a module defines, in the word of the declared type."""
+
+    def grows(self, name: ast.Name) -> bool:
+        """Return whether the program may change the elements of the list or dictionary that a name means."""
+
+    def redefines(self, name: str) -> bool:
+        """Return whether classes of the program define a method or attribute of a name."""
 
     def ego_members(self) -> frozenset[str] | None:
         """All attributes and methods of the ego."""
@@ -139,12 +202,15 @@ class KindOf:
             case ast.Lambda():
                 return FUNCTION
             case ast.Tuple(elts=parts) | ast.List(elts=parts):
-                spread = any(isinstance(part, ast.Starred) for part in parts)
-                return Kind(
-                    "tuple" if isinstance(node, ast.Tuple) else "list", None if spread else len(parts)
-                )
-            case ast.Dict() | ast.DictComp():
-                return Kind("dictionary")
+                return self._display("tuple" if isinstance(node, ast.Tuple) else "list", parts, depth)
+            case ast.ListComp(elt=element):
+                return Kind("list", items=self(element, depth))
+            case ast.Dict(values=values):
+                return Kind("dictionary", items=self._joint(values, depth))
+            case ast.DictComp(value=value):
+                return Kind("dictionary", items=self(value, depth))
+            case ast.Subscript(value=value, slice=index):
+                return self._item(value, index, depth)
             case ast.Set() | ast.SetComp():
                 return Kind("set")
             case scenic.New(cls=cls):
@@ -175,13 +241,33 @@ class KindOf:
         return Kind(name if base is not None else "object", members=self._meanings.members(cls))
 
     def _joint(self, options: Iterable[ast.expr], depth: int) -> Kind | None:
-        kinds = {self(option, depth) for option in options}
-        return kinds.pop() if len(kinds) == 1 else None
+        return joint([self(option, depth) for option in options])
+
+    def _display(self, name: str, parts: Sequence[ast.expr], depth: int) -> Kind:
+        """The kind of a tuple or list in the text."""
+        if any(isinstance(part, ast.Starred) for part in parts):
+            return Kind(name)
+        kinds = [self(part, depth) for part in parts[:_MOST_PARTS]]
+        odd = next((each for each in kinds if each is not None and each.name not in _NUMBERS), None)
+        return Kind(name, len(parts), items=joint(kinds) if len(parts) <= _MOST_PARTS else None, odd=odd)
+
+    def _item(self, value: ast.expr, index: ast.expr, depth: int) -> Kind | None:
+        """The kind of ``value[index]``."""
+        owner = self(value, depth)
+        if owner is None or isinstance(index, ast.Slice):
+            return None
+        if owner == VECTOR:
+            return NUMBER
+        return owner.items if owner.name in (*_SEQUENCES, "dictionary") else None
 
     @staticmethod
     def _binary(left: Kind | None, right: Kind | None, operator: ast.operator) -> Kind | None:
         if left == NUMBER == right:
             return NUMBER
+        if left == VECTOR and right == NUMBER and isinstance(operator, ast.Mult | ast.Div):
+            return VECTOR
+        if left == NUMBER and right == VECTOR and isinstance(operator, ast.Mult):
+            return VECTOR
         if VECTOR in (left, right) and isinstance(operator, ast.Add | ast.Sub) and left == right:
             return VECTOR
         return None
@@ -189,21 +275,16 @@ class KindOf:
     def _call(self, node: ast.Call, depth: int) -> Kind | None:
         function = node.func
         if isinstance(function, ast.Attribute):
-            owner = self(function.value, depth)
-            if owner in (REGION, WORKSPACE) and function.attr in ("intersect", "union", "difference"):
-                return REGION
-            if owner in (REGION, WORKSPACE) and function.attr in (
-                "intersects",
-                "containsPoint",
-                "containsObject",
-            ):
-                return BOOLEAN
-            if owner == VECTOR and function.attr in ("norm", "distanceTo", "angleTo", "azimuthTo", "dot"):
-                return NUMBER
-            named = self._meanings.provided(function.value)
-            return ORIENTATION if named == "Orientation" and function.attr.startswith("from") else None
+            found = self.method(function, depth)
+            return None if found is None or found.result is None else kind_of_type(found.result.name)
         name = self._meanings.provided(function)
-        if name is None or name not in NAMES:
+        if name is None:
+            defined = self._meanings.defined(function)
+            if defined in _RUN:
+                return Kind(defined)
+            returned = self._meanings.returned(function) if defined == "function" else ()
+            return self._joint(returned, depth) if returned else None
+        if name not in NAMES:
             return None
         result = NAMES[name].result
         if result is not None:
@@ -212,15 +293,39 @@ class KindOf:
             numbers = len(node.args) and all(self(each, depth) == NUMBER for each in node.args)
             return NUMBER if numbers else None
         if name in ("Uniform", "Options", "Discrete") and not node.keywords:
-            return self._joint(_options(node), depth)
-        return {"Workspace": WORKSPACE, "str": TEXT, "localPath": TEXT}.get(name)
+            return joint([self._option(option, node, depth) for option in _options(node)])
+        return {"Workspace": WORKSPACE, "str": TEXT, "localPath": TEXT, "range": RANGE}.get(name)
+
+    def _option(self, option: ast.expr, choice: ast.Call, depth: int) -> Kind | None:
+        """The kind of an option of a choice; of ``*values`` that of the elements."""
+        if option is choice:
+            return None
+        if not isinstance(option, ast.Starred):
+            return self(option, depth)
+        kind = self(option.value, depth)
+        return kind.items if kind is not None and kind.name in _SEQUENCES else None
+
+    def method(self, function: ast.Attribute, depth: int = 0) -> Member | None:
+        """The declared method that a call of an attribute calls."""
+        owner = self(function.value, depth)
+        if owner is None:
+            if self._meanings.provided(function.value) == "Orientation":
+                return MEMBERS["orientation"].get(function.attr) if function.attr.startswith("from") else None
+            return None
+        if owner.name in INSTANCES:
+            return None if self._meanings.redefines(function.attr) else INSTANCE_METHODS.get(function.attr)
+        found = members_of(owner.name).get(function.attr)
+        return found if found is not None and found.is_method else None
 
     def _attribute(self, node: ast.Attribute, depth: int) -> Kind | None:
         owner = self(node.value, depth)
-        if owner in (VECTOR, ORIENTATION) and node.attr in ("x", "y", "z", "yaw", "pitch", "roll"):
-            return NUMBER
-        if owner is None or owner.name not in INSTANCES:
+        if owner is None:
             return None
+        if owner.name not in INSTANCES:
+            member = members_of(owner.name).get(node.attr)
+            if member is None or member.is_method or member.result is None:
+                return None
+            return kind_of_type(member.result.name)
         cls = {"point": "Point", "oriented point": "OrientedPoint"}.get(owner.name, "Object")
         declared = properties_of(cls).get(node.attr)
         if declared is not None:
@@ -242,18 +347,23 @@ class KindOf:
         annotation = self._meanings.annotation(node)
         if annotation is not None:
             return self._annotated(annotation)
+        defined = self._meanings.defined(node)
+        if defined is not None:
+            return Kind(defined)
         found = self._meanings.only_value(node)
         if found is None:
-            return None
+            brought = self._meanings.kind_of_brought(node)
+            return None if brought is None else kind_of_type(brought)
         value, in_turn = found
-        if not in_turn:
-            kind = self(value, depth)
+        if in_turn:
+            is_range = isinstance(value, ast.Call) and self._meanings.provided(value.func) == "range"
+            of = None if is_range else self(value, depth)
+            return NUMBER if is_range else of.items if of is not None and of.name in _SEQUENCES else None
+        kind = self(value, depth)
+        if kind is not None and kind.name in ("list", "dictionary"):
             # Lists grow.
-            return Kind("list") if kind is not None and kind.name == "list" else kind
-        if isinstance(value, ast.List | ast.Tuple) and value.elts:
-            return self._joint(value.elts, depth)
-        is_range = isinstance(value, ast.Call) and self._meanings.provided(value.func) == "range"
-        return NUMBER if is_range else None
+            return Kind(kind.name, items=None if self._meanings.grows(node) else kind.items)
+        return kind
 
     def _annotated(self, annotation: ast.expr) -> Kind | None:
         name = self._meanings.provided(annotation)
@@ -273,8 +383,6 @@ def _options(node: ast.Call) -> Iterator[ast.expr]:
             yield node
         elif isinstance(argument, ast.Dict):
             yield from (node if key is None else key for key in argument.keys)
-        elif isinstance(argument, ast.Starred):
-            yield node
         else:
             yield argument
     if not node.args:

@@ -33,7 +33,8 @@ class Foreign:
 
     ``definition`` is the one definition that it can only mean, without decorators; ``None`` if there may be others.
     ``parameters`` are those of a class that is called like a function. ``properties`` are those of a class of objects,
-    ``None`` if they cannot be known. ``filename`` and ``span`` tell where the name is defined.
+    ``None`` if they cannot be known; ``members`` are all of their attributes and methods, and ``base`` is the built-in class from
+    which they derive. ``filename`` and ``span`` tell where the name is defined.
     ``is_plain_class`` tells whether it is a class that certainly makes no objects of the scene.
     """
 
@@ -44,6 +45,8 @@ class Foreign:
     filename: str | None = None
     span: Span | None = None
     is_plain_class: bool = False
+    members: frozenset[str] | None = field(default=None, repr=False)
+    base: str | None = None
 
 
 class Surroundings(Protocol):
@@ -63,6 +66,9 @@ class Surroundings(Protocol):
 
     def brought(self, name: str) -> Foreign | None:
         """The meaning of one of ``names``; ``None`` if it is not known."""
+
+    def kind_of(self, name: str) -> str | None:
+        """The kind of the value of one of ``names``, in the word of the declared type; ``None`` if it is not known."""
 
     def imported(self, alias: ast.alias) -> Foreign | None:
         """The definition that ``from m import name`` brings; ``None`` if it is not known."""

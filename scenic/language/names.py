@@ -2,12 +2,30 @@
 
 import re
 from collections.abc import Mapping
+from dataclasses import field
 from enum import StrEnum
 from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.dataclass import dataclass
-from scenic.language.types import FIELD, REGION, SCALAR, SHAPE, VECTOR, Type
+from scenic.language.types import (
+    CALLABLE,
+    DIMENSIONS,
+    FIELD,
+    HEADING,
+    MESH,
+    NONE,
+    ORIENTATION,
+    POINTS,
+    POLYGON,
+    POLYLINE,
+    REGION,
+    SCALAR,
+    SHAPE,
+    TEXT,
+    VECTOR,
+    Type,
+)
 
 __all__ = [
     "ANGLE_METHODS",
@@ -50,6 +68,7 @@ class Name:
         is_complete: the signature shows all parameters; a call with others is a mistake.
         further: optional parameters that the signature leaves out, as Python writes them. With them it is complete.
         types: types of the parameters, in order, as far as the implementation gets them converted.
+        takes: types of further parameters by name, which the implementation examines itself; see `accepted`.
         angles: the parameters whose numbers are angles in radians.
         result: the type of what a call returns, where that is always the same.
         operation: the operation of the value graph that a call makes of its arguments; random values made by it are shown
@@ -69,11 +88,20 @@ class Name:
     is_complete: bool = False
     further: str = ""
     types: tuple[Type, ...] = ()
+    takes: Mapping[str, tuple[Type, ...]] = field(default_factory=dict)
     angles: tuple[str, ...] = ()
     result: Type | None = None
     operation: str | None = None
     operations: tuple[str, ...] = ()
     noun: str | None = None
+
+    @property
+    def accepted(self) -> Mapping[str, tuple[Type, ...]]:
+        """The types of which the value of each parameter must have one, as far as they are declared."""
+        return {
+            **{name: (each,) for name, each in zip(self.parameters, self.types, strict=False)},
+            **self.takes,
+        }
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -113,8 +141,24 @@ def _region(signature: str, documentation: str, home: str, **rest: Any) -> Name:
     )
 
 
-def _shape(signature: str, documentation: str, home: str = "scenic.runtime.elements.shapes") -> Name:
-    return _name(NameKind.SHAPE, signature, documentation, home, result=SHAPE)
+def _shape(
+    signature: str,
+    documentation: str,
+    home: str = "scenic.runtime.elements.shapes",
+    **takes: tuple[Type, ...],
+) -> Name:
+    return _name(NameKind.SHAPE, signature, documentation, home, result=SHAPE, takes={**_FORM, **takes})
+
+
+_FORM: Final = {"dimensions": (DIMENSIONS, NONE), "scale": (SCALAR,), "initial_rotation": (ORIENTATION, NONE)}
+"""Parameters of shapes."""
+_PLACED: Final = {
+    "dimensions": (DIMENSIONS, NONE),
+    "position": (VECTOR, NONE),
+    "rotation": (ORIENTATION, NONE),
+    "onDirection": (VECTOR, NONE),
+}
+"""Parameters of solid regions and surfaces."""
 
 
 def _sensor(signature: str, documentation: str, home: str = "scenic.runtime.elements.sensors") -> Name:
@@ -148,6 +192,8 @@ _ALL = (
         "values.definite",
         operation="vector",
         result=VECTOR,
+        takes={"x": (SCALAR,), "y": (SCALAR,), "z": (SCALAR,)},
+        is_complete=True,
     ),
     _class(
         "Orientation",
@@ -159,25 +205,37 @@ _ALL = (
         "VectorField(name, value, minSteps=4, defaultStepSize=5)",
         "An orientation for every point of space, given by a function.",
         "regions.fields",
+        angles=("value",),
         result=FIELD,
+        takes={
+            "name": (TEXT, NONE),
+            "value": (CALLABLE,),
+            "minSteps": (SCALAR,),
+            "defaultStepSize": (SCALAR,),
+        },
+        is_complete=True,
     ),
     _class(
         "PolygonalVectorField(name, cells, headingFunction=None, defaultHeading=None)",
         "A vector field that is constant on polygons.",
         "regions.fields",
         result=FIELD,
+        takes={"name": (TEXT, NONE), "headingFunction": (CALLABLE, NONE), "defaultHeading": (HEADING, NONE)},
     ),
     _class(
-        "Workspace(region)",
+        "Workspace(region=everywhere)",
         "The region that contains all objects, for `workspace = Workspace(region)`.",
         "regions.spaces",
+        takes={"region": (REGION,)},
+        further="*, name=None",
     ),
     _class(
         "Region",
         "Base class of all regions, for `isinstance` and for regions written in Python.",
         "regions.base",
+        result=REGION,
     ),
-    _class("Shape", "Base class of all shapes, for `isinstance`.", "elements.shapes"),
+    _class("Shape", "Base class of all shapes, for `isinstance`.", "elements.shapes", result=SHAPE),
     _class("Mutator", "Base class of mutators, which add noise to mutated objects.", "instances.mutators"),
     _class("Behavior", "Base class of all behaviors.", "dynamics.definitions"),
     _class("Monitor", "Base class of all monitors.", "dynamics.definitions"),
@@ -310,6 +368,7 @@ _ALL = (
         noun="range of integers",
         result=SCALAR,
         is_complete=True,
+        takes={"low": (SCALAR,), "high": (SCALAR,)},
     ),
     _distribution(
         "Normal(mean, stdDev)",
@@ -326,6 +385,7 @@ _ALL = (
         types=(SCALAR, SCALAR),
         result=SCALAR,
         is_complete=True,
+        takes={"low": (SCALAR,), "high": (SCALAR,)},
     ),
     _distribution(
         "Uniform(value, ...)", "One of the values, each equally likely.", operations=("select", "look-up")
@@ -367,6 +427,7 @@ _ALL = (
     _shape(
         "MeshShape(mesh, dimensions=None, scale=1, initial_rotation=None)",
         "The form of a closed mesh; `MeshShape.fromFile(path)` reads one.",
+        mesh=(MESH,),
     ),
     # Regions
     _region("everywhere", "All of space.", "spaces"),
@@ -376,27 +437,46 @@ _ALL = (
         "A finite set of points.",
         "scattered",
         further="kdTree=None, orientation=None, tolerance=1e-6",
+        takes={"name": (TEXT, NONE), "points": (POINTS,), "tolerance": (SCALAR,)},
     ),
     _region(
         "GridRegion(name, grid, Ax, Ay, Bx, By)",
         "The free cells of a grid.",
         "scattered",
         further="orientation=None",
+        takes={"name": (TEXT, NONE), "Ax": (SCALAR,), "Ay": (SCALAR,), "Bx": (SCALAR,), "By": (SCALAR,)},
     ),
-    _region("PolylineRegion(points)", "A sequence of line segments in the plane.", "lines"),
-    _region("PathRegion(points)", "A sequence of line segments in space.", "lines"),
-    _region("PolygonalRegion(points, z=0)", "A polygon in a horizontal plane.", "planar"),
+    _region(
+        "PolylineRegion(points=None, polyline=None)",
+        "A sequence of line segments in the plane.",
+        "lines",
+        takes={"points": (POINTS, NONE), "polyline": (POLYLINE, NONE)},
+    ),
+    _region(
+        "PathRegion(points=None, polylines=None)",
+        "A sequence of line segments in space.",
+        "lines",
+        takes={"points": (POINTS, NONE)},
+    ),
+    _region(
+        "PolygonalRegion(points=(), polygon=None, z=0)",
+        "A polygon in a horizontal plane.",
+        "planar",
+        takes={"points": (POINTS, NONE), "polygon": (POLYGON, NONE), "z": (SCALAR,)},
+    ),
     _region(
         "PolygonalFootprintRegion(polygon)",
         "All points above and below a polygon.",
         "planar",
         further="name=None",
+        takes={"polygon": (POLYGON,)},
     ),
     _region(
         "CircularRegion(center, radius)",
         "A disc in a horizontal plane.",
         "circular",
         further="resolution=32, *, name=None",
+        takes={"center": (VECTOR,), "radius": (SCALAR,), "resolution": (SCALAR,)},
     ),
     _region(
         "SectorRegion(center, radius, heading, angle)",
@@ -404,6 +484,7 @@ _ALL = (
         "sectors",
         angles=("heading", "angle"),
         further="resolution=32, *, name=None",
+        takes={"center": (VECTOR,), "radius": (SCALAR,), "heading": (HEADING,), "angle": (SCALAR,)},
     ),
     _region(
         "RectangularRegion(position, heading, width, length)",
@@ -411,20 +492,31 @@ _ALL = (
         "rectangular",
         angles=("heading",),
         further="*, name=None",
+        takes={"position": (VECTOR,), "heading": (HEADING,), "width": (SCALAR,), "length": (SCALAR,)},
     ),
     _region(
         "MeshVolumeRegion(mesh, dimensions=None, position=None, rotation=None)",
         "The inside of a closed mesh.",
         "meshes",
+        takes={"mesh": (MESH,), **_PLACED},
     ),
     _region(
         "MeshSurfaceRegion(mesh, dimensions=None, position=None, rotation=None)",
         "The surface of a mesh.",
         "meshes",
+        takes={"mesh": (MESH,), **_PLACED},
     ),
-    _region("BoxRegion(dimensions=(1, 1, 1), position=None, rotation=None)", "A solid cuboid.", "volumes"),
     _region(
-        "SpheroidRegion(dimensions=(2, 2, 2), position=None, rotation=None)", "A solid spheroid.", "volumes"
+        "BoxRegion(dimensions=(1, 1, 1), position=None, rotation=None)",
+        "A solid cuboid.",
+        "volumes",
+        takes=_PLACED,
+    ),
+    _region(
+        "SpheroidRegion(dimensions=(2, 2, 2), position=None, rotation=None)",
+        "A solid spheroid.",
+        "volumes",
+        takes=_PLACED,
     ),
 )
 

@@ -10,6 +10,7 @@ from typing import Any, Final
 
 from scenic.dataclass import dataclass
 from scenic.language.types import (
+    BEHAVIOR,
     BOOLEAN,
     COLOR,
     NONE,
@@ -48,6 +49,7 @@ class BuiltinProperty:
 
     Its value has any of ``types``. ``given`` is the default: a constant, or the words of the manual for one that the runtime
     computes. ``needs`` are the properties that the default reads. ``unit`` is that of the numbers in the value, where they have one.
+    ``positive`` tells whether the number must be greater than 0.
     """
 
     name: str
@@ -59,6 +61,7 @@ class BuiltinProperty:
     final: bool = False
     additive: bool = False
     unit: str = ""
+    positive: bool = False
 
     @property
     def angle(self) -> bool:
@@ -339,6 +342,7 @@ _OBJECT = BuiltinClass(
             "shape.width",
             "Extent of the bounding box along the local X axis.",
             ("shape",),
+            positive=True,
         ),
         _P(
             "length",
@@ -346,6 +350,7 @@ _OBJECT = BuiltinClass(
             "shape.length",
             "Extent of the bounding box along the local Y axis.",
             ("shape",),
+            positive=True,
         ),
         _P(
             "height",
@@ -353,6 +358,7 @@ _OBJECT = BuiltinClass(
             "shape.height",
             "Extent of the bounding box along the local Z axis.",
             ("shape",),
+            positive=True,
         ),
         _P(
             "present",
@@ -432,7 +438,7 @@ _OBJECT = BuiltinClass(
         ),
         _P(
             "behavior",
-            (_words("behavior"), NONE),
+            (BEHAVIOR, NONE),
             Constant(None),
             "Its behavior in simulations.",
         ),

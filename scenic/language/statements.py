@@ -2,11 +2,13 @@
 
 import re
 from collections.abc import Mapping
+from dataclasses import field
 from enum import StrEnum
 from types import MappingProxyType
 from typing import Final
 
 from scenic.dataclass import dataclass
+from scenic.language.types import FIXED_NUMBER, PATTERN, SCALAR, Type
 
 __all__ = ["STATEMENTS", "Effect", "Place", "Statement"]
 
@@ -55,7 +57,7 @@ class Statement:
     (`scenic.runtime.program.prelude`), by default of the same name. The running instance comes first if the statement suspends;
     then the fields of the node: expressions as their values, those in ``later`` as functions without parameters, a list one after
     the other, a duration as number and unit; all others by name. A statement that needs more has a rule in
-    `scenic.compiler.lowering`.
+    `scenic.compiler.lowering`. ``takes`` are the types of which the values of some fields must have one.
     """
 
     node: str
@@ -68,6 +70,7 @@ class Statement:
     effect: Effect = Effect.CALL
     method: str = ""
     later: frozenset[str] = frozenset()
+    takes: Mapping[str, tuple[Type, ...]] = field(default_factory=dict)
 
     @property
     def function(self) -> str:
@@ -121,6 +124,7 @@ _ALL = (
         _TOP_AND_SETUP,
         "Saves a value during simulations: at every step, at the start or at the end.",
         later=frozenset({"value"}),
+        takes={"every": (FIXED_NUMBER,), "after": (FIXED_NUMBER,), "to": (PATTERN,)},
     ),
     Statement(
         "Mutate",
@@ -128,6 +132,7 @@ _ALL = (
         ("mutate", "mutate object, ... by scale"),
         _TOP_AND_SETUP,
         "Adds noise to the position and orientation of the named objects, or of all objects so far.",
+        takes={"scale": (FIXED_NUMBER,)},
     ),
     Statement(
         "TerminateWhen",
@@ -144,6 +149,7 @@ _ALL = (
         _TOP_AND_SETUP,
         "Ends the scenario after a number of seconds or steps. If there are several such statements, the "
         "earliest end counts.",
+        takes={"duration": (FIXED_NUMBER,)},
     ),
     Statement(
         "Terminate",
@@ -182,6 +188,7 @@ _ALL = (
         suspends=True,
         effect=Effect.DELEGATE,
         method="wait",
+        takes={"duration": (SCALAR,)},
     ),
     Statement(
         "WaitUntil",
@@ -205,6 +212,7 @@ _ALL = (
         "Runs a behavior or scenario until it ends, a time is over or a condition holds. Several scenarios, or several "
         "behaviors of one agent, run side by side: the agent takes the actions of all, in order.",
         suspends=True,
+        takes={"duration": (SCALAR,)},
     ),
     Statement(
         "DoChoose",

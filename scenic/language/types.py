@@ -7,22 +7,33 @@ from scenic.dataclass import dataclass
 
 __all__ = [
     "ANYTHING",
+    "BEHAVIOR",
     "BOOLEAN",
+    "CALLABLE",
     "COLOR",
+    "DIMENSIONS",
     "DIRECTION",
     "FIELD",
+    "FIXED_NUMBER",
     "HEADING",
     "HEADING_OR_ANGLES",
     "INSTANCES",
+    "MESH",
     "NONE",
     "OBJECT",
     "ORIENTATION",
     "ORIENTED_POINT",
+    "PATTERN",
     "POINT",
+    "POINTS",
+    "POLYGON",
+    "POLYLINE",
     "REGION",
+    "REGIONS",
     "SCALAR",
     "SCALAR_OR_VECTOR",
     "SHAPE",
+    "TEXT",
     "VECTOR",
     "VIEW_ANGLES",
     "Type",
@@ -37,7 +48,8 @@ class Type:
 
     ``name`` is the type in documentation, ``noun`` the same in a message: "expected a number". ``advice`` says how a
     program gets such a value. ``kinds`` are the kinds of values (`scenic.compiler.kinds`) that can be given for it, ``None``
-    if the text of a program does not show that; ``lengths`` are those of tuples and lists of numbers that can.
+    if the text of a program does not show that; ``lengths`` are those of tuples and lists of numbers that can. ``items`` is the
+    type of the elements of a tuple or list of any length that can.
     """
 
     name: str
@@ -45,6 +57,7 @@ class Type:
     advice: str = ""
     kinds: frozenset[str] | None = None
     lengths: frozenset[int] = frozenset()
+    items: "Type | None" = None
 
 
 INSTANCES: Final = frozenset({"object", "oriented point", "point"})
@@ -73,7 +86,6 @@ SCALAR_OR_VECTOR: Final = Type(
     "a number or a vector",
     "write a number, or a vector as `Vector(x, y, z)`",
     kinds=INSTANCES | {"vector", "number", "boolean"},
-    lengths=frozenset({2, 3}),
 )
 """Either, not converted: a tuple is not a vector here."""
 HEADING: Final = Type(
@@ -139,6 +151,50 @@ COLOR: Final = Type(
     "write red, green, blue and maybe opacity, as `(1, 0.5, 0)`",
     kinds=frozenset({"vector"}),
     lengths=frozenset({3, 4}),
+)
+BEHAVIOR: Final = Type(
+    "behavior",
+    "a behavior",
+    "define one with `behavior Name():`, and name it or call it",
+    kinds=frozenset({"behavior", "monitor", "scenario"}),
+)
+TEXT: Final = Type("text", "text", "write it in quotes", kinds=frozenset({"text"}))
+CALLABLE: Final = Type(
+    "function", "a function", "define one, or write `lambda x: ...`", kinds=frozenset({"function", "class"})
+)
+FIXED_NUMBER: Final = Type(
+    "fixed number",
+    "a fixed number",
+    "write it plainly; it cannot be random",
+    kinds=frozenset({"number", "boolean"}),
+)
+PATTERN: Final = Type(
+    "pattern or recorder",
+    "a pattern of file names or a recorder",
+    'write for example `to "positions.npz"`',
+    kinds=frozenset({"text"}),
+)
+DIMENSIONS: Final = Type(
+    "three numbers",
+    "three numbers",
+    "write width, length and height, as `(1, 2, 3)`",
+    kinds=frozenset({"vector"}),
+    lengths=frozenset({3}),
+)
+POINTS: Final = Type(
+    "list of points", "a list of points", "write `[(0, 0), (1, 0), (1, 1)]`", kinds=frozenset(), items=VECTOR
+)
+REGIONS: Final = Type(
+    "list of regions", "a list of regions", "write `[first, second]`", kinds=frozenset(), items=REGION
+)
+MESH: Final = Type(
+    "mesh", "a mesh", "load one from a file by `fromFile(path)`, or make it with trimesh", kinds=frozenset()
+)
+POLYGON: Final = Type(
+    "polygon", "a polygon of shapely", "or give the points as one list", kinds=frozenset({"region"})
+)
+POLYLINE: Final = Type(
+    "line string", "a line string of shapely", "or give the points as one list", kinds=frozenset()
 )
 VIEW_ANGLES: Final = Type("pair of angles", "a pair of angles", "write two angles, as `(90 deg, 45 deg)`")
 

@@ -6,11 +6,11 @@ from dataclasses import field
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.scopes import BindingKind, Scope, ScopeKind
+from scenic.compiler.scopes import Binding, BindingKind, Scope, ScopeKind
 from scenic.compiler.traversal import walk
 from scenic.dataclass import dataclass
 from scenic.language.properties import CLASSES, BuiltinProperty, attributes_of, properties_of
-from scenic.project.index import Project
+from scenic.project.index import Exported, Project
 from scenic.project.modules import Module
 from scenic.project.search import Found
 from scenic.project.symbols import (
@@ -22,7 +22,16 @@ from scenic.project.symbols import (
     symbol_of_module,
 )
 
-__all__ = ["Class", "Member", "class_of", "class_of_symbol", "meaning", "module_behind"]
+__all__ = [
+    "Class",
+    "Member",
+    "class_of",
+    "class_of_elements",
+    "class_of_exported",
+    "class_of_symbol",
+    "meaning",
+    "module_behind",
+]
 
 _DEEPEST: Final = 50
 """Steps from a name to what it means, through values and bases, after which nothing is known."""
@@ -299,6 +308,20 @@ def class_of(project: Project, module: Module, node: ast.expr) -> Symbol | None:
     return _single(_value_of(project, module, node, 0))
 
 
+def class_of_elements(project: Project, module: Module, node: ast.expr) -> Symbol | None:
+    """The class of the elements of the sequence that an expression is, if the text shows it."""
+    value = _value_of(project, module, node, 0)
+    return value.cls if value is not None and value.is_sequence else None
+
+
+def class_of_exported(project: Project, exported: Exported) -> Symbol | None:
+    """The class of a value that a module defines; see `class_of`."""
+    target = project.follow(exported)
+    if isinstance(target, Found) or target.module is None or target.binding is None:
+        return None
+    return _single(_value_of_binding(project, target.module, target.binding, 0))
+
+
 @dataclass(frozen=True, slots=True)
 class _Value:
     """A value: an object of a class, or a sequence of them."""
@@ -440,6 +463,10 @@ def _value_of_name(project: Project, module: Module, node: ast.Name, depth: int)
         if isinstance(target, Found) or target.module is None or target.binding is None:
             return None
         module, binding = target.module, target.binding
+    return _value_of_binding(project, module, binding, depth)
+
+
+def _value_of_binding(project: Project, module: Module, binding: Binding, depth: int) -> _Value | None:
     if binding.kinds == {BindingKind.SELF} or binding.kinds == {BindingKind.PARAMETER}:
         own = _class_of_self(module, binding.scope, binding.name)
         return None if own is None else _Value(own)

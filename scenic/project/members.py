@@ -5,23 +5,38 @@ The class of such a value follows from annotations of the library (`scenic.proje
 
 import ast
 import os
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
+from types import MappingProxyType
 from typing import Final
 
 from scenic import language
+from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Resolution
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
+from scenic.language.names import NAMES, NameKind
 from scenic.language.properties import attributes_of, properties_of
 from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest
-from scenic.project.classes import class_of, class_of_symbol
-from scenic.project.index import Project
+from scenic.project.classes import class_of, class_of_elements, class_of_exported, class_of_symbol, meaning
+from scenic.project.index import Exported, Project
 from scenic.project.modules import Module
+from scenic.project.symbols import Symbol
 
-__all__ = ["member_findings"]
+__all__ = ["kind_of_exported", "member_findings"]
 
+_OF_CLASSES: Final = (NameKind.CLASS, NameKind.REGION, NameKind.SHAPE)
 _LIBRARY: Final = os.path.dirname(os.path.dirname(os.path.abspath(language.__file__ or ""))) + os.sep
+_MOST_BASES: Final = 20
+_DECLARED: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        each.home: each.result.name
+        for each in NAMES.values()
+        if each.home is not None and each.result is not None and each.kind in _OF_CLASSES
+    }
+)
+"""The types of the instances of classes of the language, by the place of the class."""
+_OF_SEQUENCES: Final = frozenset({*dir(tuple), *dir(list), *dir(set)})
 _COMMON: Final = frozenset(properties_of("Object")) | frozenset(attributes_of("Object"))
 
 
@@ -33,14 +48,15 @@ def member_findings(
         return
     module = Module(source, tree, resolution, is_scenic=True, broken=False)
     stored = {node.attr for node, _ in resolution.nodes(ast.Attribute) if isinstance(node.ctx, ast.Store)}
+    stored |= {node.property for node, _ in resolution.nodes(scenic.SpecifierPhrase) if node.property}
     seen: dict[tuple[str, str], tuple[str, str] | None] = {}
     for node, _ in resolution.nodes(ast.Attribute):
         if node.attr in stored or node.attr in _COMMON or node.attr.startswith("_"):
             continue
-        value = node.value
-        if not isinstance(value, ast.Name) or value.id not in brought or value.id in resolution.names:
+        chain = _chain(node.value, resolution, brought)
+        if chain is None:
             continue
-        key = (value.id, node.attr)
+        key = (chain, node.attr)
         if key not in seen:
             seen[key] = _slip(project, module, node)
         found = seen[key]
@@ -61,18 +77,70 @@ def member_findings(
             )
 
 
+def _chain(node: ast.expr, resolution: Resolution, brought: Collection[str]) -> str | None:
+    """A text that stands for the value of an expression, which begins with a name of one meaning; ``None`` of other expressions."""
+    words: list[str] = []
+    while not isinstance(node, ast.Name):
+        match node:
+            case ast.Attribute(value=value, attr=name):
+                words.append(f".{name}")
+            case ast.Call(func=value):
+                words.append("()")
+            case ast.Subscript(value=value):
+                words.append("[]")
+            case _:
+                return None
+        node = value
+    if node.id not in brought and node.id != "ego":
+        # A name of the program means the same everywhere if the module binds it just once, and no function does.
+        reference = resolution.reference(node)
+        binding = None if reference is None else reference.binding
+        if binding is None or len(binding.sites) != 1:
+            return None
+        return f"{id(binding)} {words}"
+    return None if node.id in resolution.names else f"{node.id} {words}"
+
+
+def kind_of_exported(project: Project, exported: Exported) -> str | None:
+    """The kind of a value that a module defines, in the word of the declared type: a region, a vector field, a shape."""
+    key = ("kind", None if exported.module is None else exported.module.filename, exported.binding)
+    if key not in project.derived:
+        project.derived[key] = _kind_of_class(project, class_of_exported(project, exported))
+    found: str | None = project.derived[key]
+    return found
+
+
+def _kind_of_class(project: Project, symbol: Symbol | None) -> str | None:
+    waiting = [symbol]
+    for _ in range(_MOST_BASES):
+        cls = waiting.pop(0) if waiting else None
+        if cls is None:
+            return None
+        if cls.filename is not None and cls.filename.startswith(_LIBRARY):
+            home = cls.filename.removeprefix(_LIBRARY).removesuffix(".py").replace(os.sep, ".")
+            declared = _DECLARED.get(f"scenic.{home}:{cls.name}")
+            if declared is not None:
+                return declared
+        known = class_of_symbol(project, cls)
+        waiting += () if known is None else known.bases
+    return None
+
+
 def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, str] | None:
     """The class of the owner of an attribute and the name that was meant, if the class has no such attribute."""
     symbol = class_of(project, module, node.value)
+    element = class_of_elements(project, module, node.value) if symbol is None else None
+    if element is not None and node.attr not in _OF_SEQUENCES:
+        known = class_of_symbol(project, element)
+        meant = None if known is None else nearest(node.attr, {each.name for each in known.members})
+        return None if meant is None else (f"sequence of {element.name}", f"[0].{meant}")
+    if symbol is None:
+        # An attribute of the class itself, such as a member of an enumeration.
+        symbol = meaning(project, module, node.value) if isinstance(node.value, ast.Name) else None
     if symbol is None or symbol.filename is None or not symbol.filename.startswith(_LIBRARY):
         return None
     cls = class_of_symbol(project, symbol)
-    if (
-        cls is None
-        or cls.is_scenic
-        or cls.member(node.attr) is not None
-        or cls.member("__getattr__") is not None
-    ):
+    if cls is None or cls.member(node.attr) is not None or cls.member("__getattr__") is not None:
         return None
     meant = nearest(node.attr, {each.name for each in cls.members if not each.name.startswith("_")})
     return None if meant is None else (symbol.name, meant)

@@ -17,7 +17,7 @@ from scenic.project.classes import Class, class_of_symbol
 from scenic.project.imports import Imports
 from scenic.project.index import Exported, Exports, Project
 from scenic.project.maps import map_findings
-from scenic.project.members import member_findings
+from scenic.project.members import kind_of_exported, member_findings
 from scenic.project.search import Found, ModuleKind
 from scenic.project.symbols import Symbol, symbol_of_exported
 
@@ -75,6 +75,10 @@ class _Surroundings:
         exported = self._names.get(name)
         return None if exported is None else _foreign(self._project, exported)
 
+    def kind_of(self, name: str) -> str | None:
+        exported = self._names.get(name)
+        return None if exported is None else kind_of_exported(self._project, exported)
+
     def imported(self, alias: ast.alias) -> Foreign | None:
         found = self._imports.member(alias)
         return _foreign(self._project, found) if isinstance(found, Exported) else None
@@ -122,6 +126,7 @@ def _explored(project: Project, exported: Exported) -> Foreign | None:
     if not isinstance(node, DEFINITIONS) or getattr(node, "decorator_list", None):
         return None
     parameters, properties, is_plain_class = None, None, False
+    members, base = None, None
     if isinstance(node, ast.ClassDef):
         known = class_of_symbol(project, symbol)
         if known is not None and not known.is_scenic and not node.keywords and known.initial_is_own:
@@ -131,7 +136,24 @@ def _explored(project: Project, exported: Exported) -> Foreign | None:
             properties = _properties(known) if known.is_scenic else None
             parameters = None if known.is_scenic else _parameters(known)
             is_plain_class = not known.is_scenic
-    return Foreign(symbol.name, node, parameters, properties, symbol.filename, symbol.span, is_plain_class)
+            if known.is_scenic and known.member("__getattr__") is None:
+                members = frozenset(each.name for each in known.members)
+                base = _built_in_base(project, known)
+    return Foreign(
+        symbol.name, node, parameters, properties, symbol.filename, symbol.span, is_plain_class, members, base
+    )
+
+
+def _built_in_base(project: Project, known: Class) -> str | None:
+    """The built-in class from which a class of objects derives."""
+    waiting = [known.symbol]
+    while waiting:
+        symbol = waiting.pop(0)
+        if symbol.is_builtin:
+            return symbol.name if symbol.name in BUILT_IN else None
+        found = class_of_symbol(project, symbol)
+        waiting += () if found is None else found.bases
+    return None
 
 
 def _properties(known: Class) -> Mapping[str, Property]:

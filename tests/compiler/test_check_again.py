@@ -249,7 +249,7 @@ def versions(texts: Iterable[str]) -> Iterator[tuple[Resolution, Checked]]:
 
 def test_what_only_moves_is_not_looked_at_again() -> None:
     lines = [
-        f"class C{index}(Object): width: {index}\nx{index} = new C{index} at ({index}, 0)"
+        f"class C{index}(Object): width: {index + 1}\nx{index} = new C{index} at ({index}, 0)"
         for index in range(100)
     ]
     lines[80] = "def f(): y = 1"  # A warning, which moves.

@@ -38,7 +38,7 @@ PROGRAMS = {
     "functions": "model world.model\nego = new Car\ndef near(car, gap=2):\n    return new Truck left of car by gap\nnear(ego)\n",
     "tests/relative": "from .helpers import start\nfrom ..world.units import KILO\nego = new Object at (start(KILO), 0)\n",
     "tests/deep/two": "from ..helpers import *\nfrom ...world.base import Thing\nego = new Thing at (start(1), LIMIT)\n",
-    "override": "model world.model\nego = new Car\nscenario Main():\n    setup:\n        override ego with speed 3\n    compose:\n        wait\n",
+    "override": "model world.model\nego = new Car\nscenario Main():\n    setup:\n        override ego with width 3\n    compose:\n        wait\n",
     "interrupts": "model world.model\nbehavior Careful(limit=3):\n    try:\n        do Chase(ego)\n    interrupt when self.speed > limit:\n        do Drive(1) until self.speed < limit\nego = new Car\nnew Truck behind ego by 4, with behavior Careful(limit=2)\n",
     "choices": "model world.model\nbehavior Any():\n    do choose {Drive(1): 2, Drive(2): 1}\n    do shuffle Drive(1), Chase(ego)\nego = new Car with behavior Any()\n",
     "temporal": "model world.model\nego = new Car\nother = new Truck visible from ego\nrequire always (ego can see other) implies eventually other.speed < 2\n",

@@ -14,17 +14,21 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks import (
     angles,
     arguments,
+    clashes,
     class_bodies,
     conditions,
     declarations,
     defaults,
+    distributions,
     flow,
     guards,
     instances,
     making,
     meant_specifiers,
     names,
+    operands,
     order,
+    overriding,
     placement,
     randomness,
     specifiers,
@@ -41,7 +45,20 @@ __all__ = ["NOTED", "Context", "check", "lint"]
 
 _NODE_RULES: Final[tuple[tuple[type[ast.AST], NodeRule], ...]] = tuple(
     rule
-    for module in (angles, arguments, class_bodies, conditions, making, randomness, specifiers, values)
+    for module in (
+        angles,
+        arguments,
+        clashes,
+        class_bodies,
+        conditions,
+        distributions,
+        making,
+        operands,
+        overriding,
+        randomness,
+        specifiers,
+        values,
+    )
     for rule in module.RULES.items()
 )
 

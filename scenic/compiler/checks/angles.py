@@ -13,6 +13,7 @@ from scenic.language.names import ANGLE_METHODS, NAMES, NameKind
 from scenic.language.operators import OPERATORS, Operand
 from scenic.language.properties import CLASSES, properties_of
 from scenic.language.specifiers import SPECIFIERS
+from scenic.language.types import INSTANCES
 
 __all__ = ["RULES"]
 
@@ -38,6 +39,9 @@ def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: Context) ->
 
 
 def _operation(node: scenic.Operation, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    inner = node.operands[0] if node.operands else None
+    if node.operator == "deg" and isinstance(inner, scenic.Operation) and inner.operator == "deg":
+        yield context.warning("SC307", "this angle is converted from degrees twice", node, "write `deg` once")
     if node.operator in OPERATORS:
         yield from _operands(context, node.operands, OPERATORS[node.operator].operands)
 
@@ -74,7 +78,12 @@ def _call(node: ast.Call, _scope: Scope, context: Context) -> Iterator[Diagnosti
     given.update((keyword.arg, keyword.value) for keyword in node.keywords if keyword.arg is not None)
     for name in angles:
         if name in given:
-            yield from _found(context, given[name], f"the {name} is" if name != "x" else "the argument is")
+            value = given[name]
+            yield from _found(
+                context,
+                value.body if isinstance(value, ast.Lambda) else value,
+                f"the {name} is" if name != "x" else "the argument is",
+            )
 
 
 def _comparison(node: ast.Compare, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
@@ -88,6 +97,9 @@ def _comparison(node: ast.Compare, _scope: Scope, context: Context) -> Iterator[
 def _is_angle(node: ast.expr, context: Context) -> bool:
     while isinstance(node, ast.Call) and len(node.args) == 1 and context.provided(node.func) == "abs":
         node = node.args[0]
+    if isinstance(node, ast.Attribute) and node.attr in _PROPERTIES:
+        kind = context.kind_of(node.value)
+        return kind is not None and kind.name in INSTANCES
     return (
         isinstance(node, scenic.Operation) and node.operator in OPERATORS and OPERATORS[node.operator].angle
     )
@@ -98,9 +110,10 @@ def _found(context: Context, value: ast.expr | None, what: str) -> Iterator[Diag
     places = list(_degrees(value, context))
     if places:
         written = context.text(places[0])
+        literal = context.constant(places[0]) if isinstance(places[0], ast.Name) else None
         yield context.warning(
             "SC302",
-            f"{what} an angle in radians, and {_number(places[0], context):g} is more than a full turn",
+            f"{what} an angle in radians, and {_number(literal or places[0], context):g} is more than a full turn",
             places[0],
             f"write `{written} deg` if degrees are meant"
             if written
@@ -134,6 +147,14 @@ def _degrees(value: ast.expr | None, context: Context, depth: int = _DEEPEST) ->
         for operand in value.operands:
             if not isinstance(operand, ast.Tuple | ast.List):
                 yield from _degrees(operand, context, depth - 1)
+    elif isinstance(value, ast.Name):
+        constant = context.constant(value)
+        if (
+            constant is not None
+            and isinstance(constant, ast.Constant)
+            and _number(constant, context) > _LARGEST
+        ):
+            yield value
     elif _number(value, context) > _LARGEST:
         yield value
 

@@ -219,6 +219,12 @@ def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: Context) ->
         yield from _uncalled(node.operands[0], context)
 
 
+def _property(node: scenic.PropertyDef, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``behavior: B`` in a class."""
+    if node.name == "behavior":
+        yield from _uncalled(node.value, context)
+
+
 def _do(node: Any, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """``do f``, ``do f()``: only behaviors, monitors and scenarios can be run."""
     for target in node.targets:
@@ -283,5 +289,6 @@ def _listed(names: list[str]) -> str:
 RULES: Final[dict[type[ast.AST], NodeRule]] = {
     ast.Call: _call,
     scenic.Do: _do,
+    scenic.PropertyDef: _property,
     scenic.SpecifierPhrase: _specifier,
 }

@@ -12,6 +12,7 @@ from scenic.compiler.checks.context import Context, NodeRule
 from scenic.compiler.scopes import Scope
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
 from scenic.language.spans import Span
+from scenic.language.types import INSTANCES
 
 __all__ = ["RULES", "truth"]
 
@@ -25,6 +26,11 @@ _COMPARISONS: Final[Mapping[type[ast.cmpop], Callable[[Any, Any], Any]]] = Mappi
         ast.GtE: operator.ge,
     }
 )
+
+
+_ALWAYS_TRUE: Final = INSTANCES | {"vector", "orientation", "region", "workspace", "shape", "vector field"}
+_TRUTH: Final = frozenset({"__bool__", "__len__"})
+"""Methods by which a class of the program decides on the truth of its instances."""
 
 
 def truth(condition: ast.expr) -> bool | None:
@@ -142,6 +148,15 @@ def _constant(condition: ast.expr, context: Context, what: str, *, literals: boo
     if kind is not None and kind.name in ("function", "class"):
         message = f"this {what} is `{provided}` itself, which is always true"
         yield context.warning("SC306", message, condition, f"call it: `{provided}(...)`")
+        return
+    always = context.kind_of(condition) if literals else None
+    if always is not None and always.name in _ALWAYS_TRUE and not _TRUTH & context.owners.keys():
+        yield context.warning(
+            "SC306",
+            f"this {what} is {always.phrase}, which is always true",
+            condition,
+            "compare something: `ego.position.x > 3`, or `ego in region`",
+        )
         return
     definition: Any = context.definition(condition)
     if isinstance(definition, ast.FunctionDef | ast.AsyncFunctionDef):

@@ -26,6 +26,7 @@ from scenic.compiler.scopes import (
 from scenic.compiler.surroundings import Foreign, Surroundings
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label, Severity
+from scenic.language.members import Member
 from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.language.spelling import is_slip
@@ -120,6 +121,10 @@ class Context:
         """The kind of what an expression gives; ``None`` if it is not certain."""
         return self._kinds(value)
 
+    def method(self, function: ast.Attribute) -> Member | None:
+        """The declared method of a value that a call of an attribute calls."""
+        return self._kinds.method(function)
+
     # What has changed since the version before
 
     @cached_property
@@ -208,6 +213,12 @@ class Context:
     def stored_attributes(self) -> frozenset[str]:
         """The names of all attributes that the program writes."""
         found: frozenset[str] = self.fact("stored attributes")
+        return found
+
+    @property
+    def grown(self) -> frozenset[str]:
+        """The names of lists and dictionaries whose elements the program may change."""
+        found: frozenset[str] = self.fact("grown")
         return found
 
     @property
@@ -300,6 +311,15 @@ class Context:
         if not isinstance(site, ast.alias) or not self._stands(binding.name, site):
             return None
         return surroundings.imported(site)
+
+    def kind_of_brought(self, name: ast.expr) -> str | None:
+        """The kind of the value that another module defines under a name, in the word of the declared type."""
+        if self.surroundings is None or not isinstance(name, ast.Name) or self.resolution.reflective:
+            return None
+        reference = self.resolution.reference(name)
+        if reference is None or reference.binding is not None or self.resolution.wildcard:
+            return None
+        return self.surroundings.kind_of(name.id) if name.id in self.brought else None
 
     def provided(self, name: ast.expr | None) -> str | None:
         """The name that an expression is, if it means what the language provides under that name."""
@@ -444,6 +464,22 @@ def _stored_attributes(context: Context) -> frozenset[str]:
     )
 
 
+_GROWING: Final = frozenset(
+    {"append", "clear", "extend", "insert", "pop", "popitem", "remove", "setdefault", "update"}
+)
+"""Methods that change the elements of a list or dictionary."""
+
+
+def _grown(context: Context) -> frozenset[str]:
+    return _united(context, "grown", _grown_in)
+
+
+def _grown_in(own: Stretch) -> frozenset[str]:
+    called = (node.value for node, _ in own.nodes(ast.Attribute) if node.attr in _GROWING)
+    stored = (node.value for node, _ in own.nodes(ast.Subscript) if not isinstance(node.ctx, ast.Load))
+    return frozenset(value.id for value in (*called, *stored) if isinstance(value, ast.Name))
+
+
 def _given(context: Context) -> frozenset[str]:
     return _united(
         context,
@@ -460,10 +496,15 @@ def _parameters(context: Context) -> frozenset[str]:
     )
 
 
+def _ego_value(context: Context) -> ast.expr | None:
+    """The value of the ego, if the program sets it just once."""
+    stores = [use.node for use in context.resolution.uses("ego") if isinstance(use.node.ctx, ast.Store)]
+    return context.assigned.get(stores[0]) if len(stores) == 1 else None
+
+
 def _ego_members(context: Context) -> frozenset[str] | None:
     """All attributes and methods of the ego, if the program sets it just once and makes it there."""
-    stores = [use.node for use in context.resolution.uses("ego") if isinstance(use.node.ctx, ast.Store)]
-    value = context.assigned.get(stores[0]) if len(stores) == 1 else None
+    value = _ego_value(context)
     return context.meanings.members(value.cls) if isinstance(value, scenic.New) else None
 
 
@@ -489,14 +530,23 @@ def _unresolved(context: Context) -> frozenset[str]:
 
 
 class Assigned:
-    """The values of names that are the whole targets of assignments, by the nodes of the names."""
+    """The values of names in targets of assignments, by the nodes of the names."""
 
     def __init__(self, resolution: Resolution) -> None:
         self._resolution = resolution
-        self._known: dict[Stretch, Mapping[ast.AST, ast.expr]] = {}
+        self._known: dict[Stretch, Mapping[ast.AST, tuple[ast.expr, bool]]] = {}
 
     def get(self, site: ast.AST) -> ast.expr | None:
-        """The value that is assigned to a name there."""
+        """The value that is assigned to a name there, which is a whole target."""
+        found = self._found(site)
+        return found[0] if found is not None and found[1] else None
+
+    def part(self, site: ast.AST) -> ast.expr | None:
+        """The value that is assigned to a name there, also as a part of a tuple."""
+        found = self._found(site)
+        return None if found is None else found[0]
+
+    def _found(self, site: ast.AST) -> tuple[ast.expr, bool] | None:
         for stretch in self._resolution.around(site):
             if stretch not in self._known:
                 self._known[stretch] = _assigned_in(stretch)
@@ -506,13 +556,27 @@ class Assigned:
         return None
 
 
-def _assigned_in(stretch: Stretch) -> Mapping[ast.AST, ast.expr]:
-    found: dict[ast.AST, ast.expr] = {}
+def _parts(
+    target: ast.expr, value: ast.expr, *, whole: bool = True
+) -> Iterator[tuple[ast.AST, tuple[ast.expr, bool]]]:
+    """The names of a target, each with its value, and whether it is a whole target; tuples in the text part by part."""
+    if isinstance(target, ast.Name):
+        yield target, (value, whole)
+    elif isinstance(target, ast.Tuple | ast.List) and isinstance(value, ast.Tuple | ast.List):
+        starred = any(isinstance(each, ast.Starred) for each in (*target.elts, *value.elts))
+        if not starred and len(target.elts) == len(value.elts):
+            for part, of in zip(target.elts, value.elts, strict=True):
+                yield from _parts(part, of, whole=False)
+
+
+def _assigned_in(stretch: Stretch) -> Mapping[ast.AST, tuple[ast.expr, bool]]:
+    found: dict[ast.AST, tuple[ast.expr, bool]] = {}
     for node, _ in stretch.nodes(ast.Assign):
-        found.update((target, node.value) for target in node.targets if isinstance(target, ast.Name))
+        for target in node.targets:
+            found.update(_parts(target, node.value))
     for node, _ in stretch.nodes(ast.AnnAssign):
         if isinstance(node.target, ast.Name) and node.value is not None:
-            found[node.target] = node.value
+            found[node.target] = (node.value, True)
     return found
 
 
@@ -529,7 +593,9 @@ _FACTS: Final[Mapping[str, Callable[[Context], Any]]] = {
     "broken": lambda context: bool(context.nodes(scenic.ErrorStatement)),
     "class names": _class_names,
     "ego members": _ego_members,
+    "ego value": _ego_value,
     "given": _given,
+    "grown": _grown,
     "owners": _owners,
     "parameters": _parameters,
     "stored attributes": _stored_attributes,

@@ -201,6 +201,8 @@ def _lasts(body: list[Any], context: Context) -> bool:
         node = stack.pop()
         if isinstance(node, _LASTING) or _is_begun(node, context) or _is_forgotten(node, context):
             return True
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Yield | ast.YieldFrom):
+            return True  # It is reported itself.
         if not isinstance(node, (*_OWN_BODIES, ast.expr)):
             stack.extend(parts(node))
     return False

@@ -168,12 +168,19 @@ def _wrong(
     """Yield the errors about a value that is run as one of ``kinds``; ``classes`` if the definition itself is allowed."""
     called = isinstance(value, ast.Call)
     name = value.func if isinstance(value, ast.Call) else value
-    if not isinstance(name, ast.Name | ast.Attribute):
-        return
-    foreign = context.foreign(name)
+    nameable = isinstance(name, ast.Name | ast.Attribute)
+    foreign = context.foreign(name) if nameable else None
     definition: Any = context.definition(name) if foreign is None else foreign.definition
     kind = _RUN.get(type(definition))
     if kind is None:
+        given = None if classes else context.kind_of(value)
+        if given is not None and given.name not in _MAY_RUN:
+            yield context.error(
+                "SC314",
+                f"`{words}` takes a {kinds[0]}, not {given.phrase}",
+                value,
+                f"define one: `{kinds[0]} Name():`",
+            )
         return
     if kind not in kinds:
         yield context.error(
@@ -191,6 +198,34 @@ def _wrong(
         )
 
 
+def _new(node: scenic.New, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC401: an object that is made while a simulation runs."""
+    where = where_of(node, scope)
+    if where.place in DYNAMIC and where.function is None and context.meanings.base(node.cls) == "Object":
+        yield context.error(
+            "SC401",
+            f"no object can be created {where.place}",
+            node,
+            "create it at the top level or in the setup of a scenario; points can be created here",
+        )
+
+
+def _take(node: scenic.Take, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC314: ``take SetBrakeAction``."""
+    for action in node.actions:
+        foreign = context.foreign(action)
+        if foreign is not None and foreign.is_plain_class:
+            yield context.warning(
+                "SC314",
+                f"this names the class `{foreign.name}`, and makes no action",
+                action,
+                f"write `take {context.text(action) or foreign.name}(...)`",
+            )
+
+
+_MAY_RUN: Final = frozenset({*_RUN.values(), "function", "class", "list", "tuple", "dictionary"})
+"""Kinds of values that can be run, hold what can be run, or are reported elsewhere."""
+
 _PLACES_OF: Final = {
     "behavior": "give it to an object `with behavior {}(...)`, or run it with `do` in another behavior",
     "monitor": "start it with `require monitor {}(...)`",
@@ -205,6 +240,8 @@ RULES: Final[dict[type[ast.AST], NodeRule]] = {
     scenic.Do: _do,
     scenic.DoChoose: _do,
     scenic.DoShuffle: _do,
+    scenic.New: _new,
+    scenic.Take: _take,
     scenic.RequireMonitor: _require_monitor,
     scenic.SpecifierPhrase: _specifier,
 }

@@ -1,11 +1,14 @@
 """Meanings of the names of a program for the inference of kinds (`scenic.compiler.kinds`)."""
 
 import ast
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, Final, Protocol
 
+from scenic.compiler import tree as scenic
 from scenic.compiler.checks.classes import Classes
-from scenic.compiler.scopes import Binding, Resolution
+from scenic.compiler.scopes import Binding, Resolution, Scope
+from scenic.compiler.surroundings import Foreign
 from scenic.language.properties import CLASSES, attributes_of, properties_of
 
 __all__ = ["ProgramMeanings"]
@@ -14,11 +17,22 @@ _DEEPEST: Final = 20
 """Length to which a chain of base classes is followed."""
 
 
-class Values(Protocol):
-    """The values of names that are the whole targets of assignments."""
+_DEFINED: Final[Mapping[type[Any], str]] = MappingProxyType(
+    {
+        ast.FunctionDef: "function",
+        scenic.BehaviorDef: "behavior",
+        scenic.MonitorDef: "monitor",
+        scenic.ScenarioDef: "scenario",
+    }
+)
+_YIELDS: Final = (ast.Yield, ast.YieldFrom)
 
-    def get(self, site: ast.AST) -> ast.expr | None:
-        """The value that is assigned to a name there."""
+
+class Values(Protocol):
+    """The values of names in targets of assignments."""
+
+    def part(self, site: ast.AST) -> ast.expr | None:
+        """The value that is assigned to a name there, also as a part of a tuple."""
 
 
 class Program(Protocol):
@@ -33,7 +47,13 @@ class Program(Protocol):
     def classes(self) -> Classes: ...
     def provided(self, name: ast.expr) -> str | None: ...
     def binding(self, name: ast.Name) -> Binding | None: ...
+    @property
+    def grown(self) -> frozenset[str]: ...
+    @property
+    def owners(self) -> Mapping[str, int]: ...
     def definition(self, name: ast.expr) -> ast.AST | None: ...
+    def foreign(self, name: ast.expr | None) -> Foreign | None: ...
+    def kind_of_brought(self, name: ast.expr) -> str | None: ...
     def nodes_around(self, node: ast.AST, cls: type[ast.AST]) -> Iterator[Any]: ...
     def fact(self, name: str) -> Any: ...
 
@@ -64,7 +84,7 @@ class ProgramMeanings:
         if binding is None:
             return None
         [site] = binding.sites
-        value = self._context.assigned.get(site)
+        value = self._context.assigned.part(site)
         if value is not None:
             return value, False
         for loop in self._context.nodes_around(site, ast.For):
@@ -78,11 +98,52 @@ class ProgramMeanings:
         [site] = [None] if binding is None else binding.sites
         return site.annotation if isinstance(site, ast.arg) else None
 
+    def defined(self, name: ast.expr) -> str | None:
+        """The kind of what the program or a module that it imports defines under a name, in a word: function, behavior, ..."""
+        if not isinstance(name, ast.Name | ast.Attribute) or self._context.provided(name) is not None:
+            return None
+        foreign = self._context.foreign(name)
+        definition = self._context.definition(name) if foreign is None else foreign.definition
+        if foreign is None and getattr(definition, "name", None) != getattr(name, "id", None):
+            return None  # `self` in a behavior.
+        if isinstance(definition, ast.ClassDef):
+            return "class" if self._context.classes.properties(name) is not None else None
+        return _DEFINED.get(type(definition))
+
+    def returned(self, function: ast.expr) -> Sequence[ast.expr]:
+        """The expressions of which a function of the program certainly returns one; none if it may return others."""
+        definition = self._context.definition(function)
+        scope = None if definition is None else self._context.resolution.scope(definition)
+        if not isinstance(definition, ast.FunctionDef) or scope is None:
+            return ()
+        if any(where is scope for cls in _YIELDS for _, where in self._around(definition, cls)):
+            return ()
+        found = [node.value for node, where in self._around(definition, ast.Return) if where is scope]
+        return () if None in found else found
+
+    def _around(self, node: ast.AST, cls: type[ast.AST]) -> Iterator[tuple[Any, Scope]]:
+        return (found for stretch in self._context.resolution.around(node) for found in stretch.nodes(cls))
+
+    def kind_of_brought(self, name: ast.expr) -> str | None:
+        """The kind of a value that a module defines, in the word of the declared type."""
+        return self._context.kind_of_brought(name)
+
+    def grows(self, name: ast.Name) -> bool:
+        """Return whether the program may change the elements of the list or dictionary that a name means."""
+        return name.id in self._context.grown
+
+    def redefines(self, name: str) -> bool:
+        """Return whether classes of the program define a method or attribute of a name."""
+        return name in self._context.owners
+
     def base(self, cls: ast.expr, depth: int = 0) -> str | None:
         """The built-in class from which a class derives."""
         name = self._context.provided(cls)
         if name is not None:
             return name if name in CLASSES else None
+        foreign = self._context.foreign(cls)
+        if foreign is not None:
+            return foreign.base
         definition = self._context.definition(cls)
         if depth > _DEEPEST or not isinstance(definition, ast.ClassDef):
             return None
@@ -93,6 +154,9 @@ class ProgramMeanings:
         name = self._context.provided(cls)
         if name is not None:
             return frozenset(properties_of(name)).union(attributes_of(name)) if name in CLASSES else None
+        foreign = self._context.foreign(cls)
+        if foreign is not None:
+            return foreign.members
         definition = self._context.definition(cls)
         if depth > _DEEPEST or not isinstance(definition, ast.ClassDef):
             return None

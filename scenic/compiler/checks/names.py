@@ -68,6 +68,7 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
     compared: set[ast.Name] = set()
     meant: set[str] = set()
     being_typed: set[str] = set()
+    slips: set[str] = set()
     importing = half_typed = False
     suggestions: dict[str, str | None] = {}
     missing = [
@@ -96,8 +97,10 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
                 for site in binding.sites
                 if isinstance(site, ast.alias)
             )
+            slips = {each.name for each in _missing_imports(context)} if context.surroundings else set()
             being_typed = words | _last_words(context) | {each.name for each in missing_imports}
-        if name in skipped:
+        if name in skipped or (slips and nearest(name, slips) is not None):
+            # The import of a misspelt name is reported.
             continue
         if node not in alone and (importing or any(_may_become(word, name) for word in being_typed)):
             continue

@@ -8,11 +8,12 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import where_of
 from scenic.compiler.checks.context import Context, NodeRule
 from scenic.compiler.scopes import Scope
+from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import LIFTED_FUNCTIONS, NAMES, NameKind
 from scenic.language.statements import Place
 
-__all__ = ["RULES"]
+__all__ = ["RULES", "is_random"]
 
 _LATER: Final = (scenic.Require, scenic.Record, scenic.TerminateWhen)
 """Statements whose expressions are evaluated later, on samples."""
@@ -21,7 +22,7 @@ _DEEPEST: Final = 20
 """Depth to which values are examined."""
 
 
-def _is_random(value: ast.AST | None, context: Context, depth: int = 0) -> bool:
+def is_random(value: ast.AST | None, context: Context, depth: int = 0) -> bool:
     """Return whether a value is certainly random."""
     if depth > _DEEPEST or value is None:
         return False
@@ -33,17 +34,37 @@ def _is_random(value: ast.AST | None, context: Context, depth: int = 0) -> bool:
             if NAMES[name].kind is NameKind.DISTRIBUTION:
                 # What is drawn from one value is that value.
                 return name not in ("Uniform", "Discrete", "Options") or len(args) > 1
-            return name in LIFTED_FUNCTIONS and any(_is_random(each, context, depth + 1) for each in args)
+            return name in LIFTED_FUNCTIONS and any(is_random(each, context, depth + 1) for each in args)
         case ast.BinOp(left=left, right=right):
-            return _is_random(left, context, depth + 1) or _is_random(right, context, depth + 1)
+            return is_random(left, context, depth + 1) or is_random(right, context, depth + 1)
         case ast.UnaryOp(operand=operand):
-            return _is_random(operand, context, depth + 1)
+            return is_random(operand, context, depth + 1)
         case ast.Compare(left=left, ops=ops, comparators=comparators):
             if any(isinstance(each, ast.Is | ast.IsNot | ast.In | ast.NotIn) for each in ops):
                 return False
-            return any(_is_random(each, context, depth + 1) for each in (left, *comparators))
+            return any(is_random(each, context, depth + 1) for each in (left, *comparators))
         case ast.Name():
-            return _is_random(_assigned(value, context), context, depth + 1)
+            return is_random(_assigned(value, context), context, depth + 1)
+        case ast.Attribute(value=owner, attr="x" | "y" | "position"):
+            return _is_placed_at_random(owner, context, depth + 1)
+    return False
+
+
+def _is_placed_at_random(owner: ast.expr, context: Context, depth: int) -> bool:
+    """Return whether the position of an object is certainly random."""
+    if isinstance(owner, ast.Attribute) and owner.attr == "position":
+        owner = owner.value
+    if context.provided(owner) == "ego":
+        made = context.fact("ego value")
+    else:
+        made = _assigned(owner, context) if isinstance(owner, ast.Name) else None
+    if not isinstance(made, scenic.New):
+        return False
+    for specifier in made.specifiers:
+        operand = specifier.operands[0] if specifier.operands else None
+        if specifier.specifier == "at" and operand is not None:
+            parts = operand.elts[:2] if isinstance(operand, ast.Tuple | ast.List) else [operand]
+            return any(is_random(part, context, depth) for part in parts)
     return False
 
 
@@ -71,7 +92,7 @@ def _decides(node: ast.If | ast.While | ast.IfExp, scope: Scope, context: Contex
     """SC403: ``if x > 1`` with a random ``x``."""
     if isinstance(node.test, ast.UnaryOp) and isinstance(node.test.op, ast.Not):
         return  # `_truth` tells.
-    if not (_is_random(node.test, context) and _is_asked_now(node, scope, context)):
+    if not (is_random(node.test, context) and _is_asked_now(node, scope, context)):
         return
     what = "comparing" if isinstance(node.test, ast.Compare) else "deciding by"
     yield context.error(
@@ -88,7 +109,7 @@ def _iterates(node: ast.For, scope: Scope, context: Context) -> Iterator[Diagnos
     counted = node.iter
     is_range = isinstance(counted, ast.Call) and context.provided(counted.func) == "range"
     values = counted.args if isinstance(counted, ast.Call) and is_range else [counted]
-    if not (any(_is_random(each, context) for each in values) and _is_asked_now(node, scope, context)):
+    if not (any(is_random(each, context) for each in values) and _is_asked_now(node, scope, context)):
         return
     yield context.error(
         "SC403",
@@ -109,7 +130,7 @@ def _truth(node: ast.BoolOp | ast.UnaryOp, scope: Scope, context: Context) -> It
         asked = [node.operand] if isinstance(node.op, ast.Not) else []
     else:
         asked = node.values[:-1]
-    wrong = next((each for each in asked if _is_random(each, context)), None)
+    wrong = next((each for each in asked if is_random(each, context)), None)
     if wrong is None or not _is_asked_now(node, scope, context):
         return
     yield context.error(
@@ -118,6 +139,88 @@ def _truth(node: ast.BoolOp | ast.UnaryOp, scope: Scope, context: Context) -> It
         wrong,
         "its value is known only in a sampled scene; use `require`, where `and`, `or` and `not` may stand",
     )
+
+
+def _asserts(node: ast.Assert, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC403: ``assert x > 3`` with a random ``x``."""
+    if is_random(node.test, context) and _is_asked_now(node, scope, context):
+        yield context.error(
+            "SC403",
+            "asserting a random value is not possible while the scenario is being built",
+            node.test,
+            "write `require`, which keeps only the scenes in which it holds",
+        )
+
+
+def _unpacks(node: ast.Assign, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC403: ``a, b = Uniform((1, 2), (3, 4))``."""
+    unpacked = any(isinstance(target, ast.Tuple | ast.List) for target in node.targets)
+    if unpacked and is_random(node.value, context) and _is_asked_now(node, scope, context):
+        yield context.error(
+            "SC403",
+            "taking a random value apart is not possible while the scenario is being built",
+            node.value,
+            "give it one name, and take its parts by index: `pair[0]`, `pair[1]`",
+        )
+
+
+def _indexes(node: ast.Subscript, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC403: ``spots[DiscreteRange(0, 2)]``."""
+    kind = context.kind_of(node.value)
+    if kind is None or kind.name not in ("list", "tuple", "dictionary") or is_random(node.value, context):
+        return
+    if is_random(node.slice, context) and _is_asked_now(node, scope, context):
+        yield context.error(
+            "SC403",
+            f"taking a random element of a {kind.name} by its index is not possible while the scenario is being built",
+            node,
+            f"draw an element: `Uniform(*{context.text(node.value) or 'values'})`",
+        )
+
+
+def _calls(node: ast.Call, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC403: ``math.sqrt(x)`` with a random ``x``."""
+    match node.func:
+        case ast.Attribute(value=ast.Name(id="math") as module) if _is_module(module, "math", context):
+            pass
+        case _:
+            return
+    if any(is_random(each, context) for each in node.args) and _is_asked_now(node, scope, context):
+        yield context.error(
+            "SC403",
+            "functions of `math` take no random values while the scenario is being built",
+            node,
+            "use the functions of the language (`sin`, `cos`, `hypot`, `max`, `min`, `x ** 0.5`), or define a function of your own "
+            "with `@distributionFunction`",
+        )
+
+
+def _is_module(name: ast.Name, module: str, context: Context) -> bool:
+    """Return whether a name certainly means a module of Python."""
+    binding = context.binding(name)
+    if binding is None or len(binding.sites) != 1:
+        return False
+    [site] = binding.sites
+    return isinstance(site, ast.alias) and site.name == module
+
+
+def _draws(node: scenic.Require, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC401: ``require Range(1, 2) > x``."""
+    where = where_of(node, scope)
+    if where.place not in (Place.TOP, Place.SETUP) or where.function is not None:
+        return
+    for part in walk(node.condition):
+        if isinstance(part, ast.Lambda):
+            return
+        if isinstance(part, ast.Call) and is_random(part, context):
+            name = context.provided(part.func)
+            if name is not None and name in NAMES and NAMES[name].kind is NameKind.DISTRIBUTION:
+                yield context.error(
+                    "SC401",
+                    "a requirement cannot create a distribution",
+                    part,
+                    "draw the value before it, under a name, and use the name here",
+                )
 
 
 def _in_condition(node: ast.expr | ast.stmt, context: Context) -> bool:
@@ -145,10 +248,15 @@ def _lies_in(node: ast.expr | ast.stmt, first: ast.expr | ast.stmt, last: ast.ex
 
 
 RULES: Final[dict[type[ast.AST], NodeRule]] = {
+    ast.Assert: _asserts,
+    ast.Assign: _unpacks,
     ast.BoolOp: _truth,
+    ast.Call: _calls,
     ast.For: _iterates,
     ast.If: _decides,
     ast.IfExp: _decides,
+    ast.Subscript: _indexes,
     ast.UnaryOp: _truth,
     ast.While: _decides,
+    scenic.Require: _draws,
 }

@@ -1,22 +1,23 @@
 """Values of a kind that cannot be used where they stand, and attributes that values of a kind do not have."""
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context, NodeRule
-from scenic.compiler.kinds import Kind, accepts
+from scenic.compiler.checks.wanted import may_be_meant, wrong_kinds
+from scenic.compiler.kinds import Kind
 from scenic.compiler.scopes import Scope, ScopeKind
-from scenic.compiler.traversal import position, walk
+from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic
-from scenic.language.members import MEMBERS
+from scenic.language.members import MEMBERS, members_of
 from scenic.language.operators import OPERATORS
 from scenic.language.properties import attributes_of, properties_of
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS
-from scenic.language.spelling import nearest
-from scenic.language.types import COLOR, INSTANCES, VECTOR, Type, wanted
+from scenic.language.spelling import distance, nearest
+from scenic.language.types import INSTANCES
 
 __all__ = ["RULES"]
 
@@ -31,52 +32,23 @@ _PROPERTIES: Final = properties_of("Object")
 _MEMBERS_OF_OBJECTS: Final = frozenset(_PROPERTIES) | frozenset(attributes_of("Object"))
 
 
-def _wrong(
-    title: str, types: Sequence[Type], value: ast.expr | None, context: Context
-) -> Iterator[Diagnostic]:
-    """SC404: a value that certainly does not do where some types are declared. ``title`` is quoted."""
-    kind = context.kind_of(value)
-    if types[0] is COLOR and isinstance(value, ast.Tuple | ast.List):
-        yield from _too_bright(title, value, context)
-    if value is None or kind is None or accepts(types, kind):
-        return
-    noun, advice = wanted(types)
-    if types == (VECTOR,) and kind.size is not None:
-        message = f"{title}: a vector has 2 or 3 coordinates, not {kind.size}"
-    else:
-        message = f"{title}: expected {noun}, not {kind.phrase}"
-    yield context.error("SC404", message, value, advice or f"give it {noun}")
-
-
-def _too_bright(title: str, value: ast.Tuple | ast.List, context: Context) -> Iterator[Diagnostic]:
-    for part in value.elts:
-        if isinstance(part, ast.Constant) and isinstance(part.value, int | float) and part.value > 1:
-            yield context.error(
-                "SC404",
-                f"{title}: a colour is made of numbers from 0 to 1, not {part.value}",
-                part,
-                "divide parts that go up to 255: `(255 / 255, 128 / 255, 0)`",
-            )
-            return
-
-
 def _specifiers(node: scenic.New | scenic.Override, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """``at 3``, ``with width "3"``."""
-    if _may_be_meant(node, scope, context) or _is_cut(node, context):
+    if may_be_meant(node, scope, context) or _is_cut(node, context):
         return
     for specifier in node.specifiers:
         if specifier.property is not None:
             declared = _PROPERTIES.get(specifier.property)
             if declared is not None and specifier.operands:
                 title = f"`with {specifier.property}`"
-                yield from _wrong(title, declared.types, specifier.operands[0], context)
+                yield from wrong_kinds(title, declared.types, specifier.operands[0], context)
         elif specifier.specifier in SPECIFIERS:
             element = SPECIFIERS[specifier.specifier]
             for operand, value in zip(element.operands, specifier.operands, strict=False):
                 left_out = operand.default is not None and _is_none(value)
                 # `in front of x` has a message of its own.
                 if not left_out and not isinstance(value, scenic.Operation):
-                    yield from _wrong(element.label(operand), operand.types, value, context)
+                    yield from wrong_kinds(element.label(operand), operand.types, value, context)
 
 
 def _is_cut(node: ast.AST, context: Context) -> bool:
@@ -87,25 +59,13 @@ def _is_cut(node: ast.AST, context: Context) -> bool:
     )
 
 
-def _may_be_meant(node: ast.AST, scope: Scope, context: Context) -> bool:
-    """Return whether what fails may be expected to: in a function without a name, or where exceptions are caught."""
-    if isinstance(scope.node, ast.Lambda):
-        return True
-    place = position(node)
-    return any(
-        position(attempt) < place < position(attempt.handlers[0])
-        for attempt in context.nodes_around(node, ast.Try)
-        if attempt.handlers
-    )
-
-
 def _operation(node: scenic.Operation, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """``distance to 3``."""
-    if node.operator in OPERATORS and node.operator != "@" and not _may_be_meant(node, scope, context):
+    if node.operator in OPERATORS and node.operator != "@" and not may_be_meant(node, scope, context):
         operator = OPERATORS[node.operator]
         for operand, value in zip(operator.operands, node.operands, strict=False):
             if not _is_none(value):  # Mostly as if it were left out.
-                yield from _wrong(operator.label(operand), operand.types, value, context)
+                yield from wrong_kinds(operator.label(operand), operand.types, value, context)
 
 
 def _is_none(value: ast.expr | None) -> bool:
@@ -116,7 +76,7 @@ def _property(node: scenic.PropertyDef, _scope: Scope, context: Context) -> Iter
     """``width: "3"``, ``size: self.lenth``."""
     declared = _PROPERTIES.get(node.name)
     if declared is not None and "additive" not in node.attributes:
-        yield from _wrong(f"`{node.name}`", declared.types, node.value, context)
+        yield from wrong_kinds(f"`{node.name}`", declared.types, node.value, context)
 
 
 def _assign(node: ast.Assign, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
@@ -124,6 +84,8 @@ def _assign(node: ast.Assign, _scope: Scope, context: Context) -> Iterator[Diagn
     kind = None if isinstance(node.value, ast.Tuple) else context.kind_of(node.value)
     for target in node.targets if kind is not None else ():
         name = context.provided(target)
+        if kind is not None and kind.name == "workspace" and isinstance(target, ast.Name):
+            yield from _workspace(target, context)
         if kind is None or name not in ("ego", "workspace"):
             continue
         if name == "workspace" and kind.name != "workspace":
@@ -140,13 +102,25 @@ def _assign(node: ast.Assign, _scope: Scope, context: Context) -> Iterator[Diagn
                 if kind.name == "region" and context.text(node.value)
                 else None,
             )
-        elif name == "ego" and kind.name != "object":
+        elif name == "ego" and kind.name not in ("object", "class"):
             yield context.error(
                 "SC404",
                 f"the ego must be an object, not {kind.phrase}",
                 node.value,
                 "make one with `new Object`",
             )
+
+
+def _workspace(target: ast.Name, context: Context) -> Iterator[Diagnostic]:
+    """``workspce = Workspace(region)``."""
+    if distance(target.id, "workspace", limit=2) in (1, 2):
+        yield context.warning(
+            "SC307",
+            f"a workspace counts only under the name `workspace`, not `{target.id}`",
+            target,
+            "did you mean `workspace`?",
+            fix=context.renaming(target, target.id, "workspace"),
+        )
 
 
 def _mutate(node: scenic.Mutate, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
@@ -162,11 +136,15 @@ def _mutate(node: scenic.Mutate, _scope: Scope, context: Context) -> Iterator[Di
             )
 
 
+_DEFINED: Final = frozenset({"behavior", "class", "function", "monitor", "scenario"})
+"""Kinds of definitions, of which SC203 says more."""
+
+
 def _new(node: scenic.New, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """``new table`` where ``table`` is an object."""
     yield from _specifiers(node, scope, context)
     kind = context.kind_of(node.cls)
-    if kind is not None:
+    if kind is not None and (kind.name not in _DEFINED or context.provided(node.cls) is not None):
         yield context.error(
             "SC404",
             f"`new` needs a class of objects, and `{node.cls.id}` is {kind.phrase}",
@@ -177,13 +155,23 @@ def _new(node: scenic.New, scope: Scope, context: Context) -> Iterator[Diagnosti
 
 def _compare(node: ast.Compare, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """``ego.position > 3``."""
-    if _may_be_meant(node, scope, context):
+    if may_be_meant(node, scope, context):
         return
     sides = [node.left, *node.comparators]
     for operator, left, right in zip(node.ops, sides, sides[1:], strict=False):
+        kinds = context.kind_of(left), context.kind_of(right)
+        if isinstance(operator, ast.In | ast.NotIn):
+            yield from _contained(node, *kinds, context)
         if not isinstance(operator, _ORDERED):
             continue
-        kinds = context.kind_of(left), context.kind_of(right)
+        if None not in kinds and {kind.name for kind in kinds if kind is not None} == {"text", "number"}:
+            yield context.error(
+                "SC404",
+                "text is neither smaller nor larger than a number",
+                node,
+                "write numbers without quotes",
+            )
+            return
         wrong = next((kind for kind in kinds if kind is not None and _is_unordered(kind)), None)
         if wrong is not None:
             yield context.error(
@@ -195,31 +183,78 @@ def _compare(node: ast.Compare, scope: Scope, context: Context) -> Iterator[Diag
             return
 
 
+def _contained(
+    node: ast.Compare, item: Kind | None, container: Kind | None, context: Context
+) -> Iterator[Diagnostic]:
+    """``ego in 3``, ``3 in room``."""
+    if container is not None and container.name in _WITHOUT_ITEMS:
+        yield context.error(
+            "SC404",
+            f"`in` needs a region or a collection, not {container.phrase}",
+            node,
+            "name a region, or write a list or tuple of what it can be",
+        )
+    elif (
+        container is not None
+        and item is not None
+        and container.name in ("region", "workspace")
+        and item.name in ("number", "text", "boolean", "nothing")
+    ):
+        yield context.error(
+            "SC404",
+            f"a region contains points and objects, not {item.phrase}",
+            node,
+            "write a point, as `(x, y)`, or name an object",
+        )
+
+
 def _arithmetic(node: ast.BinOp, scope: Scope, context: Context) -> Iterator[Diagnostic]:
-    """``ego.width + "3"``."""
+    """``ego.width + "3"``, ``ego.position + 3``."""
     if not isinstance(node.op, ast.Add | ast.Sub | ast.Div):
         return
     kinds = context.kind_of(node.left), context.kind_of(node.right)
-    names = {kind.name for kind in kinds if kind is not None}
-    if len(names) < 2 or "text" not in names or not names <= _APART or _may_be_meant(node, scope, context):
+    if None in kinds or may_be_meant(node, scope, context):
         return
-    other = next(kind.phrase for kind in kinds if kind is not None and kind.name != "text")
-    yield context.error(
-        "SC404",
-        f"`{_SIGNS[type(node.op)]}`: text and {other} cannot be combined",
-        node,
-        'write numbers without quotes, and make text of a value by `str(value)` or `f"{value}"`',
-    )
+    left, right = (kind.name for kind in kinds if kind is not None)
+    sign = _SIGNS[type(node.op)]
+    if "text" in (left, right) and left != right and {left, right} <= _APART:
+        other = next(kind.phrase for kind in kinds if kind is not None and kind.name != "text")
+        yield context.error(
+            "SC404",
+            f"`{sign}`: text and {other} cannot be combined",
+            node,
+            'write numbers without quotes, and make text of a value by `str(value)` or `f"{value}"`',
+        )
+    elif not isinstance(node.op, ast.Div) and {left, right} in _UNLIKE:
+        phrases = sorted(kind.phrase for kind in kinds if kind is not None)
+        yield context.error(
+            "SC404",
+            f"`{sign}`: {phrases[0]} and {phrases[1]} cannot be combined",
+            node,
+            "a vector is moved by a vector: write `position + (x, y)`, or `position offset by (x, y)`",
+        )
 
 
+_UNLIKE: Final = (
+    {"vector", "number"}, {"tuple", "number"}, {"list", "number"}, {"region", "number"}, {"region", "vector"}, {"tuple", "list"},
+)  # fmt: skip
+"""Pairs of kinds that can be neither added nor subtracted."""
 _APART: Final = frozenset({"text", "number", "vector", "tuple", "list", "nothing", "boolean"})
 _SIGNS: Final = {ast.Add: "+", ast.Sub: "-", ast.Div: "/"}
 
 
 def _subscript(node: ast.Subscript, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """``Uniform[1, 2]``, ``ego.width[0]``."""
+    key = node.slice.value if isinstance(node.slice, ast.Constant) else None
+    if (
+        isinstance(key, str)
+        and isinstance(node.ctx, ast.Load)
+        and context.provided(node.value) == "globalParameters"
+    ):
+        yield from _parameter(key, context.source.span(node.slice), context)
+        return
     kind = context.kind_of(node.value)
-    if kind is None or kind.name not in _WITHOUT_ITEMS or _may_be_meant(node, scope, context):
+    if kind is None or kind.name not in _WITHOUT_ITEMS or may_be_meant(node, scope, context):
         return
     name = context.provided(node.value)
     yield context.error(
@@ -235,7 +270,7 @@ def _subscript(node: ast.Subscript, scope: Scope, context: Context) -> Iterator[
 def _loop(node: ast.For, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """``for i in 3``."""
     kind = context.kind_of(node.iter)
-    if kind is None or kind.name not in _WITHOUT_ITEMS or _may_be_meant(node, scope, context):
+    if kind is None or kind.name not in _WITHOUT_ITEMS or may_be_meant(node, scope, context):
         return
     text = context.text(node.iter)
     is_number = kind.name == "number" and text
@@ -257,15 +292,22 @@ def _is_unordered(kind: Kind) -> bool:
 def _attribute(node: ast.Attribute, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """SC214: ``ego.positon``, ``Vector(1, 2).lenght()``."""
     name = node.attr
+    if isinstance(node.ctx, ast.Store) and context.provided(node.value) == "globalParameters":
+        yield context.error(
+            "SC123",
+            "global parameters are set by `param`, not by assignment",
+            node,
+            f"write `param {name} = value` at the top level",
+        )
     if not isinstance(node.ctx, ast.Load) or name.startswith("_"):
         return
     if context.provided(node.value) == "globalParameters":
-        yield from _parameter(node, context)
+        yield from _parameter(node.attr, _end(node, context), context)
         return
     kind = context.kind_of(node.value)
     if kind is None and isinstance(node.value, ast.Name) and node.value.id == "self":
         yield from _of_agent(node, context)
-    if kind is None or _may_be_meant(node, scope, context):
+    if kind is None or may_be_meant(node, scope, context):
         return
     if kind.name == "number" and name in _COORDINATES:
         yield context.error(
@@ -279,8 +321,10 @@ def _attribute(node: ast.Attribute, scope: Scope, context: Context) -> Iterator[
         known = kind.members
         if known is None or name in known or name in context.given or name in context.stored_attributes:
             return
+        if name in MEMBERS["vector"]:
+            return  # Points have the attributes of their positions.
     else:
-        known = frozenset(MEMBERS.get("region" if kind.name == "workspace" else kind.name, ()))
+        known = frozenset(members_of(kind.name))
         if not known or name in known:
             return
     meant = nearest(name, known)
@@ -320,19 +364,18 @@ def _of_agent(node: ast.Attribute, context: Context) -> Iterator[Diagnostic]:
     )
 
 
-def _parameter(node: ast.Attribute, context: Context) -> Iterator[Diagnostic]:
-    """SC214: ``globalParameters.sped``."""
+def _parameter(name: str, place: Span, context: Context) -> Iterator[Diagnostic]:
+    """SC214: ``globalParameters.sped``, ``globalParameters['sped']``."""
     known = context.parameters
-    meant = nearest(node.attr, known)
-    if node.attr in known or meant is None:
+    meant = nearest(name, known)
+    if name in known or meant is None:
         return
-    place = _end(node, context)
     yield context.warning(
         "SC214",
-        f"this program sets no parameter `{node.attr}`",
+        f"this program sets no parameter `{name}`",
         place,
         f"did you mean `{meant}`?",
-        fix=context.renaming(place, node.attr, meant),
+        fix=context.renaming(place, name, meant) if place.end_column - place.column == len(name) else None,
     )
 
 

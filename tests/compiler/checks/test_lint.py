@@ -345,9 +345,9 @@ def test_degrees_do_not_run_into_the_next_word() -> None:
 @pytest.mark.parametrize(
     ("text", "repaired"),
     [
-        ("require[1]ego\n", "require ego\n"),
-        ("require[1](ego)\n", "require (ego)\n"),
-        ("require[1] ego\n", "require ego\n"),
+        ("require[1]near\n", "require near\n"),
+        ("require[1](near)\n", "require (near)\n"),
+        ("require[1] near\n", "require near\n"),
     ],
 )
 def test_a_probability_is_taken_away_from_between_words(text: str, repaired: str) -> None:

@@ -38,7 +38,7 @@ class Coloured(Sized):
     colour: Uniform("red", "green")
     shade[final]: 0.5
     tags[additive]: ("coloured",)
-    mixed[additive, dynamic]: ()
+    mixed[additive]: ()
 
     class Inner:
         value = 3

@@ -65,7 +65,7 @@ scenario Main():
         interrupt when ego.position.y > 60:
             override ego with width 2,
                 with behavior Straight(3),
-                with speed 4
+                with height 4
             terminate
         require ego.position.x < 5
         do jam

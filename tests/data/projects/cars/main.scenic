@@ -39,9 +39,9 @@ print(math.tau, math.tav, tools.plain(1, 2, 3), tools.plain(), tools.nothing)
 print(Brake(), Brake(1), Turn(1, 2), Turn(1, rate=2), Unknown(1, 2), cached(3), plian())
 #     ^^^^^^^ SC211 the class `Brake` needs `force`
 #                                ^ SC211 the class `Steer` takes 1 argument, and 2 are given
-print(Range(1), Range(1, 2, 3), Range(1, 2), DiscreteRange(1, 2, [3]), Normal(0), sin(), Discrete({1: 2}))
+print(Range(1), Range(1, 2, 3), Range(1, 2), DiscreteRange(1, 2, [3, 4]), Normal(0), sin(), Discrete({1: 2}))
 #     ^^^^^^^^ SC211 the distribution `Range` needs `high`
 #                           ^ SC211 the distribution `Range` takes 2 arguments, and 3 are given
-#                                                                      ^^^^^^^^^ SC211 the distribution `Normal` needs `stdDev`
-#                                                                                 ^^^^^ SC211 the function `sin` needs `x`
+#                                                                         ^^^^^^^^^ SC211 the distribution `Normal` needs `stdDev`
+#                                                                                    ^^^^^ SC211 the function `sin` needs `x`
 print(math.__name__, tools.Base.missing, Vehicle)

@@ -1,0 +1,91 @@
+"""Property definitions that no class may have: final properties, names of attributes, attributes that exclude each other; sizes."""
+
+import ast
+from collections.abc import Iterator
+from typing import Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.places import word_span
+from scenic.compiler.scopes import Scope
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.properties import attributes_of, properties_of
+
+__all__ = ["RULES"]
+
+_POSITIVE: Final = frozenset(name for name, entry in properties_of("Object").items() if entry.positive)
+
+
+def _class(node: ast.ClassDef, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    inherited = context.classes.inherited(node)
+    if inherited is None or context.classes.of(node) is None:
+        return
+    base = context.meanings.base(node.bases[0]) if node.bases else "Object"
+    taken = attributes_of(base) if base is not None else {}
+    for item in node.body:
+        match item:
+            case scenic.PropertyDef(name=name, attributes=attributes, value=value):
+                place = word_span(context.source, item, name)
+                if "additive" in attributes and "dynamic" in attributes:
+                    yield context.error(
+                        "SC401",
+                        f"the property `{name}` cannot be both additive and dynamic",
+                        place,
+                        "keep one of the two words",
+                    )
+                # Programs of the plane define the heading.
+                if name in inherited and inherited[name].final and name != "heading":
+                    yield context.error(
+                        "SC401",
+                        f"the property `{name}` is final and cannot be defined again",
+                        place,
+                        "define the properties that it follows from: `parentOrientation`, `yaw`, `pitch` or `roll`"
+                        if name == "orientation"
+                        else "use another name",
+                    )
+                if name in taken:
+                    what = "a method" if taken[name].is_method else "an attribute"
+                    yield context.error(
+                        "SC402",
+                        f"`{name}` is {what} of `{base}` and cannot be a property",
+                        place,
+                        "use another name",
+                    )
+                if base == "Object":
+                    yield from check_size(name, value, context)
+            case ast.FunctionDef(args=args, decorator_list=[]) if not (
+                args.args or args.posonlyargs or args.vararg or args.kwonlyargs or args.kwarg
+            ):
+                yield context.warning(
+                    "SC211",
+                    f"the method `{item.name}` has no parameter for the instance",
+                    word_span(context.source, item, item.name),
+                    f"write `def {item.name}(self)`",
+                )
+
+
+def check_size(name: str, value: ast.expr | None, context: Context) -> Iterator[Diagnostic]:
+    """SC405: an extent of an object that is a number and not positive."""
+    negative = isinstance(value, ast.UnaryOp) and isinstance(value.op, ast.USub)
+    literal = value.operand if isinstance(value, ast.UnaryOp) and negative else value
+    if value is None or name not in _POSITIVE or not isinstance(literal, ast.Constant):
+        return
+    number = literal.value
+    if isinstance(number, int | float) and not isinstance(number, bool) and (negative or number == 0):
+        yield context.error(
+            "SC405",
+            f"the property `{name}` must be greater than 0",
+            value,
+            "give a positive number; a place without extent is made by `new Point` or `new OrientedPoint`",
+        )
+
+
+def _new(node: scenic.New, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``new Object with width 0``."""
+    if context.meanings.base(node.cls) == "Object":
+        for specifier in node.specifiers:
+            if specifier.property is not None and specifier.operands:
+                yield from check_size(specifier.property, specifier.operands[0], context)
+
+
+RULES: Final[dict[type[ast.AST], NodeRule]] = {ast.ClassDef: _class, scenic.New: _new}

@@ -1,0 +1,88 @@
+"""Arguments of functions and methods, and operands of statements, whose types are declared."""
+
+import ast
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any, Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.randomness import is_random
+from scenic.compiler.checks.wanted import may_be_meant, wrong_kinds
+from scenic.compiler.scopes import Scope
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.members import Member
+from scenic.language.names import NAMES
+from scenic.language.statements import STATEMENTS
+from scenic.language.types import FIXED_NUMBER, Type
+
+__all__ = ["RULES"]
+
+
+def _call(node: ast.Call, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``CircularRegion(5, (0, 0))``, ``room.containsPoint(3)``."""
+    name = context.provided(node.func)
+    method = context.method(node.func) if name is None and isinstance(node.func, ast.Attribute) else None
+    if (name not in NAMES and method is None) or may_be_meant(node, scope, context):
+        return
+    if method is not None:
+        yield from _method(node, method, context)
+        return
+    declared = NAMES[name or ""]
+    given = dict(zip(declared.parameters, _before_stars(node.args), strict=False))
+    given.update((each.arg, each.value) for each in node.keywords if each.arg is not None)
+    for parameter, types in declared.accepted.items():
+        if parameter in given:
+            yield from wrong_kinds(f"`{declared.name}` {parameter}", types, given[parameter], context)
+
+
+def _method(node: ast.Call, method: Member, context: Context) -> Iterator[Diagnostic]:
+    given = list(_before_stars(node.args))
+    for types, value in zip(method.takes, given, strict=False):
+        if types:
+            yield from wrong_kinds(f"`{method.name}`", types, value, context)
+    needed = next((number for number, types in enumerate(method.takes) if not types), len(method.takes))
+    if len(given) == len(node.args) < needed and not node.keywords:
+        count = f"{needed} argument{'s' if needed > 1 else ''}"
+        yield context.error(
+            "SC211",
+            f"the method `{method.name}` needs {count}, and {len(given)} {'is' if len(given) == 1 else 'are'} given",
+            node,
+            "give " + ", ".join(types[0].noun for types in method.takes[:needed]),
+        )
+
+
+def _before_stars(args: Sequence[ast.expr]) -> Iterator[ast.expr]:
+    """Yield the positional arguments whose positions are certain."""
+    for each in args:
+        if isinstance(each, ast.Starred):
+            return
+        yield each
+
+
+def _statement(node: Any, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """``mutate ego by "2"``, ``terminate after "10" seconds``."""
+    declared = STATEMENTS[type(node).__name__]
+    for field, types in declared.takes.items():
+        value = getattr(node, field)
+        title = f"`{declared.title}`" if len(declared.takes) == 1 else f"`{declared.title} ... {field}`"
+        operand = value.value if isinstance(value, scenic.Duration) else value
+        if operand is None or may_be_meant(node, scope, context):
+            continue
+        if types == (FIXED_NUMBER,) and is_random(operand, context):
+            yield _not_fixed(title, operand, types[0], context)
+        else:
+            yield from wrong_kinds(title, types, operand, context)
+
+
+def _not_fixed(title: str, operand: ast.expr, wanted: Type, context: Context) -> Diagnostic:
+    return context.error(
+        "SC404", f"{title}: expected {wanted.noun}, not a random one", operand, wanted.advice
+    )
+
+
+_OF_STATEMENTS: Final[Mapping[type[ast.AST], NodeRule]] = MappingProxyType(
+    {getattr(scenic, name): _statement for name, declared in STATEMENTS.items() if declared.takes}
+)
+
+RULES: Final[dict[type[ast.AST], NodeRule]] = {ast.Call: _call, **_OF_STATEMENTS}

@@ -1,0 +1,66 @@
+"""Properties that `override` cannot give: those that the simulator decides, and those that no object has."""
+
+import ast
+from collections.abc import Iterator
+from typing import Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.places import word_span
+from scenic.compiler.scopes import Scope
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.properties import properties_of
+from scenic.language.spelling import nearest
+
+__all__ = ["RULES"]
+
+_PROPERTIES: Final = properties_of("Object")
+
+
+def _override(node: scenic.Override, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    for specifier in node.specifiers:
+        name = specifier.property
+        if name is None:
+            continue
+        declared = _PROPERTIES.get(name)
+        place = word_span(context.source, specifier, name)
+        if name == "heading":
+            continue  # Two-dimensional programs give it.
+        if declared is not None and (declared.dynamic or declared.final):
+            reason = "dynamic and cannot be overridden: the simulator decides it"
+            yield context.error(
+                "SC402",
+                f"the property `{name}` is {'final and cannot be overridden' if declared.final else reason}",
+                place,
+                "let a behavior change it by actions",
+            )
+        elif declared is None and not _is_defined(name, context):
+            meant = nearest(name, _PROPERTIES.keys())
+            if meant is not None:
+                yield context.error(
+                    "SC300",
+                    f"there is no property `{name}` to override",
+                    place,
+                    f"did you mean `{meant}`?",
+                    fix=context.renaming(place, name, meant),
+                )
+
+
+def _is_defined(name: str, context: Context) -> bool:
+    """Return whether a class of the program or of its imports may define a property of a name."""
+    if any(name == item.name for item, _ in context.nodes(scenic.PropertyDef)):
+        return True
+    overridden = {id(part) for node, _ in context.nodes(scenic.Override) for part in node.specifiers}
+    if any(
+        name == item.property and id(item) not in overridden
+        for item, _ in context.nodes(scenic.SpecifierPhrase)
+    ):
+        return True
+    surroundings = context.surroundings
+    brought = () if surroundings is None else map(surroundings.brought, surroundings.names)
+    return any(
+        each is not None and each.properties is not None and name in each.properties for each in brought
+    )
+
+
+RULES: Final[dict[type[ast.AST], NodeRule]] = {scenic.Override: _override}
