@@ -3,6 +3,7 @@
 import secrets
 import shlex
 import sys
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -25,6 +26,8 @@ from scenic.cli.options import (
 )
 from scenic.cli.output import CLEAN
 from scenic.cli.running import NOT_ALL, ended_by_signals, engine_of, progress_bar
+from scenic.cli.sinks import check_page
+from scenic.language.errors import ScenicWarning
 
 if TYPE_CHECKING:
     from scenic.falsification.search import FalsificationResult
@@ -33,6 +36,11 @@ __all__ = ["falsify"]
 
 _SHOWN: Final = 12
 """Values of a point that are printed, at most."""
+
+_TIMELESS: Final = (
+    "nothing in this program happens over time, so that simulations show no more than its scenes do"
+)
+_STATIC: Final = "search the scenes alone: --static with --objective PARAMETER or --minimize EXPRESSION"
 
 
 @click.command()
@@ -154,6 +162,8 @@ def falsify(
     """
     if resume and output is None:
         raise click.UsageError("--resume needs the folder of the search: -o DIR")
+    if report is not None:
+        check_page(report, "--report")
     if Path(file).is_dir():
         from scenic.falsification.report import load_results
 
@@ -173,6 +183,8 @@ def falsify(
         load(Path(file), params=parameters, model=model, scenario=scenario, mode2D=mode_2d)
         for parameters, _ in settings
     ]
+    if not static and simulator is None and all(loaded.is_timeless for loaded in programs):
+        warnings.warn(ScenicWarning(_TIMELESS, help=_STATIC), stacklevel=2)
     if seed is None:
         seed = secrets.randbits(32)
         sys.stderr.write(f"seed {seed} (the same search again: --seed {seed})\n")
@@ -217,7 +229,8 @@ def _show(label: str, result: "FalsificationResult") -> None:
         print(f"{label}:")
     share, low, high = result.share()
     print(
-        f"{len(result.rows)} runs, {result.evaluated} with a value, {len(result.counterexamples)} counterexamples"
+        f"{_counted(len(result.rows), 'run')}, {result.evaluated} with a value,"
+        f" {_counted(len(result.counterexamples), 'counterexample')}"
     )
     if result.evaluated:
         print(f"share of counterexamples {share:.3g} (95% interval {low:.3g} to {high:.3g})")
@@ -233,6 +246,10 @@ def _show(label: str, result: "FalsificationResult") -> None:
     if result.is_blind:
         print("all values are plus or minus infinity: nothing guides the search")
     sys.stdout.flush()
+
+
+def _counted(count: int, thing: str) -> str:
+    return f"{count} {thing}{'' if count == 1 else 's'}"
 
 
 def _write_report(results: "Mapping[str, FalsificationResult]", title: str, page: Path) -> None:

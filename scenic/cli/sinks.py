@@ -91,13 +91,13 @@ def scene_file(path: Path, count: int, first: int = 0) -> Sink:
     return _FILES[path.suffix.lower()](path, count)
 
 
-def check_page(path: Path) -> None:
+def check_page(path: Path, option: str = "--view") -> None:
     """Raises ``OutputError`` if a page cannot be written there, ``OutputChoiceError`` if the name has the ending of another format."""
     check_writable(path)
     suffix = path.suffix.lower()
     if suffix not in _PAGES:
         raise OutputChoiceError(
-            f"--view makes a page, no '{suffix}' file",
+            f"{option} makes a page, no '{suffix}' file",
             help="give it a name that ends in .html",
         )
 

@@ -72,7 +72,7 @@ class Objective:
             if not outcomes:
                 raise ObjectiveError(
                     "the simulations follow no requirement, so that there is no robustness to make small",
-                    help="write `require always ...`, or name an objective: --minimize EXPRESSION",
+                    help="write `require always ...`, name an objective: --minimize EXPRESSION, or search scenes alone: --static",
                 )
             return min(float(item.robustness) for item in outcomes)
         for item in outcomes:
@@ -80,6 +80,11 @@ class Objective:
                 return float(item.robustness)
         if self.name in records:
             return _number(records[self.name], self.name)
+        if self.name in params:
+            raise ObjectiveError(
+                f"the objective {self.name!r} is a parameter of the scenes, and nothing of simulations",
+                help=f"search scenes alone: --static; or minimise it as an expression: --minimize {self.name}",
+            )
         known = [*(item.label for item in outcomes), *records]
         raise _unknown(self.name, known, "is neither a requirement nor recorded")
 
@@ -142,5 +147,5 @@ def _number(value: Any, label: str) -> float:
     except (TypeError, ValueError):
         raise ObjectiveError(
             f"the objective `{label}` is no number, but {type(value).__name__}",
-            help='reduce a series to one number: --minimize "min(distance)"',
+            help=f"reduce a series to one number: --minimize 'min({label if label.isidentifier() else 'distance'})'",
         ) from None

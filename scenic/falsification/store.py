@@ -95,6 +95,10 @@ def _manifest(path: Path) -> dict[str, Any]:
 
 def manifest_of(folder: Path) -> dict[str, Any]:
     """The manifest of a search; raises `SearchFolderError` if there is none."""
+    if not (folder / "manifest.json").exists():
+        raise SearchFolderError(
+            f"'{folder}' holds no search", help="name the folder that `scenic falsify -o` has written"
+        )
     return _manifest(folder / "manifest.json")
 
 

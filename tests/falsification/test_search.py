@@ -130,7 +130,7 @@ def test_objectives_of_simulations() -> None:
     [
         ({"objective": "gap"}, "neither a requirement nor recorded", "did you mean 'gaps'?"),
         ({"minimize": "min(gap)"}, "fails: TypeError|is not recorded", ""),
-        ({"minimize": "gaps"}, "is no number, but list", "min(distance)"),
+        ({"minimize": "gaps"}, "is no number, but list", "min(gaps)"),
         ({"minimize": "min(gaps"}, "fails: SyntaxError", ""),
     ],
 )
@@ -207,6 +207,49 @@ def test_the_command(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "report.html").exists()
     rare = run(*common, "--threshold", "-2.999")
     assert rare.return_value == 3
+
+
+@pytest.mark.filterwarnings("default::scenic.language.errors.ScenicWarning")
+def test_a_program_in_which_nothing_happens_is_better_searched_by_its_scenes(tmp_path: Path) -> None:
+    (tmp_path / "static.scenic").write_text(STATIC)
+    (tmp_path / "brake.scenic").write_text(BRAKE)
+    common = ["-n", 2, "--seed", 1, "--sampler", "random", "--time", 2]
+    found = run_here(["falsify", "static.scenic", *common], folder=tmp_path)
+    assert (found.returncode, "warning[SC407]: nothing in this program happens" in found.stderr) == (3, True)
+    assert "--static with --objective PARAMETER" in found.stderr
+    found = run_here(["falsify", "static.scenic", *common, "--objective", "total"], folder=tmp_path)
+    assert (found.returncode, "'total' is a parameter of the scenes" in found.stderr) == (2, True)
+    for words in (["static.scenic", "--static", "--objective", "total"], ["brake.scenic"]):
+        found = run_here(["falsify", *words, *common], folder=tmp_path)
+        assert (found.returncode, found.stderr) == (3, "")
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "message"),
+    [
+        (["--sampler", "cm"], "SC604", "did you mean 'cma'?"),
+        (["--sampler-option", "popsiz=3"], "SC604", "its options: sigma, popsize"),
+        (["--objective", "gap"], "SC604", "did you mean 'gaps'?"),
+        (["--minimize", "gaps"], "SC604", "--minimize 'min(gaps)'"),
+        (["--simulator", "kinemtic"], "SC604", "did you mean kinematic?"),
+        (["--report", "nowhere/report.html"], "SC601", "mkdir -p"),
+        (["--report", "report.png"], "SC604", "a name that ends in .html"),
+        (["-o", "brake.scenic"], "SC601", "give the name of a folder"),
+    ],
+)
+def test_slips_are_told_before_anything_is_searched(
+    words: list[str], code: str, message: str, tmp_path: Path
+) -> None:
+    (tmp_path / "brake.scenic").write_text(BRAKE)
+    found = run_here(["falsify", "brake.scenic", "-n", 1, "--seed", 1, *words], folder=tmp_path)
+    assert (found.returncode, found.stdout) == (2, "")
+    assert code in found.stderr
+    assert message in found.stderr
+
+
+def test_a_folder_without_a_search_has_no_report(tmp_path: Path) -> None:
+    found = run_here(["falsify", tmp_path], folder=tmp_path)
+    assert (found.returncode, "holds no search" in found.stderr) == (1, True)
 
 
 def test_a_sweep_makes_a_search_for_each_setting(tmp_path: Path) -> None:

@@ -37,7 +37,8 @@ SAMPLERS: Final[Mapping[str, Callable[[Space, int, Any], Sampler]]] = MappingPro
 def make_sampler(name: str, space: Space, seed: int, given: Any = None) -> Sampler:
     """The sampler of a name; raises `SamplerError` if there is none, or its library is missing."""
     if name not in SAMPLERS:
-        near = nearest(name, SAMPLERS)
+        begun = [known for known in SAMPLERS if name and known.startswith(name.lower())]
+        near = begun[0] if len(begun) == 1 else nearest(name, SAMPLERS)
         raise SamplerError(
             f"there is no sampler {name!r}",
             help=(f"did you mean {near!r}? " if near else "") + f"the samplers: {', '.join(SAMPLERS)}",

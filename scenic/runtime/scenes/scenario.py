@@ -24,6 +24,7 @@ from scenic.language.errors import (
 )
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest_attribute
+from scenic.runtime.dynamics.declarations import Declared
 from scenic.runtime.instances.objects import Object
 from scenic.runtime.instances.population import Populations
 from scenic.runtime.program.external import Choosable
@@ -43,6 +44,7 @@ from scenic.runtime.scenes.sampler import Sampler
 from scenic.runtime.scenes.saving import SavedScene, draws_of, source_of
 from scenic.runtime.scenes.scene import Family, Scene
 from scenic.runtime.scenes.services import Services
+from scenic.runtime.temporal.formulas import is_temporal
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -539,6 +541,21 @@ class Scenario(Generating):
     def replay(self, path: str | Path) -> Scene:
         """The scene that `Scene.save` has written; raises `SerializationError` as `sceneFromBytes` does."""
         return self.sceneFromBytes(Path(path).read_bytes())
+
+    @property
+    def is_timeless(self) -> bool:
+        """Return whether nothing in the program is about time: no simulator, behavior, monitor, record or temporal requirement."""
+        program = self._program
+        return (
+            program.simulator is None
+            and program.top is None
+            and not program.invocables
+            and program.declared == Declared()
+            and not any(
+                item.formula is not None and is_temporal(item.formula.formula)
+                for item in program.requirements
+            )
+        )
 
     @property
     def has_simulator(self) -> bool:
