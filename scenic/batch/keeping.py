@@ -1,7 +1,7 @@
 """The file and the page data of a simulation that is running."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
@@ -11,10 +11,13 @@ if TYPE_CHECKING:
     from scenic.formats.trajectories import TrajectoryFile
     from scenic.simulators.simulation import OnState, Poses, Simulation
 
-__all__ = ["Form", "Kept", "about_file"]
+__all__ = ["Form", "Kept", "Watcher", "about_file"]
 
 Form = Literal["jsonl", "parquet", "xosc"]
 """The format of a trajectory's file, which is also its suffix."""
+
+Watcher = Callable[["Simulation", "PoseTape"], None]
+"""A function that is called with each simulation that has run, and the tape of all its states."""
 
 _FIRST_LINE: Final = 1 << 24
 """The longest first line of a file of ours that is read."""
@@ -44,13 +47,15 @@ class Kept:
         path: the file of its trajectory, if there is to be one.
         form: the format of that file.
         shown: whether the simulation goes onto a page.
+        watcher: called with it when it has run.
 
     """
 
-    def __init__(self, path: Path | None, form: Form, *, shown: bool) -> None:
+    def __init__(self, path: Path | None, form: Form, *, shown: bool, watcher: Watcher | None = None) -> None:
         self._path = path
         self._form = form
         self._shown = shown
+        self._watcher = watcher
         self._file: TrajectoryFile | None = None
         self._story: OpenScenarioFile | None = None
         self._tape: PoseTape | None = None
@@ -71,7 +76,7 @@ class Kept:
             self._story = OpenScenarioFile(self._path)
         elif self._path is not None:
             self._file = ParquetFile(self._path) if self._form == "parquet" else LinesFile(self._path)
-        self._tape = PoseTape() if self._shown else None
+        self._tape = PoseTape() if self._shown or self._watcher is not None else None
         return self._add
 
     def _add(self, simulation: "Simulation", poses: "Poses", actions: Mapping[Any, Any]) -> None:
@@ -102,7 +107,11 @@ class Kept:
             self._file.finish(about)
         if self._story is not None:
             self._story.finish(simulation, about)
-        return None if self._tape is None else course_data(simulation, self._tape)
+        if self._tape is None:
+            return None
+        if self._watcher is not None:
+            self._watcher(simulation, self._tape)
+        return course_data(simulation, self._tape) if self._shown else None
 
     def close(self) -> None:
         """Discard the file of an unfinished try."""

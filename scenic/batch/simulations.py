@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from scenic.batch.engines import Engine, OverExecutor, Processes
-from scenic.batch.keeping import Form, Kept, about_file
+from scenic.batch.keeping import Form, Kept, Watcher, about_file
 from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic
 
@@ -104,6 +104,7 @@ class Simulations:
         form: the format of their files.
         shown: whether rows carry data for a page.
         only_violations: whether only simulations that violate a requirement are kept in the folder and shown.
+        watcher: called with each of these simulations, in this process.
 
     Raises:
         SimulatorChoiceError: if there is no such simulator.
@@ -120,7 +121,9 @@ class Simulations:
         form: Form = "jsonl",
         shown: bool = False,
         only_violations: bool = False,
+        watcher: Watcher | None = None,
     ) -> None:
+        self._watcher = watcher
         self._only_violations = only_violations
         self._scenario = scenario
         self._named = simulator
@@ -236,7 +239,8 @@ class Simulations:
     def _one(self, k: int) -> SimulationRow:
         from scenic.formats.trajectories import course_document
 
-        with closing(Kept(self._file(k), self._form, shown=self._shown)) as kept:
+        keeping = Kept(self._file(k), self._form, shown=self._shown, watcher=self._watcher)
+        with closing(keeping) as kept:
             numbered = self._simulated(k, kept)
             done = numbered.simulation
             if done is None:

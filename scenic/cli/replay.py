@@ -1,67 +1,207 @@
-"""``scenic replay``: makes a run that was kept again, and tells whether it is the same."""
+"""``scenic replay``: makes a run that was kept again, tells whether it is the same, and shows it."""
 
+import tempfile
+import webbrowser
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from scenic.cli.options import simulator_option
+from scenic.cli.options import image_size_option, named_values, outlook_option, simulator_option
 from scenic.cli.output import CLEAN
 from scenic.cli.running import NOT_ALL
+from scenic.cli.sinks import OutputChoiceError, check_page
+
+if TYPE_CHECKING:
+    from scenic.formats.camera import Outlook
+    from scenic.formats.course_pictures import StatePictures
 
 __all__ = ["replay"]
+
+_ON_A_SHEET: Final = 9
+_IMAGES: Final = 60
+"""Images in a folder or in a film, at most, unless the steps between them are given."""
+_FILMS: Final = (".gif", ".mp4", ".mov", ".mkv")
 
 
 @click.command()
 @click.argument("path", metavar="RUN", type=click.Path(path_type=Path))
 @click.argument("number", metavar="[NUMBER]", type=click.IntRange(min=0), required=False)
 @click.option(
+    "--worst",
+    metavar="K",
+    type=click.IntRange(min=1),
+    help="The run with the Kth least value of a search: --worst 1 is the worst run, the default.",
+)
+@click.option(
     "--program",
     metavar="FILE",
-    type=click.Path(),
+    type=click.Path(path_type=Path),
     help="The program, where it is no longer in its place.  [default: the one that the run names]",
+)
+@click.option(
+    "-p",
+    "--param",
+    "parameters",
+    metavar="NAME=VALUE",
+    multiple=True,
+    callback=named_values,
+    help="Another value for a global parameter: the run as it would have been. Repeatable.",
 )
 @simulator_option
 @click.option(
     "--view", metavar="PAGE.html", type=click.Path(path_type=Path), help="Make a page that plays it."
 )
+@click.option(
+    "--open", "opened", is_flag=True, help="Open the page in the browser; without --view, a temporary one."
+)
+@click.option(
+    "--png",
+    metavar="PATH",
+    type=click.Path(path_type=Path),
+    help="Draw it: nine states in one image, at this name with .png, or an image for each state, in this folder.",
+)
+@click.option(
+    "--film",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Make a film that plays as fast as the simulation: .gif, or .mp4, .mov or .mkv (extra `video`).",
+)
+@click.option(
+    "--every",
+    metavar="STEPS",
+    type=click.IntRange(min=1),
+    help="Steps between images of a folder or a film.  [default: so many that there are 60 images at most]",
+)
+@click.option(
+    "--image-size",
+    metavar="WxH",
+    callback=image_size_option,
+    help="Columns and rows of the images, of a film, or of the whole image of several states.  [default: 960x720]",
+)
+@click.option(
+    "--look-from",
+    "outlook",
+    metavar="AZ,EL",
+    callback=outlook_option,
+    help="Viewpoint of images: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
+)
 @click.option("--show-records", is_flag=True, help="Print what the simulation records.")
 def replay(
     path: Path,
     number: int | None,
-    program: str | None,
+    worst: int | None,
+    program: Path | None,
+    parameters: Mapping[str, Any],
     simulator: str | None,
     view: Path | None,
+    opened: bool,
+    png: Path | None,
+    film: Path | None,
+    every: int | None,
+    image_size: tuple[int, int] | None,
+    outlook: Mapping[str, Any],
     show_records: bool,
 ) -> int:
-    """Make a run again that `falsify -o` or `simulate -o` has kept, and compare it with what was kept.
+    """Make a run again that `falsify -o` or `simulate -o` has kept, compare it with what was kept, and show it.
 
     RUN is the folder of a search or of one of its counterexamples, a folder of simulations, or the file of one. NUMBER chooses
     a run of a folder: by default the worst of a search, the first of simulations.
 
     Exit codes: 0 the run is the same, bit by bit, 1 the program has errors, 2 wrong usage, 3 it differs.
     """
-    from scenic.falsification.replaying import kept_run
+    from scenic.falsification.replaying import kept_run, program_of
     from scenic.falsification.replaying import replay as made_again
     from scenic.formats.files import write
     from scenic.pipeline import load
 
-    run = kept_run(path, number)
-    scenario = load(Path(program or run.origin["file"]), **run.origin["options"])
-    found = made_again(run, scenario, simulator, shown=view is not None)
+    if number is not None and worst is not None:
+        raise click.UsageError("NUMBER and --worst both choose a run: give one of them")
+    _check(view, png, film)
+    run = kept_run(path, number, worst=worst)
+    if opened and view is None:
+        view = Path(tempfile.mkdtemp(prefix="scenic-replay-"), f"run-{run.number:04d}.html")
+    options = dict(run.origin["options"])
+    if parameters:
+        options["params"] = {**(options.get("params") or {}), **parameters}
+    scenario = load(program or program_of(run), **options)
+    found = made_again(run, scenario, simulator, shown=any(item is not None for item in (view, png, film)))
     _show(run.number, found.about)
     if show_records:
         for name, value in found.about.get("records", {}).items():
             print(f"  record {name} = {value}")
+    if found.page is None and (view, png, film) != (None, None, None):
+        print("nothing is shown, since there is no simulation")
     if view is not None and found.page is not None:
         write(view, found.page.encode())
+        if opened:
+            print(f"opens {view}")
+            webbrowser.open(view.resolve().as_uri())
+    if found.pictures is not None and (png is not None or film is not None):
+        from scenic.formats.camera import Outlook
+        from scenic.formats.render import SIZE
+
+        _draw(found.pictures, png, film, every, image_size or SIZE, Outlook(**outlook))
+    for words in found.unknown:
+        print(f"not compared: {words}")
     if not found.departures:
         print("the same as kept, bit by bit")
         return CLEAN
     for words in found.departures:
         print(f"differs: {words}")
     return NOT_ALL
+
+
+def _check(view: Path | None, png: Path | None, film: Path | None) -> None:
+    """Raise at once, before anything is simulated, what stands in the way of files."""
+    from scenic.formats.files import check_folder, check_writable
+    from scenic.formats.imaging import require_pillow
+
+    if view is not None:
+        check_page(view)
+    if png is not None:
+        require_pillow()
+        if png.suffix.lower() == ".png":
+            check_writable(png)
+        elif png.suffix:
+            raise OutputChoiceError(
+                f"--png makes no '{png.suffix}' file", help="give a name that ends in .png, or a folder"
+            )
+        else:
+            check_folder(png if png.exists() else png.resolve().parent)
+    if film is not None:
+        require_pillow()
+        if film.suffix.lower() not in _FILMS:
+            raise OutputChoiceError(
+                f"--film makes no '{film.suffix}' file", help=f"give a name that ends in {', '.join(_FILMS)}"
+            )
+        check_writable(film)
+
+
+def _draw(
+    pictures: "StatePictures",
+    png: Path | None,
+    film: Path | None,
+    every: int | None,
+    size: tuple[int, int],
+    outlook: "Outlook",
+) -> None:
+    """Write images and the film."""
+    from scenic.formats.course_pictures import evenly, film_of, sheet
+    from scenic.formats.files import make_folder, write
+    from scenic.formats.png import encoded
+
+    last = len(pictures) - 1
+    chosen = evenly(len(pictures), _IMAGES) if every is None else [*range(0, last, every), last]
+    if png is not None and png.suffix:
+        write(png, sheet(pictures, evenly(len(pictures), _ON_A_SHEET), size, outlook))
+    elif png is not None:
+        make_folder(png)
+        for state, image in zip(chosen, pictures.images(chosen, size, outlook), strict=True):
+            write(png / f"state-{state:0{len(str(last))}d}.png", encoded(image))
+    if film is not None:
+        film_of(pictures, chosen, film, size, outlook)
 
 
 def _show(number: int, about: Mapping[str, Any]) -> None:

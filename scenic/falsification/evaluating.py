@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from scenic.batch.keeping import Kept
+from scenic.batch.keeping import Kept, Watcher
 from scenic.dataclass import dataclass
 from scenic.falsification.objectives import Objective, ObjectiveError
 from scenic.falsification.space import Floats, Space
@@ -48,6 +48,7 @@ class Evaluation:
         seed: of all draws that are not searched.
         threshold: largest value of a counterexample.
         folder: where counterexamples are kept, if anywhere.
+        watcher: called with the simulation of each of them, in this process.
 
     """
 
@@ -58,6 +59,7 @@ class Evaluation:
     seed: int
     threshold: float
     folder: Path | None = None
+    watcher: Watcher | None = None
 
     @property
     def attempts(self) -> int:
@@ -111,7 +113,8 @@ class Evaluation:
         if isinstance(scene, Exhausted):
             return {"run": task.run, "status": "rejected", "values": None, "attempts": scene.attempts}
         waiting = None if self.folder is None else self.folder / f".run-{task.run:06d}.jsonl"
-        with closing(Kept(waiting, "jsonl", shown=waiting is not None)) as kept:
+        keeping = Kept(waiting, "jsonl", shown=waiting is not None, watcher=self.watcher)
+        with closing(keeping) as kept:
             reasons: list[str] = []
             done = self.simulations.simulator.simulate(
                 scene,

@@ -1,28 +1,31 @@
 """Runs that were kept, made again: those of a search, and simulations of ``scenic simulate -o``."""
 
-import json
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field
-from itertools import zip_longest
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
+from scenic.batch.keeping import Form, about_file
 from scenic.batch.simulations import Running, Simulations
 from scenic.dataclass import dataclass
+from scenic.falsification.comparing import file_departures, row_departures
 from scenic.falsification.evaluating import Evaluation, Task
-from scenic.falsification.objectives import Objective
+from scenic.falsification.objectives import Objective, ObjectiveError
 from scenic.falsification.space import space_of
 from scenic.falsification.store import folders_of, manifest_of, read_rows
 from scenic.language.errors import Located, MissingFileError
 
 if TYPE_CHECKING:
+    from scenic.formats.course_page import PoseTape
+    from scenic.formats.course_pictures import StatePictures
     from scenic.runtime.scenes.scenario import Scenario
+    from scenic.simulators.simulation import Simulation
+    from scenic.simulators.simulator import Simulator
 
-__all__ = ["KeptRun", "Replay", "ReplayError", "kept_run", "replay"]
+__all__ = ["KeptRun", "Replay", "ReplayError", "kept_run", "program_of", "replay"]
 
-_COMPARED: Final = ("status", "values", "requirements", "steps")
-_LEFT_OUT: Final = ("settings", "origin", "objects", "records")
+_FORMS: Final = ("jsonl", "parquet", "xosc")
 
 
 class ReplayError(Located):
@@ -37,10 +40,11 @@ class KeptRun:
 
     Attributes:
         number: of the run in its search, or of the simulation in its seed.
-        origin: how to load the program: ``file``, ``options`` of `scenic.load`, and for simulations ``simulator``.
+        origin: how to load the program: ``file``, ``options`` of `scenic.load`, and ``simulator``.
         settings: everything else that the run depends on.
         row: of a search, what was kept of the run; ``None`` of a simulation.
         trajectory: the file of its states, if there is one.
+        scene: the file of its scene, if there is one.
 
     """
 
@@ -48,7 +52,13 @@ class KeptRun:
     origin: Mapping[str, Any]
     settings: Mapping[str, Any]
     row: Mapping[str, Any] | None
-    trajectory: Path | None
+    trajectory: Path | None = None
+    scene: Path | None = None
+
+    @property
+    def form(self) -> Form:
+        """The format of the trajectory."""
+        return cast("Form", "jsonl" if self.trajectory is None else self.trajectory.suffix[1:])
 
 
 @dataclass(slots=True)
@@ -58,21 +68,26 @@ class Replay:
     Attributes:
         about: what came of it: the row of a search, or the document about a simulation.
         departures: where it differs from what was kept, in words; empty if it is the same, bit by bit.
-        page: the text of a page that plays it, where there is something to play.
+        unknown: what could not be compared, in words.
+        page: the text of a page that shows it, where that was wanted and there is something to show.
+        pictures: its states as images, likewise.
 
     """
 
     about: Mapping[str, Any]
     departures: list[str] = field(default_factory=list)
+    unknown: list[str] = field(default_factory=list)
     page: str | None = None
+    pictures: "StatePictures | None" = None
 
 
-def kept_run(path: Path, number: int | None = None) -> KeptRun:
+def kept_run(path: Path, number: int | None = None, *, worst: int | None = None) -> KeptRun:
     """The run at a path.
 
     Args:
         path: the folder of a search, of one of its counterexamples, or of simulations; or the file of a simulation.
         number: which run of the folder; by default the worst of a search, and the first of simulations.
+        worst: the run's place among those of a search, from 1 for the run of the least value.
 
     Raises:
         ReplayError: there is no such run.
@@ -80,13 +95,19 @@ def kept_run(path: Path, number: int | None = None) -> KeptRun:
     """
     if not path.exists():
         raise MissingFileError(f"cannot read '{path}': there is no such file or folder")
+    is_search = path.is_dir() and (path / "manifest.json").exists()
+    if worst is not None and not is_search:
+        raise ReplayError(
+            f"'{path}' is no folder of a search, so that none of its runs is the worst",
+            help="name the folder that `scenic falsify -o` has written, or a run by its number",
+        )
     if path.is_file():
         return _simulation(path)
-    if (path / "manifest.json").exists():
-        return _searched(path, number)
+    if is_search:
+        return _searched(path, number, worst)
     if path.parent.name == "counterexamples" and path.name.isdigit() and number is None:
-        return _searched(path.parent.parent, int(path.name))
-    files = sorted(path.glob("simulation-*.jsonl"))
+        return _searched(path.parent.parent, int(path.name), None)
+    files = sorted(file for form in _FORMS for file in path.glob(f"simulation-*.{form}"))
     wanted = [item for item in files if number is None or int(item.stem.rpartition("-")[2]) == number]
     if not files and (searches := folders_of(path)):
         raise ReplayError(
@@ -100,35 +121,45 @@ def kept_run(path: Path, number: int | None = None) -> KeptRun:
     return _simulation(wanted[0])
 
 
-def _searched(folder: Path, number: int | None) -> KeptRun:
+def _searched(folder: Path, number: int | None, worst: int | None) -> KeptRun:
     manifest = manifest_of(folder)
     rows = {row["run"]: row for row in read_rows(folder)}
+    if not rows:
+        raise ReplayError(
+            f"'{folder}' holds no run", help="the search has not finished any: --resume goes on with it"
+        )
     if number is None:
         known = [row for row in rows.values() if row["values"] is not None]
-        number = min(known, key=lambda row: min(map(float, row["values"])), default={"run": 0})["run"]
+        ranked = sorted(known, key=lambda row: min(map(float, row["values"]))) or [rows[0]]
+        if worst is not None and worst > len(ranked):
+            raise ReplayError(
+                f"'{folder}' holds {len(ranked)} runs with a value, fewer than {worst}",
+                help=f"the worst run is --worst 1, the best one --worst {len(ranked)}",
+            )
+        number = int(ranked[(worst or 1) - 1]["run"])
     if number not in rows:
-        raise ReplayError(
-            f"'{folder}' holds no run {number}", help=f"it holds runs 0 to {len(rows) - 1}" if rows else None
-        )
-    file = folder / "counterexamples" / f"{number:04d}" / "simulation.jsonl"
+        raise ReplayError(f"'{folder}' holds no run {number}", help=f"it holds runs 0 to {len(rows) - 1}")
+    kept = folder / "counterexamples" / f"{number:04d}"
+    file, scene = kept / "simulation.jsonl", kept / "scene.json"
     return KeptRun(
         number,
         _origin(manifest, folder),
         manifest,
         rows[number],
         file if file.exists() else None,
+        scene if scene.exists() else None,
     )
 
 
 def _simulation(file: Path) -> KeptRun:
+    form = cast("Form", file.suffix[1:] if file.suffix[1:] in _FORMS else "jsonl")
     try:
-        with file.open(encoding="utf-8") as stream:
-            about = json.loads(stream.readline())
+        about = about_file(file, form)
         number, settings = int(about["k"]), dict(about["settings"])
     except (OSError, ValueError, KeyError, TypeError):
         raise ReplayError(
             f"'{file}' holds no simulation that says how it was made",
-            help="name a `.jsonl` file that `scenic simulate -o` has written, or the folder of a search",
+            help="name a file that `scenic simulate -o` has written, or the folder of a search",
         ) from None
     return KeptRun(number, _origin(about, file), settings, None, file)
 
@@ -143,8 +174,27 @@ def _origin(about: Mapping[str, Any], place: Path) -> Mapping[str, Any]:
     return origin
 
 
+def program_of(run: KeptRun) -> Path:
+    """The file of a run's program; raises `ReplayError` if it is not there."""
+    file = Path(run.origin["file"])
+    if not file.is_file():
+        was_text = str(file).startswith("<")
+        raise ReplayError(
+            "the program of the run was a text in Python, not a file"
+            if was_text
+            else f"the program of the run, '{file}', is not there",
+            help=f"{'save it as a file, and name that' if was_text else 'name it'}: --program FILE.scenic",
+        )
+    return file
+
+
 def replay(
-    run: KeptRun, scenario: "Scenario", simulator: str | None = None, *, shown: bool = False
+    run: KeptRun,
+    scenario: "Scenario",
+    simulator: "str | Simulator | None" = None,
+    *,
+    objectives: Sequence[Objective] | None = None,
+    shown: bool = False,
 ) -> Replay:
     """Make a run again, and compare it with what was kept.
 
@@ -152,29 +202,49 @@ def replay(
         run: the run.
         scenario: its program.
         simulator: a simulator in place of that of the run.
-        shown: whether a page is made.
+        objectives: those of the search, where functions of Python are among them; without them, its values are not compared.
+        shown: whether there will be a page and pictures.
+
+    Raises:
+        ObjectiveError: the objective cannot be evaluated.
+        ReplayError: the run cannot be made again.
 
     """
     with tempfile.TemporaryDirectory() as folder:
-        found = (_search_again if run.row is not None else _simulate_again)(
-            run, scenario, simulator, shown, Path(folder)
-        )
+        if run.row is None:
+            found = _simulate_again(run, scenario, simulator, shown, Path(folder))
+        else:
+            found = _search_again(run, run.row, scenario, simulator, objectives, shown, Path(folder))
     if run.settings.get("program") != scenario.digest:
         found.departures.insert(0, "the program or its parameters have changed since")
     return found
 
 
+class _Shown:
+    """Takes the pictures of a simulation, when it has run."""
+
+    def __init__(self) -> None:
+        self.pictures: StatePictures | None = None
+
+    def __call__(self, simulation: "Simulation", tape: "PoseTape") -> None:
+        from scenic.formats.course_pictures import StatePictures
+
+        self.pictures = StatePictures.of_course(simulation, tape)
+
+
 def _search_again(
-    run: KeptRun, scenario: "Scenario", simulator: str | None, shown: bool, folder: Path
+    run: KeptRun,
+    row: Mapping[str, Any],
+    scenario: "Scenario",
+    simulator: "str | Simulator | None",
+    objectives: Sequence[Objective] | None,
+    shown: bool,
+    folder: Path,
 ) -> Replay:
-    settings, row = run.settings, run.row
-    assert row is not None
+    settings = run.settings
     goals = run.origin.get("objectives")
-    if goals is None:
-        raise ReplayError(
-            "the objective of the search was a function of Python, which its folder does not hold",
-            help="search by the name of a requirement, or by an expression",
-        )
+    if objectives is None and goals is not None:
+        objectives = [Objective(**goal) for goal in goals]
     space = space_of(scenario, settings["space"])
     numbers = {int(address, 16): value for address, value in row["numbers"].items()}
     if set(numbers) != {item.address for item in space.coordinates}:
@@ -182,43 +252,95 @@ def _search_again(
             "the program draws other values than when it was searched",
             help="replay the run with the program as it was, or search again",
         )
-    is_static = settings["simulator"] == "none"
+    watcher = _Shown()
     simulations = None
-    if not is_static:
+    if settings["simulator"] != "none":
         running = Running(settings["seed"], settings["steps"], settings["timestep"], tries=1)
-        simulations = Simulations(scenario, simulator or settings["simulator"], running)
+        simulations = _simulations(run, scenario, simulator, running)
     evaluation = Evaluation(
         scenario,
         simulations,
-        tuple(Objective(**goal) for goal in goals),
+        (Objective(function=_anything),) if objectives is None else tuple(objectives),
         space,
         settings["seed"],
         float("inf"),  # so that whatever comes out is kept
         folder,
+        watcher if shown else None,
     )
-    if is_static:
+    if simulations is None:
         import numpy as np
 
         points = np.array([[numbers[item.address] for item in space.coordinates]])
         (found,) = evaluation.together(run.number, points)
     else:
         found = evaluation(Task(run.number, numbers))
-    if found["values"] is not None:
+        if found["status"] == "objective":
+            raise ObjectiveError(found["error"], help=found["help"])
+    made = folder / "counterexamples" / f"{run.number:04d}"
+    result = Replay(found)
+    if objectives is None:
+        # The value is known from the row alone.
+        result.unknown.append(
+            f"the value: the objective was a function of Python, `{settings['objectives'][0]}`"
+        )
+        if found["values"] is not None:
+            found.update({name: row[name] for name in ("values", "status")})
+    elif found["values"] is not None:
         failed = min(map(float, found["values"])) <= settings["threshold"]
         found["status"] = "counterexample" if failed else "held"
-    made = folder / "counterexamples" / f"{run.number:04d}"
-    result = Replay(found, list(_differences(row, found, _COMPARED)))
-    result.departures += _compared(
-        run.trajectory, made / "simulation.jsonl", without=("requirements", "tries")
-    )
-    page = made / "play.html"
-    if shown and page.exists():
-        result.page = page.read_text(encoding="utf-8")
+    result.departures += row_departures(row, found)
+    course, scene = made / "simulation.jsonl", made / "scene.json"
+    if run.trajectory is not None and course.exists():
+        result.departures += file_departures(
+            run.trajectory, course, run.form, without=("requirements", "tries")
+        )
+    is_kept = simulations is None and run.scene is not None and scene.exists()
+    if is_kept and run.scene is not None and run.scene.read_bytes() != scene.read_bytes():
+        result.departures.append("the scene differs from the one that was kept")
+    if shown:
+        result.pictures = watcher.pictures
+        _show(result, made, scenario)
     return result
 
 
+def _anything(_result: Any) -> float:
+    """Stand for an objective that is not known: a value that is kept."""
+    return 0.0
+
+
+def _show(result: Replay, made: Path, scenario: "Scenario") -> None:
+    """Take the page of a simulation, or make page and picture of a scene."""
+    page, scene = made / "play.html", made / "scene.json"
+    if page.exists():
+        result.page = page.read_text(encoding="utf-8")
+    elif scene.exists():
+        from scenic.formats.course_pictures import StatePictures
+        from scenic.formats.html import Page
+
+        shown = scenario.replay(scene)
+        whole = Page(f"run {made.name}")
+        whole.add(shown)
+        result.page, result.pictures = whole.text(), StatePictures(shown)
+
+
+def _simulations(
+    run: KeptRun, scenario: "Scenario", simulator: "str | Simulator | None", running: Running, **options: Any
+) -> Simulations:
+    """Return what simulates a run; raises `ReplayError` if the simulator was made in Python."""
+    before = run.settings["simulator"]
+    given = run.origin.get("simulator", before)
+    made = Simulations(scenario, simulator or given, running, **options)
+    # A search keeps the name that was given, which may be none, and else the class, as simulations do.
+    if simulator is None and before not in (None, given, type(made.simulator).__name__):
+        raise ReplayError(
+            f"the run was simulated by an object of the class `{before}`, which its files do not hold",
+            help="name the simulator: --simulator MODULE:CLASS; in Python: `replay(run, scenario, simulator)`",
+        )
+    return made
+
+
 def _simulate_again(
-    run: KeptRun, scenario: "Scenario", simulator: str | None, shown: bool, folder: Path
+    run: KeptRun, scenario: "Scenario", simulator: "str | Simulator | None", shown: bool, folder: Path
 ) -> Replay:
     settings = run.settings
     running = Running(
@@ -229,76 +351,19 @@ def _simulate_again(
         sobol=settings.get("sobol", False),
         keep_violations=settings.get("keep_violations", False),
     )
-    batch = Simulations(
-        scenario, simulator or run.origin.get("simulator"), running, folder=folder, shown=shown
-    )
+    watcher = _Shown()
+    options = {"shown": True, "watcher": watcher} if shown else {}
+    batch = _simulations(run, scenario, simulator, running, folder=folder, form=run.form, **options)
     found = batch(run.number)
     if found.about is None:
         words = found.missing if found.error is None else found.error.message
         return Replay({}, [f"now there is no simulation: {words}"])
-    result = Replay(found.about, _compared(run.trajectory, folder / f"simulation-{run.number:04d}.jsonl"))
+    assert run.trajectory is not None
+    made = folder / f"simulation-{run.number:04d}.{run.form}"
+    result = Replay(found.about, file_departures(run.trajectory, made, run.form))
     if found.page is not None:
         from scenic.formats.course_page import course_page
 
         result.page = course_page(f"simulation {run.number}", [found.page])
+        result.pictures = watcher.pictures
     return result
-
-
-def _compared(kept: Path | None, made: Path, *, without: Sequence[str] = ()) -> list[str]:
-    """Return where two files of trajectories differ: in what is said of the whole, and the first state that does."""
-    if kept is None or not made.exists():
-        return []
-    with kept.open(encoding="utf-8") as old, made.open(encoding="utf-8") as new:
-        about, again = json.loads(old.readline()), json.loads(new.readline())
-        found = list(
-            _differences(about, again, [name for name in about if name not in (*_LEFT_OUT, *without)])
-        )
-        things = [item["name"] or f"{item['class']} {k}" for k, item in enumerate(about["objects"])]
-        for before, after in zip_longest(old, new):
-            if before == after:
-                continue
-            if before is None or after is None:
-                return [*found, "the simulations end at different steps"]
-            return [*found, _departure(json.loads(before), json.loads(after), things)]
-    return found or list(_differences(about, again, ("records",)))
-
-
-def _departure(before: Mapping[str, Any], after: Mapping[str, Any], things: Sequence[str]) -> str:
-    where = f"from step {before['step']} (time {before['time']:g} s) on"
-    for key, words in (("positions", "position"), ("orientations", "orientation")):
-        for number, (old, new) in enumerate(zip(before[key], after[key], strict=False)):
-            if old != new:
-                name = things[number] if number < len(things) else f"object {number}"
-                return f"{where} it departs: the {words} of {name} was {old}, now {new}"
-    acting = [
-        things[int(number)] if int(number) < len(things) else f"object {number}"
-        for number in sorted({*before["actions"], *after["actions"]}, key=int)
-        if before["actions"].get(number) != after["actions"].get(number)
-    ]
-    return f"{where} it departs: " + (
-        f"the actions of {', '.join(acting)} are others" if acting else "there are other objects"
-    )
-
-
-def _differences(before: Mapping[str, Any], after: Mapping[str, Any], names: Sequence[str]) -> Iterator[str]:
-    for name in names:
-        if name == "requirements" and before.get(name) and after.get(name):
-            old, new = _by_label(before[name]), _by_label(after[name])
-            yield from _differences(old, new, list(dict.fromkeys([*old, *new])))
-        elif before.get(name) != after.get(name):
-            yield f"{name}: was {_short(before.get(name))}, now {_short(after.get(name))}"
-
-
-def _by_label(requirements: Any) -> dict[str, Any]:
-    """Return verdict and robustness by the label of the requirement, however they were kept."""
-    items = (
-        requirements.items()
-        if isinstance(requirements, dict)
-        else ((item["label"], item) for item in requirements)
-    )
-    return {label: [item["verdict"], item["robustness"]] for label, item in items}
-
-
-def _short(value: Any) -> str:
-    text = json.dumps(value)
-    return text if len(text) <= 80 else f"{text[:77]}..."

@@ -82,7 +82,11 @@ class Plan:
             "steps": self.max_steps,
             "timestep": self.timestep,
             "units": space_of(scenario, self.space).units,
-            "origin": {**scenario.origin, "objectives": self._goals()},
+            "origin": {
+                **scenario.origin,
+                "objectives": self._goals(),
+                "simulator": self.simulator if isinstance(self.simulator, str) else None,
+            },
         }
 
     def _goals(self) -> list[dict[str, str | None]] | None:

@@ -12,7 +12,7 @@ from scenic.formats.html import Page, packed, page_text
 from scenic.formats.json_lines import number
 from scenic.formats.trajectories import Course
 
-__all__ = ["PoseTape", "course_data", "course_page"]
+__all__ = ["PoseTape", "ShownCourse", "course_data", "course_page"]
 
 
 class PoseTape:
@@ -37,7 +37,7 @@ class PoseTape:
         return poses
 
 
-class _Shown:
+class ShownCourse:
     """The objects of a simulation, also those that came later, as a scene to be drawn."""
 
     def __init__(self, course: Course) -> None:
@@ -57,7 +57,7 @@ def course_data(course: Course, tape: PoseTape) -> dict[str, Any]:
     places = poses[..., :3].reshape(-1, 3).astype(np.float64)
     # A few metres make no difference to the ground that is drawn.
     near = np.unique(np.round(places[np.isfinite(places).all(axis=1)] / 5.0), axis=0) * 5.0
-    instances = page.add(_Shown(course), near)
+    instances = page.add(ShownCourse(course), near)
     data = page.data()
     (scene,) = data["scenes"]
     indices = {id(thing): index for index, thing in enumerate(course.objects)}

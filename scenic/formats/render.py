@@ -16,7 +16,7 @@ from scenic.formats.backdrop import ground_color, sky_color
 from scenic.formats.buffers import Buffer, Groups, Lens, Seen, first_groups, grounded, look
 from scenic.formats.camera import Camera, corners, framing
 from scenic.formats.colors import decoded, encoded
-from scenic.formats.instances import Picture
+from scenic.formats.instances import Array, Picture
 from scenic.formats.lighting import Index, Light, coarse_light, fine_light, own_light
 from scenic.formats.scenery import scenery_of
 from scenic.formats.stage import GROUND, SKY, Stage
@@ -37,15 +37,22 @@ _LAYERS: Final = 4
 
 
 def render(
-    picture: Picture, number: int, size: tuple[int, int] = SIZE, *, camera: Camera | None = None
+    picture: Picture,
+    number: int,
+    size: tuple[int, int] = SIZE,
+    *,
+    camera: Camera | None = None,
+    around: Array | None = None,
 ) -> Bytes:
     """An image of scene ``number`` of the picture; shape ``(height, width, 3)``, sRGB.
 
-    Without a camera, the nearest one of the standard direction that sees every object whole.
+    Without a camera, the nearest one of the standard direction that sees every object whole. ``around`` are points ``(n, 3)`` that
+    the ground surrounds, by default the corners of the objects.
     """
     width, height = size
     instances = picture.scenes[number]
-    stage = Stage(picture.surfaces, instances, scenery_of(picture.params[number]), picture.grounds[number])
+    scenery = scenery_of(picture.params[number])
+    stage = Stage(picture.surfaces, instances, scenery, picture.grounds[number], around)
     return paint(stage, Lens(camera or framing(corners(instances), width / height), stage.center, size))
 
 

@@ -40,6 +40,7 @@ class Stage:
         instances: the objects.
         scenery: where light comes from.
         pieces: parts of the ground with colours of their own.
+        around: points ``(n, 3)`` that decide the middle and the size of the scene in place of the objects' corners.
 
     Attributes:
         scenery: the same.
@@ -64,11 +65,12 @@ class Stage:
         instances: Sequence[Instance],
         scenery: Scenery = USUAL,
         pieces: Sequence[Piece] = (),
+        around: Array | None = None,
     ) -> None:
         self.scenery = scenery
         self._instances = instances
         self.textures = _textures(instances)
-        points = corners(instances)
+        points = corners(instances) if around is None else around
         self.center = (points.min(axis=0) + points.max(axis=0)) / 2
         self.reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
         low = [surfaces[piece.surface].vertices[:, 2].min() for piece in pieces if not piece.is_flat]

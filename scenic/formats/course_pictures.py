@@ -1,0 +1,186 @@
+"""Pictures of a simulation: images of its states by one camera, side by side in one image, or as a film."""
+
+import io
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from scenic.formats.camera import STANDARD, Outlook, corners, framed, framing
+from scenic.formats.course_page import PoseTape, ShownCourse
+from scenic.formats.files import check_writable, write
+from scenic.formats.imaging import require_pillow
+from scenic.formats.instances import Gallery, Instance, Picture, resting
+from scenic.formats.png import encoded
+from scenic.formats.render import SIZE, render
+from scenic.formats.scenes import Scene
+from scenic.formats.textures import placed_errors
+from scenic.formats.trajectories import Course
+from scenic.runtime.dynamics.series import Film
+
+__all__ = ["StatePictures", "evenly", "film_of", "sheet"]
+
+Pixels = npt.NDArray[np.uint8]
+
+_FRAMED: Final = 24
+"""Number of states that the camera is sure to show whole."""
+_ACROSS: Final = 3
+"""Images beside each other in a sheet."""
+_SHORTEST: Final = 20
+"""Milliseconds of the shortest image that players of GIF show as long as it says."""
+
+
+class StatePictures:
+    """The states of a simulation as images; a scene has one state. The camera stands still and shows all states.
+
+    Args:
+        scene: the objects and all that is around them.
+        poses: position and orientation of each object in each state, as `PoseTape.poses` gives them, ``(states, objects, 7)``; by
+            default those that the scene has.
+        timestep: seconds between states.
+
+    """
+
+    def __init__(
+        self, scene: Scene, poses: npt.NDArray[np.float32] | None = None, timestep: float = 1.0
+    ) -> None:
+        gallery = Gallery()
+        instances = gallery.add(scene)
+        self.timestep = timestep
+        self._scene = scene
+        self._states: list[tuple[Instance, ...]] = [instances]
+        if poses is not None:
+            numbers = {id(thing): number for number, thing in enumerate(scene.objects)}
+            drawn = [numbers[id(instance.thing)] for instance in instances]
+            self._states = [_placed(instances, state) for state in poses[:, drawn].astype(np.float64)]
+        places = np.array([item.position for state in self._states for item in state]).reshape(-1, 3)
+        # A few metres make no difference to the ground that is drawn.
+        self._ground = gallery.ground(scene.workspace, np.unique(np.round(places / 5.0), axis=0) * 5.0)
+        if self._ground:
+            self._states = [resting(state) for state in self._states]
+        self._surfaces = gallery.surfaces
+
+    @classmethod
+    def of_course(cls, course: Course, tape: PoseTape) -> "StatePictures":
+        """The pictures of a simulation, all of whose states are on the tape."""
+        return cls(ShownCourse(course), tape.poses(), course.timestep)
+
+    def __len__(self) -> int:
+        return len(self._states)
+
+    def images(
+        self, states: Sequence[int], size: tuple[int, int] = SIZE, outlook: Outlook = STANDARD
+    ) -> Iterator[Pixels]:
+        """Images of some states by one camera: ``(height, width, 3)``, sRGB."""
+        chosen = [self._states[state] for state in evenly(len(self), _FRAMED)]
+        seen = [item for state in (*chosen, *(self._states[state] for state in states)) for item in state]
+        camera = framing(framed(self._scene, seen, outlook), size[0] / size[1], outlook)
+        around = corners(seen)
+        for state in states:
+            picture = Picture(self._surfaces, (self._states[state],), (self._scene.params,), (self._ground,))
+            with placed_errors(self._scene):
+                yield render(picture, 0, size, camera=camera, around=around)
+
+
+def _placed(instances: Sequence[Instance], poses: npt.NDArray[np.float64]) -> tuple[Instance, ...]:
+    """Objects in the poses ``(n, 7)`` of a state, without those that are not there yet."""
+    return tuple(
+        replace(instance, position=(x, y, z), quaternion=(turn[0], turn[1], turn[2], turn[3]))
+        for instance, (x, y, z, *turn) in zip(instances, poses.tolist(), strict=True)
+        if math.isfinite(x)
+    )
+
+
+def evenly(count: int, most: int) -> list[int]:
+    """At most so many of the numbers below ``count``, the first and the last among them if there are several."""
+    if count <= most:
+        return list(range(count))
+    return [round(place) for place in np.linspace(0, count - 1, most).tolist()]
+
+
+def sheet(
+    pictures: StatePictures, states: Sequence[int], size: tuple[int, int], outlook: Outlook = STANDARD
+) -> bytes:
+    """Images of states beside each other, with their times, as the content of one PNG file.
+
+    Args:
+        pictures: the simulation.
+        states: which states.
+        size: columns and rows of the whole.
+        outlook: where the camera stands.
+
+    Raises ``MissingLibraryError`` if Pillow is not installed.
+
+    """
+    pillow = require_pillow()
+    images = list(pictures.images(states, _cell(size, len(states)), outlook))
+    if len(images) == 1:
+        return encoded(images[0])
+    from PIL import ImageDraw, ImageFont
+
+    height, width = images[0].shape[:2]
+    rows = math.ceil(len(images) / _ACROSS)
+    whole = pillow.new("RGB", (width * min(_ACROSS, len(images)), height * rows), (255, 255, 255))
+    draw, font = ImageDraw.Draw(whole), ImageFont.load_default(max(12, height // 16))
+    for place, (state, image) in enumerate(zip(states, images, strict=True)):
+        left, top = width * (place % _ACROSS), height * (place // _ACROSS)
+        whole.paste(pillow.fromarray(image), (left, top))
+        words = f"{state * pictures.timestep:.6g} s"
+        box = draw.textbbox((left + 6, top + 4), words, font=font)
+        draw.rectangle((box[0] - 4, box[1] - 3, box[2] + 4, box[3] + 3), fill=(20, 24, 30))
+        draw.text((left + 6, top + 4), words, fill=(255, 255, 255), font=font)
+    stream = io.BytesIO()
+    whole.save(stream, format="PNG")
+    return stream.getvalue()
+
+
+def _cell(size: tuple[int, int], count: int) -> tuple[int, int]:
+    """The size of each of ``count`` images of a sheet."""
+    columns = min(_ACROSS, count)
+    rows = math.ceil(count / _ACROSS)
+    return max(1, size[0] // columns), max(1, size[1] // rows)
+
+
+def film_of(
+    pictures: StatePictures,
+    states: Sequence[int],
+    path: Path,
+    size: tuple[int, int] = SIZE,
+    outlook: Outlook = STANDARD,
+) -> None:
+    """Write a film of states that plays as fast as the simulation: GIF by the name's ending, else by ffmpeg.
+
+    Raises:
+        MissingLibraryError: Pillow is not installed, which GIF needs.
+        OutputError: the file cannot be written.
+        UnsupportedError: the package imageio-ffmpeg is not installed.
+
+    """
+    check_writable(path)
+    images = pictures.images(states, size, outlook)
+    if path.suffix.lower() == ".gif":
+        write(path, _gif(images, states, pictures.timestep))
+        return
+    made = Film(path, pictures.timestep)
+    try:
+        for state, image in zip(states, images, strict=True):
+            made.add(state, image)
+        made.save()
+    except BaseException:
+        made.drop()
+        raise
+
+
+def _gif(images: Iterator[Pixels], states: Sequence[int], timestep: float) -> bytes:
+    pillow = require_pillow()
+    frames: list[Any] = [pillow.fromarray(image).quantize(dither=pillow.Dither.NONE) for image in images]
+    lasting = [1000 * timestep * (after - state) for state, after in pairwise(states)]
+    lengths = [max(_SHORTEST, round(item)) for item in (*lasting, *lasting[-1:])] or [_SHORTEST]
+    stream = io.BytesIO()
+    frames[0].save(stream, format="GIF", save_all=True, append_images=frames[1:], duration=lengths, loop=0)
+    return stream.getvalue()
