@@ -6,11 +6,12 @@ from typing import Any
 
 from scenic.formats.mesh_files import digest_of
 from scenic.formats.textures import ImageTexture, TextureError, image_name, texture_of
+from scenic.runtime.program.context import warn
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.values.choices import options_of
 from scenic.runtime.values.nodes import as_node
 
-__all__ = ["check_textures", "mesh_digests", "texture_digests"]
+__all__ = ["check_textures", "mesh_digests", "texture_digests", "warn_of_textures"]
 
 
 def texture_digests(scenario: Scenario) -> dict[str, str]:
@@ -30,6 +31,21 @@ def check_textures(scenario: Scenario) -> None:
         TextureError: at the object, if a file cannot be read.
 
     """
+    for error in _texture_errors(scenario):
+        raise error
+
+
+def warn_of_textures(scenario: Scenario) -> None:
+    """Issue a `ScenicWarning` for each image file that `check_textures` refuses, as scenes can be sampled without it."""
+    seen: set[str] = set()
+    for error in _texture_errors(scenario):
+        if error.message not in seen:
+            seen.add(error.message)
+            warn(error.message, code=error.code, span=error.span, filename=error.filename, help=error.help)
+
+
+def _texture_errors(scenario: Scenario) -> Iterator[TextureError]:
+    """The errors of reading all image files that objects may have as textures."""
     folder = _folder(scenario)
     for thing in scenario.objects:
         for name in dict.fromkeys(_image_names(thing.__dict__.get("texture"))):
@@ -39,7 +55,7 @@ def check_textures(scenario: Scenario) -> None:
                 texture.image()
             except TextureError as error:
                 place = scenario.program.places.get(id(thing), (None, None))
-                raise error.at(place) from None
+                yield error.at(place)
 
 
 def _image_names(value: Any) -> Iterator[str]:

@@ -303,10 +303,10 @@ def sample(
             prune=not no_prune,
             extra_params=extra_params,
         )
-    if camera is not None or png is not None:
-        from scenic.batch.source_files import check_textures
+    if any("texture" in thing.__dict__ for thing in loaded.objects):
+        from scenic.batch.source_files import check_textures, warn_of_textures
 
-        check_textures(loaded)
+        (warn_of_textures if camera is None and png is None else check_textures)(loaded)
     if profile:
         return _profiled(loaded, first, count, seed or 0, sobol, max_attempts, deadline)
     done = 0

@@ -21,10 +21,7 @@ from scenic.formats.mesh_files import digest_of
 from scenic.language.errors import Located
 from scenic.runtime.geometry.embree import Singles
 
-__all__ = ["PROJECTIONS", "SUFFIXES", "ImageTexture", "TextureError"]
-
-SUFFIXES: Final = (".png", ".jpg", ".jpeg")
-"""Ends of the names of files that are textures."""
+__all__ = ["PROJECTIONS", "ImageTexture", "TextureError"]
 
 PROJECTIONS: Final = ("mesh", "box", "planar")
 """Ways of an image onto a surface: by the mesh's own coordinates, from six sides, or from above."""
@@ -39,7 +36,7 @@ _SIDES: Final = ((1, 2), (0, 2), (0, 1))
 class TextureError(Located):
     """A texture that there is not."""
 
-    code = "SC604"
+    code = "SC613"
     thing: Any = None
     """The object of the scene that has it, where that is known."""
 

@@ -15,7 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.dataclass import dataclass
-from scenic.formats.image_textures import PROJECTIONS, SUFFIXES, ImageTexture, TextureError
+from scenic.formats.image_textures import PROJECTIONS, ImageTexture, TextureError
+from scenic.formats.texture_names import SUFFIXES, image_name
 from scenic.runtime.geometry.embree import Singles
 
 __all__ = ["PATTERNS", "ImageTexture", "Texture", "TextureError", "image_name", "placed_errors", "texture_of"]
@@ -121,15 +122,6 @@ def texture_of(
     if given or not fine:
         raise _none_such(value)
     return Texture(pattern, float(scale), (red, green, blue))
-
-
-def image_name(value: Any) -> str | None:
-    """The image file that a texture names; ``None`` for other textures."""
-    if isinstance(value, Mapping):
-        value = value.get("image")
-        return str(value) if isinstance(value, str | Path) else None
-    is_image = isinstance(value, Path) or (isinstance(value, str) and value.lower().endswith(SUFFIXES))
-    return str(value) if is_image else None
 
 
 def _image(value: Any, name: str, folder: Path | None) -> ImageTexture | None:

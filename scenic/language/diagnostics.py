@@ -188,6 +188,7 @@ CODES: Final = MappingProxyType(
         "SC610": "sampling process died",
         "SC611": "cluster cannot be used",
         "SC612": "data set cannot be used",
+        "SC613": "texture cannot be used",
         "SC620": "map cannot be used",
         "SC621": "road of a map repaired or omitted",
         "SC622": "lane of a map repaired or omitted",

@@ -20,6 +20,7 @@ from scenic.project.maps import map_findings
 from scenic.project.members import kind_of_exported, member_findings
 from scenic.project.search import Found, ModuleKind
 from scenic.project.symbols import Symbol, symbol_of_exported
+from scenic.project.textures import texture_findings
 
 __all__ = ["surroundings_in"]
 
@@ -105,6 +106,7 @@ class _Surroundings:
     def findings(self) -> Iterator[Diagnostic]:
         yield from self._imports.findings()
         yield from map_findings(self._tree, self._source)
+        yield from texture_findings(self._tree, self._source)
         yield from member_findings(self._project, self._tree, self._source, self._resolution, self.names)
 
 
