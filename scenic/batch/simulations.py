@@ -386,4 +386,5 @@ def _failure(error: Exception) -> Diagnostic:
 
 def _lost(k: int, code: int) -> SimulationRow:
     message = f"the process of simulation {k} died (exit code {code})"
-    return SimulationRow(k, error=Diagnostic("SC503", message))
+    advice = "its simulator may crash or lack memory: use fewer processes (-j 1), or try this simulation alone (--first)"
+    return SimulationRow(k, error=Diagnostic("SC503", message, help=advice))

@@ -3,7 +3,8 @@ from pathlib import Path
 import pytest
 
 import scenic
-from scenic.batch.simulations import SimulationError
+from scenic.batch.engines import Processes
+from scenic.batch.simulations import Running, SimulationError, SimulationRow, Simulations
 
 PROGRAM = """
 behavior Drive():
@@ -48,3 +49,59 @@ def test_a_failing_simulation_is_raised_with_its_diagnostic() -> None:
     assert found is not None
     assert found.span is not None
     assert found.span.line == 2
+
+
+DYING = """
+import os
+from pathlib import Path
+deaths = Path(globalParameters.deaths)
+behavior Drive():
+    while True:
+        if ego.foo > 0.9 and deaths.stat().st_size < 3:
+            with deaths.open("a") as file:
+                file.write("x")
+            os.kill(os.getpid(), 9)
+        take ()
+ego = new Object with behavior Drive, with foo Range(0, 1)
+record ego.foo as foo
+terminate after 2 steps
+"""
+"""A program whose simulations with ``foo`` above 0.9 kill their process, until so many deaths are written down."""
+
+NUMBERS = range(12)
+
+
+def rows_of(deaths: Path, processes: int) -> dict[int, SimulationRow]:
+    scenario = scenic.scenarioFromString(DYING, params={"deaths": str(deaths)})
+    rows = Simulations(scenario, None, Running(5)).rows(NUMBERS, Processes(processes))
+    return {row.k: row for row in rows}
+
+
+def foo(row: SimulationRow) -> float:
+    assert row.about is not None
+    value: float = row.about["records"]["foo"][-1][1]
+    return value
+
+
+def test_a_simulation_whose_process_is_killed_is_made_again(tmp_path: Path) -> None:
+    deaths = tmp_path / "deaths"
+    deaths.write_text("x" * 3)
+    alone = rows_of(deaths, 1)
+    assert sum(foo(row) > 0.9 for row in alone.values()) == 1
+    deaths.write_text("x")
+    assert rows_of(deaths, 2) == alone
+    assert deaths.read_text() == "x" * 3
+
+
+def test_a_simulation_that_always_kills_its_process_is_an_error_after_three(tmp_path: Path) -> None:
+    deaths = tmp_path / "deaths"
+    deaths.touch()
+    rows = rows_of(deaths, 2)
+    assert sorted(rows) == list(NUMBERS)
+    failed = [row for row in rows.values() if row.error is not None]
+    assert [(row.error.code, row.error.message) for row in failed if row.error] == [
+        ("SC503", f"the process of simulation {row.k} died (exit code -9)") for row in failed
+    ]
+    assert len(failed) == 1
+    assert deaths.read_text() == "x" * 3
+    assert all(foo(row) <= 0.9 for row in rows.values() if row.error is None)
