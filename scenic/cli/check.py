@@ -12,6 +12,7 @@ import click
 
 from scenic.cli.checking import Checker, Fixing, Outcome, Task, fault
 from scenic.cli.discovery import STANDARD_INPUT, discover
+from scenic.cli.options import OneOf
 from scenic.cli.output import FINDINGS, exit_code, has_colours, show_diagnostics, summary
 from scenic.cli.render import FORMATS, Report, Sources, render
 from scenic.cli.watching import watch
@@ -55,7 +56,7 @@ def _selectors(_context: click.Context, option: click.Parameter, given: tuple[st
 @click.option(
     "--format",
     "output_format",
-    type=click.Choice(list(FORMATS)),
+    type=OneOf(list(FORMATS)),
     default="text",
     show_default=True,
     help="Format of the output.",

@@ -3,6 +3,7 @@
 import click
 from click.shell_completion import get_completion_class
 
+from scenic.cli.options import OneOf
 from scenic.cli.output import CLEAN
 
 __all__ = ["completion"]
@@ -11,7 +12,7 @@ _VARIABLE = "_SCENIC_COMPLETE"
 
 
 @click.command()
-@click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
+@click.argument("shell", type=OneOf(["bash", "zsh", "fish"]))
 @click.pass_context
 def completion(context: click.Context, shell: str) -> int:
     """Print the script that completes commands, options and files in a shell.

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from scenic.cli.options import (
+    OneOf,
     count_option,
     dask_option,
     jobs_option,
@@ -93,7 +94,7 @@ _STATIC: Final = "search the scenes alone: --static with --objective PARAMETER o
 )
 @click.option(
     "--space",
-    type=click.Choice(["auto", "external", "scene"]),
+    type=OneOf(["auto", "external", "scene"]),
     default="auto",
     show_default=True,
     help="The space to search: external parameters, or all draws of the scene.",

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from scenic.cli.options import OneOf
 from scenic.cli.output import CLEAN
 from scenic.templates import TEMPLATES, copy
 
@@ -14,7 +15,7 @@ __all__ = ["new"]
 @click.argument("folder", metavar="FOLDER", type=click.Path(path_type=Path))
 @click.option(
     "--template",
-    type=click.Choice(sorted(TEMPLATES)),
+    type=OneOf(sorted(TEMPLATES)),
     default="tabletop",
     show_default=True,
     help="What the program is about: "

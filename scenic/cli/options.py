@@ -11,7 +11,10 @@ from typing import Any, Final, TypeVar
 
 import click
 
+from scenic.language.spelling import nearest_option
+
 __all__ = [
+    "OneOf",
     "count_option",
     "dask_option",
     "extra_params_option",
@@ -33,6 +36,22 @@ __all__ = [
     "swept_program_options",
     "timestep_option",
 ]
+
+
+class OneOf(click.Choice[str]):
+    """One of a few words; a word that is none of them is refused with the one that is probably meant."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """The word, if it is one of them; fails with a suggestion otherwise."""
+        try:
+            return super().convert(value, param, ctx)
+        except click.BadParameter as error:
+            near = nearest_option(str(value), list(self.choices))
+            if near is None:
+                raise
+            message = f"{error.message.removesuffix('.')}; did you mean {near!r}?"
+            raise click.BadParameter(message, ctx, param) from None
+
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 

@@ -15,6 +15,7 @@ import click
 
 from scenic.cli import sinks
 from scenic.cli.options import (
+    OneOf,
     count_option,
     dask_option,
     extra_params_option,
@@ -57,7 +58,7 @@ __all__ = ["sample"]
 )
 @click.option(
     "--properties",
-    type=click.Choice(["all", "changed"]),
+    type=OneOf(["all", "changed"]),
     default="all",
     show_default=True,
     help="Properties of objects to write in JSON Lines: all, or only properties that the program gives.",
@@ -97,7 +98,7 @@ __all__ = ["sample"]
 @click.option(
     "--format",
     "form",
-    type=click.Choice(["parquet", "jsonl", "images", "tar"]),
+    type=OneOf(["parquet", "jsonl", "images", "tar"]),
     help="Format of the files of a data set: parquet or jsonl; with --camera images, or tar for shards.  [default: the first]",
 )
 @click.option(
@@ -147,7 +148,7 @@ __all__ = ["sample"]
 )
 @click.option(
     "--frame",
-    type=click.Choice(["workspace", "objects"]),
+    type=OneOf(["workspace", "objects"]),
     default="workspace",
     help="The contents that --png fits into the image: the workspace, so that all scenes are seen alike, or the "
     "objects.",

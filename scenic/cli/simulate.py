@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from scenic.cli.options import (
+    OneOf,
     count_option,
     dask_option,
     extra_params_option,
@@ -58,7 +59,7 @@ __all__ = ["simulate"]
 )
 @click.option(
     "--keep",
-    type=click.Choice(["all", "violations", "none"]),
+    type=OneOf(["all", "violations", "none"]),
     default="none",
     show_default=True,
     help="Simulations to keep although they violate a requirement: none (they are rejected and tried again), all, or "
@@ -102,7 +103,7 @@ __all__ = ["simulate"]
 @click.option(
     "--format",
     "form",
-    type=click.Choice(["jsonl", "parquet", "openscenario"]),
+    type=OneOf(["jsonl", "parquet", "openscenario"]),
     default="jsonl",
     show_default=True,
     help="Format of the trajectories: JSON Lines, columns (extra `parquet`), or OpenSCENARIO XML (extra "

@@ -13,6 +13,8 @@ from scenic.language.spelling import nearest
 
 __all__ = ["Source", "read_source"]
 
+_MOST_FOLDERS: Final = 200
+"""Number of folders in which a file that is missing is looked for."""
 _BYTE_ORDER_MARK: Final = "\ufeff"
 
 
@@ -115,6 +117,8 @@ def _whereabouts(path: Path) -> str:
     while not there.is_dir() and there != there.parent:
         there = there.parent
     missing = path.relative_to(there).parts[0] if path.is_relative_to(there) else path.name
+    if there == path.parent and (inside := _in_folders(there, path.name)):
+        return f"did you mean `{inside}`?"
     try:
         near = nearest(missing, (item.name for item in there.iterdir()))
     except OSError:
@@ -125,6 +129,24 @@ def _whereabouts(path: Path) -> str:
         return "check the path"
     where = "the working directory" if there == Path() else f"`{there}`"
     return f"check the path: {where} has no `{missing}`"
+
+
+def _in_folders(folder: Path, name: str) -> Path | None:
+    """The file of a name that lies nearest below a folder, among the first folders that are looked into."""
+    waiting = [folder]
+    for _ in range(_MOST_FOLDERS):
+        if not waiting:
+            return None
+        current = waiting.pop(0)
+        try:
+            found = sorted(item for item in current.iterdir() if not item.name.startswith("."))
+        except OSError:
+            continue
+        here = current / name
+        if here in found and here.is_file():
+            return here
+        waiting += (item for item in found if item.is_dir() and not item.is_symlink())
+    return None
 
 
 def _unreadable(filename: str, message: str, advice: str) -> ScenicError:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-__all__ = ["distance", "is_slip", "nearest", "nearest_attribute", "nearest_property"]
+__all__ = ["distance", "is_slip", "nearest", "nearest_attribute", "nearest_option", "nearest_property"]
 
 
 def distance(first: str, second: str, *, limit: int) -> int:
@@ -68,6 +68,15 @@ def nearest(name: str, candidates: Iterable[str], *, limit: int | None = None) -
             if reach < 0:
                 break
     return found
+
+
+def nearest_option(name: str, options: Iterable[str]) -> str | None:
+    """The one of a few options that is probably meant: the only one that begins so, or the nearest, one edit away if it is short."""
+    known = list(options)
+    begun = [each for each in known if name and each.lower().startswith(name.lower())]
+    if len(begun) == 1:
+        return begun[0]
+    return nearest(name, known, limit=max(1, len(name) // 3))
 
 
 def nearest_property(name: str, known: Iterable[str]) -> str | None:

@@ -9,7 +9,7 @@ from typing import Any, Final
 from scenic.dataclass import dataclass
 from scenic.graph.points import Sobol
 from scenic.language.errors import Located
-from scenic.language.spelling import nearest
+from scenic.language.spelling import nearest_option
 from scenic.runtime.dynamics.driving import driven
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
@@ -49,11 +49,11 @@ def choose_simulator(name: str | None, scenario: Scenario) -> Simulator:
     module, colon, cls = _PLACES.get(name, name).partition(":")
     if not (module and colon and cls):
         plain = name.lower()
-        meant = plain if plain in _PLACES else nearest(plain, _PLACES)
+        meant = plain if plain in _PLACES else nearest_option(plain, _PLACES)
         own = "or MODULE:CLASS for one of your own"
         raise SimulatorChoiceError(
             f"there is no simulator {name!r}",
-            help=f"did you mean {meant}?" if meant else f"use {', '.join(_PLACES)}, {own}",
+            help=f"did you mean `{meant}`?" if meant else f"use {', '.join(_PLACES)}, {own}",
         )
     try:
         made = getattr(import_module(module), cls)()

@@ -23,6 +23,13 @@ def test_the_help_lists_every_command_once_with_examples() -> None:
         assert shown.count(f"\n  {name} ") == (name != "preview"), name
 
 
+def test_a_misspelt_choice_reminds_of_the_right_one() -> None:
+    refused = run_here(["check", "--format", "jsn"])
+    assert refused.returncode == 2
+    assert "did you mean 'json'?" in refused.stderr
+    assert "did you mean" not in run_here(["check", "--format", "xml"]).stderr
+
+
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_completion_scripts_ask_for_completions(shell: str) -> None:
     script = run_here(["completion", shell]).stdout

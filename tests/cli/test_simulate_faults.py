@@ -97,7 +97,7 @@ def test_a_simulator_that_asks_for_the_end_costs_one_simulation(folder: Path) ->
     [
         ("fragile_simulator:Unreachable", "cannot be made: no server at port 2000", ""),
         ("fragile_simulator:Other", "'fragile_simulator:Other' is no simulator", "derive from"),
-        ("Kinematics", "there is no simulator 'Kinematics'", "did you mean kinematic?"),
+        ("Kinematics", "there is no simulator 'Kinematics'", "did you mean `kinematic`?"),
         (":", "there is no simulator ':'", "kinematic, mujoco, newtonian, dummy, or MODULE:CLASS"),
     ],
 )

@@ -227,11 +227,11 @@ def test_a_program_in_which_nothing_happens_is_better_searched_by_its_scenes(tmp
 @pytest.mark.parametrize(
     ("words", "code", "message"),
     [
-        (["--sampler", "cm"], "SC604", "did you mean 'cma'?"),
+        (["--sampler", "cm"], "SC604", "did you mean `cma`?"),
         (["--sampler-option", "popsiz=3"], "SC604", "its options: sigma, popsize"),
         (["--objective", "gap"], "SC604", "did you mean 'gaps'?"),
         (["--minimize", "gaps"], "SC604", "--minimize 'min(gaps)'"),
-        (["--simulator", "kinemtic"], "SC604", "did you mean kinematic?"),
+        (["--simulator", "kinemtic"], "SC604", "did you mean `kinematic`?"),
         (["--report", "nowhere/report.html"], "SC601", "mkdir -p"),
         (["--report", "report.png"], "SC604", "a name that ends in .html"),
         (["-o", "brake.scenic"], "SC601", "give the name of a folder"),
@@ -321,6 +321,6 @@ def test_sampling_by_a_sampler(tmp_path: Path) -> None:
     assert len(values) == 60
     assert sum(values[-12:]) < 0.5 * sum(values[:12])
     grid = run_here(["sample", program, "-n", 2, "--seed", 1, "--sampler", "gird"])
-    assert "did you mean 'grid'" in grid.stderr
+    assert "did you mean `grid`" in grid.stderr
     assert run_here(["sample", program, "--sampler", "cma", "-j", 2]).returncode == 2
     assert run_here(["sample", program, "--minimize", "far"]).returncode == 2

@@ -103,6 +103,9 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
         ("desl.scenic", "did you mean `desk.scenic`?"),
         ("programms/desk.scenic", "did you mean `programs`?"),
         ("programs/chair.scenic", "check the path"),
+        ("lamp.scenic", "did you mean `programs/lamps/lamp.scenic`?"),
+        ("programs/lamp.scenic", "did you mean `programs/lamps/lamp.scenic`?"),
+        ("hidden.scenic", "check the path"),
         ("programs/deep/er/chair.scenic", "check the path: `programs` has no `deep`"),
         ("elsewhere/chair.scenic", "check the path: the working directory has no `elsewhere`"),
         ("desk.scenic/x", "the file cannot be read"),
@@ -111,7 +114,10 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
 def test_a_missing_file_is_looked_for(
     path: str, advice: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "programs").mkdir()
+    (tmp_path / "programs" / "lamps").mkdir(parents=True)
+    (tmp_path / "programs" / "lamps" / "lamp.scenic").touch()
+    (tmp_path / ".cache").mkdir()
+    (tmp_path / ".cache" / "hidden.scenic").touch()
     (tmp_path / "desk.scenic").touch()
     monkeypatch.chdir(tmp_path)
     with pytest.raises(ScenicError) as caught:

@@ -3,7 +3,7 @@ from functools import cache
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scenic.language.spelling import distance, nearest, nearest_attribute
+from scenic.language.spelling import distance, nearest, nearest_attribute, nearest_option
 
 WORDS = st.text("abc", max_size=6)
 
@@ -57,3 +57,12 @@ def test_attributes_that_are_missing_remind_of_others() -> None:
     assert missing("banana") is None
     assert nearest_attribute(AttributeError("raduis")) is None
     assert nearest_attribute(NameError("raduis", name="raduis")) is None
+
+
+def test_the_nearest_of_a_few_options() -> None:
+    samplers = ["random", "ce", "mab", "eg", "sa", "bo", "cma", "tpe", "sobol"]
+    assert nearest_option("cm", samplers) == "cma"
+    assert nearest_option("Sob", samplers) == "sobol"
+    assert nearest_option("radnom", samplers) == "random"
+    assert nearest_option("", samplers) is None
+    assert nearest_option("quasi", samplers) is None

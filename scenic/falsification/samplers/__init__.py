@@ -12,7 +12,7 @@ from scenic.falsification.samplers.parzen import Parzen
 from scenic.falsification.samplers.protocol import Sampler, SamplerError
 from scenic.falsification.samplers.sequences import Grid, Halton, Random, Sobol
 from scenic.falsification.space import Space
-from scenic.language.spelling import nearest
+from scenic.language.spelling import nearest_option
 
 __all__ = ["SAMPLERS", "make_sampler"]
 
@@ -37,10 +37,9 @@ SAMPLERS: Final[Mapping[str, Callable[[Space, int, Any], Sampler]]] = MappingPro
 def make_sampler(name: str, space: Space, seed: int, given: Any = None) -> Sampler:
     """The sampler of a name; raises `SamplerError` if there is none, or its library is missing."""
     if name not in SAMPLERS:
-        begun = [known for known in SAMPLERS if name and known.startswith(name.lower())]
-        near = begun[0] if len(begun) == 1 else nearest(name, SAMPLERS)
+        near = nearest_option(name, SAMPLERS)
         raise SamplerError(
             f"there is no sampler {name!r}",
-            help=(f"did you mean {near!r}? " if near else "") + f"the samplers: {', '.join(SAMPLERS)}",
+            help=(f"did you mean `{near}`? " if near else "") + f"the samplers: {', '.join(SAMPLERS)}",
         )
     return SAMPLERS[name](space, seed, given)
