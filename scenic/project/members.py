@@ -5,7 +5,9 @@ The class of such a value follows from annotations of the library (`scenic.proje
 
 import ast
 import os
+import re
 from collections.abc import Collection, Iterator, Mapping
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Final
 
@@ -13,12 +15,20 @@ from scenic import language
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Resolution
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
+from scenic.language.members import MEMBERS
 from scenic.language.names import NAMES, NameKind
 from scenic.language.properties import attributes_of, properties_of
 from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest
-from scenic.project.classes import class_of, class_of_elements, class_of_exported, class_of_symbol, meaning
+from scenic.project.classes import (
+    Class,
+    class_of,
+    class_of_elements,
+    class_of_exported,
+    class_of_symbol,
+    meaning,
+)
 from scenic.project.index import Exported, Project
 from scenic.project.modules import Module
 from scenic.project.symbols import Symbol
@@ -37,21 +47,31 @@ _DECLARED: Final[Mapping[str, str]] = MappingProxyType(
 )
 """The types of the instances of classes of the language, by the place of the class."""
 _OF_SEQUENCES: Final = frozenset({*dir(tuple), *dir(list), *dir(set)})
-_COMMON: Final = frozenset(properties_of("Object")) | frozenset(attributes_of("Object"))
+_COMMON: Final = frozenset(properties_of("Object")).union(attributes_of("Object"), *MEMBERS.values())
 
 
 def member_findings(
-    project: Project, tree: ast.Module, source: Source, resolution: Resolution, brought: Collection[str]
+    project: Project,
+    tree: ast.Module,
+    source: Source,
+    resolution: Resolution,
+    brought: Mapping[str, Exported],
 ) -> Iterator[Diagnostic]:
     """Reports slips in attributes of what star imports and the model bring; ``brought`` are the names of that."""
-    if not brought:
+    files = {each.module.filename for each in brought.values() if each.module is not None}
+    folders = {os.path.dirname(file) for file in files if file.startswith(_LIBRARY)}
+    if not folders:
         return
+    # Nearly all attributes have a name that stands in the library: only the others are looked into.
+    known = frozenset().union(_COMMON, *(_words_in(folder) for folder in folders))
     module = Module(source, tree, resolution, is_scenic=True, broken=False)
     stored = {node.attr for node, _ in resolution.nodes(ast.Attribute) if isinstance(node.ctx, ast.Store)}
     stored |= {node.property for node, _ in resolution.nodes(scenic.SpecifierPhrase) if node.property}
     seen: dict[tuple[str, str], tuple[str, str] | None] = {}
     for node, _ in resolution.nodes(ast.Attribute):
-        if node.attr in stored or node.attr in _COMMON or node.attr.startswith("_"):
+        if node.attr in stored or node.attr.startswith("_"):
+            continue
+        if node.attr in known and not _is_near(node, brought):
             continue
         chain = _chain(node.value, resolution, brought)
         if chain is None:
@@ -75,6 +95,27 @@ def member_findings(
                 f"did you mean `{meant}`?",
                 fix=Fix(f"Change to `{meant}`", (Edit(place, meant),)),
             )
+
+
+@lru_cache(maxsize=16)
+def _words_in(folder: str) -> frozenset[str]:
+    """The words of all files of a folder of the library, which does not change."""
+    words: set[str] = set()
+    for entry in os.scandir(folder):
+        if entry.name.endswith((".py", ".scenic")):
+            with open(entry.path, encoding="utf-8") as file:
+                words.update(re.findall(r"\w+", file.read()))
+    return frozenset(words)
+
+
+def _is_near(node: ast.Attribute, brought: Mapping[str, Exported]) -> bool:
+    """Return whether an attribute is one of what is brought itself, or of a sequence in it: ``network.lane``, ``network.lanes.road``."""
+    match node.value:
+        case ast.Name(id=name):
+            return name in brought and node.attr not in _COMMON
+        case ast.Attribute(value=ast.Name(id=name)):
+            return name in brought and node.attr not in _OF_SEQUENCES
+    return False
 
 
 def _chain(node: ast.expr, resolution: Resolution, brought: Collection[str]) -> str | None:
@@ -126,12 +167,20 @@ def _kind_of_class(project: Project, symbol: Symbol | None) -> str | None:
     return None
 
 
+def _class_of_library(project: Project, symbol: Symbol) -> Class | None:
+    """The class that a symbol of the library is; computed once, since the library does not change."""
+    module = symbol.module
+    if module is None or symbol.filename is None or not symbol.filename.startswith(_LIBRARY):
+        return class_of_symbol(project, symbol)
+    return module.derived(f"class {symbol.name} {symbol.span}", lambda: class_of_symbol(project, symbol))
+
+
 def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, str] | None:
     """The class of the owner of an attribute and the name that was meant, if the class has no such attribute."""
     symbol = class_of(project, module, node.value)
     element = class_of_elements(project, module, node.value) if symbol is None else None
     if element is not None and node.attr not in _OF_SEQUENCES:
-        known = class_of_symbol(project, element)
+        known = _class_of_library(project, element)
         meant = None if known is None else nearest(node.attr, {each.name for each in known.members})
         return None if meant is None else (f"sequence of {element.name}", f"[0].{meant}")
     if symbol is None:
@@ -139,7 +188,7 @@ def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, s
         symbol = meaning(project, module, node.value) if isinstance(node.value, ast.Name) else None
     if symbol is None or symbol.filename is None or not symbol.filename.startswith(_LIBRARY):
         return None
-    cls = class_of_symbol(project, symbol)
+    cls = _class_of_library(project, symbol)
     if cls is None or cls.member(node.attr) is not None or cls.member("__getattr__") is not None:
         return None
     meant = nearest(node.attr, {each.name for each in cls.members if not each.name.startswith("_")})

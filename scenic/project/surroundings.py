@@ -107,7 +107,7 @@ class _Surroundings:
         yield from self._imports.findings()
         yield from map_findings(self._tree, self._source)
         yield from texture_findings(self._tree, self._source)
-        yield from member_findings(self._project, self._tree, self._source, self._resolution, self.names)
+        yield from member_findings(self._project, self._tree, self._source, self._resolution, self._names)
 
 
 def _foreign(project: Project, exported: Exported) -> Foreign | None:

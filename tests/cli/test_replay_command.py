@@ -162,7 +162,7 @@ def test_simulations_of_every_format_are_replayed(place: Path, form: str, librar
         (["found", "--worst", 9], "SC609", "holds 8 runs with a value"),
         (["runs", "--worst", 1], "SC609", "is no folder of a search"),
         (["found", 1, "--worst", 1], "", "NUMBER and --worst"),
-        (["found", "--simulator", "kinematics"], "SC604", "did you mean kinematic?"),
+        (["found", "--simulator", "kinematics"], "SC604", "did you mean `kinematic`?"),
     ],
 )
 def test_what_cannot_be_shown_is_said(place: Path, words: list[object], code: str, message: str) -> None:

@@ -167,7 +167,7 @@ def test_mistakes_have_a_place(text: str, words: str) -> None:
 @pytest.mark.parametrize(
     ("params", "words"),
     [
-        ({"verifaiSamplerType": "hulton"}, "did you mean 'halton'"),
+        ({"verifaiSamplerType": "hulton"}, "did you mean `halton`"),
         ({"verifaiSamplerParams": {"speed": 3}}, "sample_index, bases_skipped"),
         ({"externalSampler": 3}, "derive a class"),
     ],
