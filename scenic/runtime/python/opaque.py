@@ -23,7 +23,7 @@ from scenic.runtime.instances.objects import Point
 from scenic.runtime.program.context import Context, current, here, next_address
 from scenic.runtime.python.bounded import bounds_of_call
 from scenic.runtime.python.random_state import is_as, preserved, seed_globals
-from scenic.runtime.python.samples import Globals, Reach, Sample, dependencies, mention, reachable
+from scenic.runtime.python.samples import Globals, Reach, Sample, dependencies, mention, nodes_of, reachable
 from scenic.runtime.values import generic
 from scenic.runtime.values.values import CODEC, Random, as_value
 
@@ -74,14 +74,15 @@ def later(
     own = key(here(), next_address())
     context = current.get()
     reads: list[Any] = [function, *args, *keywords.values()]
-    looks = context is not None and mention(reads, seen, "can see")
+    reached = list(reachable(reads, seen))
+    looks = context is not None and mention(reached, "can see")
     if context is not None and looks:
         context.record.looks = True
-        reads += context.objects
-    operands = (own, *dependencies(reads, seen))
+        reached = list(reachable([*reads, *context.objects], seen))
+    operands = (own, *nodes_of(reached))
     habit = _Habit()
-    habit.draws = any(mention(reads, seen, word) for word in _STATE_READERS)
-    instances = tuple(value for value in reachable(reads, seen) if isinstance(value, Point))
+    habit.draws = mention(reached, *_STATE_READERS)
+    instances = tuple(value for value in reached if isinstance(value, Point))
     code = OpaqueCode(instances, function, tuple(args), keywords, operands, seen, context, looks, habit)
     node = make_node(operation, operands, code, here())
     if instances and context is not None and context.is_symbolic:
@@ -123,7 +124,7 @@ def is_later(*values: Any) -> bool:
     context = current.get()
     if context is not None and (context.sample is not None or not context.is_symbolic):
         return False
-    return bool(dependencies(values))
+    return any(isinstance(value, Random) for value in reachable(values, Globals()))
 
 
 def evaluated(call: Call, columns: Sequence[Column], absent: Any = None) -> list[Any]:

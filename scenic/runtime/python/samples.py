@@ -63,8 +63,6 @@ class Globals:
 
     def __init__(self) -> None:
         self._values: dict[tuple[int, str], Any] = {}
-        self._loads: dict[CodeType, tuple[str, ...]] = {}
-        self._imports: dict[CodeType, frozenset[str]] = {}
         self._fixed: dict[int, tuple[Any, bool]] = {}
         self._members: dict[type, list[Any]] = {}
         self._varying: dict[type, bool] = {}
@@ -93,25 +91,15 @@ class Globals:
         codes = [code]
         while codes:
             code = codes.pop()
-            yield from self._global_names(code)
+            yield from _global_names(code)
             codes.extend(item for item in code.co_consts if isinstance(item, CodeType))
-
-    def _global_names(self, code: CodeType) -> tuple[str, ...]:
-        """The names that code looks up among globals: not those of attributes, which the program may use for others."""
-        found = self._loads.get(code)
-        if found is None:
-            found = self._loads[code] = tuple(dict.fromkeys(_loads(code))) if code.co_names else ()
-        return found
 
     def imported(self, function: FunctionType) -> list[ModuleType]:
         """The program's modules that a function of the program, or code nested in it, may import when it is called."""
         prelude = function.__globals__.get(PRELUDE)
         if prelude is None:
             return []
-        code = function.__code__
-        words = self._imports.get(code)
-        if words is None:
-            words = self._imports[code] = frozenset(_imported_names(code))
+        words = _words_of_imports(function.__code__)
         if not words:
             return []
         return [module for module in prelude.modules if module.__name__.rpartition(".")[2] in words]
@@ -192,13 +180,24 @@ def may_return_instances(value: Any) -> bool:
 
 def dependencies(values: Iterable[Any], names: Globals | None = None) -> list[Node]:
     """The nodes whose values decide the sampled values of ``values``, in order of discovery."""
-    walk = reachable(values, Globals() if names is None else names)
+    return nodes_of(reachable(values, Globals() if names is None else names))
+
+
+def nodes_of(walk: Iterable[Any]) -> list[Node]:
+    """The nodes of the random values among what `reachable` gives, each once."""
     return list(dict.fromkeys(value.node for value in walk if isinstance(value, Random)))
 
 
-def mention(values: Iterable[Any], names: Globals, word: str) -> bool:
-    """Return whether functions of the program among the values, or reached by them, hold a text among their constants and names."""
-    return any(mentions(value.__code__, word) for value in reachable(values, names) if is_own_function(value))
+def mention(walk: Iterable[Any], *words: str) -> bool:
+    """Return whether functions of the program among what `reachable` gives hold one of some texts among their constants and names."""
+    codes = (value.__code__ for value in walk if is_own_function(value))
+    return any(mentions(code, word) for code in codes for word in words)
+
+
+@lru_cache(maxsize=4096)
+def _global_names(code: CodeType) -> tuple[str, ...]:
+    """The names that code looks up among globals: not those of attributes, which the program may use for others."""
+    return tuple(dict.fromkeys(_loads(code))) if code.co_names else ()
 
 
 def _loads(code: CodeType) -> Iterator[str]:
@@ -210,6 +209,11 @@ def _loads(code: CodeType) -> Iterator[str]:
             is_egoless = member in EGOLESS or (member == "operation" and first in EGOLESS_OPERATORS)
             if step.argval != PRELUDE or not is_egoless:
                 yield step.argval
+
+
+@lru_cache(maxsize=4096)
+def _words_of_imports(code: CodeType) -> frozenset[str]:
+    return frozenset(_imported_names(code))
 
 
 def _imported_names(code: CodeType) -> Iterator[str]:
