@@ -19,6 +19,7 @@ from scenic.graph import node as graph
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
 from scenic.graph.operation import Operation, always
+from tests.amounts import amount
 
 
 def verdict(*nodes):
@@ -167,7 +168,7 @@ def judged(seed):
     return items, found.contradictions, found.tautologies
 
 
-SEEDS = range(50)
+SEEDS = range(amount(30, 50))
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -232,7 +232,7 @@ def test_other_lines_are_not_gone_on_with(
     target = folder / "other.jsonl"
     content = "".join(json.dumps(row | change) + "\n" for row in rows)
     target.write_text(content)
-    result = run(folder, *arguments, "-o", target.name, "--resume")
+    result = run_here(command(*arguments, "-o", target.name, "--resume")[3:], folder=folder)
     assert result.returncode != 0
     assert "SC609" in result.stderr
     assert words in " ".join(result.stderr.split())
@@ -242,7 +242,7 @@ def test_other_lines_are_not_gone_on_with(
 def test_scenes_by_rows_of_a_sequence(folder: Path) -> None:
     """They are those of the API, evenly spread, whatever the number of processes, and not mixed with others."""
     target = folder / "even.jsonl"
-    assert run(folder, "-n", 32, "--sobol", "-o", target.name).returncode == 0
+    assert run_here(command("-n", 32, "--sobol", "-o", target.name)[3:], folder=folder).returncode == 0
     lines = target.read_bytes()
     scenario = scenic.load(folder / "room.scenic")
     rows = [json.loads(line) for line in lines.splitlines()]
@@ -252,7 +252,7 @@ def test_scenes_by_rows_of_a_sequence(folder: Path) -> None:
         ]
         assert row["points"] == "sobol"
     target.write_bytes(b"".join(lines.splitlines(keepends=True)[:9]))
-    wrong = run(folder, "-n", 32, "--resume", "-o", target.name)
+    wrong = run_here(command("-n", 32, "--resume", "-o", target.name)[3:], folder=folder)
     assert "holds scenes of other random numbers" in " ".join(wrong.stderr.split())
     assert run(folder, "-n", 32, "--sobol", "-j", 2, "--resume", "-o", target.name).returncode == 0
     assert target.read_bytes() == lines

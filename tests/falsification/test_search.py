@@ -18,6 +18,7 @@ from scenic.falsification.store import SearchFolderError, read_rows
 from scenic.formats.files import OutputError
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.scenes.scene import Scene
+from tests.amounts import amount
 from tests.cli.commands import run_here
 
 BRAKE = """
@@ -58,7 +59,7 @@ def test_rows_are_equal_for_any_number_of_processes_and_after_a_resumption(tmp_p
     whole = rows_of(braking(folder=tmp_path / "whole"))
     assert rows_of(braking(processes=2)) == whole
     lines = (tmp_path / "whole" / "runs.jsonl").read_bytes()
-    for number, cut in enumerate((0, len(lines) // 3, 2 * len(lines) // 3, len(lines) - 1)):
+    for number, cut in enumerate((0, len(lines) // 3, 2 * len(lines) // 3, len(lines) - 1)[amount(2, 0) :]):
         folder = tmp_path / f"cut{number}"
         braking(folder=folder, n=1)
         (folder / "runs.jsonl").write_bytes(lines[:cut])

@@ -13,10 +13,13 @@ from scenic.formats.coco import LabelledImages, millimetres, run_lengths
 from scenic.formats.labels import body_of, observe
 from scenic.formats.sensors import CameraError, viewpoint
 from scenic.runtime.elements.sensors import DepthSensor, RGBSensor, SSSensor
+from tests.amounts import amount
 from tests.formats.stand_ins import BALL, Chair, Object, Scene, Turn
 from tests.runtime.geometry.visibility import reference
 
 SIZE = (64, 48)
+WIDTH, HEIGHT = amount(36, 64), amount(27, 48)
+"""Pixels of the image of which every pixel is looked at."""
 
 
 def scene_of(*things: Object, **sensors: object) -> Scene:
@@ -36,7 +39,7 @@ def room() -> Scene:
         shape = {"shape": BALL} if number % 2 else {}
         turn = Turn.by(*rng.uniform(-1, 1, 3))
         things.append(kind(position=place, orientation=turn, width=rng.uniform(0.5, 3), **shape))
-    return scene_of(*things, front=RGBSensor(width=64, height=48, attributes={"fov": 80}))
+    return scene_of(*things, front=RGBSensor(width=WIDTH, height=HEIGHT, attributes={"fov": 80}))
 
 
 def test_every_pixel_shows_the_nearest_object() -> None:
@@ -44,22 +47,22 @@ def test_every_pixel_shows_the_nearest_object() -> None:
     point = viewpoint(scene, "front", None)
     found = observe(scene, point)
     camera = point.camera
-    column, row = np.meshgrid(np.arange(64) + 0.5, np.arange(48) + 0.5)
+    column, row = np.meshgrid(np.arange(WIDTH) + 0.5, np.arange(HEIGHT) + 0.5)
     rays = (
         camera.ahead
-        + ((column / 32 - 1) * camera.tangents[0])[..., None] * camera.right
-        + ((1 - row / 24) * camera.tangents[1])[..., None] * camera.up
+        + ((2 * column / WIDTH - 1) * camera.tangents[0])[..., None] * camera.right
+        + ((1 - 2 * row / HEIGHT) * camera.tangents[1])[..., None] * camera.up
     ).reshape(-1, 3)
     depth = np.full((len(scene.objects), len(rays)), np.inf)
     for number, thing in enumerate(scene.objects[1:], start=1):
         depth[number] = reference.first_hits(camera.eye, rays, reference.triangles(body_of(thing), 0))
     nearest = depth.min(axis=0)
     expected = np.where(np.isfinite(nearest), depth.argmin(axis=0), -1)
-    assert (expected.reshape(48, 64) == found.objects).mean() > 0.999
+    assert (expected.reshape(HEIGHT, WIDTH) == found.objects).mean() > 0.999
     agree = np.isfinite(nearest) & (expected == found.objects.reshape(-1))
     assert np.allclose(found.depth.reshape(-1)[agree], nearest[agree], rtol=1e-4)
     assert found.rgb is not None
-    assert found.rgb.shape == (48, 64, 3)
+    assert found.rgb.shape == (HEIGHT, WIDTH, 3)
     for label in found.labels:
         mask = found.mask(label)
         alone = np.isfinite(depth[label.index])

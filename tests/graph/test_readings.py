@@ -27,6 +27,7 @@ from scenic.graph.construction import make_node
 from scenic.graph.kinds import Kind
 from scenic.graph.operation import Operation, always
 from scenic.graph.operations import TABLE
+from tests.amounts import amount
 from tests.each import each
 
 LANES = 200
@@ -143,7 +144,7 @@ def assert_alike(found: Bounds | None, expected: Bounds | None) -> None:
 def test_boxes_do_not_depend_on_company(case):
     """Of many boxes at a time, where one operand may be the same in all of them, each is told what it is told alone."""
     rng = np.random.default_rng(23)
-    operation, count, operands = TABLE[case.name], 16, []
+    operation, count, operands = TABLE[case.name], amount(8, 16), []
     shared = int(rng.integers(-1, len(case.operands)))
     for place, part in enumerate(case.operands):
         rows = [random_bounds(part, rng) for _ in range(1 if place == shared else count)]
@@ -218,7 +219,7 @@ SOLVED = [case for case in CASES if TABLE[case.name].solver is not None]
 def test_terms_agree_with_numpy(case):
     """On fixed operands the term allows the computed value and, where the encoding is exact, no other."""
     rng = np.random.default_rng(19)
-    for _ in range(4):
+    for _ in range(amount(2, 4)):
         columns = [draw(part, 1, rng) for part in case.operands]
         if case.name == "power":
             columns[1] = np.array([rng.integers(0, 5)], dtype=columns[1].dtype)

@@ -12,6 +12,7 @@ from scipy import stats
 from scenic.language.errors import RejectionException
 from scenic.runtime.sampling.approximate import _correlation as measured
 from scenic.runtime.sampling.report import Approximation
+from tests.amounts import amount
 from tests.cli.commands import run_here
 from tests.runtime.programs import FALSE_ALARM, fingerprint, scenario
 
@@ -45,15 +46,16 @@ def observed(scenes):
 @pytest.mark.parametrize("name", list(PROGRAMS))
 def test_the_law_is_nearly_that_of_rejection(name: str) -> None:
     program = scenario(PROGRAMS[name])
-    scenes = program.sample(600, seed=1, approximate=600)
-    expected = observed(program.sample(600, seed=2))
+    count = amount(300, 600)
+    scenes = program.sample(count, seed=1, approximate=count)
+    expected = observed(program.sample(count, seed=2))
     found = observed(scenes)
     mix = np.arange(1, found.shape[1] + 1)[:, np.newaxis] % 7 - 2.6
     for ours, theirs in zip((*found.T, *(found @ mix).T), (*expected.T, *(expected @ mix).T), strict=True):
         assert stats.ks_2samp(ours, theirs).pvalue > FALSE_ALARM
     told = scenes[0].approximation
     assert told is not None
-    assert 200 < told.effective <= 600
+    assert count / 3 < told.effective <= count
     exact = sum(math.log(part.acceptance) for part in program.estimates(seed=3, candidates=4000))
     if "soft" not in name:
         assert told.log_probability == pytest.approx(exact, abs=0.4)

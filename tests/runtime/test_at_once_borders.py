@@ -29,6 +29,7 @@ from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.regions.scalar_regions import Single
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from scenic.runtime.values.values import Orientation, Vector
+from tests.amounts import amount
 from tests.runtime.boundaries import CENTIMETRE, compare, flip
 from tests.runtime.geometry.samples import SHAPES
 
@@ -264,7 +265,7 @@ def lanes(item: Moving, along: float) -> Body:
 
 
 def test_boxes_that_nearly_touch() -> None:
-    fixed, *others = moving(30, (0.3, 0.1, -0.2), seed=6)
+    fixed, *others = moving(amount(15, 30), (0.3, 0.1, -0.2), seed=6)
     standing = Moving(
         "box", fixed.start, fixed.way, Rotation.from_euler("zxy", ANGLES).as_quat(), (1, 2, 0.5)
     )
@@ -397,7 +398,7 @@ def test_planks_that_nearly_cross(angle: float) -> None:
     sizes = (40.0, 1.0, 0.2), (40.0, 1.0, 0.2)
     turn = Rotation.from_euler("z", angle) * Rotation.from_euler("x", 0.7)
     other = Rotation.from_euler("z", -angle) * Rotation.from_euler("x", -0.4)
-    for number in range(6):
+    for number in range(amount(3, 6)):
         way = np.random.default_rng(number).normal(size=3)
         way /= np.linalg.norm(way)
         still = Moving("box", np.zeros(3), way, turn.as_quat(), sizes[0])

@@ -922,8 +922,9 @@ def test_views_wider_than_a_half_turn_are_not_convex() -> None:
         assert view.boundingPolygon.polygons.contains(shapely.Point(1, 3))
         if convex:  # the middle of its box is half its reach ahead
             assert view.inradius == pytest.approx(1.5 * math.sin(angle / 2), rel=0.01)
-        assert view.voxelized(0.25).dimension == view.getVolumeRegion().dimension == 3
-        assert view.voxelized(0.25).scale.tolist() == [0.25] * 3
+        cells = view.voxelized(0.5)
+        assert cells.dimension == view.getVolumeRegion().dimension == 3
+        assert cells.scale.tolist() == [0.5] * 3
         assert view.getSurfaceRegion().dimension == 2
 
 

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 import scenic
+from tests.amounts import amount
 from tests.runtime.programs import euler, plain, rotation, scenario
 
 # A scenario whose whole world hangs on one frame: the parameters say where it is.
@@ -66,7 +67,7 @@ def assert_moved(text: str, place: tuple[float, ...], angles: tuple[float, ...])
             assert difference.magnitude() < 1e-6
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=amount(2, 6), deadline=None)
 @given(PLACE, ANGLE)
 @example((0, 0, 0), np.pi / 2)
 @example((1e3, -1e3, 10), np.pi)
@@ -74,7 +75,7 @@ def test_an_upright_scenario_may_stand_anywhere(place: tuple[float, ...], yaw: f
     assert_moved(WORLD + UPRIGHT, place, (yaw, 0, 0))
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=amount(2, 6), deadline=None)
 @given(PLACE, st.tuples(ANGLE, ANGLE.map(lambda angle: angle / 2.5), ANGLE))
 @example((3, 2, 1), (0.5, np.pi / 2, 0.3))
 @example((0, 0, 0), (0, np.pi, 0))

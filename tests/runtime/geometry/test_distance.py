@@ -16,6 +16,7 @@ from scenic.runtime.geometry.depth import convex_depth, convex_gap
 from scenic.runtime.geometry.nearest import nearest_on_triangles
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.segments import Segments
+from tests.amounts import amount
 
 from .samples import (
     SHAPES,
@@ -29,7 +30,7 @@ from .samples import (
     yawed,
 )
 
-COUNT = 40
+COUNT = amount(20, 40)
 
 
 @settings(max_examples=60, deadline=None)

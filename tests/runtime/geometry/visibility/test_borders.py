@@ -20,6 +20,7 @@ from scenic.runtime.geometry.visibility.proving import Proof, prove
 from scenic.runtime.geometry.visibility.regions import region_angles
 from scenic.runtime.geometry.visibility.seen_bodies import sees_bodies
 from scenic.runtime.geometry.visibility.views import FULL_ANGLE_SLACK, Extents, Views
+from tests.amounts import amount
 from tests.runtime.geometry.visibility import reference
 from tests.runtime.geometry.visibility.test_bodies import BOX, CONE, FRAME, quaternions
 
@@ -78,7 +79,7 @@ def border(rng: np.random.Generator, observers: Views, where: str) -> np.ndarray
 
 @pytest.mark.parametrize("where", ["side", "top", "behind", "pole", "reach"])
 def test_bodies_at_borders_are_seen_as_when_every_ray_is_cast(where: str) -> None:
-    count = 120
+    count = amount(50, 120)
     rng = np.random.default_rng(["side", "top", "behind", "pole", "reach"].index(where))
     observers = watching(rng, count, rays=9, reach=4.0)
     away = rng.uniform(1.0, 3.0, count)
@@ -91,7 +92,7 @@ def test_bodies_at_borders_are_seen_as_when_every_ray_is_cast(where: str) -> Non
     seen = sees_bodies(observers, target, (), count)
     expected = [reference.sees_body(observers, target, [], lane) for lane in range(count)]
     assert seen.tolist() == expected
-    assert 10 < seen.sum() < count - 10
+    assert 0.08 < seen.mean() < 0.92
 
 
 @pytest.mark.parametrize("angles", ANGLES)
@@ -467,7 +468,7 @@ def test_of_a_body_that_leads_away_only_the_part_within_reach_counts(up: float) 
 
 def test_obstacles_are_balls_that_meet_the_hull_of_the_camera_and_the_target() -> None:
     """None that does is left out; hardly any that does not is kept."""
-    rng, count = np.random.default_rng(12), 3000
+    rng, count = np.random.default_rng(12), amount(1000, 3000)
     way, offset = rng.normal(size=(2, count, 3)) * 10.0 ** rng.uniform(-1, 1, (2, count, 1))
     radius = rng.choice([0.0, 0.1, 0.7, 3.0], count) * rng.random(count)
     reach = rng.choice([0.0, 0.3, 2.0], count) * rng.random(count)
