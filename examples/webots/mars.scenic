@@ -5,11 +5,17 @@ scenic sample examples/webots/mars.scenic --seed 1 -o mars.wbt
 
 model scenic.simulators.webots.model
 
-ground = new Ground with color (0.75, 0.42, 0.27), with terrain (
-    new Hill at (-1.5, 1, 0), with width 3, with length 3, with height 0.25,
-    new Hill at (2, -1.5, 0), with width 2.5, with length 3, with height 0.15,
-)
 workspace = Workspace(BoxRegion(dimensions=(10, 10, 3)))
+
+class Rise(Hill):
+    """A low hill anywhere on the ground."""
+    position: new Point in RectangularRegion((0, 0, 0), 0, 8, 8)
+    width: Range(1.5, 3)
+    length: Range(1.5, 3)
+    height: Range(0.05, 0.25)
+
+hills = [new Rise for _ in range(8)]
+ground = new Ground with color (0.75, 0.42, 0.27), with terrain hills
 surface = ground.topSurface
 
 class Rover(WebotsObject):

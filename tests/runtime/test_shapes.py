@@ -9,6 +9,7 @@ import pytest
 import trimesh
 from scipy.spatial.transform import Rotation
 
+import scenic
 from scenic.language.errors import MeshError, ScenicTypeError, ScenicValueError
 from scenic.runtime.elements import shapes
 from scenic.runtime.geometry import primitives
@@ -104,6 +105,9 @@ def test_mesh_shape_needs_a_volume():
     assert isinstance(caught.value, MeshError)
     with pytest.raises(ScenicTypeError, match="needs a mesh, not a value of type `object`"):
         shapes.MeshShape(object())
+    with pytest.raises(ScenicTypeError, match="needs a fixed mesh, not a random one") as random:
+        scenic.scenarioFromString("ego = new Object with shape MeshShape(Uniform(1, 2))\n")
+    assert "distributionFunction" in random.value.help
 
 
 def test_from_file(tmp_path, monkeypatch):

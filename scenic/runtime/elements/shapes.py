@@ -23,6 +23,7 @@ from scenic.runtime.geometry.loading import factor_of, load_mesh
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.poses import Floats, Poses
 from scenic.runtime.geometry.solids import proper_volume
+from scenic.runtime.values.random_base import RandomBase
 
 Triple: TypeAlias = tuple[float, float, float]
 
@@ -287,6 +288,11 @@ def _exact_quarters(matrix: Floats) -> Floats:
 def _as_mesh(mesh: Any) -> Mesh:
     if isinstance(mesh, Mesh):
         return mesh
+    if isinstance(mesh, RandomBase):
+        raise ScenicTypeError(
+            "MeshShape needs a fixed mesh, not a random one",
+            help="make the whole shape in a function, `shape_of = distributionFunction(lambda x: MeshShape(...))`",
+        )
     try:
         vertices, faces = mesh.vertices, mesh.faces
     except AttributeError:

@@ -3,11 +3,9 @@
 from scenic.domains.driving.setting import is2DMode
 from scenic.simulators.webots.actions import ApplyForceAction, OffsetAction, WriteFileAction
 from scenic.simulators.webots.simulator import OutsideWebots
-from scenic.simulators.webots.terrain import ground_solid, heights_of, hill_height
+from scenic.simulators.webots.terrain import ground_shape, heights_of, hill_heights
 
 simulator OutsideWebots()
-
-random_height = distributionFunction(hill_height)
 
 if is2DMode():
     class Elevated:
@@ -34,26 +32,39 @@ class WebotsObject(Elevated):
     rotationOffset: (0, 0, 0)
     density: None
 
-class Terrain(OrientedPoint):
-    """A part of an uneven ground; its heights are added to those of the others."""
-    width: 1
-    length: 1
+class Terrain:
+    """A part of an uneven ground, which adds its heights to those of the others.
+
+    It has a place and a size like any object, and has to be inside the workspace. It is neither drawn nor written to worlds, and
+    neither collides nor hides anything: the `Ground` has its shape.
+    """
+    allowCollisions: True
+    occluding: False
+    requireVisible: False
+    render: False
 
     def heightAt(self, point):
         """The height (metres) at a point of the ground."""
         raise NotImplementedError(f'{type(self).__name__} has no method heightAt(point)')
 
+    def heightsAt(self, across, along):
+        """Rows of heights (metres) at the points of a grid: one row for each y in `along`, with its points at the x in `across`."""
+        return tuple(tuple(self.heightAt((x, y)) for x in across) for y in along)
+
 class Hill(Terrain):
     """A hill with the profile of a Gaussian; `spread` is the standard deviation as a share of its size."""
+    width: 1
+    length: 1
     height: 1
     spread: 0.25
 
     def heightAt(self, point):
-        place = self.position
-        dx, dy = point[0] - place.x, point[1] - place.y
-        turn = self.heading
-        x, y = dx * cos(turn) + dy * sin(turn), dy * cos(turn) - dx * sin(turn)
-        return random_height(x, y, self.width, self.length, self.height, self.spread)
+        """The height (metres) at a point of the ground."""
+        return self.heightsAt((point[0],), (point[1],))[0][0]
+
+    def heightsAt(self, across, along):
+        size = (self.width, self.length, self.height)
+        return hill_heights(across, along, self.position, self.heading, size, self.spread)
 
 class Ground(WebotsObject):
     """The ground: an `ElevationGrid`, flat unless there is terrain."""
@@ -67,5 +78,5 @@ class Ground(WebotsObject):
     baseThickness: 0.1
     terrain: ()
     heights: heights_of(self.terrain, self.width, self.length, self.gridSizeX, self.gridSizeY)
-    shape: BoxShape() if is2DMode() else MeshShape(ground_solid(self.heights, self.width, self.length, self.baseThickness))
+    shape: BoxShape() if is2DMode() else ground_shape(self.heights, self.width, self.length, self.baseThickness)
     positionOffset: (-self.width / 2, -self.length / 2, self.baseThickness - self.height / 2)

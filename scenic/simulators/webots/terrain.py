@@ -1,73 +1,83 @@
-"""Uneven ground: its heights at the points of a grid, and the solid below them."""
+"""Uneven ground: its heights at the points of a grid, and the shape of the solid below them."""
 
-import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from scenic.language.errors import InvalidScenarioError
-from scenic.runtime.values.random_values import Random
+from scenic.runtime.elements.functions import distributionFunction
+from scenic.runtime.elements.shapes import MeshShape
+from scenic.runtime.geometry.mesh import Mesh
 
-__all__ = ["ground_solid", "heights_of", "hill_height"]
+__all__ = ["ground_shape", "heights_of", "hill_heights"]
 
-Floats = NDArray[np.float64]
+Rows: TypeAlias = tuple[tuple[float, ...], ...]
 
 
-def heights_of(
-    terrain: Sequence[Any], width: float, length: float, columns: int, rows: int
-) -> tuple[tuple[Any, ...], ...]:
+@distributionFunction
+def heights_of(terrain: Sequence[Any], width: float, length: float, columns: int, rows: int) -> Any:
     """The sum of the heights of all parts of a terrain at the points of a grid about the origin.
 
     Args:
-        terrain: things with a method ``heightAt(point)``, whose answers may be random values.
+        terrain: things with a method ``heightsAt(across, along)``, whose answers may be random values.
         width: extent along x, metres.
         length: extent along y, metres.
         columns: points along x.
         rows: points along y.
 
     Returns:
-        Rows of heights in metres, from the corner with the least x and y.
+        Rows of heights in metres, from the corner with the least x and y; a random value if the terrain is random.
 
     """
-    across = np.linspace(-width / 2, width / 2, columns).tolist()
-    along = np.linspace(-length / 2, length / 2, rows).tolist()
-    return tuple(tuple(sum((part.heightAt((x, y)) for part in terrain), 0.0) for x in across) for y in along)
+    across = tuple(np.linspace(-width / 2, width / 2, columns).tolist())
+    along = tuple(np.linspace(-length / 2, length / 2, rows).tolist())
+    flat = ((0.0,) * columns,) * rows
+    return _sum(flat, *(part.heightsAt(across, along) for part in terrain))
 
 
-def hill_height(x: float, y: float, width: float, length: float, height: float, spread: float) -> float:
-    """The height of a hill (a Gaussian) at a place in its own frame; 0 outside its rectangle.
+@distributionFunction
+def _sum(*grids: Rows) -> Rows:
+    total = np.sum([np.asarray(grid, dtype=np.float64) for grid in grids], axis=0)
+    return tuple(map(tuple, total.tolist()))
+
+
+@distributionFunction
+def hill_heights(
+    across: Sequence[float],
+    along: Sequence[float],
+    position: Any,
+    heading: float,
+    size: tuple[float, float, float],
+    spread: float,
+) -> Rows:
+    """The heights of a hill (a Gaussian) at the points of a grid; 0 outside its rectangle.
+
+    One call covers the whole grid, so that a random hill is one random value and not one for each point.
 
     Args:
-        x: metres to the right of its middle.
-        y: metres ahead of its middle.
-        width: extent along x.
-        length: extent along y.
-        height: in the middle.
-        spread: standard deviation as a share of the extents.
+        across: x of the points, metres.
+        along: y of the points, metres.
+        position: the middle of the hill.
+        heading: its heading in radians.
+        size: its width, its length, and its height in the middle, metres.
+        spread: standard deviation as a share of width and length.
+
+    Returns:
+        Rows of heights in metres, one row for each y.
 
     """
-    if abs(x) > width / 2 or abs(y) > length / 2:
-        return 0.0
-    sigma_x, sigma_y = width * spread, length * spread
-    return height * math.exp(-((x / sigma_x) ** 2 + (y / sigma_y) ** 2) / 2)
+    width, length, height = size
+    dx, dy = np.meshgrid(np.subtract(across, position[0]), np.subtract(along, position[1]))
+    x = dx * np.cos(heading) + dy * np.sin(heading)
+    y = dy * np.cos(heading) - dx * np.sin(heading)
+    profile = np.exp(-((x / (width * spread)) ** 2 + (y / (length * spread)) ** 2) / 2)
+    inside = (np.abs(x) <= width / 2) & (np.abs(y) <= length / 2)
+    return tuple(map(tuple, np.where(inside, height * profile, 0.0).tolist()))
 
 
-def ground_solid(heights: Any, width: float, length: float, thickness: float) -> Any:
-    """The closed mesh (``trimesh.Trimesh``) between a grid of heights and a plane ``thickness`` below the height 0.
-
-    Raises:
-        InvalidScenarioError: a height is random.
-
-    """
-    import trimesh  # slow to import
-
-    if any(isinstance(value, Random) for row in heights for value in row):
-        raise InvalidScenarioError(
-            "the terrain of a Ground is random, but the shape of an object has to be fixed",
-            help="give its parts fixed places and heights; param values make variants of them",
-        )
+@distributionFunction
+def ground_shape(heights: Any, width: float, length: float, thickness: float) -> MeshShape:
+    """The shape of the solid between a grid of heights and a plane ``thickness`` below the height 0."""
     values = np.asarray(heights, dtype=np.float64)
     rows, columns = values.shape
     x, y = np.meshgrid(
@@ -86,4 +96,4 @@ def ground_solid(heights: Any, width: float, length: float, thickness: float) ->
         [np.column_stack([rim, rim + under, after]), np.column_stack([after, rim + under, after + under])]
     )
     faces = np.concatenate([top, top[:, ::-1] + under, sides])
-    return trimesh.Trimesh(np.concatenate([above, below]), faces, process=False)
+    return MeshShape(Mesh(np.concatenate([above, below]), faces))
