@@ -1,5 +1,7 @@
 """Scenes as worlds of Webots R2023a: nodes of its VRML format, and whole ``.wbt`` files with their meshes beside them."""
 
+import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import field
 from pathlib import Path, PurePosixPath
@@ -11,10 +13,11 @@ import numpy.typing as npt
 from scenic.dataclass import dataclass
 from scenic.formats.camera import corners, ground_height
 from scenic.formats.files import make_folder, write
-from scenic.formats.instances import Instance, Surface, distinct_labels, picture
+from scenic.formats.instances import Instance, distinct_labels, picture
 from scenic.formats.scenes import Scene
+from scenic.language.errors import ScenicValueError
 
-__all__ = ["World", "mesh_file", "solid", "webots_world", "write_world"]
+__all__ = ["World", "def_names", "mesh_file", "solid", "webots_world", "write_world"]
 
 _HEADER: Final = "#VRML_SIM R2023a utf8"
 _STEP: Final = 16
@@ -23,6 +26,10 @@ _MARGIN: Final = 2.0
 """The floor and the view reach this far beyond the objects, metres."""
 _GRAY: Final = (0.8, 0.8, 0.8)
 _SUPERVISOR: Final = "scenic_supervisor"
+_SUPERVISOR_NAME: Final = "scenic"
+_DEF: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_RESERVED: Final = frozenset({"FLOOR", "SCENIC"})
+"""DEF names of nodes that a written world has beside its objects."""
 
 Array = npt.NDArray[np.float64]
 
@@ -45,37 +52,91 @@ def webots_world(scene: Scene, stem: str, *, program: str | None = None) -> Worl
     """A scene as a world.
 
     Objects with a property ``webotsProto`` become nodes of that PROTO (a name, found in ``../protos``, or an address that ends
-    in ``NAME.proto``) with their ``controller`` and ``customData``. All others are a ``Solid`` of their shape and colour, which
-    has physics if they have a ``density`` or a ``mass``.
+    in ``NAME.proto``) with their ``controller``, ``customData`` and ``battery``. All others are a ``Solid`` of their shape and
+    colour, which has physics if they have a ``density`` or a ``mass``. Objects that are not drawn are left out.
 
     Args:
         scene: the scene.
         stem: the name of the file without its ending; meshes are in the folder ``STEM_meshes``.
-        program: path of the scene's program, to add a supervisor that runs the program's behaviors in this world.
+        program: path of the scene's program, to add a supervisor that runs the program's behaviors in this world. Objects with
+            ``webotsAdhoc`` are then left out, since the supervisor makes them.
+
+    Raises:
+        ScenicValueError: two objects have one ``webotsName``, or a name cannot be a DEF name.
 
     """
-    drawn = picture([scene])
-    instances = drawn.scenes[0]
+    names = def_names(scene.objects)
+    instances = picture([scene]).scenes[0]
     files: dict[str, bytes] = {}
     protos: list[str] = []
     nodes: list[str] = []
-    for number, (instance, label) in enumerate(zip(instances, distinct_labels(instances), strict=True)):
+    for instance, label in zip(instances, _labels(instances), strict=True):
         thing: Any = instance.thing
+        name = names[id(thing)]
+        if program is not None and getattr(thing, "webotsAdhoc", None) is not None:
+            continue
         proto = getattr(thing, "webotsProto", None)
         if proto is not None:
             address = str(proto) if str(proto).endswith(".proto") else f"../protos/{proto}.proto"
             if address not in protos:
                 protos.append(address)
-            nodes.append(_robot(thing, PurePosixPath(address).stem, label, number))
+            nodes.append(_robot(thing, PurePosixPath(address).stem, name, label))
             continue
-        nodes.append(
-            solid(thing, drawn.surfaces[instance.surface], stem, files, number, label, instance.color)
-        )
+        nodes.append(solid(thing, stem, files, name, label, instance.color))
     externals = "".join(f"EXTERNPROTO {_text(address)}\n" for address in protos)
     supervisor = "" if program is None else _supervisor(scene, program, files)
     return World(
         f"{_HEADER}\n{externals}\n{_surroundings(scene, instances)}{''.join(nodes)}{supervisor}", files
     )
+
+
+def def_names(objects: Sequence[Any]) -> dict[int, str]:
+    """The DEF names of the nodes of a scene's objects, by the identities of the objects.
+
+    It is an object's ``webotsName``; otherwise ``TYPE_0``, ``TYPE_1`` and so on for objects of one ``webotsType``, and
+    ``object_NUMBER`` for the others. A supervisor finds the nodes by the same rule.
+
+    Raises:
+        ScenicValueError: two objects have one name, or a name cannot be a DEF name.
+
+    """
+    found: dict[int, str] = {}
+    used: dict[str, Any] = {}
+    types: Counter[str] = Counter()
+    for number, thing in enumerate(objects):
+        name, kind = getattr(thing, "webotsName", None), getattr(thing, "webotsType", None)
+        if name is not None:
+            name = str(name)
+        elif kind is not None:
+            name = f"{kind}_{types[str(kind)]}"
+            types[str(kind)] += 1
+        else:
+            name = f"object_{number}"
+        if not _DEF.fullmatch(name):
+            raise ScenicValueError(
+                f"{name!r} of {thing!r} is not a DEF name of Webots",
+                help="`webotsName` and `webotsType` are letters, digits and `_`, and begin with no digit",
+            )
+        if name in used or name in _RESERVED:
+            other = f"{used[name]!r}" if name in used else "a node of every written world"
+            raise ScenicValueError(
+                f"{thing!r} has the DEF name {name} of {other}",
+                help="give each object a `webotsName` of its own, or all of them one `webotsType`",
+            )
+        used[name] = thing
+        found[id(thing)] = name
+    return found
+
+
+def _labels(instances: Sequence[Instance]) -> list[str]:
+    """Different names for the nodes; Webots allows no colon in them."""
+    labels: list[str] = []
+    for label in distinct_labels(instances):
+        plain = label.replace(":", "_")
+        while plain in labels or plain in ("floor", _SUPERVISOR_NAME):
+            plain += "_"
+        labels.append(plain)
+    return labels
 
 
 def write_world(scene: Scene, path: Path, *, program: str | None = None) -> None:
@@ -90,29 +151,27 @@ def write_world(scene: Scene, path: Path, *, program: str | None = None) -> None
 
 def solid(
     thing: Any,
-    surface: Surface | None,
     stem: str,
     files: dict[str, bytes],
-    number: int,
+    name: str,
     label: str,
     color: Sequence[float] = _GRAY,
     *,
     physics: bool | None = None,
 ) -> str:
-    """A ``Solid`` of an object, with the DEF name ``object_NUMBER`` unless the object has a ``webotsName``.
+    """A ``Solid`` of an object.
 
     Args:
         thing: the object.
-        surface: its mesh in the unit box; that of its shape if ``None``.
         stem: meshes are in the folder ``STEM_meshes``.
         files: gets the file of its mesh, if it needs one.
-        number: of the object.
-        label: the node's name.
+        name: the node's DEF name, and that of the file of its mesh.
+        label: the node's field ``name``.
         color: red, green, blue and perhaps opacity, from 0 to 1.
         physics: whether it moves; by default if it has a density or a mass.
 
     """
-    geometry = _geometry(thing, surface, stem, files, number)
+    geometry = _geometry(thing, stem, files, name)
     opacity = color[3] if len(color) > 3 else 1.0
     look = f"baseColor {_numbers(color[:3])} transparency {_number(1 - opacity)} roughness 1 metalness 0"
     density, mass = (getattr(thing, name, None) for name in ("density", "mass"))
@@ -128,27 +187,28 @@ def solid(
         lines.append(
             f"physics Physics {{ density {_number(1000.0 if density is None else density)} mass -1 }}"
         )
-    return _node("Solid", thing, number, lines)
+    return _node("Solid", thing, name, lines)
 
 
-def mesh_file(thing: Any, surface: Surface | None = None) -> bytes:
-    """The mesh of an object in its own frame and size (metres), as Wavefront OBJ."""
-    source = thing.shape.mesh if surface is None else surface
+def mesh_file(thing: Any) -> bytes:
+    """The closed mesh of an object in its own frame and size (metres), as Wavefront OBJ."""
+    source = thing.shape.mesh
     size = np.array([thing.width, thing.length, thing.height], dtype=np.float64)
-    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in (np.asarray(source.vertices) * size).tolist()]
+    lines = [f"v {x:.12g} {y:.12g} {z:.12g}" for x, y, z in (np.asarray(source.vertices) * size).tolist()]
     lines += [f"f {a} {b} {c}" for a, b, c in (np.asarray(source.faces) + 1).tolist()]
     return ("\n".join(lines) + "\n").encode()
 
 
-def _geometry(thing: Any, surface: Surface | None, stem: str, files: dict[str, bytes], number: int) -> str:
+def _geometry(thing: Any, stem: str, files: dict[str, bytes], name: str) -> str:
     width, length, height = float(thing.width), float(thing.length), float(thing.height)
     heights = getattr(thing, "heights", None)
     if heights is not None:
         values = np.asarray(heights, dtype=np.float64)
         rows, columns = values.shape
+        thickness = float(values.min()) + float(getattr(thing, "baseThickness", 0))
         return (
             f"ElevationGrid {{ xDimension {columns} yDimension {rows} xSpacing {_number(width / (columns - 1))}"
-            f" ySpacing {_number(length / (rows - 1))} height {_numbers(values.ravel(), listed=True)} }}"
+            f" ySpacing {_number(length / (rows - 1))} thickness {_number(thickness)} height {_numbers(values.ravel(), listed=True)} }}"
         )
     source = thing.shape.source
     if source.initial_rotation is None:
@@ -158,21 +218,24 @@ def _geometry(thing: Any, surface: Surface | None, stem: str, files: dict[str, b
             return f"Cylinder {{ radius {_number(width / 2)} height {_number(height)} subdivision 32 }}"
         if source.kind == "spheroid" and width == length == height:
             return f"Sphere {{ radius {_number(width / 2)} subdivision 3 }}"
-    name = f"{stem}_meshes/object_{number}.obj"
-    files[name] = mesh_file(thing, surface)
-    return f"Mesh {{ url {_text(name)} }}"
+    file = f"{stem}_meshes/{name}.obj"
+    files[file] = mesh_file(thing)
+    return f"Mesh {{ url [ {_text(file)} ] }}"
 
 
-def _robot(thing: Any, proto: str, label: str, number: int) -> str:
+def _robot(thing: Any, proto: str, name: str, label: str) -> str:
     lines = [f"name {_text(label)}"]
-    for name in ("controller", "customData"):
-        value = getattr(thing, name, None)
+    for given in ("controller", "customData"):
+        value = getattr(thing, given, None)
         if value is not None:
-            lines.append(f"{name} {_text(str(value))}")
-    return _node(proto, thing, number, lines)
+            lines.append(f"{given} {_text(str(value))}")
+    battery = getattr(thing, "battery", None)
+    if battery is not None:
+        lines.append(f"battery {_numbers(battery, listed=True)}")
+    return _node(proto, thing, name, lines)
 
 
-def _node(kind: str, thing: Any, number: int, lines: Sequence[str]) -> str:
+def _node(kind: str, thing: Any, name: str, lines: Sequence[str]) -> str:
     from scipy.spatial.transform import Rotation  # slow to import
 
     turn = thing.orientation
@@ -183,7 +246,6 @@ def _node(kind: str, thing: Any, number: int, lines: Sequence[str]) -> str:
     axis = vector / angle if angle else np.array([0.0, 0.0, 1.0])
     shift = np.array(tuple(getattr(thing, "positionOffset", (0, 0, 0))), dtype=np.float64)
     place = np.array(tuple(thing.position), dtype=np.float64) + shift
-    name = getattr(thing, "webotsName", None) or f"object_{number}"
     body = [f"translation {_numbers(place)}", f"rotation {_numbers((*axis, angle))}", *lines]
     return f"DEF {name} {kind} {{\n" + "".join(f"  {line}\n" for line in body) + "}\n"
 
@@ -228,7 +290,7 @@ scene = scenario.sample({scene.k + 1}, seed={scene.seed})[{scene.k}]
 WebotsSimulator(Supervisor()).simulate(scene)
 '''
     files[f"../controllers/{_SUPERVISOR}/{_SUPERVISOR}.py"] = script.encode()
-    return f'DEF SCENIC Robot {{\n  name "scenic"\n  controller "{_SUPERVISOR}"\n  supervisor TRUE\n}}\n'
+    return f'DEF SCENIC Robot {{\n  name "{_SUPERVISOR_NAME}"\n  controller "{_SUPERVISOR}"\n  supervisor TRUE\n}}\n'
 
 
 def _number(value: Any) -> str:

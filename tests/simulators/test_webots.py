@@ -1,7 +1,10 @@
 """Webots: its world model, the supervisor's side against a fake of the documented interface, and worlds read back."""
 
 import json
+import runpy
+import sys
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -9,21 +12,28 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import scenic
+from scenic.formats.webots import write_world
 from scenic.language.errors import (
-    InvalidScenarioError,
+    ScenicValueError,
     SimulationCreationError,
+    SimulationError,
     SpecifierError,
     UnsupportedError,
 )
 from scenic.simulators.webots.simulator import WebotsSimulator
 from tests.cli.commands import run_here
-from tests.simulators.fake_webots import Node, Supervisor
+from tests.simulators.fake_webots import Node, Supervisor, node_of
+from tests.simulators.webots_worlds import corners_of, read_world
 
 MODEL = "model scenic.simulators.webots.model\n"
 
 
 def scene_of(text: str, **options: Any) -> Any:
     return scenic.scenarioFromString(MODEL + text, **options).sample(1, seed=0)[0]
+
+
+def of_class(scene: Any, name: str) -> list[Any]:
+    return [thing for thing in scene.objects if type(thing).__name__ == name]
 
 
 def test_objects_move_in_worlds_of_any_axes_as_in_ours() -> None:
@@ -63,18 +73,25 @@ def test_nodes_are_found_by_name_and_type_and_get_their_fields() -> None:
         "new Rover at (6, 0, 1), with controller 'other', with resetController False\n"
     )
     nodes = [
-        Node(name, battery=[], customData="", controller="void") for name in ("ROVER", "ROVER_0", "ROVER_1")
+        Node(name, battery=[], customData="", controller="void") for name in ("ROVER", "ROVER_1", "ROVER_2")
     ]
     WebotsSimulator(Supervisor(*nodes)).simulate(scene, maxSteps=1)
     assert [node.getPosition()[0] for node in nodes] == [0, 3, 6]
     assert nodes[0].fields["battery"].value == [1, 2, 3]
     assert nodes[0].fields["customData"].value == "seed 4"
     assert [node.fields["controller"].value for node in nodes] == ["drive", "void", "other"]
+    assert [node.restarts for node in nodes] == [0, 0, 0]  # Webots starts a controller that is another one
+    WebotsSimulator(Supervisor(*nodes)).simulate(scene, maxSteps=1)
     assert [node.restarts for node in nodes] == [1, 0, 0]
     assert nodes[1].fields["physics"].value.fields["density"].value == 200
     assert all(node.resets for node in nodes)
-    with pytest.raises(SimulationCreationError, match="no node with the DEF name ROVER_0"):
+    with pytest.raises(SimulationCreationError, match="no node with the DEF name ROVER_1"):
         WebotsSimulator(Supervisor(nodes[0])).simulate(scene, maxSteps=1)
+    numbered = [
+        Node(name, battery=[], customData="", controller="void") for name in ("ROVER_0", "ROVER_1", "ROVER_2")
+    ]
+    WebotsSimulator(Supervisor(*numbered)).simulate(scene, maxSteps=1)
+    assert [node.getPosition()[0] for node in numbered] == [0, 3, 6]
     with pytest.raises(SimulationCreationError, match="no field 'battery'"):
         WebotsSimulator(Supervisor(Node("ROVER"))).simulate(scene, maxSteps=1)
     with pytest.raises(SimulationCreationError, match="no multiple"):
@@ -92,7 +109,7 @@ def test_objects_are_made_and_removed() -> None:
 
     def look(simulation: Any, _poses: Any, _actions: Any) -> None:
         cone, box = supervisor.children[1:]
-        url = cone.text.split('url "')[1].split('"')[0]
+        url = cone.text.split('url [ "')[1].split('"')[0]
         seen.update(url=url, lines=Path(url).read_text().count("\nf "), cone=cone.text, box=box.text)
 
     WebotsSimulator(supervisor).simulate(scene, maxSteps=1, on_state=look)
@@ -126,7 +143,7 @@ def test_ground_has_the_heights_of_its_terrain() -> None:
         "ground = new Ground at (0, 0, 0), with terrain hills, with gridSizeX 41, with gridSizeY 21\n"
         "ego = new WebotsObject on ground\n"
     )
-    ground = scene.objects[1]
+    (ground,) = of_class(scene, "Ground")
     heights = np.array(ground.heights)
     assert heights.shape == (21, 41)
     assert heights[14, 24] == pytest.approx(0.5)  # at (1, 2)
@@ -135,10 +152,64 @@ def test_ground_has_the_heights_of_its_terrain() -> None:
     assert heights[16, 24] == pytest.approx(0.5 * np.exp(-0.5))
     assert heights[14, 29] == 0
     assert ground.height == pytest.approx(0.6)
-    with pytest.raises(InvalidScenarioError, match="terrain of a Ground is random"):
-        scene_of("ego = new Ground with terrain (new Hill with height Range(1, 2),)\n")
     with pytest.raises(NotImplementedError, match="heightAt"):
         scene_of("ego = new Ground with terrain (new Terrain,)\n")
+
+
+def test_terrain_may_be_random() -> None:
+    text = (
+        "class Bump(Hill):\n"
+        "    position: new Point in RectangularRegion((0, 0, 0), 0, 8, 8)\n"
+        "    width: Range(1, 2)\n    length: Range(1, 2)\n    height: Range(0.5, 1)\n"
+        "bumps = [new Bump for _ in range(3)]\n"
+        "ego = new Ground with terrain bumps, with gridSize 15\n"
+        "rock = new WebotsObject on ego.topSurface, with width 0.01, with length 0.01, with height 0.01\n"
+    )
+    scenes = scenic.scenarioFromString(MODEL + text).sample(5, seed=0)
+    assert len({scene.egoObject.height for scene in scenes}) == 5
+    for scene in scenes:
+        ground, bumps = scene.egoObject, of_class(scene, "Bump")
+        (rock,) = of_class(scene, "WebotsObject")
+        across = np.linspace(-5, 5, 15)
+        wanted = np.zeros((15, 15))
+        for bump in bumps:
+            dx, dy = across - bump.position.x, across[:, None] - bump.position.y
+            inside = (abs(dx) <= bump.width / 2) & (abs(dy) <= bump.length / 2)
+            profile = np.exp(-8 * ((dx / bump.width) ** 2 + (dy / bump.length) ** 2))
+            wanted += np.where(inside, bump.height * profile, 0)
+        assert np.allclose(ground.heights, wanted)
+        assert ground.height == pytest.approx(wanted.max() + 0.1)
+        # Its base is half its height below its position; the rock lies on the surface between points of the grid.
+        above = rock.position.z - 0.005 + ground.height / 2 - 0.1
+        column, row = (np.clip(int((place + 5) / 10 * 14), 0, 13) for place in tuple(rock.position)[:2])
+        cell = wanted[row : row + 2, column : column + 2]
+        assert cell.min() - 1e-3 <= above <= cell.max() + 1e-3
+
+
+def test_terrain_of_ones_own_and_the_ground_may_be_random() -> None:
+    text = (
+        "class Slope(Terrain):\n    rise: Range(0.1, 0.2)\n"
+        "    def heightAt(self, point):\n        return self.rise * (point[0] + 5)\n"
+        "slope = new Slope\n"
+        "ego = new Ground with terrain (slope,), with gridSizeX 3, with gridSizeY 2, with width Range(4, 8)\n"
+    )
+    for scene in scenic.scenarioFromString(MODEL + text).sample(3, seed=0):
+        ground, (slope,) = scene.egoObject, of_class(scene, "Slope")
+        row = [slope.rise * (x + 5) for x in (-ground.width / 2, 0, ground.width / 2)]
+        assert np.allclose(ground.heights, [row, row])
+        assert ground.height == pytest.approx(row[-1] + 0.1)
+
+
+def test_parts_of_a_terrain_are_in_the_workspace_and_touch_nothing() -> None:
+    text = (
+        "workspace = Workspace(RectangularRegion((0, 0, 0), 0, 10, 10))\n"
+        "hill = new Hill at (Range(0, 8), 0), with width 4, with length 4\n"
+        "ego = new WebotsObject at (0, 0, 0)\n"
+    )
+    scenes = scenic.scenarioFromString(MODEL + text).sample(30, seed=0)
+    places = [of_class(scene, "Hill")[0].position.x for scene in scenes]
+    assert max(places) <= 3
+    assert min(places) < 1  # it may be where the ego is
 
 
 def test_sampling_works_in_both_modes_and_simulating_says_where() -> None:
@@ -150,6 +221,138 @@ def test_sampling_works_in_both_modes_and_simulating_says_where() -> None:
         scene_of("ego = new WebotsObject with elevation 3\n")
     with pytest.raises(UnsupportedError, match="inside Webots"):
         scenic.scenarioFromString(MODEL + text).getSimulator().simulate(scene)
+
+
+RUN = """
+behavior Push():
+    while True:
+        take ApplyForceAction((0, 3, 0), relative=True)
+class Rock(WebotsObject):
+    webotsType: 'ROCK'
+ego = new WebotsObject at (Range(0, 1), 0, 1), facing 90 deg, with webotsName 'CRATE', with rotationOffset (90 deg, 0, 0),
+    with behavior Push, with battery (5, 6, 7)
+new Rock at (Range(10, 11), 5, 1)
+new Rock at (Range(10, 11), 8, 1)
+new WebotsObject at (20, 0, 1), with webotsAdhoc {}, with velocity (0, 0, 2)
+pillar = new Object at (30, 0, 1)
+record (ego.position.x, ego.speed, ego.battery[0], pillar.position.x) as state
+"""
+
+
+def test_a_simulation_runs_and_the_next_one_begins_from_the_same_world() -> None:
+    crate = Node("CRATE", mass=1.5, battery=[9.0, 9.0, 9.0])
+    rocks = [Node("ROCK_0"), Node("ROCK_1")]
+    supervisor = Supervisor(crate, *rocks)
+    simulator = WebotsSimulator(supervisor)
+    scenes = scenic.scenarioFromString(MODEL + RUN).sample(2, seed=0)
+    runs = []
+    for scene in (scenes[0], scenes[1], scenes[0]):
+        lifted: list[float] = []
+        simulation = simulator.simulate(
+            scene,
+            maxSteps=50,
+            timestep=0.032,
+            on_state=lambda run, *_, kept=lifted: kept.append(run.objects[3].position.z),
+        )
+        runs.append(simulation.result.records["state"])
+        # The force acts ahead of the object, which faces -x, whatever the axes of its node.
+        start = scene.egoObject.position.x
+        for step, (x, speed, charge, far) in runs[-1]:
+            assert speed == pytest.approx(2 * 0.032 * step)
+            assert x == pytest.approx(start - 2 * 0.032**2 * step * (step + 1) / 2)
+            assert (charge, far) == (5, 30)
+        assert lifted[-1] == pytest.approx(1 + 2 * 50 * 0.032)
+        assert [rock.getPosition() for rock in rocks] == [
+            list(thing.position) for thing in of_class(scene, "Rock")
+        ]
+        assert crate.joints == [pytest.approx(50 * 0.032)]  # and not a multiple: it began at 0 again
+        assert supervisor.children[1:] == [crate, *rocks]
+    assert runs[2] == runs[0] != runs[1]
+    assert supervisor.milliseconds == 3 * 50 * 32
+
+
+def test_a_requirement_ends_a_simulation_and_the_world_is_clean() -> None:
+    scene = scene_of(RUN + "require always ego.position.x > -0.5\n")
+    crate = Node("CRATE", mass=0.3, battery=[])
+    supervisor = Supervisor(crate, Node("ROCK"), Node("ROCK_1"))
+    simulator = WebotsSimulator(supervisor)
+    assert simulator.simulate(scene, maxSteps=50, maxIterations=2) is None
+    assert len(supervisor.children) == 4
+    # A set-up that fails half way leaves nothing either.
+    lost = Supervisor(crate, Node("ROCK"))
+    made = scene_of(
+        "ego = new WebotsObject at (25, 0, 1), with webotsAdhoc {}\n" + RUN.replace("ego", "crate")
+    )
+    with pytest.raises(SimulationCreationError, match="ROCK_1"):
+        WebotsSimulator(lost).simulate(made, maxSteps=1)
+    assert len(lost.children) == 3
+
+
+def test_heights_go_into_the_grids_of_a_running_world() -> None:
+    scene = scene_of(
+        "hill = new Hill at (1, 0), with width 4, with length 4\n"
+        "ego = new Ground with terrain (hill,), with gridSizeX 5, with gridSizeY 3\n"
+    )
+    grids = [
+        Node(
+            "", "ElevationGrid", xDimension=0, yDimension=0, xSpacing=1.0, ySpacing=1.0, height=[1.0] * count
+        )
+        for count in (0, 40)
+    ]
+    shape = Node("", "Shape", geometry=grids[0])
+    node = Node("GROUND", "Solid", children=[shape], boundingObject=grids[1])
+    WebotsSimulator(Supervisor(node)).simulate(scene, maxSteps=1)
+    for grid in grids:
+        values = {name: field.value for name, field in grid.fields.items()}
+        assert values.pop("height") == np.ravel(scene.egoObject.heights).tolist()
+        assert values == {"xDimension": 5, "yDimension": 3, "xSpacing": 2.5, "ySpacing": 5}
+    with pytest.raises(SimulationCreationError, match="has no ElevationGrid"):
+        WebotsSimulator(Supervisor(Node("GROUND", "Solid"))).simulate(scene, maxSteps=1)
+
+
+def test_mistakes_have_codes_and_say_what_to_do() -> None:
+    with pytest.raises(UnsupportedError, match="no module `controller`") as outside:
+        WebotsSimulator()
+    assert "controller of a supervisor" in str(outside.value.help)
+    with pytest.raises(SimulationCreationError, match="not a supervisor") as plain:
+        WebotsSimulator(Supervisor(is_one=False))
+    assert "`supervisor`" in str(plain.value.help)
+    twice = scene_of(
+        "ego = new WebotsObject at (0, 0, 1), with webotsName 'A'\nnew WebotsObject at (3, 0, 1), with webotsName 'A'\n"
+    )
+    with pytest.raises(SimulationCreationError, match="same node A") as same:
+        WebotsSimulator(Supervisor(Node("A"))).simulate(twice, maxSteps=1)
+    assert same.value.span is not None
+    assert same.value.span.line == 3
+    one = scene_of("ego = new WebotsObject at (0, 0, 1), with webotsName 'A'\n")
+    with pytest.raises(SimulationError, match="Webots ended"):
+        WebotsSimulator(Supervisor(Node("A"), ends_after=40)).simulate(one, maxSteps=5)
+    nameless = scene_of("ego = new WebotsObject at (0, 0, 1)\n")
+    with pytest.raises(SimulationCreationError, match="object_0"):
+        WebotsSimulator(Supervisor()).simulate(nameless, maxSteps=1)
+    listed = scene_of("ego = new WebotsObject at (0, 0, 1), with webotsAdhoc True\n")
+    with pytest.raises(SimulationCreationError, match="must be a mapping"):
+        WebotsSimulator(Supervisor()).simulate(listed, maxSteps=1)
+    far = scene_of(
+        "behavior Go():\n    take OffsetAction((0, 1, 0))\nego = new Object at (0, 0, 1), with behavior Go\n"
+    )
+    with pytest.raises(SimulationError, match="no node with a translation"):
+        WebotsSimulator(Supervisor()).simulate(far, maxSteps=1)
+
+
+@pytest.mark.parametrize(
+    ("objects", "message"),
+    [
+        ("with webotsName 'A'\nnew WebotsObject at (3, 0, 1), with webotsName 'A'", "has the DEF name A of"),
+        ("with webotsName 'FLOOR'", "DEF name FLOOR of a node of every written world"),
+        ("with webotsName 'my rover'", "'my rover' of .* is not a DEF name"),
+    ],
+)
+def test_worlds_with_wrong_names_are_not_written(objects: str, message: str, tmp_path: Path) -> None:
+    scene = scene_of(f"ego = new WebotsObject at (0, 0, 1), {objects}\n")
+    with pytest.raises(ScenicValueError, match=message):
+        scene.save(tmp_path / "room.wbt")
+    assert not any(tmp_path.iterdir())
 
 
 def test_the_example_programs_compile_sample_and_run() -> None:
@@ -165,7 +368,8 @@ def test_the_case_studies_are_worlds_too(tmp_path: Path) -> None:
     folder = Path(__file__).parents[2] / "examples" / "webots"
     (room,) = scenic.load(folder / "vacuum.scenic", params={"numToys": 2}).sample(1, seed=1)
     room.save(tmp_path / "room.wbt")
-    nodes = nodes_of((tmp_path / "room.wbt").read_text())[5:]
+    nodes = read_world(tmp_path / "room.wbt")[5:]
+    check_places(nodes, room.objects, tmp_path)
     assert len(nodes) == len(room.objects)
     (robot,) = (node for node in nodes if node["DEF"] == "VACUUM")
     assert robot["type"] == "IRobotCreate"
@@ -188,55 +392,29 @@ def test_the_case_studies_are_worlds_too(tmp_path: Path) -> None:
 # Worlds
 
 
-def nodes_of(text: str) -> list[dict[str, Any]]:
-    """A small reader of the format: nodes as mappings of fields to numbers, words, nodes and lists of these."""
-    import re
-
-    words = re.findall(r'"(?:[^"\\]|\\.)*"|[{}\[\]]|[^\s{}\[\]"]+', text.partition("\n")[2])
-    found = []
-    while words:
-        if words[0] == "EXTERNPROTO":
-            del words[:2]
+def check_places(nodes: Any, things: Any, folder: Path) -> None:
+    """Check that nodes are where the objects of a scene are, and that solids are as large."""
+    for node, thing in zip(nodes, things, strict=True):
+        turn = thing.orientation
+        wanted = Rotation.from_quat([turn.x, turn.y, turn.z, turn.w])
+        wanted *= Rotation.from_euler("ZXY", getattr(thing, "rotationOffset", (0, 0, 0)))
+        x, y, z, angle = node["rotation"]
+        found = Rotation.from_rotvec(np.array([x, y, z]) * angle)
+        assert (wanted.inv() * found).magnitude() < 1e-9
+        shift = tuple(getattr(thing, "positionOffset", (0, 0, 0)))
+        place = np.array(node["translation"])
+        assert np.allclose(place, np.add(tuple(thing.position), shift), rtol=0, atol=1e-9)
+        if node["type"] != "Solid":
             continue
-        found.append(_node(words))
-    return found
-
-
-def _node(words: list[str]) -> dict[str, Any]:
-    node: dict[str, Any] = {}
-    if words[0] == "DEF":
-        node["DEF"] = words[1]
-        del words[:2]
-    node["type"] = words.pop(0)
-    assert words.pop(0) == "{"
-    while words[0] != "}":
-        name = words.pop(0)
-        assert name.isidentifier(), name
-        node[name] = _value(words)
-    words.pop(0)
-    return node
-
-
-def _value(words: list[str]) -> Any:
-    if words[0] == "[":
-        words.pop(0)
-        items: list[Any] = []
-        while words[0] != "]":
-            items.append(_value(words) if len(words) > 1 and words[1] == "{" else _atom(words.pop(0)))
-        words.pop(0)
-        return items
-    if words[1] == "{":
-        return _node(words)
-    values = [_atom(words.pop(0))]
-    while isinstance(values[0], float) and words[0].lstrip("-")[:1].isdigit():
-        values.append(_atom(words.pop(0)))
-    return values if len(values) > 1 else values[0]
-
-
-def _atom(word: str) -> Any:
-    if word.startswith('"'):
-        return word[1:-1]
-    return word if word in ("TRUE", "FALSE") else float(word)
+        assert node["children"][0]["geometry"] == node["boundingObject"]
+        size = np.array([thing.width, thing.length, thing.height])
+        low, high = corners_of(node["boundingObject"], folder)
+        assert np.allclose(high - low, size, rtol=0, atol=1e-9)
+        if node["boundingObject"]["type"] == "ElevationGrid":
+            # Its origin is a corner at height 0; the solid is about the position all the same.
+            assert np.allclose((low + high) / 2 + place, tuple(thing.position), rtol=0, atol=1e-9)
+        else:
+            assert np.allclose(low, -size / 2, rtol=0, atol=1e-9)
 
 
 def test_worlds_have_the_objects_where_they_are(tmp_path: Path) -> None:
@@ -246,7 +424,7 @@ def test_worlds_have_the_objects_where_they_are(tmp_path: Path) -> None:
         MODEL + "ego = new WebotsObject at (1, 2, 3), facing (30 deg, 20 deg, 10 deg), with density 50\n"
         "ball = new Object at (Range(4, 5), 0, 1), with shape SpheroidShape()\n"
         "new Object at (-3, 0, 1), facing 200 deg, with shape ConeShape(), with height 2, with color (1, 0, 0, 0.25)\n"
-        "new WebotsObject at (0, -4, 0.5), with webotsProto 'Create', with controller 'clean', with customData '\"7\"',"
+        "new WebotsObject at (0, -4, 0.5), with webotsProto 'Create', with controller 'clean', with customData '\"7\"', with battery (1, 2, 3),"
         " with positionOffset (0, 0, -0.5), with rotationOffset (90 deg, 0, 0)\n"
         "new Ground at (20, 0, 0), with terrain (new Hill with width 4,)\n"
     )
@@ -255,36 +433,78 @@ def test_worlds_have_the_objects_where_they_are(tmp_path: Path) -> None:
     )
     assert done.returncode == 0, done.stderr
     for number, scene in enumerate(scenic.load(program).sample(2, seed=1)):
-        text = (tmp_path / "worlds" / f"room-{number:03d}.wbt").read_text()
-        assert text.startswith("#VRML_SIM R2023a utf8\n")
-        assert 'EXTERNPROTO "../protos/Create.proto"' in text
-        world = nodes_of(text)
+        file = tmp_path / "worlds" / f"room-{number:03d}.wbt"
+        assert file.read_text().startswith('#VRML_SIM R2023a utf8\nEXTERNPROTO "../protos/Create.proto"\n')
+        world = read_world(file)
         kinds = [node["type"] for node in world[:5]]
         assert kinds == ["WorldInfo", "Viewpoint", "Background", "DirectionalLight", "Solid"]
         things = world[5:]
         assert [node["DEF"] for node in things] == ["object_0", "object_1", "object_2", "object_3", "GROUND"]
-        for node, thing in zip(things, scene.objects, strict=True):
-            shift = getattr(thing, "positionOffset", (0, 0, 0))
-            assert np.allclose(node["translation"], np.add(tuple(thing.position), shift), atol=1e-6)
-            x, y, z, angle = node["rotation"]
-            turn = thing.orientation
-            wanted = Rotation.from_quat([turn.x, turn.y, turn.z, turn.w])
-            if node["type"] == "Create":
-                wanted *= Rotation.from_euler("Z", 90, degrees=True)
-            found = Rotation.from_rotvec(np.array([x, y, z]) * angle)
-            assert (wanted.inv() * found).magnitude() < 1e-6
+        check_places(things, [thing for thing in scene.objects if thing.render], file.parent)
         box, ball, cone, robot, ground = things
         assert box["physics"] == {"type": "Physics", "density": 50.0, "mass": -1.0}
         assert box["boundingObject"] == {"type": "Box", "size": [1.0, 1.0, 1.0]}
         assert ball["boundingObject"]["type"] == "Sphere"
         assert "physics" not in ball
         assert cone["children"][0]["appearance"]["transparency"] == 0.75
-        mesh = (tmp_path / "worlds" / cone["boundingObject"]["url"]).read_text()
-        corners = np.array([line.split()[1:] for line in mesh.splitlines() if line[0] == "v"], dtype=float)
-        assert np.allclose(np.ptp(corners, axis=0), [1, 1, 2], atol=0.02)
-        assert (robot["type"], robot["controller"], robot["customData"]) == ("Create", "clean", '\\"7\\"')
+        assert cone["boundingObject"]["type"] == "Mesh"
+        assert (robot["type"], robot["controller"], robot["customData"]) == ("Create", "clean", '"7"')
+        assert robot["battery"] == [1, 2, 3]
         grid = ground["boundingObject"]
         assert grid["type"] == "ElevationGrid"
-        assert np.allclose(grid["height"], np.ravel(scene.objects[4].heights))
+        assert np.allclose(grid["height"], np.ravel(of_class(scene, "Ground")[0].heights))
         # The grid's corner is that of the ground, and its height 0 is the base's upper side.
         assert ground["translation"][:2] == pytest.approx([15, -5])
+
+
+SHAPES = """
+for shape in (BoxShape(), CylinderShape(), ConeShape(), SpheroidShape()):
+    new Object at (Range(0, 100), Range(0, 100), 5), with shape shape, with width 2, with length 2, with height 2, facing Range(0, 90) deg
+    new Object at (Range(0, 100), Range(0, 100), 5), with shape shape, with width 1, with length 2, with height 3, with mass 5
+new Object at (50, 50, -5), with shape BoxShape(initial_rotation=(0, 0, 45 deg)), with width 0.001, with length 3000
+new Object at (-5, 50, 5), facing (180 deg, 0, 0), with color (1, 1, 1, 0)
+ego = new Object at (-5, 60, 5), facing (0, 180 deg, 90 deg), with render False
+"""
+
+
+def test_every_shape_is_written_as_it_is(tmp_path: Path) -> None:
+    for scene in scenic.scenarioFromString(SHAPES).sample(3, seed=2):
+        scene.save(tmp_path / "shapes.wbt")
+        nodes = read_world(tmp_path / "shapes.wbt")[5:]
+        check_places(nodes, [thing for thing in scene.objects if thing.render], tmp_path)
+        kinds = [node["boundingObject"]["type"] for node in nodes]
+        assert kinds == ["Box", "Box", "Cylinder", "Mesh", "Mesh", "Mesh", "Sphere", "Mesh", "Mesh", "Box"]
+
+
+def test_a_written_supervisor_runs_the_program_in_its_world(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    program = tmp_path / "push.scenic"
+    program.write_text(
+        MODEL + RUN.replace("webotsName 'CRATE'", "webotsProto 'Crate'") + "terminate after 4 steps\n"
+    )
+    scene = scenic.load(program).sample(3, seed=5)[2]
+    world = tmp_path / "worlds" / "push.wbt"
+    write_world(scene, world, program=str(program))
+    nodes = [node_of(node) for node in read_world(world)]
+    assert [node.name for node in nodes[4:]] == [
+        "FLOOR",
+        "object_0",
+        "ROCK_0",
+        "ROCK_1",
+        "object_4",
+        "SCENIC",
+    ]
+    assert nodes[-1].fields["supervisor"].value
+    script = tmp_path / "controllers" / "scenic_supervisor" / "scenic_supervisor.py"
+    assert nodes[-1].fields["controller"].value == script.stem
+    supervisor = Supervisor(*nodes)
+    module = ModuleType("controller")
+    module.Supervisor = lambda: supervisor  # type: ignore[attr-defined] # as the module of Webots
+    monkeypatch.setitem(sys.modules, "controller", module)
+    runpy.run_path(str(script))
+    crate = supervisor.getFromDef("object_0")
+    assert crate is not None
+    assert len(crate.forces) == 4
+    assert crate.getPosition() == pytest.approx(list(scene.egoObject.position))
+    assert supervisor.children == nodes

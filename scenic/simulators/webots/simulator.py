@@ -5,23 +5,29 @@ Only the documented interface of ``Supervisor``, ``Node`` and ``Field`` is used.
 
 import math
 import tempfile
-from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from scenic.formats.files import make_folder, write
 from scenic.formats.webots import solid
-from scenic.language.errors import SimulationCreationError, UnsupportedError
+from scenic.language.errors import SimulationCreationError, SimulationError, UnsupportedError
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.values.values import Orientation, Vector
 from scenic.simulators.simulation import Simulation
 from scenic.simulators.simulator import Simulator
 from scenic.simulators.webots.axes import Axes, axis_angle, matrix_of, orientation_of
+from scenic.simulators.webots.nodes import Names, States, field_of, write_heights
 
 __all__ = ["OutsideWebots", "WebotsSimulation", "WebotsSimulator"]
 
 _DEFAULT_AXES: Final = "ENU"
+_INSIDE: Final = (
+    "write the world by `scenic sample FILE -o world.wbt`, and call WebotsSimulator().simulate(scene) in the controller of a"
+    " supervisor"
+)
 
 
 class OutsideWebots(Simulator):
@@ -30,27 +36,29 @@ class OutsideWebots(Simulator):
     def createSimulation(self, scene: Scene, **options: Any) -> Simulation:
         """Raises `UnsupportedError`."""
         raise UnsupportedError(
-            "programs with the world model of Webots are simulated inside Webots",
-            help="write the world by `scenic sample FILE -o world.wbt`, and call WebotsSimulator(Supervisor()).simulate(scene)"
-            " in the controller of a supervisor",
+            "programs with the world model of Webots are simulated inside Webots", help=_INSIDE
         )
 
 
 class WebotsSimulator(Simulator):
     """Simulates in a running Webots world.
 
+    A simulation begins by returning the nodes that earlier ones have changed to the state that they had before.
+
     Args:
-        supervisor: ``controller.Supervisor()`` of the controller that this runs in.
+        supervisor: ``controller.Supervisor()`` of the controller that this runs in; made here if ``None``.
 
     Raises:
-        SimulationCreationError: the world's coordinate system is unknown.
+        UnsupportedError: this does not run in a controller of Webots.
+        SimulationCreationError: the robot is not a supervisor, or the world's coordinate system is unknown.
 
     """
 
-    def __init__(self, supervisor: Any) -> None:
+    def __init__(self, supervisor: Any = None) -> None:
         super().__init__()
-        self.supervisor = supervisor
-        self.axes = Axes(_coordinate_system(supervisor))
+        self.supervisor = _supervisor() if supervisor is None else supervisor
+        self.axes = Axes(_coordinate_system(self.supervisor))
+        self._states = States()
 
     def createSimulation(
         self, scene: Scene, *, timestep: float | None = None, **options: Any
@@ -64,11 +72,31 @@ class WebotsSimulator(Simulator):
                 f"a step of {step:g} s is no multiple of the world's basic step of {basic:g} s",
                 help="give another timestep, or change WorldInfo.basicTimeStep",
             )
-        return WebotsSimulation(scene, self.supervisor, self.axes, timestep=step, **options)
+        self._states.load()
+        return WebotsSimulation(scene, self.supervisor, self.axes, self._states, timestep=step, **options)
+
+
+def _supervisor() -> Any:
+    try:
+        from controller import Supervisor  # type: ignore[import-not-found] # comes with Webots
+    except ImportError as error:
+        raise UnsupportedError(
+            "this does not run in Webots: there is no module `controller` with a class `Supervisor`",
+            help=_INSIDE,
+        ) from error
+    return Supervisor()
 
 
 def _coordinate_system(supervisor: Any) -> str:
-    children = supervisor.getRoot().getField("children")
+    """The value of ``WorldInfo.coordinateSystem``; raises `SimulationCreationError` if the robot is not a supervisor."""
+    asked = getattr(supervisor, "getSupervisor", None)
+    root = None if asked is not None and not asked() else supervisor.getRoot()
+    if root is None:
+        raise SimulationCreationError(
+            "the robot of this controller is not a supervisor",
+            help="set the field `supervisor` of its node to TRUE, and save the world",
+        )
+    children = root.getField("children")
     for number in range(children.getCount()):
         node = children.getMFNode(number)
         if node.getTypeName() == "WorldInfo":
@@ -79,24 +107,44 @@ def _coordinate_system(supervisor: Any) -> str:
 class WebotsSimulation(Simulation):
     """One run in a world; see `WebotsSimulator`."""
 
-    def __init__(self, scene: Scene, supervisor: Any, axes: Axes, *, timestep: float, **options: Any) -> None:
+    def __init__(
+        self, scene: Scene, supervisor: Any, axes: Axes, states: States, *, timestep: float, **options: Any
+    ) -> None:
         self.supervisor = supervisor
         self.axes = axes
+        self._states = states
+        self._names = Names(supervisor)
         self._nodes: dict[int, Any] = {}
         self._made: list[Any] = []
-        self._types: Counter[str] = Counter()
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         super().__init__(scene, timestep=timestep, **options)
 
     # Set-up
 
     def createObjectInSimulator(self, obj: Any) -> None:
-        """Find or make the object's node, and bring it into the object's state."""
+        """Find or make the object's node, and bring it into the object's state.
+
+        Objects without a node, such as the parts of a terrain, stay as they are in the scene.
+        """
         node = self._node(obj)
-        obj.webotsObject = node
+        if node is None:
+            return
         self._nodes[id(obj)] = node
+        obj.webotsObject = node
+        self._write(obj, node)
+        if not self._has_pose(obj):
+            return
+        self.move(obj, obj.position)
+        self._turn(obj, obj.orientation)
+        node.resetPhysics()
+        if node.getField("physics") is not None:
+            node.setVelocity([*self.axes.place(obj.velocity), *self.axes.spin(obj.angularVelocity)])
+        self._start_controller(obj, node)
+
+    def _write(self, obj: Any, node: Any) -> None:
+        """Write the fields of the node that the object has properties for."""
         density = getattr(obj, "density", None)
-        physics = _field(node, "physics")
+        physics = node.getField("physics")
         if density is not None and physics is not None and physics.getSFNode() is not None:
             physics.getSFNode().getField("density").setSFFloat(float(density))
         battery = getattr(obj, "battery", None)
@@ -107,61 +155,61 @@ class WebotsSimulation(Simulation):
                     f"the battery of {obj!r} must be three numbers, not {battery!r}",
                     help="the present energy, its maximum (joules), and how fast it is charged (watts)",
                 )
-            field = self._field(obj, node, "battery")
+            field = field_of(obj, node, "battery")
             for place, value in enumerate(numbers):
                 if place < field.getCount():
                     field.setMFFloat(place, value)
                 else:
                     field.insertMFFloat(-1, value)
-        for name in ("customData", "controller"):
-            text = getattr(obj, name, None)
-            if text is not None:
-                self._field(obj, node, name).setSFString(str(text))
-        if not self._has_pose(obj):
+        text = getattr(obj, "customData", None)
+        if text is not None:
+            field_of(obj, node, "customData").setSFString(str(text))
+        if getattr(obj, "heights", None) is not None:
+            write_heights(obj, node)
+
+    def _start_controller(self, obj: Any, node: Any) -> None:
+        """Start the object's controller: Webots does so by itself where the field changes."""
+        name = getattr(obj, "controller", None)
+        if name is None:
             return
-        self.move(obj, obj.position)
-        self._turn(obj, obj.orientation)
-        node.resetPhysics()
-        if _field(node, "physics") is not None:
-            node.setVelocity([*self.axes.place(obj.velocity), *self.axes.spin(obj.angularVelocity)])
-        if getattr(obj, "controller", None) is not None and getattr(obj, "resetController", True):
+        field = field_of(obj, node, "controller")
+        if field.getSFString() != str(name):
+            field.setSFString(str(name))
+        elif getattr(obj, "resetController", True):
             node.restartController()
 
     def _node(self, obj: Any) -> Any:
-        """The node of an object in the world; raises `SimulationCreationError` if there is none."""
+        """The node of an object in the world; raises `SimulationCreationError`."""
         adhoc = getattr(obj, "webotsAdhoc", None)
         if adhoc is not None:
             return self._adhoc(obj, adhoc)
-        name, kind = getattr(obj, "webotsName", None), getattr(obj, "webotsType", None)
-        wanted = f"object_{len(self._nodes)}" if name is None else str(name)
-        if name is None and kind is not None:
-            wanted = self._next_of(str(kind))
-        node = self.supervisor.getFromDef(wanted)
-        if node is None:
-            raise SimulationCreationError(
-                f"the world has no node with the DEF name {wanted}, for {obj!r}",
-                help="name a node by `webotsName` or `webotsType`, or let the object be made: `with webotsAdhoc {}`",
-            )
+        node = self._names.node(obj, len(self.objects) - 1)
+        if node is not None:
+            self._states.save(node)
         return node
 
-    def _next_of(self, kind: str) -> str:
-        """The next name of a type: ``KIND`` if there is a node of that name, then ``KIND_0``, ``KIND_1`` and so on."""
-        place = self._types[kind]
-        self._types[kind] += 1
-        if self.supervisor.getFromDef(kind) is not None:
-            place -= 1
-        return kind if place < 0 else f"{kind}_{place}"
-
-    def _adhoc(self, obj: Any, options: Mapping[str, Any]) -> Any:
+    def _adhoc(self, obj: Any, options: Any) -> Any:
         """A new node with the object's shape."""
+        if not isinstance(options, Mapping):
+            raise SimulationCreationError(
+                f"the webotsAdhoc of {obj!r} must be a mapping, not {options!r}",
+                help="`{}`, or `{'physics': False}` for what does not move",
+            )
         if self._folder is None:
             self._folder = tempfile.TemporaryDirectory(prefix="scenic-webots-")
         files: dict[str, bytes] = {}
-        number = len(self._nodes)
+        number = len(self.objects) - 1
         color = getattr(obj, "color", None) or (0.8, 0.8, 0.8)
         stem = str(Path(self._folder.name) / "adhoc")
-        label = f"scenic object {number}"
-        text = solid(obj, None, stem, files, number, label, color, physics=bool(options.get("physics", True)))
+        text = solid(
+            obj,
+            stem,
+            files,
+            f"SCENIC_ADHOC_{number}",
+            f"scenic object {number}",
+            color,
+            physics=bool(options.get("physics", True)),
+        )
         for name, content in files.items():
             make_folder(Path(name).parent)
             write(Path(name), content)
@@ -171,17 +219,8 @@ class WebotsSimulation(Simulation):
         self._made.append(node)
         return node
 
-    def _field(self, obj: Any, node: Any, name: str) -> Any:
-        field = _field(node, name)
-        if field is None:
-            raise SimulationCreationError(
-                f"the node of {obj!r} ({node.getTypeName()}) has no field {name!r}",
-                help=f"leave `{name}` out, or name another node",
-            )
-        return field
-
     def _has_pose(self, obj: Any) -> bool:
-        return _field(self._nodes[id(obj)], "translation") is not None
+        return self._nodes[id(obj)].getField("translation") is not None
 
     def destroy(self) -> None:
         """Remove what was made."""
@@ -197,7 +236,7 @@ class WebotsSimulation(Simulation):
     def move(self, obj: Any, position: Any) -> None:
         """Put an object at a position (metres)."""
         place = Vector(*position) + Vector(*getattr(obj, "positionOffset", (0, 0, 0)))
-        self._nodes[id(obj)].getField("translation").setSFVec3f(self.axes.place(place))
+        self._moved(obj).getField("translation").setSFVec3f(self.axes.place(place))
 
     def _turn(self, obj: Any, orientation: Orientation) -> None:
         turned = self.axes.turn(orientation_of(matrix_of(orientation) @ matrix_of(_offset(obj))))
@@ -205,21 +244,35 @@ class WebotsSimulation(Simulation):
 
     def push(self, obj: Any, force: Any, relative: bool) -> None:
         """Apply a force (newtons) for one step."""
-        self._nodes[id(obj)].addForce(self.axes.place(force), relative)
+        node = self._moved(obj)
+        if relative:
+            # The node's own axes are those of the object, turned by the rotation offset.
+            force = matrix_of(_offset(obj)).T @ np.array(tuple(force), dtype=np.float64)
+        node.addForce(self.axes.place(force), relative)
+
+    def _moved(self, obj: Any) -> Any:
+        """The node of an object that is to move; raises `SimulationError` if it has none."""
+        node = self._nodes.get(id(obj))
+        if node is None or node.getField("translation") is None:
+            raise SimulationError(
+                f"{obj!r} cannot be moved: it has no node with a translation in the world",
+                help="name a node by `webotsName` or `webotsType`, or let the object be made: `with webotsAdhoc {}`",
+            )
+        return node
 
     # Steps
 
     def step(self) -> None:
         """Let Webots advance."""
         if self.supervisor.step(round(1000 * self.timestep)) == -1:
-            raise SimulationCreationError(
-                "Webots ended the simulation", help="run it again: the world was reset or closed"
+            raise SimulationError(
+                "Webots ended the simulation", help="run it again: the world was reloaded or closed"
             )
 
     def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
         """Read the state of the object's node."""
-        stored, node = obj.__dict__, self._nodes[id(obj)]
-        if not self._has_pose(obj):
+        stored, node = obj.__dict__, self._nodes.get(id(obj))
+        if node is None or not self._has_pose(obj):
             return {name: stored[name] for name in properties}
         offset = Vector(*getattr(obj, "positionOffset", (0, 0, 0)))
         position = Vector(*self.axes.place_here(node.getPosition()).tolist()) - offset
@@ -240,15 +293,10 @@ class WebotsSimulation(Simulation):
             "roll": roll,
             "elevation": float(position.z),
         }
-        battery = _field(node, "battery") if "battery" in properties else None
+        battery = node.getField("battery") if "battery" in properties else None
         if battery is not None and stored.get("battery") is not None:
             values["battery"] = tuple(battery.getMFFloat(place) for place in range(battery.getCount()))
         return {name: values[name] if name in values else stored[name] for name in properties}
-
-
-def _field(node: Any, name: str) -> Any:
-    """A field of a node, ``None`` if it has none of the name."""
-    return node.getField(name)
 
 
 def _offset(obj: Any) -> Orientation:
