@@ -56,7 +56,10 @@ def test_a_road_has_lanes_in_both_directions(tmp_path: Path) -> None:
     section = road.sections[0]
     assert [part.openDriveID for part in section.lanes] == [-1, 1]
     # Numbered from right to left, whatever the order in the file.
-    assert [(part.uid, part.id) for part in road.lanes] == [("road1_lane0", -1), ("road1_lane1", 1)]
+    assert [(part.uid, part.id) for part in road.lanes] == [
+        ("road1_lane0", "road1_lane0"),
+        ("road1_lane1", "road1_lane1"),
+    ]
     right, left = section.lanes
     assert right.laneToLeft is left
     assert left.laneToLeft is right
@@ -102,6 +105,11 @@ def test_maneuvers_of_a_crossing(crossing: Network) -> None:
     assert inter.hasTrafficLights
     assert [road.id for road in inter.roads] in ([1, 2, 3, 4], [2, 3, 4, 1], [3, 4, 1, 2], [4, 1, 2, 3])
     assert len(inter.maneuvers) == 12
+    starts = [maneuver.startLane for maneuver in inter.maneuvers]
+    assert starts == [lane for lane in dict.fromkeys(starts) for _ in range(3)]
+    ends = [lane.centerline.points[-1] for lane in inter.incomingLanes]
+    headings = [math.atan2(-x, y) for x, y, _ in ends]
+    assert headings == sorted(headings)
     kinds = [maneuver.type for maneuver in inter.maneuvers]
     for kind in (ManeuverType.STRAIGHT, ManeuverType.LEFT_TURN, ManeuverType.RIGHT_TURN):
         assert kinds.count(kind) == 4

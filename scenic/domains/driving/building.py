@@ -297,7 +297,6 @@ class _RoadBuilder:
                     LaneSection,
                     f"{self._uid}_sec{number}_lane{strip.id}",
                     strip.polygon,
-                    id=strip.id,
                     speed=strip.lane.speed if strip.lane.speed is not None else self._record.speed,
                     vehicles=_vehicles(strip.lane),
                     tags=tags,
@@ -350,7 +349,6 @@ class _RoadBuilder:
                 Lane,
                 f"{self._uid}_lane{number}",
                 union_of(part.polygon for part in chain),
-                id=chain[0].openDriveID,
                 speed=parts[0].speedLimit,
                 vehicles=frozenset().union(*(part.vehicleTypes for part in chain)),
                 tags=tags,
@@ -411,7 +409,6 @@ class _RoadBuilder:
                 LaneGroup,
                 f"{self._uid}_{word}",
                 union_of(lane.polygon for lane in lanes),
-                id=None,
                 speed=road.speedLimit,
                 tags=road.tags,
             )
@@ -560,7 +557,6 @@ class _RoadBuilder:
             Lane,
             f"{group.uid}_bikeLane",
             union_of(strip.polygon for strip in strips),
-            id=strips[0].id,
             speed=road.speedLimit,
             vehicles=frozenset({VehicleType.BICYCLE}),
             tags=road.tags,
@@ -594,5 +590,5 @@ def number_or_text(text: str) -> Any:
 
 
 def angle_about(center: tuple[float, float], point: Floats) -> float:
-    """The direction of a point from a centre, anticlockwise from east."""
-    return math.atan2(float(point[1]) - center[1], float(point[0]) - center[0])
+    """The heading from a centre to a point: 0 to the north, anticlockwise, from -pi to pi, so that an order starts in the south."""
+    return math.atan2(center[0] - float(point[0]), float(point[1]) - center[1])

@@ -55,7 +55,7 @@ class NetworkElement(Frozen, Surface):
 
     Attributes:
         uid: unique text in its network.
-        id: its id in the file, if it has one.
+        id: the id in the file of roads, intersections and crossings; the ``uid`` of others.
         name: its name in the file, else empty.
         network: the network.
         polygon: its area, shapely's.
@@ -80,7 +80,7 @@ class NetworkElement(Frozen, Surface):
         Region.__init__(self, name=name)
         self.network = network
         self.uid = uid
-        self.id = id
+        self.id = uid if id is None else id
         self.name = name
         self.polygon = polygon
         self.speedLimit = speed

@@ -263,6 +263,9 @@ class _Linker:
         intersection.roads = tuple(road.road for road, _ in ordered)
         intersection.incomingLanes = _by_angle(incoming_lanes, middle, -1)
         intersection.outgoingLanes = _by_angle(outgoing, middle, 0)
+        # Together by the lanes that they start from, lanes and maneuvers in the order of the file.
+        order = {lane: number for number, lane in enumerate(dict.fromkeys(incoming_lanes))}
+        maneuvers.sort(key=lambda maneuver: order[maneuver.startLane])
         intersection.maneuvers = tuple(maneuvers)
         lanes = [maneuver.connectingLane for maneuver in maneuvers] + [
             lane for road in inside for lane in road.road.lanes

@@ -37,7 +37,7 @@ from scenic.runtime.geometry.store import Arrays
 
 __all__ = ["KIND", "restored", "stored"]
 
-KIND: Final = "road network 4"
+KIND: Final = "road network 5"
 """Name and version of the form of the arrays."""
 
 _Network = TypeVar("_Network", bound=RoadNetwork)
