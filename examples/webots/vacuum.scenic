@@ -94,12 +94,17 @@ table = new DiningTable contained in dining, on floor, facing Range(0, 360) deg
 behind_it = new Chair behind table by -0.1, on floor, facing toward table, with regionContainedIn dining
 ahead_of_it = new Chair ahead of table by -0.1, on floor, facing toward table, with regionContainedIn dining
 beside_it = new Chair left of table by -0.1, on floor, facing toward table, with regionContainedIn dining
+mutate behind_it, ahead_of_it, beside_it
+lean = Uniform((90 deg, 0), (-90 deg, 0), (0, 90 deg), (0, -90 deg))
+fallen = new Chair contained in dining, on floor, facing (Range(0, 360) deg, lean[0], lean[1]), with baseOffset (0, 0, -0.2)
+
 couch = new Couch ahead of left by 0.335, on floor, facing away from left, with regionContainedIn living
 coffee = new CoffeeTable ahead of couch by 0.336, on floor, facing away from couch, with regionContainedIn living
-mutate behind_it, ahead_of_it, beside_it, couch, coffee
+mutate couch, coffee
 
 block = new Toy on floor, with shape BoxShape()
-new Toy on block, with shape BoxShape()
+second = new Toy on block, with shape BoxShape()
+new Toy on second, with shape BoxShape()
 for _ in range(globalParameters.numToys):
     new Toy on floor
 

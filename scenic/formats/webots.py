@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import field
 from pathlib import Path, PurePosixPath
+from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
@@ -48,7 +49,13 @@ class World:
     files: Mapping[str, bytes] = field(default_factory=dict)
 
 
-def webots_world(scene: Scene, stem: str, *, program: str | None = None) -> World:
+def webots_world(
+    scene: Scene,
+    stem: str,
+    *,
+    program: str | Path | None = None,
+    params: Mapping[str, Any] = MappingProxyType({}),
+) -> World:
     """A scene as a world.
 
     Objects with a property ``webotsProto`` become nodes of that PROTO (a name, found in ``../protos``, or an address that ends
@@ -60,6 +67,7 @@ def webots_world(scene: Scene, stem: str, *, program: str | None = None) -> Worl
         stem: the name of the file without its ending; meshes are in the folder ``STEM_meshes``.
         program: path of the scene's program, to add a supervisor that runs the program's behaviors in this world. Objects with
             ``webotsAdhoc`` are then left out, since the supervisor makes them.
+        params: parameters that the program was loaded with.
 
     Raises:
         ScenicValueError: two objects have one ``webotsName``, or a name cannot be a DEF name.
@@ -84,7 +92,7 @@ def webots_world(scene: Scene, stem: str, *, program: str | None = None) -> Worl
             continue
         nodes.append(solid(thing, stem, files, name, label, instance.color))
     externals = "".join(f"EXTERNPROTO {_text(address)}\n" for address in protos)
-    supervisor = "" if program is None else _supervisor(scene, program, files)
+    supervisor = "" if program is None else _supervisor(scene, Path(program).absolute(), params, files)
     return World(
         f"{_HEADER}\n{externals}\n{_surroundings(scene, instances)}{''.join(nodes)}{supervisor}", files
     )
@@ -139,9 +147,15 @@ def _labels(instances: Sequence[Instance]) -> list[str]:
     return labels
 
 
-def write_world(scene: Scene, path: Path, *, program: str | None = None) -> None:
+def write_world(
+    scene: Scene,
+    path: Path,
+    *,
+    program: str | Path | None = None,
+    params: Mapping[str, Any] = MappingProxyType({}),
+) -> None:
     """Write `webots_world` to a ``.wbt`` file and the folder beside it; raises ``OutputError``."""
-    world = webots_world(scene, path.stem, program=program)
+    world = webots_world(scene, path.stem, program=program, params=params)
     for name, content in world.files.items():
         place = path.parent / name
         make_folder(place.parent)
@@ -276,7 +290,7 @@ def _surroundings(scene: Scene, instances: Sequence[Instance]) -> str:
     )
 
 
-def _supervisor(scene: Scene, program: str, files: dict[str, bytes]) -> str:
+def _supervisor(scene: Scene, program: Path, params: Mapping[str, Any], files: dict[str, bytes]) -> str:
     """A robot that runs the program's behaviors in this world, and its controller."""
     script = f'''"""Runs the behaviors of a Scenic program in this world, on its scene {scene.k} of seed {scene.seed}."""
 
@@ -285,7 +299,7 @@ from controller import Supervisor
 import scenic
 from scenic.simulators.webots.simulator import WebotsSimulator
 
-scenario = scenic.load({program!r})
+scenario = scenic.load({str(program)!r}, params={dict(params)!r})
 scene = scenario.sample({scene.k + 1}, seed={scene.seed})[{scene.k}]
 WebotsSimulator(Supervisor()).simulate(scene)
 '''

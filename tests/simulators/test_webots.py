@@ -364,6 +364,14 @@ def test_the_example_programs_compile_sample_and_run() -> None:
     assert crate.forces == [([0, 60, 0], False)] * 3
 
 
+def test_the_room_of_the_vacuum_is_that_of_the_case_study() -> None:
+    examples = Path(__file__).parents[2] / "examples"
+    first, second = ((examples / name / "vacuum.scenic").read_text() for name in ("vacuum", "webots"))
+    start, end = "right = new Wall", "mutate couch, coffee\n"
+    rooms = [text[text.index(start) : text.index(end)] for text in (first, second)]
+    assert rooms[0].replace("\n\n", "\n") == rooms[1].replace("\n\n", "\n")
+
+
 def test_the_case_studies_are_worlds_too(tmp_path: Path) -> None:
     folder = Path(__file__).parents[2] / "examples" / "webots"
     (room,) = scenic.load(folder / "vacuum.scenic", params={"numToys": 2}).sample(1, seed=1)
@@ -375,7 +383,7 @@ def test_the_case_studies_are_worlds_too(tmp_path: Path) -> None:
     assert robot["type"] == "IRobotCreate"
     assert robot["customData"] == str(room.egoObject.controllerSeed)
     assert robot["translation"][2] == pytest.approx(0, abs=1e-3)
-    assert sum("physics" in node for node in nodes) == 10
+    assert sum("physics" in node for node in nodes) == 12
     assert (tmp_path / "room_meshes").is_dir()
     room.save(tmp_path / "room.scene")
     again = scenic.load(folder / "vacuum.scenic", params={"numToys": 2}).replay(tmp_path / "room.scene")
@@ -481,11 +489,17 @@ def test_a_written_supervisor_runs_the_program_in_its_world(
 ) -> None:
     program = tmp_path / "push.scenic"
     program.write_text(
-        MODEL + RUN.replace("webotsName 'CRATE'", "webotsProto 'Crate'") + "terminate after 4 steps\n"
+        MODEL
+        + "param side = 2\n"
+        + RUN.replace("webotsName 'CRATE'", "webotsProto 'Crate'").replace(
+            "(30, 0, 1)", "(globalParameters.side, 9, 1)"
+        )
+        + "terminate after 4 steps\n"
     )
-    scene = scenic.load(program).sample(3, seed=5)[2]
+    scene = scenic.load(program, params={"side": 30}).sample(3, seed=5)[2]
+    monkeypatch.chdir(tmp_path)
     world = tmp_path / "worlds" / "push.wbt"
-    write_world(scene, world, program=str(program))
+    write_world(scene, world, program=program.name, params={"side": 30})
     nodes = [node_of(node) for node in read_world(world)]
     assert [node.name for node in nodes[4:]] == [
         "FLOOR",
@@ -502,9 +516,11 @@ def test_a_written_supervisor_runs_the_program_in_its_world(
     module = ModuleType("controller")
     module.Supervisor = lambda: supervisor  # type: ignore[attr-defined] # as the module of Webots
     monkeypatch.setitem(sys.modules, "controller", module)
+    monkeypatch.chdir(script.parent)  # as Webots does
     runpy.run_path(str(script))
     crate = supervisor.getFromDef("object_0")
     assert crate is not None
     assert len(crate.forces) == 4
     assert crate.getPosition() == pytest.approx(list(scene.egoObject.position))
     assert supervisor.children == nodes
+    assert "params={'side': 30}" in script.read_text()
