@@ -7,6 +7,7 @@ from graph.programs import Triple, make, source, uniform
 from scenic.analysis.facts import Fact
 from scenic.analysis.smt import judge
 from scenic.graph.kinds import Kind
+from tests.amounts import amount
 from tests.runtime.programs import scenario
 
 PAVED = {
@@ -29,6 +30,9 @@ PAVED = {
 }
 
 
+POINTS = amount(4_000, 8_000)
+
+
 @pytest.mark.parametrize("name", PAVED)
 def test_boxes_tile_what_is_kept(name: str) -> None:
     """No point that meets the requirements is lost, also none on a face, and none is in two boxes."""
@@ -37,8 +41,8 @@ def test_boxes_tile_what_is_kept(name: str) -> None:
     assert domain.boxes > 1
     assert domain.volume < 0.5
     faces = np.concatenate([domain.lower, domain.upper])
-    on_faces = faces[np.random.default_rng(4).integers(0, len(faces), (8_000, 2)), [0, 1]]
-    random = np.random.default_rng(3).random((8_000, 2))
+    on_faces = faces[np.random.default_rng(4).integers(0, len(faces), (POINTS, 2)), [0, 1]]
+    random = np.random.default_rng(3).random((POINTS, 2))
     for points in (random, on_faces, np.nextafter(on_faces, 0), np.nextafter(on_faces, 1)):
         kept = domain.contains(points)
         assert kept[holds(*points.T)].all()

@@ -1,7 +1,6 @@
 """OpenSCENARIO files: another library's reader gives the trajectories back."""
 
 import math
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ import scenic
 from scenic.domains.driving.openscenario import toOpenScenario
 from scenic.formats.openscenario import openscenario_about, openscenario_document
 from scenic.simulators.newtonian import NewtonianSimulator
+from tests.cli.commands import run_here
 from tests.maps import cross
 
 TRAFFIC = """
@@ -177,11 +177,11 @@ def test_the_command_writes_and_goes_on(town: Path, tmp_path: Path) -> None:
         f"param map = {str(town)!r}\nmodel scenic.simulators.newtonian.driving_model\n"
         "ego = new Car at (50, 1.75), facing 90 deg, with speed 5\n"
     )
-    command = [sys.executable, "-m", "scenic", "simulate", "--2d", "--seed", "1", "--time", "5", str(program)]
+    command: list[object] = ["simulate", "--2d", "--seed", "1", "--time", "5", str(program)]
     command += ["-o", str(tmp_path / "out"), "--format", "openscenario"]
     file = tmp_path / "out" / "simulation-0000.xosc"
     for _ in range(2):
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        done = run_here(command)
         assert done.returncode == 0, done.stderr
         assert "simulation 0: 5 steps" in done.stdout
         written = file.stat().st_mtime_ns

@@ -55,11 +55,11 @@ def _sums(array: Array) -> str:
     return f"{finite.sum()} sum to {_number(totals[0])} and {_number(totals[1])}"
 
 
-def flips(decide: Decide, lanes: int, steps: int = 24) -> str:
+def flips(decide: Decide, lanes: int, steps: int = 14) -> str:
     """Whether each lane holds at the beginning and at the end of its way; if these differ, where it changes."""
     low, high = np.zeros(lanes), np.ones(lanes)
     first, last = (np.broadcast_to(decide(end), lanes) for end in (low, high))
-    for _ in range(steps):
+    for _ in range(steps if (first != last).any() else 0):
         middle = (low + high) / 2
         as_first = np.broadcast_to(decide(middle), lanes) == first
         low, high = np.where(as_first, middle, low), np.where(as_first, high, middle)
@@ -219,18 +219,18 @@ def over_lanes(region: Region, columns: Sequence[Any], seed: int) -> Iterator[st
 
     # Kinds that decide by meshes take their time: fewer steps, and no search where lanes are looked at one by one.
     is_quick = isinstance(region, PlanarRegion | BoxRegion | SpheroidRegion)
-    steps = 20 if is_quick else 2 if isinstance(region, ViewRegion) else 3
+    steps = 12 if is_quick else 2 if isinstance(region, ViewRegion) else 3
     yield f"holds growing: {_attempted(lambda t: region.contains_bodies(grown(t), LANES, *columns), steps)}"
     small = bodies(start, size * 0.05, turn)
     yield line("holds small", lambda: region.contains_bodies(small, LANES, *columns))
     alone = Body((table(),), None, Poses(start[:1], turn[:1], size[:1] * 0.1))
     yield line("holds one", lambda: region.contains_bodies(alone, LANES, *columns))
     if type(region).meets_bodies is not Region.meets_bodies and not isinstance(region, UnionRegion):
-        yield f"meets growing: {_attempted(lambda t: region.meets_bodies(grown(t), LANES, *columns), 10 if is_quick else 2)}"
+        yield f"meets growing: {_attempted(lambda t: region.meets_bodies(grown(t), LANES, *columns), 8 if is_quick else 2)}"
     yield line("meets", lambda: region.meets_bodies(passing(np.linspace(0.3, 0.6, LANES)), LANES, *columns))
 
 
-def _attempted(decide: Decide, steps: int = 24) -> str:
+def _attempted(decide: Decide, steps: int = 14) -> str:
     try:
         return flips(decide, LANES, steps)
     except Exception as error:  # noqa: BLE001 - what is said of it is the answer

@@ -19,6 +19,7 @@ from scenic.runtime.regions.stacked import body_of, body_operands
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from scenic.runtime.values.values import Orientation, Vector, as_node
 from scenic.runtime.visibility import seeing as sight
+from tests.amounts import amount
 from tests.runtime.programs import thing
 
 TURN = Orientation.fromEuler(0.4, 0.2, -0.3)
@@ -66,7 +67,7 @@ def over_lanes(thing_: Any) -> Any:
 def test_points_in_regions(name: str) -> None:
     region = REGIONS[name]
     random = np.random.default_rng(1)
-    points = random.uniform(-4, 4, (2000, 3))
+    points = random.uniform(-4, 4, (amount(600, 2000), 3))
     points[::2] = np.round(points[::2] * 2) / 2  # many on borders
     held = region.contains_points(points, *region.fixed_columns("the region"))
     assert 0 < held.sum() < len(points)

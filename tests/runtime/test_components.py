@@ -13,6 +13,7 @@ from scenic.language.errors import RejectionException
 from scenic.runtime.sampling.engine import Engine
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
+from tests.amounts import amount
 from tests.runtime.programs import FALSE_ALARM, fingerprint, scenario
 
 LOT = "for j in range(3):\n    new Object at ({} + Range(-3, 3), Range(-3, 3)), with width 2, with length 2, facing Range(0, 7)\n"
@@ -62,15 +63,16 @@ def test_the_law_is_that_of_whole_scenes(name: str) -> None:
 @pytest.mark.parametrize("name", list(PROGRAMS))
 def test_scenes_depend_on_seed_and_number_alone(name: str, tmp_path: Path) -> None:
     program = scenario(PROGRAMS[name])
-    scenes = program.sample(40, seed=5)
+    count = amount(20, 40)
+    scenes = program.sample(count, seed=5)
     expected = [fingerprint(scene) for scene in scenes]
     for lanes in (1, 7, 512):
         assert [
-            fingerprint(scene) for scene in scenario(PROGRAMS[name]).sample(40, seed=5, lanes=lanes)
+            fingerprint(scene) for scene in scenario(PROGRAMS[name]).sample(count, seed=5, lanes=lanes)
         ] == expected
     assert [fingerprint(*program.stream(1, first=k, seed=5)) for k in range(12)] == expected[:12]
     # What is kept of them says all.
-    numbers = np.arange(40)
+    numbers = np.arange(count)
     attempts = np.array([scene.component_attempts for scene in scenes])
     assert [scene.attempts for scene in scenes] == attempts.max(axis=1).tolist()
     for told in (attempts, attempts.max(axis=1)):

@@ -378,7 +378,7 @@ def containers() -> Lines:
                 ("hole", Polygons(HOLED)),
                 ("two", Polygons(shapely.MultiPolygon([HOLED, shapely.box(5, 5, 9, 6)]))),
             ):
-                yield f"{name} {kind} {what} {flips(lambda t, b=body, p=polygon: containment.in_polygons(b(t), p, 6), 6, 20)}"
+                yield f"{name} {kind} {what} {flips(lambda t, b=body, p=polygon: containment.in_polygons(b(t), p, 6), 6)}"
             for where, of in (("each", box), ("fixed", fixed)):
                 yield f"{name} {kind} box {where} {flips(lambda t, b=body, o=of: containment.in_box(b(t), *o, 6), 6)}"
                 yield f"{name} {kind} ellipsoid {where} {flips(lambda t, b=body, o=of: containment.in_ellipsoid(b(t), *o, 6), 6)}"

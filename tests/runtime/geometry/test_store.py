@@ -15,6 +15,7 @@ from scenic.runtime.geometry import store
 from scenic.runtime.geometry.mesh import Mesh
 from scenic.runtime.geometry.store import digest_of, kept
 from scenic.runtime.geometry.voxels import voxels
+from tests.amounts import amount
 
 from .samples import bumpy, table
 
@@ -236,7 +237,7 @@ def _use(folder: str, rounds: int) -> bool:
 
 def test_processes_share_a_store(folder):
     with multiprocessing.get_context("spawn").Pool(3) as pool:
-        assert all(pool.starmap(_use, [(str(folder), 150)] * 3))
+        assert all(pool.starmap(_use, [(str(folder), amount(50, 150))] * 3))
     assert not list(folder.glob(".*"))
 
 

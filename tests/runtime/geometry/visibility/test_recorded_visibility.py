@@ -237,11 +237,11 @@ def points_in_view() -> Lines:
         for kind in KINDS:
             place = swept(some, kind)
             around = hiding(seed, names, some)
-            yield f"{names} {kind} {flips(lambda t, p=place, o=around, v=some: sees_points(v, p(t), o, LANES), LANES, 24)}"
+            yield f"{names} {kind} {flips(lambda t, p=place, o=around, v=some: sees_points(v, p(t), o, LANES), LANES)}"
         target = swept(some, "left")(np.zeros(LANES))
         way = turns(np.random.default_rng(seed), LANES)[:, :3] * 6
         if names:
-            yield f"{names} passing {flips(lambda t, w=way, v=some, n=names, s=seed, p=target: sees_points(v, p, hiding(s, n, v, t, w), LANES), LANES, 24)}"
+            yield f"{names} passing {flips(lambda t, w=way, v=some, n=names, s=seed, p=target: sees_points(v, p, hiding(s, n, v, t, w), LANES), LANES)}"
             yield f"{names} one {numbers(sees_points(some, target[:1], hiding(seed, names, some), LANES))}"
             lanes = np.array([1, 4, 6])
             yield f"{names} hidden {numbers(hidden_points(some.spread(LANES).take(lanes), target[lanes], hiding(seed, names, some), lanes))}"
