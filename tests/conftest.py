@@ -28,7 +28,7 @@ def pytest_collection(session: pytest.Session) -> Iterator[None]:
     try:
         return (yield)
     finally:
-        gc.collect()
+        # What collection leaves is kept, garbage included: looking for that among all tests would cost each worker a second.
         gc.freeze()
         gc.set_threshold(50_000)  # as the commands do; Python's own costs some three hundredths of all time
         gc.enable()

@@ -3,6 +3,7 @@
 import ast
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
@@ -84,7 +85,7 @@ def modules() -> Iterator[tuple[str, Path]]:
 
 def imports(module: str, *, at_start: bool = False) -> Iterator[str]:
     """Names of modules that a module imports: everywhere in it, or only when it is itself imported."""
-    for node in _statements(TREES[module], at_start):
+    for node in _statements(trees()[module], at_start):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -95,13 +96,18 @@ def imports(module: str, *, at_start: bool = False) -> Iterator[str]:
 
 
 def _statements(tree: ast.AST, at_start: bool) -> Iterator[ast.AST]:
-    for node in ast.iter_child_nodes(tree):
-        if at_start and isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
-            continue
-        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test):
-            continue
-        yield node
-        yield from _statements(node, at_start)
+    waiting = [tree]
+    while waiting:
+        for node in ast.iter_child_nodes(waiting.pop()):
+            # No expression has an import.
+            if not isinstance(node, ast.stmt | ast.excepthandler | ast.match_case):
+                continue
+            if at_start and isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                continue
+            if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test):
+                continue
+            yield node
+            waiting.append(node)
 
 
 def layer(module: str) -> str | None:
@@ -112,14 +118,23 @@ def layer(module: str) -> str | None:
 ALL = dict(modules())
 
 
-TREES = {module: ast.parse(path.read_text(encoding="utf-8")) for module, path in ALL.items()}
-IMPORTS = {module: frozenset(imports(module)) for module in ALL}
+# Not when this module is imported, which every worker does.
+
+
+@cache
+def trees() -> dict[str, ast.Module]:
+    return {module: ast.parse(path.read_text(encoding="utf-8")) for module, path in ALL.items()}
+
+
+@cache
+def all_imports() -> dict[str, frozenset[str]]:
+    return {module: frozenset(imports(module)) for module in ALL}
 
 
 def test_layers_import_downwards() -> None:
     wrong = [
         f"{module} imports {name}"
-        for module, names in IMPORTS.items()
+        for module, names in all_imports().items()
         if (own := layer(module)) in LAYERS
         for name in names
         if layer(name) not in (None, own, *LAYERS[own])
@@ -130,7 +145,7 @@ def test_layers_import_downwards() -> None:
 def test_only_commands_and_the_api_call_the_pipeline() -> None:
     joins = [
         module
-        for module, names in IMPORTS.items()
+        for module, names in all_imports().items()
         if (own := layer(module)) in LAYERS and own != "cli" and "scenic.pipeline" in names
     ]
     assert not joins
@@ -139,7 +154,7 @@ def test_only_commands_and_the_api_call_the_pipeline() -> None:
 def test_layers_keep_their_libraries() -> None:
     wrong = [
         f"{module} imports {name}"
-        for module, names in IMPORTS.items()
+        for module, names in all_imports().items()
         for name in {name.partition(".")[0] for name in names} - {"scenic"} - sys.stdlib_module_names
         if ((own := layer(module)) in LIBRARIES and name not in LIBRARIES[own])
         or own not in ONLY_IN.get(name, {own})
@@ -160,7 +175,7 @@ def test_heavy_libraries_are_imported_where_they_are_used() -> None:
 def test_there_are_no_import_cycles() -> None:
     edges = {
         module: {name for name in names if name in ALL and name != module}
-        for module, names in IMPORTS.items()
+        for module, names in all_imports().items()
     }
     done: set[str] = set()
 
@@ -181,7 +196,7 @@ def test_there_are_no_import_cycles() -> None:
 def test_no_module_fills_in_the_classes_of_others() -> None:
     """A cycle of imports that was moved into an assignment is a cycle still."""
     found = []
-    for module, tree in TREES.items():
+    for module, tree in trees().items():
         imported = {
             (alias.asname or alias.name).partition(".")[0]
             for node in tree.body
@@ -226,7 +241,7 @@ CHANGING = {"append", "extend", "insert", "add", "update", "setdefault", "pop", 
 def test_no_module_has_mutable_state() -> None:
     """Nothing that a module binds is changed by its functions: no ``global``, no change of a module's container."""
     found = []
-    for module, tree in TREES.items():
+    for module, tree in trees().items():
         containers = {
             target.id
             for node in tree.body
@@ -282,10 +297,10 @@ BESIDE = ("grammar", "fuzz", "benchmarks", "editors", "examples", "docs")
 
 def test_docstrings_begin_with_a_noun_or_a_verb() -> None:
     scripts = [path for folder in BESIDE for path in sorted((ROOT / folder).rglob("*.py"))]
-    trees = TREES | {str(path): ast.parse(path.read_text(encoding="utf-8")) for path in scripts}
+    all_trees = trees() | {str(path): ast.parse(path.read_text(encoding="utf-8")) for path in scripts}
     found = [
         f"{module}:{line}: {text[:60]}"
-        for module, tree in trees.items()
+        for module, tree in all_trees.items()
         for line, text in _docstrings(tree)
         if text.split(maxsplit=1)[:1] and text.split(maxsplit=1)[0] in INDIRECT
     ]

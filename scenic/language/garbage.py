@@ -1,6 +1,7 @@
 """Pausing Python's search for garbage while much is made of which nothing is garbage."""
 
 import gc
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
@@ -27,9 +28,11 @@ def import_lasting(name: str) -> ModuleType:
     With NumPy they are some forty thousand objects, which it would look through twelve times: in the midst of whatever
     the program does next.
     """
+    is_known = name in sys.modules
     with no_garbage_collection():
         module = import_module(name)
-    if gc.isenabled() and not gc.get_freeze_count():
+    # Python counts what is frozen object by object: not for each command of a process that runs many.
+    if not is_known and gc.isenabled() and not gc.get_freeze_count():
         # What is frozen is not looked at, and is old when it is thawed: an import leaves no garbage to look for.
         gc.freeze()
         gc.unfreeze()
