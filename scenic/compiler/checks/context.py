@@ -94,6 +94,7 @@ class Context:
         """The facts about the whole program that rules have read."""
         self._facts: Final[dict[str, Any]] = {}
         self._foreign: Final[dict[ast.expr, Foreign | None]] = {}
+        self._cut: Final[dict[Stretch, frozenset[ast.AST]]] = {}
 
     # What the program is
 
@@ -254,6 +255,19 @@ class Context:
     def nodes_around(self, node: ast.AST, cls: type[ast.AST]) -> Iterator[Any]:
         """The nodes of a class that may stand around or in a node: those near it, and maybe others."""
         return (found for stretch in self.resolution.around(node) for found, _ in stretch.nodes(cls))
+
+    def is_cut(self, node: ast.AST) -> bool:
+        """Return whether a comma separates an object from the rest of its last operand, which SC311 reports."""
+        for stretch in self.resolution.around(node):
+            if stretch not in self._cut:
+                self._cut[stretch] = frozenset(
+                    each.value.elts[0]
+                    for each, _ in stretch.nodes(ast.Assign)
+                    if isinstance(each.value, ast.Tuple) and each.value.elts
+                )
+            if node in self._cut[stretch]:
+                return True
+        return False
 
     @cached_property
     def _last_wildcard(self) -> tuple[int, int]:

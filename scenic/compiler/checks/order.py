@@ -122,9 +122,10 @@ def _read_at_once(stretch: Stretch) -> frozenset[str]:
 def _read_early(stretch: Stretch) -> frozenset[str]:
     """The names bound in a stretch that are read there on the line where that first ends, or before."""
     found = set()
+    starts = [position(each) for each in stretch.statements]
     for name in stretch.common("read at once", _read_at_once) & stretch.kinds.keys():
         site = min((site for _, site in stretch.bound[name]), key=position)
-        index = max(0, bisect_right([position(each) for each in stretch.statements], position(site)) - 1)
+        index = max(0, bisect_right(starts, position(site)) - 1)
         last_line = stretch.statements[index].end_lineno or 0
         if any(node.lineno <= last_line for node in _reads_at_once(stretch, name)):
             found.add(name)

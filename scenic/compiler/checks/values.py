@@ -34,7 +34,7 @@ _MEMBERS_OF_OBJECTS: Final = frozenset(_PROPERTIES) | frozenset(attributes_of("O
 
 def _specifiers(node: scenic.New | scenic.Override, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """``at 3``, ``with width "3"``."""
-    if may_be_meant(node, scope, context) or _is_cut(node, context):
+    if may_be_meant(node, scope, context) or context.is_cut(node):
         return
     for specifier in node.specifiers:
         if specifier.property is not None:
@@ -49,14 +49,6 @@ def _specifiers(node: scenic.New | scenic.Override, scope: Scope, context: Conte
                 # `in front of x` has a message of its own.
                 if not left_out and not isinstance(value, scenic.Operation):
                     yield from wrong_kinds(element.label(operand), operand.types, value, context)
-
-
-def _is_cut(node: ast.AST, context: Context) -> bool:
-    """Return whether a comma separates an object from the rest of its last operand, which SC311 reports."""
-    return any(
-        isinstance(assign.value, ast.Tuple) and assign.value.elts[:1] == [node]
-        for assign in context.nodes_around(node, ast.Assign)
-    )
 
 
 def _operation(node: scenic.Operation, scope: Scope, context: Context) -> Iterator[Diagnostic]:
