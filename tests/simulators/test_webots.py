@@ -271,6 +271,45 @@ def test_a_simulation_runs_and_the_next_one_begins_from_the_same_world() -> None
     assert supervisor.milliseconds == 3 * 50 * 32
 
 
+def test_calls_come_in_an_order_that_webots_understands(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = scene_of(
+        "ego = new WebotsObject at (0, 0, 1), with webotsName 'A', with controller 'drive', with customData 'seed 4'\n"
+        "new WebotsObject at (3, 0, 1), with webotsAdhoc {}\n"
+    )
+    node = Node("A", customData="", controller="drive")
+    supervisor = Supervisor(node)
+    names = {id(node): "A", id(supervisor): "supervisor", id(supervisor.root.fields["children"]): "children"}
+    names |= {id(field): name for name, field in node.fields.items()}
+    calls: list[str] = []
+
+    def logged(name: str, call: Any) -> Any:
+        def method(self: Any, *given: Any) -> Any:
+            calls.append(f"{names.get(id(self), 'new')}.{name}")
+            return call(self, *given)
+
+        return method
+
+    for cls in (Node, type(node.fields["rotation"]), Supervisor):
+        for name in dir(cls):
+            if name.startswith(("set", "import", "save", "load", "reset", "restart", "remove", "step")):
+                monkeypatch.setattr(cls, name, logged(name, getattr(cls, name)))
+    simulator = WebotsSimulator(supervisor)
+    setting = [
+        "customData.setSFString",
+        *("translation.setSFVec3f", "rotation.setSFRotation", "A.resetPhysics", "A.setVelocity"),
+        "A.restartController",
+        "children.importMFNodeFromString",
+        *("new.setSFVec3f", "new.setSFRotation", "new.resetPhysics", "new.setVelocity"),
+        *("supervisor.step", "supervisor.step"),
+        "new.remove",
+    ]
+    simulator.simulate(scene, maxSteps=2)
+    assert calls == ["A.saveState", *setting]
+    calls.clear()
+    simulator.simulate(scene, maxSteps=2)
+    assert calls == ["A.loadState", *setting]
+
+
 def test_a_requirement_ends_a_simulation_and_the_world_is_clean() -> None:
     scene = scene_of(RUN + "require always ego.position.x > -0.5\n")
     crate = Node("CRATE", mass=0.3, battery=[])
