@@ -1,7 +1,7 @@
 """Members of classes: properties, methods and attributes, their own and inherited ones; and the classes of values."""
 
 import ast
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import field
 from typing import Any, Final
 
@@ -100,7 +100,7 @@ def _class(project: Project, symbol: Symbol, depth: int) -> Class | None:
     if not isinstance(node, ast.ClassDef) or module is None:
         return None
     bases: list[Symbol] = []
-    complete = len(symbol.binding.sites) == 1 if symbol.binding is not None else False
+    complete = symbol.binding is not None and _are_alike(symbol.binding.sites)
     complete = complete and not node.keywords and not node.decorator_list
     is_scenic = False
     members: dict[str, Member] = {}
@@ -125,6 +125,27 @@ def _class(project: Project, symbol: Symbol, depth: int) -> Class | None:
         for member in known.members:
             members.setdefault(member.name, member)
     return Class(symbol, tuple(members.values()), tuple(bases), complete, is_scenic)
+
+
+def _are_alike(sites: Sequence[ast.AST]) -> bool:
+    """Return whether a name means one class, or classes with the same bases and properties, such as those of two branches."""
+    if len(sites) == 1:
+        return True
+    found = {_outline(site) for site in sites}
+    return len(found) == 1 and None not in found
+
+
+def _outline(site: ast.AST) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
+    """Bases and properties of a class that has nothing else; ``None`` for any other definition."""
+    if not isinstance(site, ast.ClassDef) or site.keywords or site.decorator_list:
+        return None
+    properties = []
+    for item in site.body:
+        if isinstance(item, scenic.PropertyDef):
+            properties.append(item.name)
+        elif not (isinstance(item, ast.Expr) and isinstance(item.value, ast.Constant)):
+            return None
+    return tuple(map(ast.dump, site.bases)), tuple(sorted(properties))
 
 
 def _built_in(symbol: Symbol) -> Class:

@@ -110,6 +110,24 @@ def test_a_world_model_may_lie_beside_the_program_under_its_established_name(tmp
     assert found.help == "did you mean `Car`?"
 
 
+def test_the_same_class_in_two_branches_is_known(tmp_path: Path) -> None:
+    branches = (
+        "if flat:\n    class Low:\n        rise: 0\nelse:\n    class Low:\n        rise: {}\n        {}: 1\n"
+    )
+    text = "from low import Car\nego = new Car with risee 3\n"
+    for extra, count in (("rise", 1), ("fall", 0)):
+        module = branches.format(2, extra).replace("        rise: 1\n", "")
+        write(tmp_path, {"low.scenic": f"flat = True\n{module}class Car(Low):\n    speed: 3\n"})
+        found = [item.help for item in findings(tmp_path / "main.scenic", text) if item.code == "SC300"]
+        assert found == ["did you mean `rise`?"] * count
+
+
+def test_misspelt_properties_of_webots_objects_are_found(tmp_path: Path) -> None:
+    text = "model scenic.simulators.webots.model\nego = new WebotsObject with webotsTyp 'ROVER'\n"
+    [found] = findings(tmp_path / "main.scenic", text)
+    assert (found.code, found.help) == ("SC300", "did you mean `webotsType`?")
+
+
 def test_labels_lead_to_other_files() -> None:
     case = FOLDER / "cars" / "main.scenic"
     [found] = [item for item in findings(case, case.read_text()) if "needs `target`" in item.message]
