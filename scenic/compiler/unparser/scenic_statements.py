@@ -129,17 +129,15 @@ class ProgramWriter(StatementWriter):
             self.lines.append(f"{indent}{node.kind}: {self.expression(node.condition, _END)}")
 
     def behavior(self, node: tree.BehaviorDef, indent: str) -> None:
-        for statement in node.body:
-            if _annotated_name(statement) in tree.GUARDS:
-                raise UnparseError("an annotation of such a name has no text in a behavior", statement)
+        body = [_in_other_letters(statement) for statement in node.body]
         self.lines.append(f"{indent}behavior {node.name}({self.parameters(node.args)}):")
-        if node.guards and len(node.body) > 1 and _is_string(node.body[0]):
-            self.documented_block(node.body[:1], indent, node)
+        if node.guards and len(body) > 1 and _is_string(body[0]):
+            self.documented_block(body[:1], indent, node)
             self.guards(node.guards, indent + INDENTATION)
-            self.block(node.body[1:], indent, node)
+            self.block(body[1:], indent, node)
         else:
             self.guards(node.guards, indent + INDENTATION)
-            self.documented_block(node.body, indent, node)
+            self.documented_block(body, indent, node)
 
     def monitor(self, node: tree.MonitorDef, indent: str) -> None:
         self.lines.append(f"{indent}monitor {node.name}({self.parameters(node.args)}):")
@@ -182,6 +180,17 @@ def _is_string(node: ast.stmt) -> bool:
         isinstance(node.value, ast.JoinedStr)
         or (isinstance(node.value, ast.Constant) and isinstance(node.value.value, str | bytes))
     )
+
+
+def _in_other_letters(node: ast.stmt) -> ast.stmt:
+    """The statement; an annotation of the word of a guard gets a bold first letter, which reads as the plain one."""
+    name = _annotated_name(node)
+    if not isinstance(node, ast.AnnAssign) or name not in tree.GUARDS:
+        return node
+    bold = chr(ord("\N{MATHEMATICAL BOLD SMALL A}") + ord(name[0]) - ord("a"))
+    target = ast.copy_location(ast.Name(bold + name[1:], ast.Store()), node.target)
+    written = ast.AnnAssign(target, node.annotation, node.value, node.simple)
+    return ast.copy_location(written, node)
 
 
 def _annotated_name(node: ast.stmt) -> str:

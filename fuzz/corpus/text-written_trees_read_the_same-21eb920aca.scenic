@@ -1,0 +1,3 @@
+behavior B():
+    𝐩recondition: 3
+    wait

@@ -1,0 +1,3 @@
+behavior B():
+    precondition: x; y: 3
+    wait
