@@ -124,7 +124,7 @@ def codes(expressions: list[str]) -> list[str | None]:
         try:
             answers.append(function())
         except Exception as error:  # noqa: BLE001 - its code is the answer
-            answers.append(error)
+            answers.append(error.with_traceback(None))  # whose frames would keep all programs in memory
 
     asked = "".join(f"attempt(lambda: {text})\n" for text in expressions)
     program = f"{PREAMBLE}attempt = globalParameters.attempt\n{asked}"
@@ -132,7 +132,7 @@ def codes(expressions: list[str]) -> list[str | None]:
     nodes = [answer.node for answer in answers if isinstance(answer, Random)]
     batch = Batch(Scheduler(Graph(nodes), grouped=False), Counter(np.array([7], dtype=np.uint64)), CODEC)
     batch.need(nodes)
-    return [
+    found = [
         code_of(answer)
         if isinstance(answer, Exception)
         else code_in(batch, answer.node)
@@ -140,6 +140,8 @@ def codes(expressions: list[str]) -> list[str | None]:
         else None
         for answer in answers
     ]
+    answers.clear()  # which the program has a constant of, and would keep in memory
+    return found
 
 
 def code_of(error: BaseException) -> str:

@@ -70,7 +70,7 @@ def attempt(function):
     try:
         return function()
     except Exception as error:
-        return error
+        return error.with_traceback(None)  # whose frames would keep all programs in memory
 @distributionFunction
 def given(value, other):
     return value
