@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 from scenic.domains.driving.kinds import ManeuverType, VehicleType
 from scenic.domains.driving.levels import Ground
 from scenic.domains.driving.surfaces import GroundedLine, Surface, frames_of
-from scenic.graph.kinds import Column
+from scenic.graph.kinds import Column, Kind
 from scenic.language.errors import RejectionException
 from scenic.runtime.geometry.polygons import Polygons
 from scenic.runtime.regions.base import Points, Region
-from scenic.runtime.regions.fields import RegionField
 from scenic.runtime.regions.lines import PolylineRegion
+from scenic.runtime.regions.region_field import RegionField, way_given
 from scenic.runtime.values.frozen import Frozen
+from scenic.runtime.values.lane_methods import over_lanes
 from scenic.runtime.values.values import Orientation
 
 if TYPE_CHECKING:
@@ -247,6 +248,14 @@ class LinearElement(NetworkElement):
     def _segments(self) -> "Segments":
         return Segments(self.line)
 
+    @over_lanes(
+        Kind.VECTOR,
+        lambda point, distance, steps=None, stepSize=5: way_given(point, distance, steps, stepSize),
+        lambda lanes, element, setting, *columns: element.orientation.follow_together(
+            lanes, setting, *columns
+        ),
+        faults=True,
+    )
     def flowFrom(self, point: Any, distance: Any, steps: int | None = None, stepSize: float = 5) -> Any:
         """The point reached by following the element's direction from a point for a distance in metres."""
         return self.orientation.followFrom(point, distance, steps=steps, stepSize=stepSize)

@@ -204,26 +204,25 @@ class GroundedLine(Frozen, PolylineRegion):
         lower[:, 2], upper[:, 2] = self.ground.bounds
         return lower, upper
 
-    def closestPointTo(self, point: Any) -> Vector:
-        return self._on_ground(super().closestPointTo(_flat(point)))
+    def closest_points(self, points: Points) -> Points:
+        return self.projections(points)
 
     def nearestSegmentTo(self, point: Any) -> tuple[Vector, Vector]:
         """The ends of the segment nearest to a point, as seen from above."""
         start, end = super().nearestSegmentTo(_flat(point))
         return self._on_ground(start), self._on_ground(end)
 
-    def signedDistanceTo(self, point: Any) -> float:
-        """Distance from a point to the line as seen from above, negative on the right of it (metres)."""
-        return super().signedDistanceTo(_flat(point))
+    def signed_distances(self, points: Points) -> NDArray[np.float64]:
+        """Distances as seen from above, see `PolylineRegion.signed_distances`."""
+        flat = np.array(points)
+        flat[:, 2] = 0
+        return super().signed_distances(flat)
 
-    def pointAlongBy(self, distance: float, normalized: bool = False) -> Vector:
-        """The point at a distance along the line (a share of its length if ``normalized``); from its end if negative."""
-        return self._on_ground(super().pointAlongBy(distance, normalized))
+    def points_along(self, ways: NDArray[np.float64], *, normalized: bool = False) -> Points:
+        return self._raised(super().points_along(ways, normalized=normalized))
 
-    def project(self, point: Any, *direction: Any) -> Any:
-        """The point of the line nearest to ``point``, as seen from above."""
-        found = super().project(point, *direction)
-        return found if direction else self._on_ground(found)
+    def projections(self, points: Points) -> Points:
+        return self._raised(super().projections(points))
 
     def defaultOrientation(self, point: Any) -> Any:
         """The direction of the line on its ground, at its point nearest to a point."""

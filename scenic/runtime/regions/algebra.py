@@ -26,7 +26,7 @@ from scenic.runtime.regions.body_regions import OccupiedSpace, SideSurface
 from scenic.runtime.regions.choice import RegionChoice, as_region
 from scenic.runtime.regions.combinations import DifferenceRegion, IntersectionRegion, UnionRegion
 from scenic.runtime.regions.composite import Composite
-from scenic.runtime.regions.fields import PiecewiseVectorField, RegionField, field_of_union
+from scenic.runtime.regions.fields import PiecewiseVectorField, field_of_union
 from scenic.runtime.regions.holding import HOLDS
 from scenic.runtime.regions.lines import LineRegion, PathRegion, PolylineRegion
 from scenic.runtime.regions.meeting import MEETING, cells_near
@@ -38,6 +38,7 @@ from scenic.runtime.regions.meshes import (
 from scenic.runtime.regions.one_lane import in_lane
 from scenic.runtime.regions.pairs import Cell, PairTable
 from scenic.runtime.regions.planar import Footprint, PlanarRegion, PolygonalFootprintRegion, PolygonalRegion
+from scenic.runtime.regions.region_field import RegionField
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.spaces import Everywhere, Nowhere, Workspace, nowhere
 from scenic.runtime.regions.stacked import is_body

@@ -126,7 +126,7 @@ class VectorField:
     ) -> list[Any]:
         """The places on the way of `followFrom`: where it starts, and where each step ends."""
         place = to_vector(position, "`followFromTrajectory`")
-        count = _steps(
+        count = steps_of(
             distance, (steps, self.minSteps, self.defaultStepSize if stepSize is None else stepSize)
         )
         places = [place]
@@ -362,23 +362,6 @@ class PolyhedronVectorField(VectorField):
         return self.defaultHeading
 
 
-class RegionField(VectorField):
-    """The orientations that the points of a region have by themselves: along a line, across a surface."""
-
-    def __init__(self, region: Any) -> None:
-        self.region = region
-        super().__init__(f"orientation of {region!r}", region.own_orientation)
-
-    def _asked(self) -> dict[str, Any]:
-        return {}
-
-    def __getitem__(self, position: Any) -> Any:
-        place = to_vector(position, f"field {self.name!r}")
-        if isinstance(place, Lazy):
-            return defer(self.__getitem__, place)
-        return self.region.orientation_asked(place)
-
-
 def _polygon(cell: Any) -> Any:
     """A shapely polygon: the cell itself, or that of a polygonal region."""
     return getattr(cell, "polygons", cell)
@@ -466,7 +449,8 @@ def _oriented(function: Callable[[Any], Any], point: Any) -> Any:
     return to_orientation(function(point), "the value of a field")
 
 
-def _steps(distance: float, law: Law) -> int:
+def steps_of(distance: float, law: Law) -> int:
+    """The number of steps of a way in metres; raises `ScenicValueError` if there would be too many."""
     steps, least, size = law
     if steps is not None:
         return steps
@@ -480,7 +464,7 @@ def _steps(distance: float, law: Law) -> int:
 
 
 def _followed(function: Callable[[Any], Any], point: Any, distance: float, law: Law) -> Any:
-    count = _steps(distance, law)
+    count = steps_of(distance, law)
     step = Vector.of((0.0, distance / count, 0.0))
     for _ in range(count):
         point = point.offsetRotated(_oriented(function, point), step)
@@ -546,7 +530,7 @@ def _followed_together(lanes: int, calls: Calls, rows: Rows) -> Column:
         _, point, distance, law = rows[lane]
         place[lane] = tuple(point)
         try:
-            counts[lane] = _steps(distance, law)
+            counts[lane] = steps_of(distance, law)
         except ScenicValueError as endless:
             calls.mark(lane, endless)
             continue
@@ -667,11 +651,11 @@ __all__ = [
     "PiecewiseVectorField",
     "PolygonalVectorField",
     "PolyhedronVectorField",
-    "RegionField",
     "TabulatedField",
     "VectorField",
     "field_of",
     "frame_at",
     "is_field",
     "relative_to",
+    "steps_of",
 ]

@@ -14,15 +14,30 @@ from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError, ScenicValueError
 from scenic.runtime.geometry.collision import Body
 from scenic.runtime.geometry.segments import Segments
-from scenic.runtime.instances.objects import OrientedPoint, oriented_point
+from scenic.runtime.instances.objects import OrientedPoint, Point, oriented_point
 from scenic.runtime.program.context import here, warn
 from scenic.runtime.regions.base import Mask, Points, Region
-from scenic.runtime.regions.fields import RegionField, VectorField
+from scenic.runtime.regions.fields import VectorField
 from scenic.runtime.regions.nearness import SLACK
-from scenic.runtime.values.values import Orientation, Vector, apply, is_random, to_vector
+from scenic.runtime.regions.region_field import RegionField
+from scenic.runtime.values.lane_methods import over_lanes
+from scenic.runtime.values.values import Orientation, Vector, apply, is_random, to_scalar, to_vector
 
 TOUCH: Final = 1e-6
 """Metres within which a point counts as lying on a line of the plane."""
+
+
+def _point_given(point: Any, *rest: Any) -> tuple[tuple[Any], None] | None:
+    """The point of a call; `None` for an instance, which is read on samples."""
+    return None if rest or isinstance(point, Point) else ((to_vector(point, "a point beside a line"),), None)
+
+
+def _way_given(distance: Any, normalized: Any = False) -> tuple[tuple[Any], bool] | None:
+    return (
+        None
+        if is_random(normalized)
+        else ((to_scalar(distance, "a distance along a line"),), bool(normalized))
+    )
 
 
 class LineRegion(Region):
@@ -74,9 +89,15 @@ class LineRegion(Region):
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return self.pieces.nearest(points)[0]
 
+    def closest_points(self, points: Points) -> Points:
+        """The points of the line ``(n, 3)`` nearest to points ``(n, 3)``."""
+        return self.pieces.nearest(points)[2]
+
+    @over_lanes(Kind.VECTOR, _point_given, lambda _lanes, line, _setting, points: line.closest_points(points))
     def closestPointTo(self, point: Any) -> Vector:
-        place = np.array([tuple(to_vector(point, "`closestPointTo`"))])
-        return Vector.of(self.pieces.nearest(place)[2][0].tolist())
+        return Vector.of(
+            self.closest_points(np.array([tuple(to_vector(point, "`closestPointTo`"))]))[0].tolist()
+        )
 
     def orientations(self, points: Points, *columns: Column) -> Column:
         return self.pieces.frames[self.pieces.nearest(points)[1]]
@@ -237,28 +258,48 @@ class PolylineRegion(LineRegion):
         """The last point, with the orientation there; that of the world where the line has none."""
         return self._end(self.pieces.ends[-1].tolist(), len(self.pieces.starts) - 1)
 
+    def signed_distances(self, points: Points) -> NDArray[np.float64]:
+        """Distances ``(n,)`` of points ``(n, 3)`` from the line in metres, negative on the right of it."""
+        distance, index, _ = self.pieces.nearest(points)
+        start = self.pieces.starts[index]
+        along, across = self.pieces.ends[index] - start, points - start
+        side = along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]
+        return np.where(side >= 0, distance, -distance)
+
+    @over_lanes(
+        Kind.SCALAR, _point_given, lambda _lanes, line, _setting, points: line.signed_distances(points)
+    )
     def signedDistanceTo(self, point: Any) -> float:
         """Distance from a point to the line, negative on the right of it (metres); z counts, as in every distance."""
-        place = np.array([tuple(to_vector(point))])
-        distance, index, _ = self.pieces.nearest(place)
-        start, end = self.pieces.starts[index[0]], self.pieces.ends[index[0]]
-        along, across = end - start, place[0] - start
-        side = along[0] * across[1] - along[1] * across[0]
-        return float(distance[0]) if side >= 0 else -float(distance[0])
+        return float(self.signed_distances(np.array([tuple(to_vector(point))]))[0])
 
+    def points_along(self, ways: NDArray[np.float64], *, normalized: bool = False) -> Points:
+        """The points ``(n, 3)`` at distances ``(n,)`` along the line, see `pointAlongBy`."""
+        metres = ways * self.length if normalized else ways
+        return self.pieces.at(np.where(metres < 0, self.length + metres, metres))
+
+    @over_lanes(
+        Kind.VECTOR,
+        _way_given,
+        lambda _lanes, line, normalized, ways: line.points_along(ways, normalized=normalized),
+    )
     def pointAlongBy(self, distance: float, normalized: bool = False) -> Vector:
         """The point at a distance along the line (a share of its length if ``normalized``); from its end if negative."""
-        way = distance * self.length if normalized else distance
-        way = self.length + way if way < 0 else way
-        return Vector.of(self.pieces.at(np.array([way]))[0].tolist())
+        way = np.array([to_scalar(distance, "a distance along a line")])
+        return Vector.of(self.points_along(way, normalized=normalized)[0].tolist())
 
+    def projections(self, points: Points) -> Points:
+        """The points of the line ``(n, 3)`` nearest to points ``(n, 3)``, as seen from above."""
+        flat = np.array(points)
+        flat[:, 2] = 0
+        return self.pieces.nearest(flat)[2]
+
+    @over_lanes(Kind.VECTOR, _point_given, lambda _lanes, line, _setting, points: line.projections(points))
     def project(self, point: Any, *direction: Any) -> Any:
         """The point of the line nearest to ``point``."""
         if direction:
             return super().project(point, *direction)
-        place = np.array([tuple(to_vector(point))])
-        place[:, 2] = 0
-        return Vector.of(self.pieces.nearest(place)[2][0].tolist())
+        return Vector.of(self.projections(np.array([tuple(to_vector(point))]))[0].tolist())
 
     @property
     def midpoint(self) -> Vector:

@@ -18,7 +18,7 @@ from scenic.runtime.program.context import here
 from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.body_regions import Facing, OccupiedSpace, SideSurface
-from scenic.runtime.regions.fields import RegionField
+from scenic.runtime.regions.region_field import RegionField
 from scenic.runtime.regions.stacked import body_of
 from scenic.runtime.values.values import Orientation, is_number, operate, to_orientation, to_vector, vector
 

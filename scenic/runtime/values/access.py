@@ -21,6 +21,7 @@ from scenic.runtime.values.applying import apply, operate
 from scenic.runtime.values.choices import MISSING, MOST_OPTIONS, REJECTED, drawn_option, rejection, select
 from scenic.runtime.values.frozen import is_frozen
 from scenic.runtime.values.generic import call_later
+from scenic.runtime.values.lane_methods import are_open, node_over_lanes
 from scenic.runtime.values.lazy import defer, is_lazy
 from scenic.runtime.values.nodes import DICTIONARY, LIST, TUPLE, as_node, as_value, kind_of
 from scenic.runtime.values.random_base import RandomBase, is_random, random_value
@@ -94,7 +95,18 @@ def element(value: RandomBase, index: Any) -> Any:
         # Instances as they are in the sample; that they are instances is not known before (section 8.1).
         return call_later(operator.getitem, value, index)
     found = element_at(value.node, index)
+    if found is None and value.node.operation is TABLE["select"] and is_random(index):
+        found = _element_over_lanes(value.node, index)
     return operate("getitem", value, index) if found is None else found
+
+
+def _element_over_lanes(node: Node, index: Any) -> Any:
+    """The element of a choice among fields at a random place; ``None`` for other options."""
+    draw, *options = node.operands
+    if not all(option.is_constant and hasattr(type(option.value), "__getitem__") for option in options):
+        return None
+    found = node_over_lanes(draw, [as_node(option.value.__getitem__) for option in options], (index,), {})
+    return None if found is None else as_value(found)
 
 
 def sliceable(container: Any) -> Any:
@@ -152,10 +164,13 @@ def called(value: RandomBase, args: Sequence[Any], kwargs: dict[str, Any]) -> An
     node = value.node
     if node.operation is TABLE["select"]:
         index, *options = node.operands
+        shared = _shared(index, options, args, kwargs)
         results = []
         for option in options:
             if option.operation in (MISSING, REJECTED):
                 results.append(option)
+            elif shared is not None:
+                results.append(shared)
             elif option.is_constant and _is_of_runtime(option.value) and not _draws(option.value):
                 results.append(_traced(option.value, args, kwargs))
             elif option.is_constant and isinstance(option.value, BuiltinFunctionType):
@@ -164,6 +179,20 @@ def called(value: RandomBase, args: Sequence[Any], kwargs: dict[str, Any]) -> An
                 results.append(as_node(call_later(as_value(option), *args, **kwargs)))
         return select(index, results)
     return call_later(value, *args, **kwargs)
+
+
+def _shared(index: Node, options: Sequence[Node], args: Sequence[Any], kwargs: dict[str, Any]) -> Node | None:
+    """The call of all options at once where their method can be evaluated in many lanes; ``None`` for other options.
+
+    What depends on the option alone is a table of results instead, unless that would take long to make.
+    """
+    if any(not option.is_constant and option.operation not in (MISSING, REJECTED) for option in options):
+        return None
+    if not are_open(args, kwargs) and all(
+        not option.is_constant or _is_of_runtime(option.value) for option in options
+    ):
+        return None
+    return node_over_lanes(index, options, args, kwargs)
 
 
 _DRAWING: Final = frozenset({"sample", "uniformPointInner"})
@@ -186,7 +215,7 @@ def _traced(function: Any, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
     try:
         return as_node(function(*args, **kwargs))
     except Exception as error:  # noqa: BLE001 - whatever the call raises
-        if is_random(args) or is_random(kwargs):
+        if are_open(args, kwargs):
             return as_node(call_later(function, *args, **kwargs))
         return construction.make_node(MISSING, (), error, here())
 
