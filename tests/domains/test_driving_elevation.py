@@ -226,6 +226,28 @@ def test_following_the_direction_of_traffic_goes_uphill(tmp_path):
         assert other.orientation.pitch == pytest.approx(math.atan(0.1))
 
 
+def test_points_of_a_random_lane_lie_on_the_ground(tmp_path):
+    """Computed over lanes, they are what calls on the drawn lane give."""
+    text = straight(100.0, rest=heights(cubic("elevation", (0.0, 0.0, 0.1, 0.0, 0.0))))
+    found = scenario(
+        tmp_path,
+        text,
+        "line, way = Uniform(*network.lanes).centerline, Range(-50, 50)\n"
+        "ego = new Car on road\n"
+        "param line = line, way = way, along = line.pointAlongBy(way), beside = line.project(ego.position)\n"
+        "param closest = line.closestPointTo(ego.position), signed = line.signedDistanceTo(ego.position)\n",
+    )
+    for scene in found.sample(20, seed=2):
+        (ego,), given = scene.objects, scene.params
+        line = given["line"]
+        assert given["along"] == line.pointAlongBy(given["way"])
+        assert given["along"].z == pytest.approx(given["along"].x * 0.1)
+        assert given["beside"] == given["closest"] == line.project(ego.position)
+        assert given["beside"].z == pytest.approx(given["beside"].x * 0.1)
+        assert given["signed"] == line.signedDistanceTo(ego.position)
+        assert abs(given["signed"]) == pytest.approx(math.dist(given["beside"][:2], ego.position[:2]))
+
+
 def test_a_car_drives_up_a_hill(tmp_path):
     text = straight(200.0, rest=heights(cubic("elevation", (0.0, 0.0, 0.0, 0.0005, 0.0))))
     found = scenario(

@@ -87,6 +87,54 @@ def test_ways_along_random_lanes(tmp_path):
         assert tuple(scene.params["along"]) == tuple(lane.centerline.pointAlongBy(way))
 
 
+@pytest.mark.usefixtures("silent")
+def test_fields_of_random_lanes_are_followed_and_faced(tmp_path):
+    path = tmp_path / "crossing.xodr"
+    path.write_text(cross(), encoding="utf-8")
+    text = (
+        ROADS.split("lane =")[0].replace("MAP", repr(str(path)))
+        + "lane, way = Uniform(*network.lanes), Range(3, 12)\n"
+        "ego = new Car on road, facing lane.orientation, with color [0, 0, 0]\n"
+        "end = new Point following lane.orientation from ego.position for way\n"
+        "param lane = lane, way = way, end = end.position\n"
+    )
+    scenario = scenic.scenarioFromString(text, mode2D=True)
+    for scene in scenario.sample(30, seed=1):
+        lane, way, end = (scene.params[name] for name in ("lane", "way", "end"))
+        place = scene.egoObject.position
+        same = sum(
+            a * b for a, b in zip(scene.egoObject.orientation.q, lane.orientation[place].q, strict=True)
+        )
+        assert abs(same) == pytest.approx(1)
+        assert tuple(end) == tuple(lane.orientation.followFrom(place, way))
+
+
+def test_other_methods_of_random_lanes_are_called_once_for_a_sample(tmp_path, monkeypatch):
+    path = tmp_path / "crossing.xodr"
+    path.write_text(cross(), encoding="utf-8")
+    text = (
+        ROADS.split("way =")[0].replace("MAP", repr(str(path)))
+        + "ego = new Car on road, with color [0, 0, 0]\n"
+        "param lane = lane, nearest = lane.centerline.nearestSegmentTo(ego.position)\n"
+        "param directions = lane.nominalDirectionsAt(ego.position), there = lane.nominalDirectionsAt((1, 2))\n"
+    )
+    scenario = scenic.scenarioFromString(text, mode2D=True)
+    lanes = []
+    results = opaque.Calls.results
+
+    def counted(calls, absent=None):
+        lanes.append(len(calls.present))
+        return results(calls, absent)
+
+    monkeypatch.setattr(opaque.Calls, "results", counted)
+    (scene,) = scenario.sample(1, seed=1, lanes=1)
+    assert len(lanes) == 3 * scene.attempts
+    place, lane = scene.egoObject.position, scene.params["lane"]
+    assert scene.params["nearest"] == lane.centerline.nearestSegmentTo(place)
+    assert [item.q for item in scene.params["directions"]] == [lane.orientation[place].q]
+    assert [item.q for item in scene.params["there"]] == [lane.orientation[1, 2].q]
+
+
 CHOICE = "A = PolylineRegion([(0, 0), (4, 0)])\nB = PolylineRegion([(0, 5), (4, 8)])\nM = Uniform(A, B)\n"
 
 

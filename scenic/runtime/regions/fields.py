@@ -23,12 +23,14 @@ from scenic.language.types import FIELD
 from scenic.runtime.geometry.cell_index import CellIndex
 from scenic.runtime.program.context import here
 from scenic.runtime.python.opaque import Calls, Rows, evaluated, is_later, later, together
+from scenic.runtime.values.lane_methods import node_over_lanes
 from scenic.runtime.values.lazy import Lazy, defer, reads_of, resolve
 from scenic.runtime.values.values import (
     Orientation,
     Random,
     Vector,
     apply,
+    as_node,
     as_value,
     operate,
     options_of,
@@ -378,6 +380,9 @@ class FieldChoice(VectorField):
         place = to_vector(position, "a field")
         if isinstance(place, Lazy):
             return defer(self.__getitem__, place)
+        found = self._over_lanes("__getitem__", place)
+        if found is not None:
+            return found
         return per_option(self._choice, lambda field: field_of(field, "a field")[place])
 
     def followFrom(
@@ -386,9 +391,21 @@ class FieldChoice(VectorField):
         place, length = to_vector(position, "`follow ... from`"), to_scalar(distance, "`follow ... for`")
         if isinstance(place, Lazy) or isinstance(length, Lazy):
             return defer(self.followFrom, place, length, steps, stepSize)
+        found = self._over_lanes("followFrom", place, length, steps, stepSize)
+        if found is not None:
+            return found
         return per_option(
             self._choice, lambda field: field_of(field, "a field").followFrom(place, length, steps, stepSize)
         )
+
+    def _over_lanes(self, method: str, *args: Any) -> Any:
+        """The result of a method of the drawn field as one node; ``None`` if a field has no reading over lanes."""
+        index, *options = self._choice.node.operands
+        if not all(option.is_constant for option in options):
+            return None
+        methods = [as_node(getattr(option.value, method)) for option in options]
+        found = node_over_lanes(index, methods, args, {})
+        return None if found is None else as_value(found)
 
 
 def is_field(value: Any) -> bool:
@@ -415,8 +432,8 @@ def frame_at(direction: Any, position: Any, what: str) -> Any:
     """A direction as an orientation; a field's is that at a point."""
     if type(direction) is float:  # the most frequent one
         return Orientation.fromEuler(direction, 0.0, 0.0)
-    if isinstance(direction, VectorField):
-        return direction[position]
+    if is_certainly_field(direction):
+        return field_of(direction, what)[position]
     if not is_field(direction):
         return to_orientation(direction, what)
     place = to_vector(position, what)

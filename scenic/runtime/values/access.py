@@ -165,6 +165,8 @@ def called(value: RandomBase, args: Sequence[Any], kwargs: dict[str, Any]) -> An
     if node.operation is TABLE["select"]:
         index, *options = node.operands
         shared = _shared(index, options, args, kwargs)
+        if shared is None and _is_called_once(options, args, kwargs):
+            return call_later(value, *args, **kwargs)
         results = []
         for option in options:
             if option.operation in (MISSING, REJECTED):
@@ -193,6 +195,27 @@ def _shared(index: Node, options: Sequence[Node], args: Sequence[Any], kwargs: d
     ):
         return None
     return node_over_lanes(index, options, args, kwargs)
+
+
+def _is_called_once(options: Sequence[Node], args: Sequence[Any], kwargs: dict[str, Any]) -> bool:
+    """Return whether a sample calls the option that it draws alone: a method of objects that never change, of no random argument.
+
+    Other functions have a call for each option, with a source of randomness of its own.
+    """
+    if not all(
+        option.is_constant and is_frozen(getattr(option.value, "__self__", None)) for option in options
+    ):
+        return False
+    first = options[0].value
+    if _draws(first):
+        return False
+    if not _is_of_runtime(first):
+        return True
+    try:
+        first(*args, **kwargs)
+    except Exception:  # noqa: BLE001 - whatever the call raises: it needs definite arguments
+        return True
+    return False
 
 
 _DRAWING: Final = frozenset({"sample", "uniformPointInner"})
