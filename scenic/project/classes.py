@@ -1,10 +1,12 @@
 """Members of classes: properties, methods and attributes, their own and inherited ones; and the classes of values."""
 
 import ast
+import os
 from collections.abc import Iterable, Sequence
 from dataclasses import field
 from typing import Any, Final
 
+from scenic import language
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Binding, BindingKind, Scope, ScopeKind
 from scenic.compiler.traversal import walk
@@ -23,15 +25,20 @@ from scenic.project.symbols import (
 )
 
 __all__ = [
+    "LIBRARY",
     "Class",
     "Member",
     "class_of",
     "class_of_elements",
     "class_of_exported",
     "class_of_symbol",
+    "is_of_library",
     "meaning",
     "module_behind",
 ]
+
+LIBRARY: Final = os.path.dirname(os.path.dirname(os.path.abspath(language.__file__ or ""))) + os.sep
+"""The folder of the package, with a separator at its end."""
 
 _DEEPEST: Final = 50
 """Steps from a name to what it means, through values and bases, after which nothing is known."""
@@ -91,7 +98,19 @@ def class_of_symbol(project: Project, symbol: Symbol) -> Class | None:
     return _class(project, symbol, 0)
 
 
+def is_of_library(filename: str | None) -> bool:
+    """Return whether a file is one of the library, which does not change."""
+    return filename is not None and filename.startswith(LIBRARY)
+
+
 def _class(project: Project, symbol: Symbol, depth: int) -> Class | None:
+    module = symbol.module
+    if module is None or not is_of_library(symbol.filename):
+        return _examined(project, symbol, depth)
+    return module.derived(f"class {symbol.name} {symbol.span}", lambda: _examined(project, symbol, depth))
+
+
+def _examined(project: Project, symbol: Symbol, depth: int) -> Class | None:
     if symbol.kind is not SymbolKind.CLASS or depth > _DEEPEST:
         return None
     if symbol.is_builtin:

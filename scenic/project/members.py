@@ -11,7 +11,6 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Final
 
-from scenic import language
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Resolution
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
@@ -22,7 +21,7 @@ from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest
 from scenic.project.classes import (
-    Class,
+    LIBRARY,
     class_of,
     class_of_elements,
     class_of_exported,
@@ -36,7 +35,6 @@ from scenic.project.symbols import Symbol
 __all__ = ["kind_of_exported", "member_findings"]
 
 _OF_CLASSES: Final = (NameKind.CLASS, NameKind.REGION, NameKind.SHAPE)
-_LIBRARY: Final = os.path.dirname(os.path.dirname(os.path.abspath(language.__file__ or ""))) + os.sep
 _MOST_BASES: Final = 20
 _DECLARED: Final[Mapping[str, str]] = MappingProxyType(
     {
@@ -59,7 +57,7 @@ def member_findings(
 ) -> Iterator[Diagnostic]:
     """Reports slips in attributes of what star imports and the model bring; ``brought`` are the names of that."""
     files = {each.module.filename for each in brought.values() if each.module is not None}
-    folders = {os.path.dirname(file) for file in files if file.startswith(_LIBRARY)}
+    folders = {os.path.dirname(file) for file in files if file.startswith(LIBRARY)}
     if not folders:
         return
     # Nearly all attributes have a name that stands in the library: only the others are looked into.
@@ -157,8 +155,8 @@ def _kind_of_class(project: Project, symbol: Symbol | None) -> str | None:
         cls = waiting.pop(0) if waiting else None
         if cls is None:
             return None
-        if cls.filename is not None and cls.filename.startswith(_LIBRARY):
-            home = cls.filename.removeprefix(_LIBRARY).removesuffix(".py").replace(os.sep, ".")
+        if cls.filename is not None and cls.filename.startswith(LIBRARY):
+            home = cls.filename.removeprefix(LIBRARY).removesuffix(".py").replace(os.sep, ".")
             declared = _DECLARED.get(f"scenic.{home}:{cls.name}")
             if declared is not None:
                 return declared
@@ -167,28 +165,20 @@ def _kind_of_class(project: Project, symbol: Symbol | None) -> str | None:
     return None
 
 
-def _class_of_library(project: Project, symbol: Symbol) -> Class | None:
-    """The class that a symbol of the library is; computed once, since the library does not change."""
-    module = symbol.module
-    if module is None or symbol.filename is None or not symbol.filename.startswith(_LIBRARY):
-        return class_of_symbol(project, symbol)
-    return module.derived(f"class {symbol.name} {symbol.span}", lambda: class_of_symbol(project, symbol))
-
-
 def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, str] | None:
     """The class of the owner of an attribute and the name that was meant, if the class has no such attribute."""
     symbol = class_of(project, module, node.value)
     element = class_of_elements(project, module, node.value) if symbol is None else None
     if element is not None and node.attr not in _OF_SEQUENCES:
-        known = _class_of_library(project, element)
+        known = class_of_symbol(project, element)
         meant = None if known is None else nearest(node.attr, {each.name for each in known.members})
         return None if meant is None else (f"sequence of {element.name}", f"[0].{meant}")
     if symbol is None:
         # An attribute of the class itself, such as a member of an enumeration.
         symbol = meaning(project, module, node.value) if isinstance(node.value, ast.Name) else None
-    if symbol is None or symbol.filename is None or not symbol.filename.startswith(_LIBRARY):
+    if symbol is None or symbol.filename is None or not symbol.filename.startswith(LIBRARY):
         return None
-    cls = _class_of_library(project, symbol)
+    cls = class_of_symbol(project, symbol)
     if cls is None or cls.member(node.attr) is not None or cls.member("__getattr__") is not None:
         return None
     meant = nearest(node.attr, {each.name for each in cls.members if not each.name.startswith("_")})
