@@ -310,7 +310,8 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
                 program.top = _run_chosen(module, state, options.scenario)
                 program.ego, program.workspace = state.ego, state.workspace
                 apply_noise(program)
-                if context.record.looks or context.record.has_later_elements:
+                record = context.record
+                if record.looks or record.awaits or record.has_later_elements:
                     # Only now everything is there that may hide something, or that a condition speaks of.
                     program.requirements[:] = [item.rebuilt() for item in program.requirements]
             program.module = vars(module)

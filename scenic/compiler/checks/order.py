@@ -26,6 +26,9 @@ _DEFERRED: Final[tuple[type[ast.AST], ...]] = (
 )
 """Statements whose expressions are evaluated later."""
 
+_CONDITIONAL: Final = (*_DEFERRED, scenic.Require)
+"""Statements that may read names which the module defines after them."""
+
 
 _OPERATORS: Final = frozenset(name for name, each in OPERATORS.items() if each.may_read_ego)
 _SPECIFIERS: Final = frozenset(name for name, each in SPECIFIERS.items() if each.may_read_ego)
@@ -81,7 +84,7 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
             # Names that stand alone are about to be targets, and this may be one that comes after them.
             break
         here = _statement(starts, node)
-        if here < 0 or here > first[name] or isinstance(body[here], _DEFERRED):
+        if here < 0 or here > first[name] or isinstance(body[here], _CONDITIONAL):
             continue
         binding = resolution.names[name]
         if here == first[name]:

@@ -10,6 +10,7 @@ with random values could be silently wrong; calling it with sampled ones never i
 """
 
 import ast
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
@@ -26,7 +27,7 @@ from scenic.compiler.lowering.build import (
     tuple_,
 )
 from scenic.compiler.scopes import PROVIDED, Resolution, ScopeKind
-from scenic.compiler.traversal import walk
+from scenic.compiler.traversal import position, walk
 from scenic.language.names import CONSTRUCTORS, CONVERSIONS, LIFTED_FUNCTIONS, LIFTED_METHODS, TRACKED
 from scenic.language.operators import OPERATORS
 from scenic.language.specifiers import SPECIFIERS
@@ -57,6 +58,9 @@ _POSING: Final = frozenset(
 )
 """Specifiers that draw nothing, read nothing that the text does not name, and call no code of the program."""
 
+_AWAITING: Final = (scenic.Require, scenic.Record, scenic.TerminateWhen)
+"""Statements that read names of the module defined after them."""
+
 
 class Conditions:
     """Lowers conditions.
@@ -75,6 +79,7 @@ class Conditions:
             if scope.kind is not ScopeKind.MODULE
             for name in scope.global_names
         }
+        self._statements: list[ast.stmt] | None = None
 
     def condition(self, node: ast.expr) -> ast.expr:
         """The argument of the prelude's ``require``."""
@@ -108,7 +113,10 @@ class Conditions:
             )
         except _OpaqueError:
             traced = start_of(ast.Constant(None), node)
-        return prelude_call("condition", [traced, *self.kept(node), *self._margin(node)], node)
+        options = {"awaits": True} if any(map(self._is_awaited, _in_order(node))) else {}
+        return prelude_call(
+            "condition", [traced, *self.kept(node), *self._margin(node)], node, options=options
+        )
 
     def _margin(self, node: ast.expr) -> list[ast.expr]:
         """For a comparison or the like, a function of the same names that gives by how much it holds."""
@@ -134,7 +142,8 @@ class Conditions:
     def kept(self, node: ast.expr) -> list[ast.expr]:
         """An expression to be evaluated later: a function of the names in it, and their values now.
 
-        What functions of the program assign by ``global`` may change until then: it is read when it is needed.
+        What functions of the program assign by ``global`` may change until then: it is read when it is needed. So are names that the
+        module defines only after the statement.
         """
         free = self._parameters(node)
         concrete = lambda_([(part.id, part) for part in free], self._captured(node), node)
@@ -157,12 +166,32 @@ class Conditions:
                 continue
             if part.id in self._changing and binding is not None and binding.scope.kind is ScopeKind.MODULE:
                 continue
+            if self._is_awaited(part):
+                continue
             if isinstance(part.ctx, ast.Store):
                 # The leaf assigns the name before it reads it.
                 seen.add(part.id)
             elif binding is not None or part.id in TRACKED or self._may_be_bound(part.id):
                 seen.add(part.id)
                 yield part
+
+    def _is_awaited(self, part: ast.Name) -> bool:
+        """Return whether a statement of the module reads a name that the module defines only after it."""
+        binding = self._resolution.binding(part)
+        if binding is None or binding.scope.kind is not ScopeKind.MODULE:
+            return False
+        statement = self._statement_of(part)
+        if not isinstance(statement, _AWAITING):
+            return False
+        end = (statement.end_lineno or 0, statement.end_col_offset or 0)
+        return position(binding.first_site) >= end
+
+    def _statement_of(self, part: ast.AST) -> ast.stmt | None:
+        """The statement of the module around a node."""
+        if self._statements is None:
+            self._statements = [item for each in self._resolution.stretches for item in each.statements]
+        place = bisect_right(self._statements, position(part), key=position) - 1
+        return self._statements[place] if place >= 0 else None
 
     def _may_be_bound(self, identifier: str) -> bool:
         """Return whether a name that the text does not bind may come from a module."""

@@ -108,9 +108,13 @@ def in_time(operator: str, parts: Sequence[Condition]) -> Condition:
 
 
 def leaf(
-    symbolic: Callable[..., Any] | None, concrete: Callable[..., Any], captured: Sequence[Any]
+    symbolic: Callable[..., Any] | None,
+    concrete: Callable[..., Any],
+    captured: Sequence[Any],
+    *,
+    awaits: bool = False,
 ) -> Callable[[], Node]:
-    """A function that builds the node of one leaf of a condition."""
+    """A function that builds the node of one leaf of a condition; if the leaf ``awaits`` names, again when the program has ended."""
     names: Globals | None = None
 
     def build() -> Node:
@@ -131,7 +135,7 @@ def leaf(
                 if context is not None:
                     context.judging = False
         # The names that functions in reach have at the `require` statement count.
-        names = Globals() if names is None else names
+        names = Globals() if names is None or awaits else names
         return later(OPAQUE, concrete, captured, names=names)
 
     return build

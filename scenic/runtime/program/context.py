@@ -79,6 +79,8 @@ class Record:
     """Results of filters in which nothing is left: the result, of how many elements, and where."""
     looks: bool = False
     """True if some condition depends on visibility: it must be made again when all objects exist."""
+    awaits: bool = False
+    """True if some condition reads names that its module sets later: it must be made again when the program has ended."""
 
     @property
     def has_later_elements(self) -> bool:

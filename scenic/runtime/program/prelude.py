@@ -370,10 +370,17 @@ class Prelude(Symbolic, Dynamics):
         concrete: Callable[..., Any],
         captured: Sequence[Any],
         margin: Callable[..., Any] | None = None,
+        *,
+        awaits: bool = False,
     ) -> Condition:
-        """A leaf of a condition; see `scenic.runtime.program.conditions`."""
+        """A leaf of a condition; see `scenic.runtime.program.conditions`.
+
+        One that ``awaits`` reads names that the module sets later.
+        """
         kept = Kept(concrete, captured, margin)
-        build = conditions.leaf(symbolic, concrete, captured) if self._context.is_symbolic else None
+        symbolic_context = self._context.is_symbolic
+        self._context.record.awaits |= awaits
+        build = conditions.leaf(symbolic, concrete, captured, awaits=awaits) if symbolic_context else None
         return Condition(kept, build)
 
     def conjunction(self, *parts: Condition) -> Condition:

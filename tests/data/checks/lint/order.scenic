@@ -20,6 +20,12 @@ try:
     print(tolerated)
 except NameError:
     tolerated = 3
+require wanted > 2
+record wanted as wanted
+terminate when wanted > 3
+mutate moved
+#      ^^^^^ SC204
+wanted, moved = 3, new Object
 deferred = lambda: much_later
 much_later = 3
 class Lazy:
