@@ -135,6 +135,42 @@ def test_bayesian_optimisation_finds_a_minimum_with_few_values() -> None:
     assert least < 0.005
 
 
+def test_bayesian_optimisation_soon_looks_into_the_corners() -> None:
+    slopes = np.array([1, -2, 3, -1])
+    space = Space(tuple(Coordinate(k, f"x{k}") for k in range(4)))
+    least = []
+    for seed in range(3):
+        sampler = make_sampler("bo", space, seed)
+        values = []
+        for _ in range(9):
+            point = sampler.ask(1)
+            values.append(float((point @ slopes)[0]))
+            sampler.tell(point, np.array(values[-1:]))
+        least.append(min(values))
+    # The corner (0, 1, 0, 1) itself, not a place near it.
+    assert np.median(least) == -3
+
+
+def test_annealing_begins_each_epoch_anywhere_and_ends_at_the_best() -> None:
+    space = Space((Coordinate(1, "x"), Coordinate(2, "y")))
+    sampler = make_sampler("sa", space, 1, {"iterations": 50, "num_epoch": 2, "decay_rate": 0.8})
+    found = []
+    for _ in range(200):
+        point = sampler.ask(1)
+        value = np.abs(point - 0.2).sum(axis=1)
+        sampler.tell(point, value)
+        found.append((point[0], float(value[0])))
+    places = np.array([point for point, _ in found])
+    for first in (0, 50):
+        # Independent points: on average as far from each other as even ones are, and no coordinate twice.
+        assert (np.diff(places[first : first + 10], axis=0) != 0).all()
+    # Half of the coordinates stay as they are in the steps of the cold walk.
+    assert (np.diff(places[120:], axis=0) == 0).any()
+    best = min(value for _, value in found[:100])
+    assert min(value for _, value in found[100:]) < best
+    assert np.median([value for _, value in found[150:]]) < np.median([value for _, value in found[:10]])
+
+
 def test_bayesian_optimisation_says_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "sklearn", None)
     with pytest.raises(SamplerError, match="needs the package `scikit-learn`"):

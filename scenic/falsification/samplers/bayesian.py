@@ -123,6 +123,10 @@ class Bayesian:
     def _candidates(self, points: Floats, values: Floats) -> Floats:
         size = len(self._counts)
         spread = self._generator.random((_CANDIDATES * 3 // 4, size))
+        # What is worst is often at a border, where chance alone never is.
+        at_borders = spread[: _CANDIDATES // 2]
+        snapped = self._generator.random(at_borders.shape) < self._generator.random((len(at_borders), 1))
+        at_borders[snapped] = np.round(at_borders[snapped])
         best = points[np.argsort(values, kind="stable")[:5]]
         width = 0.1 * 0.5 ** self._generator.integers(0, 5, (_CANDIDATES // 4, 1))
         near = best[np.arange(_CANDIDATES // 4) % len(best)]
