@@ -15,6 +15,7 @@ from scenic.compiler.scopes import Binding, Reference, Resolution
 from scenic.language.source import Source
 from scenic.project.index import Project
 from scenic.project.surroundings import surroundings_in
+from tests.amounts import amount
 from tests.compiler.test_incremental import TEXTS, edited
 
 WARNED = """\
@@ -27,7 +28,7 @@ def g(): return x is 'b'
 """
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(amount(5, 10)))
 def test_the_same_after_random_edits(seed: int) -> None:
     chance = random.Random(seed)
     text = chance.choice([*TEXTS, WARNED])
@@ -95,7 +96,7 @@ def test_what_python_says(text: str) -> None:
     assert after.diagnostics == check_text(text, filename="f")
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(amount(3, 6)))
 def test_large_texts_with_mistakes_are_told_of_in_one_order(seed: int) -> None:
     # Names that nothing binds, of which each is told once, and mutable defaults that are changed in several places.
     chance = random.Random(seed)
@@ -185,7 +186,7 @@ MODULES = (
 )
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(amount(6, 12)))
 def test_what_is_said_of_statements_that_stay_follows_the_others(seed: int, tmp_path: Path) -> None:
     chance = random.Random(seed)
     statements = (
@@ -264,7 +265,7 @@ def test_what_only_moves_is_not_looked_at_again() -> None:
     assert len(looked_at) <= len(names.stretches) // 2 + 1
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(amount(3, 6)))
 def test_the_same_after_lines_are_inserted_and_taken_away(seed: int) -> None:
     chance = random.Random(seed)
     lines = [chance.choice(STATEMENTS).replace("\\n", "\n") for _ in range(90)]

@@ -26,6 +26,13 @@ def checkout(tmp_path: Path) -> Path:
     return tmp_path
 
 
+def add_modules(checkout: Path) -> None:
+    """Put the generated modules into a copy: making them takes a second."""
+    shutil.copytree(
+        ROOT / "scenic" / "compiler" / "_generated", checkout / "scenic" / "compiler" / "_generated"
+    )
+
+
 def start(checkout: Path, code: str) -> "subprocess.Popen[str]":
     command = [sys.executable, "-c", code]
     return subprocess.Popen(
@@ -71,13 +78,13 @@ def test_without_the_generator_the_message_says_what_to_do(checkout: Path) -> No
     output = run(checkout, code)
     assert "ImportError" in output
     assert "make generate" in output
-    assert run(checkout) == "1\n"
+    add_modules(checkout)
     # What is fresh needs no generator.
     assert run(checkout, code) == "1\n"
 
 
 def test_an_installed_package_has_no_grammar(checkout: Path) -> None:
-    assert run(checkout) == "1\n"
+    add_modules(checkout)
     shutil.rmtree(checkout / "grammar")
     assert run(checkout) == "1\n"
     assert ensure_fresh(checkout, checkout / "anywhere") is False

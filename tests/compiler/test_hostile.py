@@ -10,6 +10,7 @@ from scenic.compiler.check import check_text
 from scenic.compiler.parser import parse
 from scenic.language.errors import ScenicError
 from scenic.language.source import read_source
+from tests.amounts import amount
 from tests.cli.commands import run_here
 from tests.compiler.hostile import LINES
 from tests.each import each
@@ -83,7 +84,7 @@ def check(text: str) -> None:
         assert found.span is not None
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(amount(20, 40)))
 def test_random_bytes(seed: int, tmp_path: Path) -> None:
     draw = random.Random(seed)
     path = tmp_path / "random.scenic"
@@ -104,7 +105,7 @@ def is_utf_8(content: bytes) -> bool:
     return True
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(amount(10, 20)))
 def test_random_bytes_taken_for_characters(seed: int) -> None:
     text = random.Random(seed).randbytes(3000)
     for encoding in ("latin-1", "utf-16-le", "cp437"):

@@ -11,6 +11,7 @@ from scenic.compiler.incremental import Revision, revise
 from scenic.compiler.lexer import lex
 from scenic.compiler.parser import parse
 from scenic.language.source import Source
+from tests.amounts import amount
 
 ROOT = Path(__file__).parents[2]
 TEXTS = [
@@ -64,13 +65,13 @@ def run(seed: int, edits: int) -> None:
         check(revision, text)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(amount(10, 20)))
 def test_random_edits(seed: int) -> None:
     run(seed, 10)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(1000, 1040))
+@pytest.mark.parametrize("seed", range(1000, 1000 + amount(20, 40)))
 def test_many_random_edits(seed: int) -> None:
     run(seed, 12)
 

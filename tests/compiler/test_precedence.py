@@ -3,7 +3,7 @@
 import ast
 import random
 from collections.abc import Iterable, Sequence
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Final
 
 import pytest
@@ -11,6 +11,7 @@ import pytest
 from fuzz.climbing import climb
 from scenic.compiler.parser import parse
 from scenic.compiler.precedence import ATOM, FORMS, Associativity, Fixity, Ladder, form_of, forms_of
+from tests.amounts import amount
 from tests.compiler.batches import parse_lines, reading_of, same
 from tests.compiler.operator_texts import (
     MIXED,
@@ -81,21 +82,26 @@ def test_all_pairs_with_temporal_operators() -> None:
     assert check_readings(texts, temporal=True, trees=True) > 100
 
 
+def _some(texts: Iterable[str]) -> list[str]:
+    """Every third text in their order; in long runs all."""
+    return sorted(set(texts))[:: amount(3, 1)]
+
+
 @pytest.mark.slow
-def test_all_triples_of_ordinary_operators() -> None:
+def test_triples_of_ordinary_operators() -> None:
     # What specifiers may go on with is contested by operators around them; no table of levels says who wins.
     rows = [row for row in one_of_each_shape(ORDINARY) if not row.words & {":=", "C"}]
     rows += [row for row in ORDINARY if row.text in INSTANCES]
     assert {row.level for row in rows} == {row.level for row in ORDINARY} - {1}
-    for texts in batches(set(triples(rows, rows, rows))):
+    for texts in batches(_some(triples(rows, rows, rows))):
         check_readings(texts, temporal=False, trees=False)
 
 
 @pytest.mark.slow
-def test_all_triples_with_temporal_operators() -> None:
+def test_triples_with_temporal_operators() -> None:
     both = MIXED + TEMPORAL
-    texts = {*triples(TEMPORAL, both, both), *triples(both, TEMPORAL, both), *triples(both, both, TEMPORAL)}
-    for batch in batches(texts):
+    texts = chain(triples(TEMPORAL, both, both), triples(both, TEMPORAL, both), triples(both, both, TEMPORAL))
+    for batch in batches(_some(texts)):
         check_readings(batch, temporal=True, trees=True)
 
 
@@ -141,7 +147,7 @@ def test_a_parser_driven_by_the_table_alone_agrees(temporal: bool) -> None:
     rows = [row for row in (MIXED + TEMPORAL) * 2 + ORDINARY if "new" not in row.words]
     rows = [row for row in rows if ":=" not in row.words and (temporal or not row.temporal)]
     texts: list[str] = []
-    while len(texts) < 4000:
+    while len(texts) < amount(2000, 4000):
         words = random_pattern(chance, rows, chance.randint(1, 7))
         if words.count(None) > 8:
             continue
@@ -170,7 +176,7 @@ def test_a_parser_driven_by_the_table_alone_agrees(temporal: bool) -> None:
             meant = parse(f"{prefix} {full}")
             assert meant.diagnostics == (), (text, full)
             assert same(statement, meant.tree.body[0]), (text, full)
-    assert 500 < refused < 3000
+    assert len(texts) / 8 < refused < 3 * len(texts) / 4
 
 
 def test_levels_are_those_of_the_specification() -> None:

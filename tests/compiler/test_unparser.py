@@ -14,6 +14,7 @@ from scenic.compiler import tree
 from scenic.compiler.generated import SOFT_KEYWORDS
 from scenic.compiler.parser import parse
 from scenic.compiler.unparser import UnparseError, unparse
+from tests.amounts import amount
 from tests.compiler import tree_strategies as trees
 from tests.compiler.golden_cases import Case, python_cases, scenic_cases
 from tests.compiler.round_trip import difference
@@ -67,7 +68,7 @@ def test_programs(path: Path) -> None:
         check(found)
 
 
-@settings(max_examples=150, derandomize=True, deadline=None)
+@settings(max_examples=amount(75, 150), derandomize=True, deadline=None)
 @given(programs())
 def test_generated_programs(program: Program) -> None:
     found = readable(program.text)
@@ -128,14 +129,14 @@ def test_conditions() -> None:
     check_all(required(trees.pairs([form for form in trees.TEMPORAL if form.node != "Lambda"], pairs)))
 
 
-@settings(max_examples=250, deadline=None)
+@settings(max_examples=amount(125, 250), deadline=None)
 @given(trees.statements)
 def test_random_trees(statement: ast.stmt) -> None:
     check(module(statement))
 
 
 @pytest.mark.slow
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=amount(150, 300), deadline=None)
 @given(trees.statements)
 def test_many_random_trees(statement: ast.stmt) -> None:
     check(module(statement))

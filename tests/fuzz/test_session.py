@@ -18,6 +18,7 @@ from fuzz.properties import OF_PROGRAMS, OF_TEXTS, Case, Property, Violation
 from fuzz.session import Report, run_round
 from fuzz.temporal import OF_FORMULAS
 from scenic.compiler import tree as scenic
+from tests.amounts import amount
 
 
 def test_the_front_end_withstands_a_short_run():
@@ -121,7 +122,7 @@ def test_a_run_ends_when_its_time_is_over():
     assert not report.failures
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(amount(4, 8)))
 def test_what_was_made_from_random_numbers_is_made_again_from_them(seed: int):
     draws = RandomDraws(seed)
     program = make_program(draws)
