@@ -1,7 +1,14 @@
 """Colours of cars over lanes are those of the formula of one."""
 
+import math
 import random
 
+import numpy as np
+import pytest
+
+import scenic
+from scenic.runtime.instances.properties import _colour, _colours
+from scenic.runtime.python import opaque
 from scenic.simulators.utils.colors import _SHIFTED, Color
 
 
@@ -20,3 +27,34 @@ def test_what_is_no_colour_is_left_to_the_formula_of_one() -> None:
     assert _SHIFTED.together is not None
     assert _SHIFTED.together([(1, 2)], [0.0], [0.0], [0.0]) is None
     assert _SHIFTED.together([[1.0, 0.0, 0.0]], [0.0], [0.0], [0.0]) is None
+
+
+def test_random_parts_need_no_call_of_python(monkeypatch: pytest.MonkeyPatch) -> None:
+    def called(*_arguments: object) -> None:
+        raise AssertionError("Python was called for a sample")
+
+    monkeypatch.setattr(opaque.Calls, "results", called)
+    text = (
+        "from scenic.simulators.utils.colors import Color\nego = new Object with color Color.uniformColor()\n"
+    )
+    scenes = scenic.scenarioFromString(text).sample(20, seed=1)
+    assert len({scene.egoObject.color for scene in scenes}) == 20
+    assert all(0 < part < 1 for scene in scenes for part in scene.egoObject.color)
+
+
+def test_colours_of_objects_are_checked_together_as_one_by_one() -> None:
+    fine = [Color(0.0, 0.5, 1.0), (1, 0, 1), (np.float64(0.25), 0.5, True)]
+    assert _colours(fine) == [_colour("color", value) for value in fine]
+    assert [type(value) for value in _colours(fine) or ()] == [tuple] * 3
+    faulty = [
+        (0.1, 0.2, 1.5),
+        (0.1, 0.2),
+        ("0", 0.5, 0.5),
+        [0.1, 0.2, 0.3],
+        (math.nan, 0, 0),
+        (10**400, 0, 0),
+        None,
+    ]
+    for value in faulty:
+        assert _colours([fine[0], value]) is None
+    assert _colours([(0.1, 0.2, 0.3), (0.1, 0.2, 0.3, 0.4)]) is None

@@ -4,9 +4,11 @@ Section 5.2 of the specification.
 """
 
 import math
+from array import array
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
 from graphlib import TopologicalSorter
+from itertools import chain
 from types import MappingProxyType
 from typing import Any
 
@@ -319,14 +321,15 @@ def _colour(_name: str, value: Any) -> Any:
 
 def _colours(values: list[Any]) -> list[Any] | None:
     """Colours as `_colour` gives them, where all of them are tuples of three or four numbers."""
-    if not all(isinstance(value, tuple) for value in values):
+    if not all(issubclass(cls, tuple) for cls in set(map(type, values))):
         return None
+    sizes = set(map(len, values))
     try:
-        parts = np.array(values)
-    except ValueError:  # of different lengths
+        parts = np.frombuffer(array("d", chain.from_iterable(values)))
+    except (TypeError, OverflowError):  # not numbers, or none of these
         return None
-    fine = parts.dtype == np.float64 and parts.ndim == 2 and parts.shape[1] in (3, 4)
-    return list(map(tuple, values)) if fine and ((parts >= 0) & (parts <= 1)).all() else None
+    fine = len(sizes) == 1 and sizes <= {3, 4} and ((parts >= 0) & (parts <= 1)).all()
+    return list(map(tuple, values)) if fine else None
 
 
 def update(instance: Any, changes: Mapping[str, Any]) -> None:

@@ -2,6 +2,8 @@
 
 import colorsys
 import random
+from collections.abc import Iterable, Sequence
+from itertools import repeat
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -11,7 +13,6 @@ from scenic.graph.operation import Operation, always, by_lane
 from scenic.runtime.elements.distributions import Discrete, Normal, Range
 from scenic.runtime.instances.mutators import Mutator
 from scenic.runtime.program.context import next_address
-from scenic.runtime.python.opaque import call_later
 from scenic.runtime.values.values import apply, is_random
 
 __all__ = ["Color", "ColorMutator", "NoisyColorDistribution"]
@@ -49,7 +50,23 @@ class Color(NamedTuple):
 
 
 def _color(*parts: Any) -> Any:
-    return call_later(Color, *parts) if is_random(parts) else Color(*parts)
+    if is_random(parts):
+        next_address()  # as in `NoisyColorDistribution`
+    return apply(_MADE, *parts)
+
+
+def _made_together(*columns: list[Any]) -> list[Any]:
+    return _colors(zip(*columns, strict=True))
+
+
+def _colors(rows: Iterable[Sequence[float]]) -> list[Any]:
+    """Colours of rows of three parts; what `Color` does for each, without calling Python code for it."""
+    return list(map(tuple.__new__, repeat(Color), rows))
+
+
+_MADE: Final = Operation(
+    "colour", always(Kind.OTHER), by_lane, "A colour of three parts.", python=Color, together=_made_together
+)
 
 
 _CAR_COLORS: Final = tuple(
@@ -93,11 +110,13 @@ def _shifted_together(
 ) -> list[Any] | None:
     """`_shifted` of many colours: the formula of `colorsys.hls_to_rgb`, equal in every bit."""
     try:
-        known = {color: colorsys.rgb_to_hls(*color) for color in set(colors)}
+        numbers = {color: number for number, color in enumerate(dict.fromkeys(colors))}
+        known = np.array([colorsys.rgb_to_hls(*color) for color in numbers])
     except (TypeError, ValueError, ArithmeticError):
         return None
+    bases = known[list(map(numbers.__getitem__, colors))]
     shifts = np.array([hues, lightnesses, saturations])
-    h, l, s = np.clip(np.array([known[color] for color in colors]).T + shifts, 0.0, 1.0)  # noqa: E741
+    h, l, s = np.clip(bases.T + shifts, 0.0, 1.0)  # noqa: E741
     most = np.where(l <= 0.5, l * (1.0 + s), l + s - l * s)
     least = 2.0 * l - most
     parts = []
@@ -107,7 +126,7 @@ def _shifted_together(
         falling = least + (most - least) * (2 / 3 - turn) * 6.0
         cases = [turn < 1 / 6, turn < 0.5, turn < 2 / 3]
         parts.append(np.where(s == 0.0, l, np.select(cases, [rising, most, falling], least)))
-    return list(map(Color._make, np.array(parts).T.tolist()))
+    return _colors(np.array(parts).T.tolist())
 
 
 _SHIFTED: Final = Operation(
