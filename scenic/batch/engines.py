@@ -7,7 +7,7 @@ An engine calls a function on arguments and yields index and result as they come
 import os
 import pickle
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Final, Protocol, Self, TypeVar
 
 from scenic.batch.portable import ClusterError, Portable
@@ -25,6 +25,9 @@ _Result = TypeVar("_Result")
 
 _AHEAD: Final = 2
 """Arguments given to an executor for each of its workers: one under way, one waiting."""
+
+_PATIENCE: Final = 20.0
+"""Seconds for which results of a cluster are waited for before it is asked whether they will come."""
 
 _COUNTED: Final = 2.0
 """Seconds until the workers of a cluster are counted again: they may come and go."""
@@ -190,7 +193,6 @@ class DaskCluster:
         remote = Portable(function)
         upcoming = Upcoming(arguments, spread)
         busy: dict[Any, tuple[int, _Argument]] = {}
-        # It could fetch results as well, but where the scheduler is lost meanwhile, it would wait for them forever.
         done = self._distributed.as_completed(loop=self._client.loop)
         token = os.urandom(6).hex()  # other commands may use the same cluster
 
@@ -204,25 +206,52 @@ class DaskCluster:
         try:
             give()
             while busy:
-                future = next(done)
-                index, argument = busy.pop(future)
-                if future.status == "lost" or future.cancelled():
-                    raise self._gone()
-                error = future.exception()
-                if isinstance(error, self._distributed.KilledWorker):
-                    result = lost(argument, -9)
-                elif error is not None:
-                    raise error
-                else:
-                    result = pickle.loads(future.result())
-                upcoming.finish(index)
-                give()
-                yield index, result
+                ended = [next(done), *done.next_batch(block=False)]
+                taken = [busy.pop(future) for future in ended]
+                give()  # the workers go on while results are fetched
+                for (index, argument), fetched in zip(taken, self._fetched(ended), strict=True):
+                    result = lost(argument, -9) if fetched is None else pickle.loads(fetched)
+                    upcoming.finish(index)
+                    give()
+                    yield index, result
         except (OSError, self._distributed.CancelledError, StopIteration) as error:
             raise self._gone() from error
         finally:
             for future in busy:
                 future.cancel()
+
+    def _fetched(self, ended: Sequence[Any]) -> list[bytes | None]:
+        """The results of tasks that have ended, ``None`` where their workers have died; raises what a task has raised.
+
+        They are fetched together. Where that takes long, the scheduler may be lost, or a result with its worker, so that Dask
+        computes it again: then the states of the tasks are looked at before they are fetched again.
+        """
+        while True:
+            errors = [self._error_of(future) for future in ended]
+            present = [future for future, error in zip(ended, errors, strict=True) if error is None]
+
+            async def gather(futures: list[Any] = present) -> list[bytes]:
+                found: list[bytes] = await self._client.gather(futures, asynchronous=True)
+                return found
+
+            try:
+                found = iter(self._client.sync(gather, callback_timeout=_PATIENCE))
+            except TimeoutError:
+                if self._client.status != "running":
+                    raise
+            except self._distributed.KilledWorker:
+                pass  # which of them, their states tell
+            else:
+                return [None if error is not None else next(found) for error in errors]
+
+    def _error_of(self, future: Any) -> Exception | None:
+        """The loss of the worker of a task that has ended; raises any other error of it."""
+        if future.status == "lost" or future.cancelled():
+            raise self._gone()
+        error: Exception | None = future.exception(timeout=_PATIENCE) if future.status == "error" else None
+        if error is not None and not isinstance(error, self._distributed.KilledWorker):
+            raise error
+        return error
 
     def _gone(self) -> ClusterError:
         return ClusterError(

@@ -1,11 +1,14 @@
 """Engines call functions in other places, and give the same results."""
 
+import os
 import pickle
+import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 import trimesh
@@ -126,6 +129,144 @@ def test_a_cluster_that_does_not_answer_is_an_error(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(distributed, "Client", refuse)
     with pytest.raises(ClusterError, match="no Dask scheduler answers at 'tcp:"):
         DaskCluster("tcp://127.0.0.1:1")
+
+
+class _Ended:
+    """A task that has ended, as a cluster reports it."""
+
+    def __init__(self, result: object, status: str = "finished") -> None:
+        self.result, self.status = result, status
+
+    def cancelled(self) -> bool:
+        return self.status == "cancelled"
+
+    def exception(self, timeout: float) -> object:
+        return self.result
+
+
+class _Client:
+    """Gathers results in one call; ``troubles`` are raised first, one a call."""
+
+    def __init__(self, troubles: list[BaseException], status: str = "running") -> None:
+        self.troubles, self.status = troubles, status
+        self.gathered: list[int] = []
+
+    async def gather(self, futures: list[_Ended], *, asynchronous: bool) -> list[object]:
+        assert asynchronous
+        self.gathered.append(len(futures))
+        if self.troubles:
+            raise self.troubles.pop(0)
+        return [future.result for future in futures]
+
+    def sync(self, function: Callable[[], Any], *, callback_timeout: float) -> Any:
+        assert callback_timeout > 0
+        try:
+            function().send(None)  # nothing in it waits
+        except StopIteration as ended:
+            return ended.value
+        raise AssertionError
+
+
+def _connected(client: _Client) -> DaskCluster:
+    cluster = DaskCluster.__new__(DaskCluster)
+    cluster._distributed, cluster._client, cluster._address = (
+        pytest.importorskip("distributed"),
+        client,
+        "tcp:",
+    )
+    return cluster
+
+
+def test_results_of_a_cluster_are_fetched_together() -> None:
+    distributed = pytest.importorskip("distributed")
+    killed = distributed.KilledWorker("task", "worker", 3)
+    tasks = [_Ended(b"a"), _Ended(killed, "error"), _Ended(b"b")]
+    client = _Client([])
+    assert _connected(client)._fetched(tasks) == [b"a", None, b"b"]
+    assert client.gathered == [2]
+
+
+def test_results_that_take_long_are_waited_for_while_the_scheduler_answers() -> None:
+    client = _Client([TimeoutError(), TimeoutError()])
+    assert _connected(client)._fetched([_Ended(b"a")]) == [b"a"]
+    assert len(client.gathered) == 3
+    with pytest.raises(TimeoutError):
+        _connected(_Client([TimeoutError()], "connecting"))._fetched([_Ended(b"a")])
+
+
+def test_a_task_whose_worker_dies_while_results_are_fetched_is_lost() -> None:
+    distributed = pytest.importorskip("distributed")
+    killed = distributed.KilledWorker("task", "worker", 3)
+    tasks = [_Ended(b"a"), _Ended(killed)]
+
+    class Dying(_Client):
+        async def gather(self, futures: list[_Ended], *, asynchronous: bool) -> list[object]:
+            if tasks[1].status == "finished":
+                tasks[1].status = "error"
+                self.troubles.append(killed)
+            return await super().gather(futures, asynchronous=asynchronous)
+
+    assert _connected(Dying([]))._fetched(tasks) == [b"a", None]
+
+
+@pytest.mark.parametrize("state", ["lost", "cancelled"])
+def test_a_lost_task_is_an_error(state: str) -> None:
+    with pytest.raises(ClusterError, match="is lost"):
+        _connected(_Client([]))._fetched([_Ended(b"a", state)])
+    with pytest.raises(ZeroDivisionError):
+        _connected(_Client([]))._fetched([_Ended(ZeroDivisionError(), "error")])
+
+
+_UNTIL_KILLED = """
+import math, os, signal, sys
+from distributed import Client
+from scenic.batch.engines import ClusterError, DaskCluster
+
+with Client(scheduler_file=sys.argv[1], set_as_default=False, timeout=60) as client:
+    client.wait_for_workers(1, timeout=60)
+    address = client.scheduler.address
+with DaskCluster(address) as cluster:
+    try:
+        for number, _ in enumerate(cluster.run(math.sqrt, range(100_000), lost=lambda *_: -1)):
+            if number == 3:
+                os.kill(int(sys.argv[2]), signal.SIGTERM if os.name == "nt" else signal.SIGKILL)
+    except ClusterError as error:
+        print(error)
+"""
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_dies_is_an_error(tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    place = tmp_path / "scheduler.json"
+    common = ("--no-dashboard", "--scheduler-file", str(place))
+    paths = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    cluster = [
+        subprocess.Popen(
+            [sys.executable, "-m", f"distributed.cli.dask_{name}", *common, *options],
+            env=paths,
+            stderr=subprocess.DEVNULL,
+        )
+        for name, options in (
+            ("scheduler", ("--host", "127.0.0.1", "--port", "0")),
+            ("worker", ("--no-nanny", "--nthreads", "2")),
+        )
+    ]
+    try:
+        ended = subprocess.run(
+            [sys.executable, "-c", _UNTIL_KILLED, str(place), str(cluster[0].pid)],
+            env=paths,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            timeout=100,
+            check=False,
+        )
+    finally:
+        for process in cluster:
+            process.kill()
+            process.wait()
+    assert "the connection to the Dask scheduler" in ended.stdout
 
 
 @pytest.mark.slow
