@@ -33,6 +33,13 @@ def test_negations_functions_and_comprehensions():
         assert x <= 3
 
 
+def test_functions_may_read_names_that_are_set_later():
+    text = "def f():\n    return k > 1 and g()\nrequire f()\nk = Range(0, 2)\ndef g():\n    return k < limit\nlimit = 1.5\nparam x = k"
+    found = draws(text, n=20)
+    assert min(found) > 1
+    assert max(found) < 1.5
+
+
 def test_an_object_that_is_made_later_is_seen_mutated():
     text = (
         "ego = new Object at (0, 0)\n"

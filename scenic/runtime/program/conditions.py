@@ -135,8 +135,13 @@ def leaf(
                 if context is not None:
                     context.judging = False
         # The names that functions in reach have at the `require` statement count.
-        names = Globals() if names is None or awaits else names
-        return later(OPAQUE, concrete, captured, names=names)
+        # Those that have no value yet are read again when the program has ended.
+        names = Globals() if names is None or awaits else names.completed() if names.lacks else names
+        node = later(OPAQUE, concrete, captured, names=names)
+        context = current.get()
+        if names.lacks and context is not None:
+            context.record.awaits = True
+        return node
 
     return build
 

@@ -70,6 +70,14 @@ class Globals:
         self._placements: dict[int, tuple[Point, Placement]] = {}
         self.contents: Callable[[Any], Any] | None = None
         """The contents of a container when the program had run, once simulations may have changed it."""
+        self.lacks = False
+        """True if a function reads a name that had no value yet."""
+
+    def completed(self) -> "Globals":
+        """The same values, with those of names that had none until now."""
+        now = Globals()
+        now._values.update(self._values)
+        return now
 
     def of(self, function: FunctionType) -> list[tuple[str, Any]]:
         """Global names of the program that a function of the program, or code nested in it, may read."""
@@ -84,6 +92,8 @@ class Globals:
                 self._values[key] = value.snapshot() if name == PRELUDE else value
             if key in self._values:
                 found[name] = self._values[key]
+            elif name not in names["__builtins__"]:
+                self.lacks = True
         return list(found.items())
 
     def in_code(self, code: CodeType) -> Iterator[str]:
