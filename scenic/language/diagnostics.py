@@ -184,7 +184,7 @@ CODES: Final = MappingProxyType(
         "SC606": "bad configuration",
         "SC607": "saved scene cannot be used",
         "SC608": "time limit reached before sampling",
-        "SC609": "run cannot be resumed",
+        "SC609": "run cannot be resumed or replayed",
         "SC610": "sampling process died",
         "SC611": "cluster cannot be used",
         "SC612": "data set cannot be used",
