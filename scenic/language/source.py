@@ -117,7 +117,8 @@ def _whereabouts(path: Path) -> str:
     while not there.is_dir() and there != there.parent:
         there = there.parent
     missing = path.relative_to(there).parts[0] if path.is_relative_to(there) else path.name
-    if there == path.parent and (inside := _in_folders(there, path.name)):
+    # A search from an absolute path may take long: these come from editors more than from hands.
+    if there == path.parent and not path.is_absolute() and (inside := _in_folders(there, path.name)):
         return f"did you mean `{inside}`?"
     try:
         near = nearest(missing, (item.name for item in there.iterdir()))
@@ -140,12 +141,13 @@ def _in_folders(folder: Path, name: str) -> Path | None:
         current = waiting.pop(0)
         try:
             found = sorted(item for item in current.iterdir() if not item.name.startswith("."))
-        except OSError:
+            folders = [item for item in found if item.is_dir() and not item.is_symlink()]
+        except OSError:  # without permission to look
             continue
         here = current / name
-        if here in found and here.is_file():
+        if here in found and here not in folders:
             return here
-        waiting += (item for item in found if item.is_dir() and not item.is_symlink())
+        waiting += folders
     return None
 
 

@@ -74,7 +74,7 @@ ERRORS: list[tuple[type[Exception], str, str, str]] = [
     (InvalidScenarioError, "SC401", "behavior B():\n    x = 3\nego = new Object with behavior «B()»", "use `take`, `wait` or `do` in it"),
     (InvalidScenarioError, "SC406", "«model nothing»", "a model is a .scenic file beside the"),
     (InvalidScenarioError, "SC401", "workspace = «Workspace(CircularRegion((0, 0), Range(1, 2)))»", "for a random place use `with"),
-    (InvalidScenarioError, "SC401", "x = Range(0,1)\n«require[0.5] always x > 0»", "leave the probability out"),
+    (InvalidScenarioError, "SC401", "x = Range(0,1)\n«require[0.5] always x > 0»", "leave out the probability"),
     (InvalidScenarioError, "SC401", "«globalParameters.x» = 3", "write `param x = ...`"),
     (InvalidScenarioError, "SC401", "«raise RejectionException»", "raise `RejectionException` only in what"),
     (InvalidScenarioError, "SC401", "x = «globalParameters.time»", "parameters set so far: none; set it with"),

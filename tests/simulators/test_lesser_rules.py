@@ -484,7 +484,7 @@ def test_simulators_that_were_meant_are_named(name: str, meant: str | None) -> N
     with pytest.raises(SimulatorChoiceError) as caught:
         choose_simulator(name, scenic.scenarioFromString("ego = new Object\n"))
     advice = str(caught.value.help)
-    assert advice == f"did you mean {meant}?" if meant else "MODULE:CLASS" in advice
+    assert advice == f"did you mean `{meant}`?" if meant else "MODULE:CLASS" in advice
 
 
 def test_what_became_of_a_requirement_is_told_in_words() -> None:

@@ -50,7 +50,7 @@ def check_declarations(piece: Piece, context: Context) -> Iterator[Diagnostic]:
                 "SC401",
                 "a temporal requirement cannot have a probability",
                 node,
-                "leave out the brackets, or the temporal operators",
+                "leave out the probability, or the temporal operators",
             )
     for node, _ in piece.nodes(scenic.New):
         yield from _misspelt(context, node)

@@ -349,7 +349,7 @@ class Prelude(Symbolic, Dynamics):
             raise InvalidScenarioError(
                 "a temporal requirement cannot have a probability",
                 span=span,
-                help="leave the probability out",
+                help="leave out the probability, or the temporal operators",
             )
         chance = 1.0 if probability is None else probability
         if not self._context.is_symbolic:

@@ -16,7 +16,6 @@ from scenic.runtime.geometry.depth import convex_depth, convex_gap
 from scenic.runtime.geometry.nearest import nearest_on_triangles
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.geometry.segments import Segments
-from tests.amounts import amount
 
 from .samples import (
     SHAPES,
@@ -30,7 +29,7 @@ from .samples import (
     yawed,
 )
 
-COUNT = amount(20, 40)
+COUNT = 40
 
 
 @settings(max_examples=60, deadline=None)
