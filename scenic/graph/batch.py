@@ -99,6 +99,11 @@ class Batch:
         """The graph that is evaluated."""
         return self._scheduler.graph
 
+    @property
+    def source(self) -> Source:
+        """The random numbers of its lanes."""
+        return self._source
+
     # Lanes
 
     def keep(self, lanes: NDArray[Any]) -> None:

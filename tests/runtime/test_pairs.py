@@ -42,3 +42,16 @@ def test_pairs_that_are_not_known_are_declared_and_told_at_their_place() -> None
         scenic.scenarioFromString(text)
     assert isinstance(caught.value, NotImplementedError)
     assert "3:" in str(caught.value)
+
+
+def test_pairs_that_turn_out_unknown_in_samples_are_told_at_the_requirement() -> None:
+    text = """\
+line = PolylineRegion([(0, 0), (1, 3), (5, 4)]).difference(BoxRegion(dimensions=(5, 6, 7)))
+ego = new Object in CircularRegion((0, 0), 3)
+other = new Object at (Range(20, 30), 20)
+require other.position.x + ego.position.x > 0
+require ego intersects line
+"""
+    with pytest.raises(UnknownPairError) as caught:
+        scenic.scenarioFromString(text).sample(5, seed=1)
+    assert caught.value.line == 5

@@ -24,7 +24,7 @@ from scenic.graph.draws import Counter, Lanes, Source, attempt_keys, scene_keys,
 from scenic.graph.kinds import Codec
 from scenic.graph.node import Graph, Node
 from scenic.graph.schedule import Scheduler
-from scenic.language.errors import RejectionException, ScenicError
+from scenic.language.errors import Located, RejectionException, ScenicError
 from scenic.runtime.geometry.ragged import expand, first_of_each
 from scenic.runtime.sampling.checks import Check, Mask, Verdict
 from scenic.runtime.sampling.pace import Pace
@@ -529,7 +529,11 @@ class Engine:
             if len(batch) == 0:
                 break
             begun = time.thread_time()
-            batch.follow(stage.schedule, stage.nodes)
+            try:
+                batch.follow(stage.schedule, stage.nodes)
+            except Located as error:
+                self._place(error, batch, stage)
+                raise
             shared = (time.thread_time() - begun) / len(stage.checks)
             rows = batch.rows
             alive = np.ones(len(rows), dtype=np.bool_)
@@ -554,6 +558,17 @@ class Engine:
             if not alive.all():
                 batch.keep(alive)
         return failures
+
+    def _place(self, error: Located, batch: Batch, stage: Stage) -> None:
+        """Give an error of an operation the place of the first check, in program order, that has it when made alone."""
+        for check in sorted(
+            (self.plan.checks[index] for index in stage.checks), key=lambda each: each.position
+        ):
+            try:
+                check.test(self.batch(batch.source))
+            except Located:
+                error.at((check.span, check.filename))
+                return
 
     # Scenes, errors, reports
 
