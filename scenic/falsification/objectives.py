@@ -86,7 +86,7 @@ class Objective:
                 help=f"search scenes alone: --static; or minimise it as an expression: --minimize {self.name}",
             )
         known = [*(item.label for item in outcomes), *records]
-        raise _unknown(self.name, known, "is neither a requirement nor recorded")
+        raise _unknown(self.name, known, "is neither a requirement nor recorded", "record ... as {}")
 
     def of_scene(self, scene: Scene) -> float:
         """The value of a scene; raises `ObjectiveError`."""
@@ -101,7 +101,7 @@ class Objective:
                 help="name a parameter (--objective NAME) or an expression (--minimize EXPRESSION), or a --simulator",
             )
         if self.name not in params:
-            raise _unknown(self.name, list(params), "is no parameter of the program")
+            raise _unknown(self.name, list(params), "is not a parameter of the program", "param {} = ...")
         return _number(params[self.name], self.name)
 
     def _evaluated(self, names: Mapping[str, Any]) -> float:
@@ -110,7 +110,7 @@ class Objective:
             code = compile(self.expression, "<objective>", "eval")
             return _number(eval(code, {"__builtins__": {}, **_NAMES, **names}), self.expression)
         except NameError as error:
-            raise _unknown(str(error.name), list(names), "is not recorded") from None
+            raise _unknown(str(error.name), list(names), "is not recorded", "record ... as {}") from None
         except ObjectiveError:
             raise
         except Exception as error:  # whatever the user's expression does
@@ -120,14 +120,15 @@ class Objective:
             ) from error
 
 
-def _unknown(name: str, known: Sequence[str], words: str) -> ObjectiveError:
+def _unknown(name: str, known: Sequence[str], words: str, added: str) -> ObjectiveError:
     near = nearest(name, known)
-    return ObjectiveError(
-        f"the objective {name!r} {words}",
-        help=f"did you mean {near!r}?"
-        if near
-        else f"there are: {', '.join(known) or 'none'}; add `record ... as {name}`",
-    )
+    if near:
+        advice = f"did you mean {near!r}?"
+    elif name.isidentifier():
+        advice = f"there are: {', '.join(known) or 'none'}; add `{added.format(name)}`"
+    else:
+        advice = f"there are: {', '.join(known) or 'none'}; minimise an expression by --minimize {name!r}"
+    return ObjectiveError(f"the objective {name!r} {words}", help=advice)
 
 
 def _values(record: Any) -> Any:

@@ -42,13 +42,13 @@ class SearchFolder:
         self.path = path
         manifest = path / "manifest.json"
         wanted = {"format": _FORMAT, "version": _VERSION, **json.loads(json.dumps(settings))}
-        if manifest.exists():
-            if not resume:
-                raise SearchFolderError(
-                    f"'{path}' holds a search already",
-                    help="go on with it by --resume, or name another folder",
-                )
-            found = _manifest(manifest)
+        found = _manifest(manifest) if manifest.exists() else None
+        if found is not None and not resume and read_rows(path):
+            raise SearchFolderError(
+                f"'{path}' holds a search already",
+                help="go on with it by --resume, or name another folder",
+            )
+        if found is not None and resume:
             different = [
                 name for name in wanted if name not in _DESCRIBING and found.get(name) != wanted[name]
             ]

@@ -163,6 +163,13 @@ def test_folders_of_other_searches(tmp_path: Path) -> None:
         braking(folder=tmp_path / "b", n=2, resume=True)
 
 
+def test_a_search_that_finished_no_run_leaves_its_folder_free(tmp_path: Path) -> None:
+    with pytest.raises(ObjectiveError, match="neither a requirement nor recorded") as caught:
+        braking(folder=tmp_path, n=2, objective="gaps - 3")
+    assert "--minimize 'gaps - 3'" in (caught.value.help or "")
+    assert len(braking(folder=tmp_path, n=2).rows) == 2
+
+
 def test_the_share_has_the_interval_of_clopper_and_pearson() -> None:
     from scipy.stats import binomtest
 
