@@ -459,6 +459,7 @@ class Resolution:
         self._tree = tree
         self._nodes: dict[type[ast.AST], list[tuple[Any, Scope]]] = {}
         self._more: Mapping[ast.AST, Reference] = {}
+        self._asked: dict[ast.AST, Reference] = {}
 
     def _names(self) -> dict[str, Binding]:
         names: dict[str, Binding] = {}
@@ -487,7 +488,7 @@ class Resolution:
     def with_references(self, more: Mapping[ast.AST, Reference]) -> "Resolution":
         """The same names, with some more nodes that mean one of them."""
         new = self._copy()
-        new._more = {**self._more, **more}
+        new._more, new._asked = {**self._more, **more}, {}
         new.__dict__.pop("references", None)
         return new
 
@@ -601,6 +602,9 @@ class Resolution:
             return known.get(node)  # type: ignore[arg-type]
         if not isinstance(node, ast.Name):
             return None
+        asked = self._asked.get(node)
+        if asked is not None:
+            return asked
         found = self._more.get(node)
         if found is None:
             found = next(
@@ -609,7 +613,10 @@ class Resolution:
             if found is None:
                 return None
         binding = found.binding or self.names.get(found.node.id)
-        return found if binding is found.binding else Reference(found.node, found.scope, binding)
+        if binding is not found.binding:
+            found = Reference(found.node, found.scope, binding)
+        self._asked[node] = found
+        return found
 
     def binding(self, name: ast.AST) -> Binding | None:
         """The meaning of a name of the program, as far as the text shows it."""
