@@ -50,6 +50,9 @@ MUCH: Final = 0.04
 LOSS_OF_ONE: Final = 0.001
 """The same for a single box among many: those that lose less are no longer split."""
 
+TURNS: Final = 128
+"""Times that boxes are split, at most: where each loses a little, as in the tail of a normal distribution, they would go on for long."""
+
 VAIN: Final = 3
 """Rounds without a loss, of many boxes, after which splitting ends."""
 
@@ -102,7 +105,9 @@ def pave_by_trial(
             split.remove(axis)
     useful = np.array(split, dtype=np.intp)
     most = MOST if share > HARDLY_ANY else 3 * MOST
-    while split and 0 < 2 * len(boxes) <= most and not is_spent():
+    for _ in range(TURNS):
+        if not split or not 0 < 2 * len(boxes) <= most or is_spent():
+            break
         if vain == VAIN:
             if len(useful) == len(split):
                 break

@@ -142,7 +142,7 @@ def _inverse_inverse(_payload: Any, result: Bounds, _orientation: Bounds) -> lis
     return [_conjugated(result)]
 
 
-def _matrix(orientation: Bounds) -> Bounds:
+def matrix(orientation: Bounds) -> Bounds:
     """Bounds ``(m, 3, 3)`` of the rotation matrix."""
     x, y, z, w = intervals.components(orientation)
     xx, yy, zz = intervals.components(
@@ -169,12 +169,13 @@ _DIAGONAL: Final = np.eye(3, dtype=np.bool_).ravel()
 
 def turned(orientation: Bounds, vector: Bounds) -> Bounds:
     """Bounds ``(m, 3)`` of vectors turned by orientations."""
-    return _turned(_matrix(orientation), vector)
+    return turned_by(matrix(orientation), vector)
 
 
-def _turned(matrix: Bounds, vector: Bounds) -> Bounds:
+def turned_by(rotation: Bounds, vector: Bounds) -> Bounds:
+    """Bounds ``(m, 3)`` of vectors turned by rotation matrices ``(m, 3, 3)``."""
     parts = intervals.components(vector)
-    products = intervals.multiply(matrix, Bounds(vector.lower[:, np.newaxis], vector.upper[:, np.newaxis]))
+    products = intervals.multiply(rotation, Bounds(vector.lower[:, np.newaxis], vector.upper[:, np.newaxis]))
     result = intervals.total(
         [Bounds(products.lower[:, :, column], products.upper[:, :, column]) for column in range(3)]
     )
@@ -192,7 +193,7 @@ def _rotate_bounds(_payload: Any, orientation: Bounds, vector: Bounds) -> Bounds
 def _rotate_inverse(
     _payload: Any, result: Bounds, orientation: Bounds, _vector: Bounds
 ) -> list[Bounds | None]:
-    return [None, _turned(_matrix(_conjugated(orientation)), result)]
+    return [None, turned_by(matrix(_conjugated(orientation)), result)]
 
 
 def _rotate_solver(terms: Terms, _payload: Any, orientation: Any, vector: Any) -> Any:

@@ -15,7 +15,7 @@ from scenic.dataclass import dataclass
 from scenic.graph import intervals
 from scenic.graph.bounds import Bounds, Floats
 from scenic.graph.operations.narrowing import truth, where
-from scenic.graph.operations.orientations import turned
+from scenic.graph.operations.orientations import matrix, turned_by
 from scenic.language.errors import UnsupportedError
 from scenic.runtime.geometry.containment import extreme_corners
 from scenic.runtime.geometry.mesh import Mesh
@@ -210,17 +210,28 @@ def _reach(payload: Containment, operands: Sequence[Bounds | None]) -> Bounds | 
         return None
     corners = extreme_corners(payload.mesh)
     count, boxes = len(corners), max(len(orientation.lower), len(size.lower))
+    # A turn or a size that is the same in all boxes, as of most bodies, is worked out once.
+    orientation, size = _once(orientation), _once(size)
+    rows = max(len(orientation.lower), len(size.lower))
 
     def spread(bounds: Bounds) -> Bounds:
-        shape = (boxes, *bounds.lower.shape[1:])
+        shape = (rows, *bounds.lower.shape[1:])
         ends = (np.broadcast_to(end, shape) for end in (bounds.lower, bounds.upper))
         return Bounds(*(np.repeat(end, count, axis=0) for end in ends))
 
-    points = np.tile(corners, (boxes, 1))
-    offsets = intervals.widened(
-        turned(spread(orientation), intervals.multiply(spread(size), Bounds(points, points))), 1e-9
-    )
-    return Bounds(offsets.lower.reshape(boxes, count, 3), offsets.upper.reshape(boxes, count, 3))
+    points = np.tile(corners, (rows, 1))
+    vectors = intervals.multiply(spread(size), Bounds(points, points))
+    offsets = intervals.widened(turned_by(spread(matrix(orientation)), vectors), 1e-9)
+    ends = (end.reshape(rows, count, 3) for end in (offsets.lower, offsets.upper))
+    return Bounds(*(np.broadcast_to(end, (boxes, count, 3)) for end in ends))
+
+
+def _once(bounds: Bounds) -> Bounds:
+    """The first row of bounds of which all rows are the same; else the bounds."""
+    ends = (bounds.lower, bounds.upper)
+    if len(bounds.lower) > 1 and all((end == end[:1]).all() for end in ends):
+        return Bounds(bounds.lower[:1], bounds.upper[:1])
+    return bounds
 
 
 def fixed(parameters: Sequence[Bounds | None]) -> list[Floats] | None:
