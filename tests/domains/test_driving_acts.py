@@ -1,6 +1,7 @@
 """What actions, helper functions and behaviors do at the borders of their meaning."""
 
 import math
+import random
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def simulated(folder: Path, text: str, map: str = "straight", steps: int = 60, seed: int = 1) -> Any:
     program = f"param map = localPath('{map}.xodr')\nmodel scenic.simulators.newtonian.driving_model\n{text}"
     scenario = scenic.scenarioFromString(program, filename=str(folder / "main.scenic"), mode2D=True)
+    random.seed(seed)  # from which the seed of the simulation is drawn
     done = scenario.getSimulator().simulate(scenario.sample(1, seed=seed)[0], maxSteps=steps)
     assert done is not None
     return done
