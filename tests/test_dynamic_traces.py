@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 
 import scenic
-from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.dynamics.recorded import plain
 from scenic.simulators.dummy import DummySimulator
 from tests.dynamic_programs import FOLDER, Traced, programs, recorded, reviewed
@@ -26,9 +25,7 @@ def trace(program: Traced, *, seed: int = 0) -> dict[str, Any]:
         simulator = DummySimulator(drift=program.drift)
         done = simulator.simulate(scene, maxSteps=program.steps, timestep=program.timestep)
     except Exception as error:  # noqa: BLE001 - of which kind it is, is compared
-        # The text of some programs shows already that they describe no scenario: also a syntax error, then.
-        cls = InvalidScenarioError if isinstance(error, InvalidScenarioError) else type(error)
-        return {"error": cls.__name__.removeprefix("Scenic")}
+        return {"error": type(error).__name__.removeprefix("Scenic")}
     if done is None:
         return {"rejected": True}
     result = done.result

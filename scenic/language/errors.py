@@ -137,29 +137,20 @@ class MissingNewError(ScenicSyntaxError, TypeError):
     """A class used like an instance, where ``new`` is missing."""
 
 
-class InvalidScenarioError(ScenicError):
-    """The program describes no scenario."""
-
-    code = "SC401"
-
-
-class ForeseenScenarioError(ScenicSyntaxError, InvalidScenarioError):
-    """A program that describes no scenario, as its text shows before it runs."""
-
-
 _BY_CODE: Mapping[str, type[ScenicSyntaxError]] = MappingProxyType(
-    {
-        "SC111": MissingNewError,
-        "SC202": UndefinedNameError,
-        "SC203": NoClassError,
-        "SC401": ForeseenScenarioError,
-    }
+    {"SC111": MissingNewError, "SC202": UndefinedNameError, "SC203": NoClassError}
 )
 
 
 def compile_error(diagnostics: Sequence[Diagnostic], *, filename: str | None = None) -> ScenicSyntaxError:
     """The exception of a program that cannot be compiled, of the class for its first problem."""
     return _BY_CODE.get(diagnostics[0].code, ScenicSyntaxError)(diagnostics, filename=filename)
+
+
+class InvalidScenarioError(ScenicError):
+    """The program describes no scenario."""
+
+    code = "SC401"
 
 
 class UnknownParameterError(InvalidScenarioError, AttributeError, KeyError):

@@ -16,7 +16,6 @@ from scenic.language.errors import (
     InvalidScenarioError,
     RandomControlFlowError,
     RejectionException,
-    ScenicSyntaxError,
     ScenicTypeError,
 )
 from scenic.runtime.sampling.engine import _attempts
@@ -740,7 +739,7 @@ def test_only_what_is_certain_may_speak_of_time(condition: str, probability: str
         assert (max(values) < 0.5) == (condition.startswith(("always", "x < 0.5 and")))
     else:
         error = failure(text)
-        assert isinstance(error, ScenicSyntaxError)
+        assert isinstance(error, InvalidScenarioError)
         assert "a temporal requirement cannot have a probability" in str(error)
 
 

@@ -10,6 +10,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.arguments import required_parameters
 from scenic.compiler.checks.context import Context, NodeRule
 from scenic.compiler.scopes import Scope
+from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
 from scenic.language.spans import Span
 from scenic.language.types import INSTANCES
@@ -81,6 +82,16 @@ def _number(value: ast.expr) -> int | float | None:
 
 
 def _require(node: scenic.Require, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    if node.probability not in (None, 1) and any(
+        isinstance(part, scenic.Temporal) for part in walk(node.condition)
+    ):
+        yield context.error(
+            "SC401",
+            "a temporal requirement cannot have a probability",
+            node,
+            "leave out the probability, or the temporal operators",
+        )
+        return
     condition = node.condition
     while isinstance(condition, scenic.Temporal) and len(condition.operands) == 1:
         (condition,) = condition.operands

@@ -29,7 +29,7 @@ NOTED: Final = (
 
 
 def check_declarations(piece: Piece, context: Context) -> Iterator[Diagnostic]:
-    """SC110, SC200, SC210, SC220, SC300 and SC401 in declarations and specifiers."""
+    """SC110, SC200, SC210, SC220 and SC300 in declarations and specifiers."""
     for node, _ in piece.nodes(ast.ClassDef):
         definitions = [item for item in node.body if isinstance(item, scenic.PropertyDef)]
         yield from _duplicates(context, [(item.name, item) for item in definitions], "property")
@@ -42,15 +42,6 @@ def check_declarations(piece: Piece, context: Context) -> Iterator[Diagnostic]:
                 f"a probability lies between 0 and 1, not {node.probability:g}",
                 node,
                 "write for example `require[0.9] condition`",
-            )
-        elif node.probability not in (None, 1) and any(
-            isinstance(part, scenic.Temporal) for part in walk(node.condition)
-        ):
-            yield context.error(
-                "SC401",
-                "a temporal requirement cannot have a probability",
-                node,
-                "leave out the probability, or the temporal operators",
             )
     for node, _ in piece.nodes(scenic.New):
         yield from _misspelt(context, node)
