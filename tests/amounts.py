@@ -1,4 +1,4 @@
-"""How much a test tries: as much as finds most faults soon, or, where SCENIC_TEST_LONG is set, as much as finds rare ones."""
+"""Amounts that tests try: as much as finds most faults soon, or, where SCENIC_TEST_LONG is set, as much as finds rare ones."""
 
 import os
 

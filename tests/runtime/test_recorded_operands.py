@@ -144,7 +144,7 @@ def some(asked: list[str]) -> list[str | Refusal]:
 
 
 def faults(scenario: scenic.Scenario) -> dict[int, str | Refusal]:
-    """What is said of the attempts that fail in the first candidate, each evaluated alone: a program tells of the first."""
+    """Diagnostics of the attempts that fail in the first candidate, each evaluated alone: a program reports the first alone."""
     engine = scenario._sampler.engine
     whole = engine._whole if isinstance(engine, PiecewiseEngine) else engine
     batch = whole._alone(Task(SEED, 0), 0)
