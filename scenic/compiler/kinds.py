@@ -17,7 +17,7 @@ from scenic.language.operators import OPERATORS
 from scenic.language.properties import attributes_of, properties_of
 from scenic.language.types import INSTANCES, Type
 
-__all__ = ["Kind", "KindOf", "accepts", "joint", "kind_of_type"]
+__all__ = ["NUMBERS", "Kind", "KindOf", "accepts", "joint", "kind_of_type"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,8 @@ _MADE_BY_CALLS: Final = (NameKind.SHAPE, NameKind.REGION, NameKind.DISTRIBUTION)
 """Names that stand for a value only when they are called."""
 
 _SEQUENCES: Final = frozenset({"tuple", "list"})
-_NUMBERS: Final = frozenset({"number", "boolean"})
+NUMBERS: Final = frozenset({"number", "boolean"})
+"""Kinds of values that can be used as numbers."""
 _RUN: Final = frozenset({"behavior", "monitor", "scenario"})
 """Kinds of values that calls of their definitions make."""
 _MOST_PARTS: Final = 64
@@ -137,7 +138,7 @@ def _accepts_sequence(wanted: Type, kind: Kind) -> bool:
     if wanted.items is not None:
         return kind.items is None or accepts((wanted.items,), kind.items)
     fits = bool(wanted.lengths) and (kind.size is None or kind.size in wanted.lengths)
-    return fits and kind.odd is None and (kind.items is None or kind.items.name in _NUMBERS)
+    return fits and kind.odd is None and (kind.items is None or kind.items.name in NUMBERS)
 
 
 class Meanings(Protocol):
@@ -248,7 +249,7 @@ class KindOf:
         if any(isinstance(part, ast.Starred) for part in parts):
             return Kind(name)
         kinds = [self(part, depth) for part in parts[:_MOST_PARTS]]
-        odd = next((each for each in kinds if each is not None and each.name not in _NUMBERS), None)
+        odd = next((each for each in kinds if each is not None and each.name not in NUMBERS), None)
         return Kind(name, len(parts), items=joint(kinds) if len(parts) <= _MOST_PARTS else None, odd=odd)
 
     def _item(self, value: ast.expr, index: ast.expr, depth: int) -> Kind | None:

@@ -1,5 +1,6 @@
 """The values of number and string literals."""
 
+import ast
 import re
 import unicodedata
 from typing import Final
@@ -46,6 +47,16 @@ def _integer(text: str) -> int:
         return int(text)
     except ValueError:
         raise LiteralError(f"this number has {len(text)} digits, which is too many") from None
+
+
+def literal_number(value: ast.expr | None) -> int | float | None:
+    """The number that an expression is, with or without a minus sign; ``None`` for all else. Truth values count as 0 and 1."""
+    sign = 1
+    if isinstance(value, ast.UnaryOp) and isinstance(value.op, ast.USub):
+        sign, value = -1, value.operand
+    if isinstance(value, ast.Constant) and isinstance(value.value, int | float):
+        return sign * value.value
+    return None
 
 
 def string_value(text: str) -> str | bytes:

@@ -7,6 +7,7 @@ from typing import Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context, NodeRule
 from scenic.compiler.checks.places import word_span
+from scenic.compiler.literals import literal_number
 from scenic.compiler.scopes import Scope
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.properties import attributes_of, properties_of
@@ -66,12 +67,8 @@ def _class(node: ast.ClassDef, _scope: Scope, context: Context) -> Iterator[Diag
 
 def check_size(name: str, value: ast.expr | None, context: Context) -> Iterator[Diagnostic]:
     """SC405: an extent of an object that is a number and not positive."""
-    negative = isinstance(value, ast.UnaryOp) and isinstance(value.op, ast.USub)
-    literal = value.operand if isinstance(value, ast.UnaryOp) and negative else value
-    if value is None or name not in _POSITIVE or not isinstance(literal, ast.Constant):
-        return
-    number = literal.value
-    if isinstance(number, int | float) and not isinstance(number, bool) and (negative or number == 0):
+    number = literal_number(value)
+    if value is not None and name in _POSITIVE and number is not None and number <= 0:
         yield context.error(
             "SC405",
             f"the property `{name}` must be greater than 0",

@@ -9,6 +9,7 @@ from typing import Any, Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.arguments import required_parameters
 from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.literals import literal_number
 from scenic.compiler.scopes import Scope
 from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
@@ -60,7 +61,7 @@ def _truth(condition: ast.expr) -> bool | None:
                 return deciding
             return None if None in found else not deciding
         case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in _COMPARISONS:
-            first, second = _number(left), _number(right)
+            first, second = literal_number(left), literal_number(right)
             if first is None or second is None:
                 return None
             return bool(_COMPARISONS[type(op)](first, second))
@@ -70,15 +71,6 @@ def _truth(condition: ast.expr) -> bool | None:
 def _simple_truth(value: ast.expr) -> bool | None:
     """The truth of an operand that is a plain literal."""
     return bool(value.value) if isinstance(value, ast.Constant) else None
-
-
-def _number(value: ast.expr) -> int | float | None:
-    sign = 1
-    if isinstance(value, ast.UnaryOp) and isinstance(value.op, ast.USub):
-        sign, value = -1, value.operand
-    if isinstance(value, ast.Constant) and isinstance(value.value, int | float):
-        return sign * value.value
-    return None
 
 
 def _require(node: scenic.Require, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
