@@ -21,9 +21,9 @@ __all__ = [
     "first_option",
     "image_size_option",
     "jobs_option",
+    "look_from_option",
     "named_values",
     "no_cache_option",
-    "outlook_option",
     "parameter_value",
     "program_argument",
     "program_options",
@@ -137,9 +137,18 @@ def image_size_option(
     return int(match[1]), int(match[2])
 
 
-def outlook_option(
-    _context: click.Context, _option: click.Parameter, given: str | None
-) -> Mapping[str, float]:
+def look_from_option(of: str = "images") -> Callable[[_Command], _Command]:
+    """The option ``--look-from``, given to the command as ``outlook``; ``of`` is what it looks at, for the help."""
+    return click.option(
+        "--look-from",
+        "outlook",
+        metavar="AZ,EL",
+        callback=_outlook,
+        help=f"Viewpoint of {of}: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
+    )
+
+
+def _outlook(_context: click.Context, _option: click.Parameter, given: str | None) -> Mapping[str, float]:
     """Azimuth and elevation of a camera, as an `Outlook` takes them."""
     if given is None:
         return {}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from scenic.cli.options import image_size_option, named_values, outlook_option, simulator_option
+from scenic.cli.options import image_size_option, look_from_option, named_values, simulator_option
 from scenic.cli.output import CLEAN
 from scenic.cli.running import NOT_ALL
 from scenic.cli.sinks import OutputChoiceError, check_page
@@ -80,13 +80,7 @@ _FILMS: Final = (".gif", ".mp4", ".mov", ".mkv")
     callback=image_size_option,
     help="Columns and rows of the images, of a film, or of the whole image of several states.  [default: 960x720]",
 )
-@click.option(
-    "--look-from",
-    "outlook",
-    metavar="AZ,EL",
-    callback=outlook_option,
-    help="Viewpoint of images: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
-)
+@look_from_option()
 @click.option("--show-records", is_flag=True, help="Print what the simulation records.")
 def replay(
     path: Path,

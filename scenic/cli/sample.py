@@ -22,7 +22,7 @@ from scenic.cli.options import (
     first_option,
     image_size_option,
     jobs_option,
-    outlook_option,
+    look_from_option,
     program_argument,
     program_options,
     seconds,
@@ -139,13 +139,7 @@ __all__ = ["sample"]
     callback=image_size_option,
     help="Columns and rows of the images.  [default: 960x720; a sensor's own]",
 )
-@click.option(
-    "--look-from",
-    "outlook",
-    metavar="AZ,EL",
-    callback=outlook_option,
-    help="Viewpoint of --png: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
-)
+@look_from_option("--png")
 @click.option(
     "--frame",
     type=OneOf(["workspace", "objects"]),

@@ -12,7 +12,7 @@ from typing import Final
 import click
 
 from scenic.cli import sinks
-from scenic.cli.options import image_size_option, outlook_option, program_argument
+from scenic.cli.options import image_size_option, look_from_option, program_argument
 from scenic.cli.output import CLEAN
 from scenic.formats.reading import ReadScene, SceneFileError, read_scenes, scenes_of
 
@@ -55,13 +55,7 @@ _PAGES: Final = frozenset({".html", ".htm"})
     callback=image_size_option,
     help="Columns and rows of the images.  [default: 960x720]",
 )
-@click.option(
-    "--look-from",
-    "outlook",
-    metavar="AZ,EL",
-    callback=outlook_option,
-    help="Viewpoint of images: degrees east of south and above the horizon, or 'above'.  [default: -35,33]",
-)
+@look_from_option()
 @click.option(
     "--watch",
     is_flag=True,
