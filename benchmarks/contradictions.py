@@ -1,6 +1,6 @@
 """Run the deep check on planted and satisfiable programs: ``python -m benchmarks.contradictions [--generated N] [--slowest N]``.
 
-- Programs with planted contradictions (those of ``tests/analysis/test_planted.py``): is the error at the right line?
+- Programs with planted contradictions (those of ``tests/analysis/test_contradictions.py``): is the error at the right line?
 - Programs that have scenes: is any of them called contradictory? Examples, blocks of the documentation, the programs of
   `benchmarks.law_programs`, and programs that ``fuzz.semantics`` generates; those of which sampling finds a scene.
 
@@ -21,9 +21,9 @@ import scenic
 from benchmarks.law_programs import programs as programs_of_laws
 from docs._extensions.blocks import blocks_of
 from fuzz.semantics.programs import Program, programs
-from scenic.deep import deep_check
+from scenic.deep.findings import deep_check
 from scenic.language.diagnostics import Diagnostic, Severity
-from tests.analysis.test_planted import PLANTED
+from tests.analysis.test_contradictions import PLANTED
 
 ROOT: Final = Path(__file__).parents[1]
 

@@ -9,9 +9,9 @@ import time
 import numpy as np
 
 from scenic.pipeline import scenarioFromString
-from scenic.runtime.geometry import primitives
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.collision import Collider
+from scenic.runtime.geometry.contact.collision import Collider
+from scenic.runtime.geometry.meshes import primitives
+from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 
 COUNTS = (10, 30, 100, 300, 1000)

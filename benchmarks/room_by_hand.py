@@ -17,8 +17,8 @@ import fcl
 import numpy as np
 
 from scenic.pipeline import load
-from scenic.runtime.elements.shapes import BoxShape, MeshShape, Shape, SpheroidShape
-from scenic.runtime.geometry.voxels import voxels
+from scenic.runtime.geometry.meshes.voxels import voxels
+from scenic.runtime.shapes.shapes import BoxShape, MeshShape, Shape, SpheroidShape
 
 HERE = Path(__file__).resolve().parent
 LANES = 4096

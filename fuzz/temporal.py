@@ -39,7 +39,7 @@ from scenic.compiler.precedence import Ladder
 from scenic.compiler.resolver import resolve
 from scenic.compiler.tokens import NEWLINE
 from scenic.compiler.unparser import unparse
-from scenic.runtime.dynamics.declarations import Kept, Required, required
+from scenic.runtime.description.declarations import Kept, Required, required
 from scenic.runtime.temporal.monitors import Monitor
 
 __all__ = ["FORMULAS", "OF_FORMULAS", "formulas", "make_formula", "predicted", "texts", "written_in_full"]

@@ -18,7 +18,7 @@ _LANGUAGE: Final = "the language"
 """Home of names that every program finds in scope."""
 
 _ERRORS: Final = "scenic.language.errors"
-_DEFINITIONS: Final = "scenic.runtime.dynamics.definitions"
+_DEFINITIONS: Final = "scenic.runtime.description.definitions"
 _RECORDERS: Final = "scenic.runtime.dynamics.recorders"
 _ESTABLISHED: Final = "scenic.runtime.scenes.established_api"
 _FIELDS: Final = "scenic.runtime.regions.fields"
@@ -27,10 +27,10 @@ _LAWS: Final = "scenic.runtime.python.custom_distributions"
 _FUNCTIONS: Final = "scenic.runtime.elements.functions"
 _OBJECTS: Final = "scenic.runtime.instances.objects"
 _MUTATORS: Final = "scenic.runtime.instances.mutators"
-_VENEER: Final = "scenic.runtime.elements.veneer"
+_VENEER: Final = "scenic.runtime.program.veneer"
 _SENSORS: Final = "scenic.runtime.elements.sensors"
 _LAZY: Final = "scenic.runtime.values.lazy"
-_EXTERNAL: Final = "scenic.runtime.elements.external"
+_EXTERNAL: Final = "scenic.runtime.elements.external_parameters"
 _INSIDE: Final = "the inside"
 """Home of names of what is within the established implementation, and has no counterpart here."""
 
@@ -187,11 +187,11 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
                 _language(NameKind.REGION),
             ),
             ("scenic.runtime.regions.base", "Region"),
-            ("scenic.runtime.regions.promises", "orientedRegion unorientedRegion"),
+            ("scenic.runtime.regions.declared_orientations", "orientedRegion unorientedRegion"),
             ("scenic.runtime.regions.spaces", "AllRegion=Everywhere EmptyRegion=Nowhere"),
             ("scenic.runtime.regions.combinations", "IntersectionRegion UnionRegion DifferenceRegion"),
             ("scenic.runtime.regions.voxels", "VoxelRegion"),
-            ("scenic.runtime.regions.views", "ViewRegion"),
+            ("scenic.runtime.regions.view_regions", "ViewRegion"),
             ("scenic.runtime.regions.meshes", "MeshRegion"),
             (_ERRORS, "UndefinedSamplingException"),
             (_ESTABLISHED, "regionFromShapelyObject convertToFootprint toPolygon"),
@@ -222,7 +222,7 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
         ),
         "scenic.core.shapes": _homes(
             (_LANGUAGE, _language(NameKind.SHAPE)),
-            ("scenic.runtime.elements.shapes", "Shape"),
+            ("scenic.runtime.shapes.shapes", "Shape"),
         ),
         "scenic.core.sensors": _homes(
             (_SENSORS, "Sensor"),

@@ -28,11 +28,11 @@ from scenic.language.garbage import promote_young
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest
-from scenic.runtime.dynamics.definitions import ModularScenario
-from scenic.runtime.instances.mutation import apply_noise
+from scenic.runtime.description.definitions import ModularScenario
+from scenic.runtime.description.mutation import apply_noise
+from scenic.runtime.description.outcome import Module, Program
+from scenic.runtime.ground.context import Context, current
 from scenic.runtime.instances.objects import Object, Point
-from scenic.runtime.program.context import Context, current
-from scenic.runtime.program.outcome import Module, Program
 from scenic.runtime.program.prelude import Loader
 from scenic.runtime.python.importing import beside
 from scenic.runtime.python.random_state import preserved, seed_globals

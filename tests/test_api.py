@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import scenic
-from scenic.deep import deep_check
+from scenic.deep.findings import deep_check
 from scenic.failures import diagnose
 from scenic.language.errors import InvalidScenarioError, Located, ScenarioChoiceError, ScenicSyntaxError
 from scenic.language.spans import Span

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "scenic"
 
@@ -27,8 +29,10 @@ LAYERS = {
     "lsp": {"ide", "language", "configuration", "project"},
     "playground": {"ide"},
     "templates": set(),
+    "deep": {"analysis", "formats", "runtime", "graph", "language", "compiler"},
     "cli": {
         "templates",
+        "deep",
         "assessment",
         "domains",
         "batch",
@@ -46,6 +50,27 @@ LAYERS = {
     },
 }
 """What each layer may import of the others."""
+
+ROOMS = {
+    "scenic.runtime": (
+        "ground",
+        "geometry",
+        "temporal",
+        "values",
+        "python",
+        "shapes",
+        "regions",
+        "instances",
+        "elements",
+        "description",
+        "dynamics",
+        "program",
+        "sampling",
+        "scenes",
+    ),
+    "scenic.runtime.geometry": ("meshes", "flat", "contact", "containment", "views"),
+}
+"""Rooms of a package from the bottom up: each imports only those before it; modules beside the rooms are below all of them."""
 
 LIBRARIES = {
     "language": set(),
@@ -142,11 +167,32 @@ def test_layers_import_downwards() -> None:
     assert not wrong
 
 
+@pytest.mark.parametrize("package", ROOMS)
+def test_rooms_import_downwards(package: str) -> None:
+    rooms = ROOMS[package]
+    folder = ROOT.joinpath(*package.split("."))
+    assert {path.parent.name for path in folder.glob("*/__init__.py")} == set(rooms)
+
+    def floor(module: str) -> int:
+        rest = module.removeprefix(f"{package}.")
+        name = rest.partition(".")[0]
+        return rooms.index(name) if rest != module and name in rooms else -1
+
+    wrong = [
+        f"{module} imports {name}"
+        for module, names in all_imports().items()
+        if module.startswith(f"{package}.")
+        for name in names
+        if floor(name) > floor(module)
+    ]
+    assert not wrong
+
+
 def test_only_commands_and_the_api_call_the_pipeline() -> None:
     joins = [
         module
         for module, names in all_imports().items()
-        if (own := layer(module)) in LAYERS and own != "cli" and "scenic.pipeline" in names
+        if (own := layer(module)) in LAYERS and own not in ("cli", "deep") and "scenic.pipeline" in names
     ]
     assert not joins
 

@@ -7,8 +7,8 @@ from scenic.failures import diagnose
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import NAMES
 from scenic.language.support import refused_features
+from scenic.runtime.description.outcome import Program
 from scenic.runtime.program.builtins import builtin_names
-from scenic.runtime.program.outcome import Program
 from tests.each import each
 
 

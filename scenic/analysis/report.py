@@ -15,7 +15,7 @@ from scenic.graph.operations import TABLE
 from scenic.language.diagnostics import Diagnostic, Label, Severity
 from scenic.language.names import NAMES
 from scenic.language.spans import Span
-from scenic.runtime.dynamics.declarations import Required
+from scenic.runtime.description.declarations import Required
 
 _SHOWN: Final = 5
 """Options that are shown by name."""

@@ -12,7 +12,7 @@ from itertools import product
 from types import BuiltinFunctionType, CodeType, FunctionType, MethodType
 from typing import Any, Final
 
-from scenic.runtime.dynamics.declarations import Kept, Required
+from scenic.runtime.description.declarations import Kept, Required
 from scenic.runtime.temporal.formulas import is_temporal
 from scenic.runtime.temporal.monitors import Monitor, Verdict
 

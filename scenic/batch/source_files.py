@@ -6,7 +6,7 @@ from typing import Any
 
 from scenic.formats.mesh_files import digest_of
 from scenic.formats.textures import ImageTexture, TextureError, image_name, texture_of
-from scenic.runtime.program.context import warn
+from scenic.runtime.ground.context import warn
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.values.choices import options_of
 from scenic.runtime.values.nodes import as_node

@@ -141,7 +141,7 @@ def _check_map(task: Task) -> tuple[Diagnostic, ...]:
 
 
 def _deep(task: Task, source: Source) -> tuple[Diagnostic, ...]:
-    from scenic.deep import deep_check  # brings in NumPy, z3 and the geometry libraries
+    from scenic.deep.findings import deep_check  # brings in NumPy, z3 and the geometry libraries
 
     found = deep_check(task.filename)
     return apply_ignores(source.text, found, filename=task.filename, complain=False)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scenic.dataclass import dataclass
 from scenic.graph.operations.distributions import FIRST, LAST
 from scenic.graph.operations.normal import conditioned_cumulative, conditioned_quantile
-from scenic.runtime.program.external import Choosable
+from scenic.runtime.ground.choosable import Choosable
 
 if TYPE_CHECKING:
     from scenic.runtime.scenes.naming import DrawName

@@ -7,7 +7,7 @@ import numpy as np
 from scenic.formats.colors import linear
 from scenic.formats.scenery import USUAL, Scenery
 from scenic.formats.stage import Stage, ground_light
-from scenic.runtime.geometry.embree import Singles
+from scenic.runtime.geometry.meshes.embree import Singles
 
 _LINE_COLOR: Final = (0.55, 0.57, 0.61)
 

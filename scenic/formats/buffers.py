@@ -7,7 +7,7 @@ from scenic.dataclass import dataclass
 from scenic.formats.camera import Camera
 from scenic.formats.instances import Array
 from scenic.formats.stage import GROUND, SKY, Stage
-from scenic.runtime.geometry.embree import RayScene, Singles
+from scenic.runtime.geometry.meshes.embree import RayScene, Singles
 
 Groups = npt.NDArray[np.int32]
 

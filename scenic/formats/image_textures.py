@@ -19,7 +19,7 @@ from scenic.formats.colors import decoded, encoded
 from scenic.formats.imaging import require_pillow
 from scenic.formats.mesh_files import digest_of
 from scenic.language.errors import Located
-from scenic.runtime.geometry.embree import Singles
+from scenic.runtime.geometry.meshes.embree import Singles
 
 __all__ = ["PROJECTIONS", "ImageTexture", "TextureError"]
 

@@ -22,13 +22,13 @@ from scenic.formats.scenes import Scene, SceneObject
 from scenic.formats.sensors import Viewpoint
 from scenic.formats.stage import Stage
 from scenic.formats.textures import ImageTexture, placed_errors, texture_of
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.visibility.hits import place
-from scenic.runtime.geometry.visibility.obstacles import Occluder
-from scenic.runtime.geometry.visibility.seen_bodies import sees_bodies
-from scenic.runtime.geometry.visibility.views import CORNERS, Views
+from scenic.runtime.geometry.views.hits import place
+from scenic.runtime.geometry.views.observers import CORNERS, Views
+from scenic.runtime.geometry.views.obstacles import Occluder
+from scenic.runtime.geometry.views.seen_bodies import sees_bodies
 
 DEFAULT_RANGE = 50.0
 """Range of view of objects that give none, metres."""

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from scenic.dataclass import dataclass
 from scenic.formats.buffers import Groups, Seen
 from scenic.formats.stage import SKY, Stage
-from scenic.runtime.geometry.embree import Singles
+from scenic.runtime.geometry.meshes.embree import Singles
 
 Index = npt.NDArray[np.intp]
 _Scalar = TypeVar("_Scalar", bound=np.generic)

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from scenic.formats.instances import Array
 from scenic.formats.poses import rotation_matrix
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.body_regions import OccupiedSpace, SideSurface
 from scenic.runtime.regions.circular import CircularRegion
@@ -21,7 +21,7 @@ from scenic.runtime.regions.planar import Footprint, PlanarRegion
 from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.spaces import Workspace
-from scenic.runtime.regions.views import ViewRegion
+from scenic.runtime.regions.view_regions import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from scenic.runtime.regions.voxels import VoxelRegion
 

@@ -20,7 +20,7 @@ from scenic.formats.instances import Array, Picture
 from scenic.formats.lighting import Index, Light, coarse_light, fine_light, own_light
 from scenic.formats.scenery import scenery_of
 from scenic.formats.stage import GROUND, SKY, Stage
-from scenic.runtime.geometry.embree import Singles
+from scenic.runtime.geometry.meshes.embree import Singles
 
 _Scalar = TypeVar("_Scalar", bound=np.generic)
 Bytes = npt.NDArray[np.uint8]

@@ -9,7 +9,7 @@ from scenic.formats.mesh_files import ChangedMeshError, check_unchanged
 from scenic.formats.reading import ReadObject, ReadScene
 from scenic.formats.scenes import Shape
 from scenic.language.errors import Located, MeshError
-from scenic.runtime.elements.shapes import BoxShape, MeshShape, primitive_of
+from scenic.runtime.shapes.shapes import BoxShape, MeshShape, primitive_of
 from scenic.runtime.values.values import Orientation, Vector
 
 

@@ -18,7 +18,7 @@ from scenic.formats.instances import Array, Instance, Piece, Surface
 from scenic.formats.poses import rotation_matrix
 from scenic.formats.scenery import USUAL, Scenery
 from scenic.formats.textures import ImageTexture, Texture, TextureError, texture_of
-from scenic.runtime.geometry.embree import RayScene, Singles
+from scenic.runtime.geometry.meshes.embree import RayScene, Singles
 
 GROUND: Final = -1
 SKY: Final = -2

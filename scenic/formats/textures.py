@@ -17,7 +17,7 @@ import numpy.typing as npt
 from scenic.dataclass import dataclass
 from scenic.formats.image_textures import PROJECTIONS, ImageTexture, TextureError
 from scenic.formats.texture_names import SUFFIXES, image_name
-from scenic.runtime.geometry.embree import Singles
+from scenic.runtime.geometry.meshes.embree import Singles
 
 __all__ = ["PATTERNS", "ImageTexture", "Texture", "TextureError", "image_name", "placed_errors", "texture_of"]
 

@@ -1,7 +1,7 @@
 """Points of the unit cube that are chosen, not hashed: by a low-discrepancy sequence, or by the caller.
 
 Scene ``k`` is made of row ``k``: the number of a draw is that of the draw's *dimension*. Which dimension that is, whoever
-samples decides (`scenic.runtime.sampling.driving`).
+samples decides (`scenic.runtime.sampling.point_set_draws`).
 """
 
 from typing import Any, Final, Protocol

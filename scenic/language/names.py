@@ -126,13 +126,13 @@ def _function(
 
 
 def _distribution(
-    signature: str, documentation: str, home: str = "scenic.runtime.elements.distributions", **rest: Any
+    signature: str, documentation: str, home: str = "scenic.runtime.values.distributions", **rest: Any
 ) -> Name:
     return _name(NameKind.DISTRIBUTION, signature, documentation, home, **rest)
 
 
 def _external(signature: str, documentation: str, **rest: Any) -> Name:
-    return _distribution(signature, documentation, "scenic.runtime.elements.external", **rest)
+    return _distribution(signature, documentation, "scenic.runtime.elements.external_parameters", **rest)
 
 
 def _region(signature: str, documentation: str, home: str, **rest: Any) -> Name:
@@ -144,7 +144,7 @@ def _region(signature: str, documentation: str, home: str, **rest: Any) -> Name:
 def _shape(
     signature: str,
     documentation: str,
-    home: str = "scenic.runtime.elements.shapes",
+    home: str = "scenic.runtime.shapes.shapes",
     **takes: tuple[Type, ...],
 ) -> Name:
     return _name(NameKind.SHAPE, signature, documentation, home, result=SHAPE, takes={**_FORM, **takes})
@@ -235,10 +235,10 @@ _ALL = (
         "regions.base",
         result=REGION,
     ),
-    _class("Shape", "Base class of all shapes, for `isinstance`.", "elements.shapes", result=SHAPE),
+    _class("Shape", "Base class of all shapes, for `isinstance`.", "shapes.shapes", result=SHAPE),
     _class("Mutator", "Base class of mutators, which add noise to mutated objects.", "instances.mutators"),
-    _class("Behavior", "Base class of all behaviors.", "dynamics.definitions"),
-    _class("Monitor", "Base class of all monitors.", "dynamics.definitions"),
+    _class("Behavior", "Base class of all behaviors.", "description.definitions"),
+    _class("Monitor", "Base class of all monitors.", "description.definitions"),
     _class("Distribution", "Base class of distributions written in Python.", "python.custom_distributions"),
     _class("File(pattern, **options)", "A recorder that writes one file per series.", "dynamics.recorders"),
     _class("Files(pattern, **options)", "A recorder that writes one file per value.", "dynamics.recorders"),
@@ -325,7 +325,7 @@ _ALL = (
     _function(
         "resample(value)",
         "An independent draw of the same distribution.",
-        "scenic.runtime.elements.distributions",
+        "scenic.runtime.values.distributions",
         is_complete=True,
     ),
     _function(

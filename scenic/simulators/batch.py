@@ -10,7 +10,7 @@ from scenic.dataclass import dataclass
 from scenic.graph.points import Sobol
 from scenic.language.errors import Located
 from scenic.language.spelling import nearest_option
-from scenic.runtime.dynamics.driving import driven
+from scenic.runtime.dynamics.chosen_draws import driven
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.simulators.simulation import OnState, Simulation

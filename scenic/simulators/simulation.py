@@ -19,13 +19,13 @@ from scenic.language.errors import (
 )
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest_attribute
+from scenic.runtime.dynamics.chosen_draws import Sourcing
 from scenic.runtime.dynamics.copies import Copies
-from scenic.runtime.dynamics.driving import Sourcing
 from scenic.runtime.dynamics.run import Ending, Run
 from scenic.runtime.instances.properties import Finals
-from scenic.runtime.python.ownership import PRELUDE
 from scenic.runtime.python.random_state import preserved, restore, seed_globals, states
 from scenic.runtime.scenes.scene import Scene
+from scenic.runtime.values.ownership import PRELUDE
 from scenic.runtime.values.values import Orientation, Vector, describe, kind_of
 from scenic.simulators.replays import Replay, Tape, fresh_key
 from scenic.simulators.results import (

@@ -6,7 +6,7 @@ from typing import Any, Self
 
 from scenic.graph.points import PointSet
 from scenic.language.errors import GuardViolation, RejectionException, RejectSimulationException
-from scenic.runtime.dynamics.driving import Sourcing, driven
+from scenic.runtime.dynamics.chosen_draws import Sourcing, driven
 from scenic.runtime.scenes.scene import Scene
 from scenic.simulators.simulation import Simulation
 from scenic.simulators.stepped import SteppedSimulation

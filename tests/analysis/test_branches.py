@@ -3,7 +3,7 @@
 import numpy as np
 
 import scenic
-from scenic.deep import deep_check
+from scenic.deep.findings import deep_check
 
 HEAD = "speed, mode, wide = Range(2, 15), Uniform('slow', 'fast'), DiscreteRange(1, 6)\nparam gap = Range(5, 9)\nrequire speed < 10\n"
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from scenic.deep import deep_check, load
+from scenic.deep.findings import deep_check, load
 from tests.amounts import LONG
 
 SETTING = """

@@ -8,7 +8,7 @@ from graph.programs import make, one_of, uniform
 
 from scenic.analysis.facts import Fact
 from scenic.analysis.report import prove
-from scenic.deep import deep_check
+from scenic.deep.findings import deep_check
 from scenic.graph import node as graph
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph
@@ -300,7 +300,7 @@ def test_the_library_is_asked_for_where_it_is_missing(monkeypatch, tmp_path):
     path = tmp_path / "program.scenic"
     path.write_text("x = Range(0, 1)\nrequire x > 2\n")
     assert [item.code for item in deep_check(path)] == ["SC700"]
-    monkeypatch.setattr("scenic.deep.find_spec", lambda name: None)
+    monkeypatch.setattr("scenic.deep.findings.find_spec", lambda name: None)
     (found,) = deep_check(path)
     assert found.code == "SC604"
     assert "scenic-lang[deep]" in found.help

@@ -3,7 +3,7 @@
 import pytest
 
 from scenic.analysis.traces import shortest_trace
-from scenic.deep import deep_check
+from scenic.deep.findings import deep_check
 from tests.runtime.programs import scenario
 
 HEAD = "ego = new Object at (Range(0, 9), 0)\nx = Range(0, 1)\nspeeds = [Uniform(1, 2), Uniform(1, 2)]\nclass Other: pass\n"

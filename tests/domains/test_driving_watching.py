@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from scenic.domains.driving.lines import FollowedLine
 from scenic.domains.driving.roads import Network
 from scenic.domains.driving.watching import InsideWatch, Nearness
-from scenic.runtime.elements.shapes import BoxShape
+from scenic.runtime.shapes.shapes import BoxShape
 from scenic.runtime.values.values import Vector
 from tests.maps import cross
 

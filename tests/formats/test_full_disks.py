@@ -14,7 +14,7 @@ from scenic.formats.files import OutputError, check_folder, check_writable, make
 from scenic.formats.trajectories import LinesFile, TrajectoryFile
 from scenic.formats.trajectory_tables import ParquetFile
 from scenic.runtime.dynamics.series import Arrays, Lines, Pickled, Series
-from scenic.runtime.scenes.files import whole
+from scenic.runtime.ground.files import whole
 
 FORMS = [
     LinesFile,

@@ -9,12 +9,12 @@ from scipy.spatial.transform import Rotation
 
 from scenic.formats.html import page
 from scenic.formats.regions import bounds, outlines, view_outline
-from scenic.runtime.geometry.visibility.views import Views
+from scenic.runtime.geometry.views.observers import Views
 from scenic.runtime.regions.circular import CircularRegion
 from scenic.runtime.regions.planar import PolygonalRegion
 from scenic.runtime.regions.rectangular import RectangularRegion
 from scenic.runtime.regions.spaces import Workspace
-from scenic.runtime.regions.views import ViewRegion
+from scenic.runtime.regions.view_regions import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from tests.formats.stand_ins import BALL, Chair, Object, Scene, Turn
 

@@ -15,7 +15,7 @@ from scenic.formats.sensors import CameraError, viewpoint
 from scenic.runtime.elements.sensors import DepthSensor, RGBSensor, SSSensor
 from tests.amounts import amount
 from tests.formats.stand_ins import BALL, Chair, Object, Scene, Turn
-from tests.runtime.geometry.visibility import reference
+from tests.runtime.geometry.views import reference
 
 SIZE = (64, 48)
 WIDTH, HEIGHT = amount(36, 64), amount(27, 48)

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from scenic.formats.obj import obj
-from scenic.runtime.geometry.reading.obj import read_obj
+from scenic.runtime.geometry.meshes.reading.obj import read_obj
 from tests.formats.stand_ins import BALL, Chair, Object, Scene, Turn
 
 

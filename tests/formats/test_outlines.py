@@ -10,7 +10,7 @@ import trimesh
 import scenic
 from scenic.formats.html import page
 from scenic.formats.regions import _cell_edges, _longest, _mesh_lines, bounds, outlines
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.regions.circular import CircularRegion
 from scenic.runtime.regions.combinations import IntersectionRegion
 from scenic.runtime.regions.lines import PathRegion

@@ -22,7 +22,7 @@ from tests.compiler.golden_cases import read_cases
 from tests.formats.stand_ins import BALL, Object, Scene, Turn
 from tests.recorded import FOLDER, hold
 from tests.runtime.matrices import attempt, numbers
-from tests.runtime.test_recorded_regions import made
+from tests.runtime.regions.test_recorded_regions import made
 
 Lines = Iterator[str]
 

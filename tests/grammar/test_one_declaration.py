@@ -150,7 +150,7 @@ class CubeRegion(BoxRegion):
 import numpy as np
 from scenic.graph.kinds import Kind
 from scenic.graph.operation import Operation, always
-from scenic.runtime.elements.distributions import Law, primitive
+from scenic.runtime.values.distributions import Law, primitive
 
 _DRAW = Operation(
     "exponential", always(Kind.SCALAR), lambda _, uniform, rate: -np.log1p(-uniform) / rate, "A waiting time."
@@ -161,8 +161,8 @@ def Exponential(rate):
     return primitive(_DRAW, rate)
 """,
     "scenic/runtime/elements/slabs.py": """
-from scenic.runtime.elements.shapes import PrimitiveShape
-from scenic.runtime.geometry import primitives
+from scenic.runtime.shapes.shapes import PrimitiveShape
+from scenic.runtime.geometry.meshes import primitives
 
 class SlabShape(PrimitiveShape):
     kind = "slab"
@@ -237,7 +237,7 @@ import scenic
 from scenic.analysis.report import _NOUNS
 from scenic.ide.completion import completions
 from scenic.project.index import Project
-from scenic.runtime.elements.shapes import primitive_of
+from scenic.runtime.shapes.shapes import primitive_of
 from scenic.runtime.scenes.dumping import literal
 from scenic.runtime.values.source_text import spelled
 

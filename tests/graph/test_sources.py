@@ -8,7 +8,7 @@ import pytest
 from scenic.graph.draws import BOX, Counter, Lanes, Points, Source, box_addresses, open_unit, words_of
 from scenic.graph.node import Graph, axis
 from scenic.graph.points import GivenPoints, PointSet, Sobol
-from scenic.runtime.sampling.driving import driven
+from scenic.runtime.sampling.point_set_draws import driven
 
 COUNT = 7
 AXES = [axis(place=number) for number in (11, 12, 13)]

@@ -8,7 +8,7 @@ import pytest
 
 from scenic.compiler.check import check_text
 from scenic.compiler.fixes import apply_fixes
-from scenic.deep import deep_check
+from scenic.deep.findings import deep_check
 from scenic.failures import diagnose
 from scenic.language.diagnostics import CODES, Diagnostic, Severity
 from scenic.language.errors import ScenicWarning

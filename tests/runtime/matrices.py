@@ -8,14 +8,14 @@ import shapely
 import trimesh
 
 from scenic.graph.bounds import Bounds
-from scenic.runtime.geometry import primitives
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.meshes import primitives
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.combinations import UnionRegion
 from scenic.runtime.regions.planar import PlanarRegion
-from scenic.runtime.regions.views import ViewRegion
+from scenic.runtime.regions.view_regions import ViewRegion
 from scenic.runtime.regions.volumes import BoxRegion, SpheroidRegion
 from tests.recorded import said, shown
 from tests.runtime.geometry.samples import table

@@ -9,9 +9,9 @@ from scipy.spatial.transform import Rotation
 import scenic
 from scenic import pipeline
 from scenic.failures import diagnose
-from scenic.runtime.elements.shapes import Shape
 from scenic.runtime.instances.objects import Point
 from scenic.runtime.regions.base import Region
+from scenic.runtime.shapes.shapes import Shape
 from scenic.runtime.values.values import Orientation, Vector
 
 FALSE_ALARM = 1e-6

@@ -24,8 +24,8 @@ from scenic.language.errors import (
     annotation,
 )
 from scenic.runtime.dynamics.recorders import File, Files, for_pattern
-from scenic.runtime.program.context import current
-from scenic.runtime.scenes.files import whole
+from scenic.runtime.ground.context import current
+from scenic.runtime.ground.files import whole
 from scenic.runtime.values.values import Vector
 from scenic.simulators.actions import Action
 from scenic.simulators.dummy import DummySimulation, DummySimulator
@@ -891,7 +891,7 @@ def test_files_that_are_not_whole_do_not_remain(tmp_path: Path, ended: type[Base
 
 
 def test_a_disk_that_is_full_leaves_no_half_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from scenic.runtime.scenes import files
+    from scenic.runtime.ground import files
 
     def full(*_: Any) -> None:
         raise OSError(28, "No space left on device")

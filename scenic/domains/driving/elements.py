@@ -12,7 +12,7 @@ from scenic.domains.driving.levels import Ground
 from scenic.domains.driving.surfaces import GroundedLine, Surface, frames_of
 from scenic.graph.kinds import Column, Kind
 from scenic.language.errors import RejectionException
-from scenic.runtime.geometry.polygons import Polygons
+from scenic.runtime.geometry.flat.polygons import Polygons
 from scenic.runtime.regions.base import Points, Region
 from scenic.runtime.regions.lines import PolylineRegion
 from scenic.runtime.regions.region_field import RegionField, way_given

@@ -12,9 +12,9 @@ from scenic.domains.driving.lookups import Finder, RoadDirection
 from scenic.domains.driving.surfaces import Surface
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column
-from scenic.runtime.geometry import containment
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.polygons import Polygons
+from scenic.runtime.geometry.containment import body_containment as containment
+from scenic.runtime.geometry.flat.polygons import Polygons
+from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.regions.base import Mask, Points, Region
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scenic.domains.driving.elements import LinearElement
 from scenic.domains.driving.levels import Ground, Levels
 from scenic.domains.driving.surfaces import GroundedLine
-from scenic.runtime.geometry.segments import Segments
+from scenic.runtime.geometry.flat.segments import Segments
 from scenic.runtime.regions.lines import PolylineRegion
 
 __all__ = ["FollowedLine", "concatenateCenterlines", "joined_ground"]

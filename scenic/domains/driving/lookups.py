@@ -14,7 +14,7 @@ from scenic.domains.driving.surfaces import frames_of
 from scenic.graph import quaternions
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
-from scenic.runtime.geometry.cell_index import CellIndex
+from scenic.runtime.geometry.flat.cell_index import CellIndex
 from scenic.runtime.geometry.ragged import expand
 from scenic.runtime.regions.fields import TabulatedField
 from scenic.runtime.values.values import Orientation, Random, Vector, apply, is_number, to_vector

@@ -26,7 +26,7 @@ from scenic.domains.driving.kinds import ManeuverType, VehicleType
 from scenic.domains.driving.loading import load_network
 from scenic.domains.driving.network import RoadNetwork
 from scenic.domains.driving.storing import KIND, restored, stored
-from scenic.runtime.scenes.files import whole
+from scenic.runtime.ground.files import whole
 
 __all__ = [
     "Intersection",

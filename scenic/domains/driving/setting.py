@@ -6,9 +6,9 @@ from scenic.domains.driving.roads import Network
 from scenic.formats.opendrive.xml_tree import MapError
 from scenic.language.errors import InvalidScenarioError
 from scenic.language.spans import Span
+from scenic.runtime.ground.context import current
 from scenic.runtime.instances.objects import OrientedPoint
 from scenic.runtime.program.builtins import running_simulation
-from scenic.runtime.program.context import current
 from scenic.runtime.values.lazy import Lazy
 from scenic.runtime.values.values import operate, to_vector, vector
 

@@ -15,8 +15,7 @@ from scenic.graph import quaternions
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.instances.objects import OrientedPoint
+from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.regions.base import Mask, Points
 from scenic.runtime.regions.flat import Flat, meets_flat
 from scenic.runtime.regions.lines import PolylineRegion
@@ -228,7 +227,7 @@ class GroundedLine(Frozen, PolylineRegion):
         """The direction of the line on its ground, at its point nearest to a point."""
         return Orientation.of(self.orientations(np.array([tuple(_flat(point))]))[0].tolist())
 
-    def _end(self, point: Any, segment: int) -> OrientedPoint:
+    def _end(self, point: Any, segment: int) -> Any:
         return super()._end(tuple(self._on_ground(Vector.of(point))), segment)
 
     def _direction(self, place: Vector, segment: int) -> Orientation:

@@ -7,7 +7,7 @@ import math
 from typing import Any
 
 from scenic.domains.driving.elements import NetworkElement
-from scenic.runtime.elements.shapes import BoxShape
+from scenic.runtime.shapes.shapes import BoxShape
 
 __all__ = ["InsideWatch", "Nearness"]
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from scenic.language.errors import InvalidScenarioError, InvariantViolation
 from scenic.language.spans import Span
-from scenic.runtime.dynamics.definitions import Guard, Invocable
+from scenic.runtime.description.definitions import Guard, Invocable
 from scenic.runtime.dynamics.guards import Guarded
-from scenic.runtime.program.context import here
+from scenic.runtime.ground.context import here
 
 if TYPE_CHECKING:
     from scenic.runtime.dynamics.run import Run

@@ -3,7 +3,7 @@
 A simulation works on copies of its own: sampled values in place of random ones, objects whose properties change with time,
 functions over global names that they may assign. So nothing that happens in it is seen by the scene
 or by another simulation. Containers that hold nothing of that are shared with the program, and filled as at first for each simulation
-(`scenic.runtime.python.originals`).
+(`scenic.runtime.python.shared_containers`).
 """
 
 from collections.abc import Iterable
@@ -13,9 +13,10 @@ from weakref import ref
 
 import numpy as np
 
-from scenic.runtime.instances.objects import Point
-from scenic.runtime.python.originals import Originals
-from scenic.runtime.python.ownership import (
+from scenic.runtime.python.samples import Globals, Lanes, Sample
+from scenic.runtime.python.shared_containers import Originals
+from scenic.runtime.values.instance_base import Instance
+from scenic.runtime.values.ownership import (
     DECORATED,
     PRELUDE,
     SAMPLE,
@@ -23,7 +24,6 @@ from scenic.runtime.python.ownership import (
     is_own_function,
     leads_back,
 )
-from scenic.runtime.python.samples import Globals, Lanes, Sample
 
 __all__ = ["Copies"]
 
@@ -53,7 +53,7 @@ class Copies(Sample):
         self._own: dict[int, dict[str, Any]] = {}
         self._modules: dict[int, ModuleType] = {}
         self._depth = 0
-        self._waiting: list[tuple[Point, Any]] = []
+        self._waiting: list[tuple[Instance, Any]] = []
 
     def release(self) -> None:
         """The simulation has ended: another one may use what it has shared with the program."""
@@ -90,7 +90,7 @@ class Copies(Sample):
     def _varies(self, cls: type) -> bool:
         return True
 
-    def _instance(self, instance: Point) -> Any:
+    def _instance(self, instance: Instance) -> Any:
         source = instance.__dict__.get("_source", instance)
         if source is not instance:
             return self.value(source)
@@ -106,7 +106,7 @@ class Copies(Sample):
                 self._depth -= 1
         return copy
 
-    def _complete(self, instance: Point, copy: Any) -> None:
+    def _complete(self, instance: Instance, copy: Any) -> None:
         """Give a copy the values of its own."""
         for name, value in instance.__dict__.items():
             copy.__dict__[name] = self.value(value)

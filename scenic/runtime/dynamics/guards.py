@@ -9,7 +9,7 @@ from scenic.language.errors import (
     PreconditionViolation,
     RejectionException,
 )
-from scenic.runtime.dynamics.definitions import Guard
+from scenic.runtime.description.definitions import Guard
 
 if TYPE_CHECKING:
     from scenic.runtime.dynamics.run import Run

@@ -9,10 +9,8 @@ from scenic.language.errors import (
     RejectSimulationException,
     ScenicTypeError,
 )
-from scenic.runtime.dynamics import margins, statements
-from scenic.runtime.dynamics.activations import Termination, Yielded
-from scenic.runtime.dynamics.declarations import End, Kept, MonitorUse, RecordUse, Required
-from scenic.runtime.dynamics.definitions import (
+from scenic.runtime.description.declarations import End, Kept, MonitorUse, RecordUse, Required
+from scenic.runtime.description.definitions import (
     Behavior,
     Definition,
     Guard,
@@ -21,18 +19,20 @@ from scenic.runtime.dynamics.definitions import (
     Monitor,
     define,
 )
+from scenic.runtime.dynamics import margins, statements
+from scenic.runtime.dynamics.activations import Termination, Yielded
 from scenic.runtime.dynamics.overriding import override_before
 from scenic.runtime.dynamics.recording import check_duration, check_target
 from scenic.runtime.dynamics.run import Run, RunContext
 from scenic.runtime.dynamics.scenarios import not_a_monitor
-from scenic.runtime.program.context import Context, current, here
+from scenic.runtime.ground.context import Context, current, here
 from scenic.runtime.temporal.formulas import is_temporal
 from scenic.runtime.temporal.monitors import Monitor as Follower
 from scenic.runtime.values.lazy import definite
 from scenic.runtime.values.values import describe, is_number
 
 if TYPE_CHECKING:
-    from scenic.runtime.program.outcome import Module, Program
+    from scenic.runtime.description.outcome import Module, Program
 
 __all__ = ["Dynamics"]
 

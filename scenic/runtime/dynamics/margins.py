@@ -2,7 +2,7 @@
 
 A margin is in the unit of what is compared (radians for directions), positive where the condition holds and negative where it does not. It is infinite
 where there is nothing to measure: for an equality that holds, or inside something of which no depth is known. What is seen is
-measured by shares and angles (`scenic.runtime.visibility.clearance`).
+measured by shares and angles (`scenic.runtime.regions.visibility_margins`).
 """
 
 import math
@@ -13,19 +13,19 @@ import numpy as np
 
 from scenic.graph.quaternions import normal_angle
 from scenic.language.errors import ScenicError
-from scenic.runtime.geometry.depth import convex_depth
+from scenic.runtime.geometry.contact.depth import convex_depth
+from scenic.runtime.geometry.contact.scalar_bodies import overlap
 from scenic.runtime.geometry.poses import Floats
-from scenic.runtime.geometry.scalar_bodies import overlap
+from scenic.runtime.ground.context import current
 from scenic.runtime.instances.objects import Object, OrientedPoint, Point
-from scenic.runtime.program.context import current
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.body_regions import gap_between
 from scenic.runtime.regions.planar import PlanarRegion
 from scenic.runtime.regions.stacked import placed_of
+from scenic.runtime.regions.visibility_margins import clearance
+from scenic.runtime.regions.visibility_nodes import sees
 from scenic.runtime.values.directions import DIRECTIONS
 from scenic.runtime.values.values import Vector, is_number, is_vector, to_vector
-from scenic.runtime.visibility.clearance import clearance
-from scenic.runtime.visibility.seeing import sees
 
 __all__ = ["margin"]
 

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from scenic.language.errors import ScenicTypeError, SpecifierError
+from scenic.runtime.description.definitions import Behavior, behavior_of
 from scenic.runtime.dynamics.activations import Activation
-from scenic.runtime.dynamics.definitions import Behavior, behavior_of
+from scenic.runtime.elements.resolution import resolution_of
 from scenic.runtime.elements.specifiers import Specifier
+from scenic.runtime.ground.context import here
 from scenic.runtime.instances.objects import Object
 from scenic.runtime.instances.properties import Finals, normalised
-from scenic.runtime.instances.resolution import resolution_of
-from scenic.runtime.program.context import here
 from scenic.runtime.values.lazy import resolve as settle
 from scenic.runtime.values.values import describe
 

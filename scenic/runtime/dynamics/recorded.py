@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from scenic.language.errors import ScenicValueError
-from scenic.runtime.program.context import here
+from scenic.runtime.ground.context import here
 
 __all__ = ["as_array", "as_pixels", "plain"]
 

@@ -14,8 +14,8 @@ from scenic.language.errors import ScenicValueError, UnsupportedError
 from scenic.language.extras import installation
 from scenic.runtime.dynamics.recorded import as_array, as_pixels, plain
 from scenic.runtime.dynamics.series import Arrays, Film, Lines, Pickled, Series
-from scenic.runtime.program.context import here
-from scenic.runtime.scenes.files import whole
+from scenic.runtime.ground.context import here
+from scenic.runtime.ground.files import whole
 
 __all__ = ["File", "Filed", "Files", "Recorder", "for_pattern"]
 

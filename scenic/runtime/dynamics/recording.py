@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from scenic.language.errors import Located, ScenicTypeError, ScenicValueError
 from scenic.language.spans import Span
-from scenic.runtime.dynamics.declarations import RecordUse
+from scenic.runtime.description.declarations import RecordUse
 from scenic.runtime.dynamics.recorders import File, Files, Recorder, for_pattern
 from scenic.runtime.values.values import describe, is_number
 

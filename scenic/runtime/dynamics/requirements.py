@@ -4,7 +4,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from scenic.language.errors import RejectSimulationException, StuckBehaviorError, StuckBehaviorWarning
-from scenic.runtime.dynamics.declarations import Required
+from scenic.runtime.description.declarations import Required
 from scenic.runtime.temporal.monitors import Monitor, Verdict
 from scenic.runtime.temporal.robustness import Robustness
 

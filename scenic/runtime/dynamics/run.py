@@ -8,17 +8,17 @@ from typing import Any, Protocol
 
 from scenic.language.errors import InvalidScenarioError, RejectSimulationException
 from scenic.language.spans import Span
+from scenic.runtime.description.definitions import Behavior, Invocable, ModularScenario
+from scenic.runtime.description.mutation import mutate_now
+from scenic.runtime.description.outcome import Program
 from scenic.runtime.dynamics.activations import Activation, Termination
 from scenic.runtime.dynamics.copies import Copies
-from scenic.runtime.dynamics.definitions import Behavior, Invocable, ModularScenario
 from scenic.runtime.dynamics.draws import Draws, Source
 from scenic.runtime.dynamics.recording import Recording
 from scenic.runtime.dynamics.requirements import Followed
 from scenic.runtime.dynamics.scenarios import ScenarioActivation
-from scenic.runtime.instances.mutation import mutate_now
+from scenic.runtime.ground.context import Context, Locator, Namer, current, here, warn
 from scenic.runtime.instances.objects import Object
-from scenic.runtime.program.context import Context, Locator, Namer, current, here, warn
-from scenic.runtime.program.outcome import Program
 
 __all__ = ["Ending", "Run", "RunContext", "Simulated"]
 

@@ -10,15 +10,15 @@ from scenic.language.errors import (
     InvariantViolation,
     ScenicTypeError,
 )
+from scenic.runtime.description.declarations import Declared, End, MonitorUse, Required
+from scenic.runtime.description.definitions import Guard, ModularScenario, Monitor
 from scenic.runtime.dynamics.activations import Activation, Termination, Yielded
-from scenic.runtime.dynamics.declarations import Declared, End, MonitorUse, Required
-from scenic.runtime.dynamics.definitions import Guard, ModularScenario, Monitor
 from scenic.runtime.dynamics.guards import Guarded
 from scenic.runtime.dynamics.overriding import Overrides
 from scenic.runtime.dynamics.recording import Recording
 from scenic.runtime.dynamics.requirements import Followed
 from scenic.runtime.dynamics.statements import limit_in_steps
-from scenic.runtime.program.context import here
+from scenic.runtime.ground.context import here
 from scenic.runtime.python.samples import mentions
 from scenic.runtime.values.values import describe
 

@@ -15,8 +15,8 @@ import numpy as np
 from scenic.language.errors import ScenicValueError, UnsupportedError
 from scenic.language.extras import installation
 from scenic.runtime.dynamics.recorded import as_array, as_pixels, plain
-from scenic.runtime.program.context import here
-from scenic.runtime.scenes.files import named, naming, unnamed, whole
+from scenic.runtime.ground.context import here
+from scenic.runtime.ground.files import named, naming, unnamed, whole
 
 __all__ = ["Arrays", "Film", "Lines", "Pickled", "Series"]
 

@@ -11,9 +11,9 @@ from scenic.language.errors import (
     ScenicTypeError,
     ScenicValueError,
 )
+from scenic.runtime.description.definitions import Behavior, Invocable, ModularScenario, Monitor
 from scenic.runtime.dynamics.activations import Activation, Termination, Yielded
-from scenic.runtime.dynamics.definitions import Behavior, Invocable, ModularScenario, Monitor
-from scenic.runtime.program.context import here
+from scenic.runtime.ground.context import here
 from scenic.runtime.values.values import describe, is_number
 
 __all__ = [

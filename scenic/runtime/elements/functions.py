@@ -8,7 +8,7 @@ from typing import Any
 
 from scenic.language.errors import RandomControlFlowError
 from scenic.language.types import SCALAR
-from scenic.runtime.program.context import current, here, verbosity
+from scenic.runtime.ground.context import current, here, verbosity
 from scenic.runtime.python.opaque import call_later, is_later
 from scenic.runtime.python.purity import global_names, is_pure
 from scenic.runtime.values.lazy import Lazy, defer, is_lazy

@@ -15,13 +15,15 @@ from scenic.language.operators import FRAMES, SIDES
 from scenic.language.operators import OPERATORS as DECLARED
 from scenic.language.types import FIELD, ORIENTED_POINT, SCALAR, VECTOR
 from scenic.runtime.elements.operands import Bound, Ego, bound, type_of
+from scenic.runtime.ground.context import current, here
 from scenic.runtime.instances.objects import OrientedPoint, oriented_point
-from scenic.runtime.program.context import current, here
 from scenic.runtime.python.opaque import call_later
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.body_regions import gap_between
 from scenic.runtime.regions.fields import frame_at, relative_to
-from scenic.runtime.regions.views import part_of
+from scenic.runtime.regions.planar_visibility import sees_in_mode
+from scenic.runtime.regions.view_regions import part_of
+from scenic.runtime.regions.visibility_nodes import sees
 from scenic.runtime.values.directions import DIRECTIONS, Direction
 from scenic.runtime.values.lazy import defer, definite, is_lazy
 from scenic.runtime.values.values import (
@@ -35,8 +37,6 @@ from scenic.runtime.values.values import (
     unary,
     vector,
 )
-from scenic.runtime.visibility.flat import sees_in_mode
-from scenic.runtime.visibility.seeing import sees
 
 _add, _rotate, _compose, _distance_between = map(binary, ("add", "rotate", "compose", "distance"))
 _minus, _azimuth, _slope, _normal = (

@@ -2,7 +2,7 @@
 
 A specifier is turned into a `Specifier`: the properties it offers with their priorities, the properties it reads, and
 a function from the partially built instance to values. Priorities, needs and the defaults of operands come from
-`scenic.language.specifiers`; the functions here compute the values alone. `scenic.runtime.instances.resolution` decides
+`scenic.language.specifiers`; the functions here compute the values alone. `scenic.runtime.elements.resolution` decides
 which of the offered values are taken.
 """
 
@@ -18,15 +18,16 @@ from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS, SpecifierDeclaration
 from scenic.language.types import OBJECT, REGION, VECTOR
 from scenic.runtime.elements.operands import Ego, Read, converter, is_kind, region_of
+from scenic.runtime.ground.context import Site, current, here
 from scenic.runtime.instances.objects import Object, OrientedPoint
-from scenic.runtime.program.context import Site, current, here
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import as_region
 from scenic.runtime.regions.drawn import DrawnRegion
 from scenic.runtime.regions.fields import VectorField, frame_at, is_field
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.spaces import Everywhere, Workspace
-from scenic.runtime.regions.views import place_in_plane, place_near
+from scenic.runtime.regions.view_regions import place_in_plane, place_near
+from scenic.runtime.regions.visibility_nodes import Sighting
 from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.lazy import Lazy, defer, reads_of, resolve
 from scenic.runtime.values.values import (
@@ -45,7 +46,6 @@ from scenic.runtime.values.values import (
     vector,
     wrong_type,
 )
-from scenic.runtime.visibility.seeing import Sighting
 
 Evaluate = Callable[[Any], Mapping[str, Any]]
 Space = Callable[[], Region]

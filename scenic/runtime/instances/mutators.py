@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from scenic.language.errors import ScenicTypeError
-from scenic.runtime.elements.distributions import Normal
+from scenic.runtime.ground.context import here
 from scenic.runtime.instances.properties import update
-from scenic.runtime.program.context import here
 from scenic.runtime.values.describing import describe
+from scenic.runtime.values.distributions import Normal
 from scenic.runtime.values.values import Vector, is_number, operate, to_scalar, to_vector, vector
 
 

@@ -16,12 +16,11 @@ from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError
 from scenic.language.properties import CLASSES, BuiltinProperty, Constant
 from scenic.language.types import VECTOR
-from scenic.runtime.elements.shapes import BoxShape
-from scenic.runtime.geometry.scalar_bodies import meet
+from scenic.runtime.geometry.contact.scalar_bodies import meet
+from scenic.runtime.ground.context import here
 from scenic.runtime.instances.mutators import OrientationMutator, PositionMutator
 from scenic.runtime.instances.properties import ATTRIBUTES, Property, PropertyDefinition, combine, update
-from scenic.runtime.program.context import here
-from scenic.runtime.python.class_members import bind
+from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.body_regions import (
     OccupiedSpace,
@@ -30,10 +29,15 @@ from scenic.runtime.regions.body_regions import (
     inradius,
     planar_inradius,
 )
+from scenic.runtime.regions.planar_visibility import sees_in_plane
 from scenic.runtime.regions.stacked import placed_of
-from scenic.runtime.regions.views import ViewRegion
+from scenic.runtime.regions.view_regions import ViewRegion
+from scenic.runtime.regions.visibility_nodes import occluders_of, sees
 from scenic.runtime.regions.volumes import BoxRegion
+from scenic.runtime.shapes.shapes import BoxShape
+from scenic.runtime.values.class_members import bind
 from scenic.runtime.values.generic import sample_of
+from scenic.runtime.values.instance_base import PLACEMENT, Instance, put
 from scenic.runtime.values.values import (
     Orientation,
     operate,
@@ -43,8 +47,6 @@ from scenic.runtime.values.values import (
     to_vector,
     vector,
 )
-from scenic.runtime.visibility.flat import sees_in_plane
-from scenic.runtime.visibility.seeing import occluders_of, sees
 
 
 def _definitions(name: str, computed: Mapping[str, Callable[[Any], Any]]) -> dict[str, PropertyDefinition]:
@@ -82,32 +84,14 @@ def _combine_properties(cls: type["Point"]) -> None:
         put(first, (None,) * len(PLACEMENT))
 
 
-PLACEMENT = ("position", "yaw", "pitch", "roll", "heading", "width", "length", "height")
-"""Properties that are read of every object of a scene, in the order in which `put` unpacks them."""
-
-
-def put(thing: Any, row: tuple[Any, ...]) -> None:
-    """Give an object of a scene its place and size."""
-    (
-        thing.position,
-        thing.yaw,
-        thing.pitch,
-        thing.roll,
-        thing.heading,
-        thing.width,
-        thing.length,
-        thing.height,
-    ) = row
-
-
-class Point:
+class Point(Instance):
     """A position in space."""
 
     scenic_kind: ClassVar[Kind] = Kind.OBJECT
     scenic_properties: ClassVar[Mapping[str, Property]]
     """All properties of the class, with what their definitions combine to."""
     _resolutions: ClassVar[dict[Any, Any]]
-    """Cached resolutions of combinations of specifiers; see `scenic.runtime.instances.resolution`."""
+    """Cached resolutions of combinations of specifiers; see `scenic.runtime.elements.resolution`."""
     _definitions: ClassVar[Mapping[str, PropertyDefinition]] = _definitions(
         "Point",
         {
@@ -493,6 +477,9 @@ def oriented_point(position: Any, orientation: Any, *, by_angles: bool = False) 
     instance.__dict__["orientation"] = whole
     instance.__dict__["_implied"] = True
     return instance
+
+
+generic.oriented_point.register(object, oriented_point)
 
 
 def _fill(instance: Any, name: str) -> None:

@@ -12,10 +12,10 @@ from scenic.graph.construction import make_node
 from scenic.graph.kinds import Column, Kind, boxed
 from scenic.graph.node import Graph, Node
 from scenic.graph.operation import Call, Operation, always
+from scenic.runtime.ground.context import Context, current, here
 from scenic.runtime.instances.mutators import KEPT, active, is_built_in
 from scenic.runtime.instances.objects import Point
 from scenic.runtime.instances.properties import NORMAL
-from scenic.runtime.program.context import Context, current, here
 from scenic.runtime.values.values import CODEC, Random, as_node, as_value
 
 _OF_KNOWN_KINDS: Final = NORMAL.keys() | KEPT

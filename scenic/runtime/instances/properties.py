@@ -20,10 +20,10 @@ from scenic.language.errors import InvalidScenarioError, ScenicValueError
 from scenic.language.properties import CLASSES
 from scenic.language.spans import Span
 from scenic.language.types import BOOLEAN, REGION, SCALAR, SHAPE, VECTOR, VIEW_ANGLES, Type
-from scenic.runtime.elements.shapes import Shape
-from scenic.runtime.program.context import current, here, warn
+from scenic.runtime.ground.context import current, here, warn
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.drawn import DrawnRegion
+from scenic.runtime.shapes.shapes import Shape
 from scenic.runtime.values.choices import per_option
 from scenic.runtime.values.coercions import when_drawn
 from scenic.runtime.values.lazy import MEMO, resolve

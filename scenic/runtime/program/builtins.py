@@ -9,9 +9,9 @@ from typing import Any
 
 from scenic.language.errors import InvalidScenarioError, UnknownParameterError
 from scenic.language.names import NAMES
+from scenic.runtime.description.outcome import Program
 from scenic.runtime.dynamics.run import RunContext
-from scenic.runtime.program.context import current, here
-from scenic.runtime.program.outcome import Program
+from scenic.runtime.ground.context import current, here
 from scenic.runtime.regions import algebra as algebra  # registers what regions do together
 
 

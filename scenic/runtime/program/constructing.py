@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from scenic.graph.bounding import overall
-from scenic.runtime.program.conditions import NotSymbolicError
+from scenic.runtime.description.conditions import NotSymbolicError
 from scenic.runtime.values.values import as_node, is_random
 
 _SIZES: Final = ("radius", "width", "length", "angle", "dimensions")

@@ -25,46 +25,45 @@ from scenic.language.errors import (
     UnsupportedError,
 )
 from scenic.language.libraries import how_to_get
-from scenic.runtime.dynamics.declarations import Kept, required
-from scenic.runtime.dynamics.definitions import behavior_of
+from scenic.runtime.description import conditions, mutation
+from scenic.runtime.description.conditions import Condition
+from scenic.runtime.description.declarations import Kept, required
+from scenic.runtime.description.definitions import behavior_of
+from scenic.runtime.description.outcome import Module, Program, Requirement
 from scenic.runtime.dynamics.language import Dynamics
 from scenic.runtime.dynamics.run import RunContext
 from scenic.runtime.elements.functions import convert
 from scenic.runtime.elements.operators import OPERATORS
+from scenic.runtime.elements.resolution import build
 from scenic.runtime.elements.specifiers import (
     BUILDERS,
     Specifier,
     UserSpecifier,
     specify,
 )
-from scenic.runtime.instances import mutation
+from scenic.runtime.ground.context import Context, Site, current, here
 from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.instances.placeholders import may_mutate, stand_in
-from scenic.runtime.instances.presence import is_always_present
 from scenic.runtime.instances.properties import ATTRIBUTES, PropertyDefinition
-from scenic.runtime.instances.resolution import build
 from scenic.runtime.program import builtins as names
-from scenic.runtime.program import conditions
-from scenic.runtime.program.conditions import Condition
-from scenic.runtime.program.context import Context, Site, current, here
-from scenic.runtime.program.outcome import Module, Program, Requirement
+from scenic.runtime.program.starred_calls import spread
 from scenic.runtime.program.symbolic import Symbolic
-from scenic.runtime.python.class_members import sample_of
 from scenic.runtime.python.importing import beside, forget_stranger
-from scenic.runtime.python.ownership import PRELUDE
 from scenic.runtime.python.samples import Sample
-from scenic.runtime.python.starred_calls import spread
 from scenic.runtime.regions.base import Region
+from scenic.runtime.regions.planar_visibility import sees_in_mode
+from scenic.runtime.regions.presence import is_always_present
 from scenic.runtime.regions.spaces import Workspace, everywhere
 from scenic.runtime.temporal.formulas import is_temporal
 from scenic.runtime.values.access import sliceable
 from scenic.runtime.values.choices import per_option
+from scenic.runtime.values.class_members import sample_of
 from scenic.runtime.values.lazy import definite
+from scenic.runtime.values.ownership import PRELUDE
 from scenic.runtime.values.values import (
     describe,
     to_orientation,
 )
-from scenic.runtime.visibility.flat import sees_in_mode
 
 
 class Modules(Protocol):
@@ -373,7 +372,7 @@ class Prelude(Symbolic, Dynamics):
         *,
         awaits: bool = False,
     ) -> Condition:
-        """A leaf of a condition; see `scenic.runtime.program.conditions`.
+        """A leaf of a condition; see `scenic.runtime.description.conditions`.
 
         One that ``awaits`` reads names that the module sets later.
         """

@@ -7,13 +7,13 @@ from typing import Any
 from scenic.graph.construction import make_node
 from scenic.graph.kinds import Kind
 from scenic.graph.operations import TABLE
+from scenic.runtime.description.conditions import Condition, NotSymbolicError, connect, truth
 from scenic.runtime.elements.operands import is_kind, is_unknown
+from scenic.runtime.ground.context import here
 from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.program import builtins as names
 from scenic.runtime.program import unrolling
-from scenic.runtime.program.conditions import Condition, NotSymbolicError, connect, truth
 from scenic.runtime.program.constructing import constructed
-from scenic.runtime.program.context import here
 from scenic.runtime.python.samples import may_return_instances
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import as_region

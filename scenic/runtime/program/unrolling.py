@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Final
 
 from scenic.graph.kinds import Kind
-from scenic.runtime.program.conditions import NotSymbolicError, connect, truth
-from scenic.runtime.program.context import current
+from scenic.runtime.description.conditions import NotSymbolicError, connect, truth
+from scenic.runtime.ground.context import current
 from scenic.runtime.values.values import as_node, as_value, operate
 
 MOST: Final = 1000

@@ -10,11 +10,11 @@ from scenic.graph.kinds import Column, Kind, boxed
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
 from scenic.language.types import SCALAR
-from scenic.runtime.program.context import current, here, uniform_draw
+from scenic.runtime.ground.context import current, here, uniform_draw
 from scenic.runtime.python.bounded import bounds_of_support
+from scenic.runtime.python.drawing import support_of
 from scenic.runtime.python.opaque import call_later, evaluated, later
 from scenic.runtime.python.random_state import preserved, seed_globals
-from scenic.runtime.values.drawing import support_of
 from scenic.runtime.values.lazy import is_lazy
 from scenic.runtime.values.values import Random, is_random, wrong_type
 

@@ -19,12 +19,12 @@ from scenic.graph.kinds import Column, Kind, boxed
 from scenic.graph.node import Graph, Node, key
 from scenic.graph.operation import OK, Call, Operation, always
 from scenic.language.errors import InvalidScenarioError, RejectionException
-from scenic.runtime.instances.objects import Point
-from scenic.runtime.program.context import Context, current, here, next_address
+from scenic.runtime.ground.context import Context, current, here, next_address
 from scenic.runtime.python.bounded import bounds_of_call
 from scenic.runtime.python.random_state import is_as, preserved, seed_globals
 from scenic.runtime.python.samples import Globals, Reach, Sample, dependencies, mention, nodes_of, reachable
 from scenic.runtime.values import generic
+from scenic.runtime.values.instance_base import Instance
 from scenic.runtime.values.values import CODEC, Random, as_value
 
 
@@ -82,7 +82,7 @@ def later(
     operands = (own, *nodes_of(reached))
     habit = _Habit()
     habit.draws = mention(reached, *_STATE_READERS)
-    instances = tuple(value for value in reached if isinstance(value, Point))
+    instances = tuple(value for value in reached if isinstance(value, Instance))
     code = OpaqueCode(instances, function, tuple(args), keywords, operands, seen, context, looks, habit)
     node = make_node(operation, operands, code, here())
     if instances and context is not None and context.is_symbolic:

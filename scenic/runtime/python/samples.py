@@ -17,9 +17,9 @@ from weakref import ref
 
 from scenic.dataclass import dataclass
 from scenic.graph.node import Graph, Node
-from scenic.runtime.instances.objects import PLACEMENT, Point, put
-from scenic.runtime.python.class_members import members
-from scenic.runtime.python.ownership import (
+from scenic.runtime.values.class_members import members
+from scenic.runtime.values.instance_base import PLACEMENT, Instance, put
+from scenic.runtime.values.ownership import (
     CACHED,
     CONTAINERS,
     DECORATED,
@@ -67,7 +67,7 @@ class Globals:
         self._members: dict[type, list[Any]] = {}
         self._varying: dict[type, bool] = {}
         self._owned: dict[type, bool] = {}
-        self._placements: dict[int, tuple[Point, Placement]] = {}
+        self._placements: dict[int, tuple[Instance, Placement]] = {}
         self.contents: Callable[[Any], Any] | None = None
         """The contents of a container when the program had run, once simulations may have changed it."""
         self.lacks = False
@@ -126,7 +126,7 @@ class Globals:
         """Return whether a class is a plain Python class of the program (`is_own`)."""
         known = self._owned.get(cls)
         if known is None:
-            known = self._owned[cls] = is_own(cls, Point)
+            known = self._owned[cls] = is_own(cls, Instance)
         return known
 
     def copies(self, cls: type) -> bool:
@@ -134,7 +134,7 @@ class Globals:
         return self.owns(cls) or bool(self.members(cls))
 
     def _is_plain(self, value: Any) -> bool:
-        if isinstance(value, Random | Point):  # instances have a copy in each sample
+        if isinstance(value, Random | Instance):  # instances have a copy in each sample
             return False
         if not isinstance(value, FunctionType):
             return True
@@ -156,7 +156,7 @@ class Globals:
             self._varying[cls] = not all(map(self.is_fixed, self.members(cls)))
         return self._varying[cls]
 
-    def placement(self, instance: Point) -> Placement:
+    def placement(self, instance: Instance) -> Placement:
         """The known values of the properties that are read of every object."""
         known = self._placements.get(id(instance))
         if known is None:
@@ -177,7 +177,7 @@ class Globals:
 class Reach:
     """The data of a node that calls code of the program: the instances in reach of the code, which its result may hold."""
 
-    instances: tuple[Point, ...]
+    instances: tuple[Instance, ...]
 
 
 def may_return_instances(value: Any) -> bool:
@@ -288,7 +288,7 @@ def _boxed_constants(root: Node, seen: dict[int, Any]) -> list[Any]:
 
 def parts(value: Any, names: Globals) -> Iterator[Any]:
     """The parts of a value, as far as sampling goes."""
-    if isinstance(value, Point):
+    if isinstance(value, Instance):
         yield from value.__dict__.get("_source", value).__dict__.values()
         yield from names.members(type(value))
     elif isinstance(value, tuple | list | set | frozenset | deque):
@@ -326,7 +326,7 @@ def parts(value: Any, names: Globals) -> Iterator[Any]:
         yield from _contents(value).values()
     elif hasattr(value, "sampled") and hasattr(value, "random_parts"):
         yield from value.random_parts()
-    if type(value) in _WITHOUT_MEMBERS or isinstance(value, Point):
+    if type(value) in _WITHOUT_MEMBERS or isinstance(value, Instance):
         return
     if isinstance(value, _KINDS_OF_CONTAINERS) or names.copies(type(value)):
         yield type(value)
@@ -432,7 +432,7 @@ class Sample:
             return value
         known = self._memo.get(id(value), _MISSING)
         if known is _MISSING:
-            if isinstance(value, Point):
+            if isinstance(value, Instance):
                 return self._instance(value)
             sampled = self._sampled(value)
             known = self._memo.get(id(value), _MISSING)
@@ -538,7 +538,7 @@ class Sample:
             kind.extend(copy, map(self.value, held))
         return copy
 
-    def _instance(self, instance: Point) -> Point:
+    def _instance(self, instance: Instance) -> Instance:
         source = instance.__dict__.get("_source")
         if source is not None:
             # What a call of the program's code returns is the instance that it was given, not the copy for the call.

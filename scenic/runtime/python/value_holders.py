@@ -3,7 +3,7 @@
 import copy as shallow
 from typing import Any
 
-from scenic.runtime.python.ownership import slots
+from scenic.runtime.values.ownership import slots
 
 __all__ = ["Carrier"]
 

@@ -13,12 +13,11 @@ import numpy as np
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Operation, always
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError
-from scenic.runtime.elements.shapes import Shape, ShapeSource
-from scenic.runtime.geometry import booleans
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.prisms import prism, shadow, slice_at
-from scenic.runtime.program.context import here
+from scenic.runtime.geometry.meshes import booleans
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.prisms import prism, shadow, slice_at
+from scenic.runtime.ground.context import here
 from scenic.runtime.python.opaque import evaluated, later
 from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import MEETS_BODY, Mask, Region
@@ -27,7 +26,6 @@ from scenic.runtime.regions.choice import RegionChoice, as_region
 from scenic.runtime.regions.combinations import DifferenceRegion, IntersectionRegion, UnionRegion
 from scenic.runtime.regions.composite import Composite
 from scenic.runtime.regions.fields import PiecewiseVectorField, field_of_union
-from scenic.runtime.regions.holding import HOLDS
 from scenic.runtime.regions.lines import LineRegion, PathRegion, PolylineRegion
 from scenic.runtime.regions.meeting import MEETING, cells_near
 from scenic.runtime.regions.meshes import (
@@ -38,15 +36,17 @@ from scenic.runtime.regions.meshes import (
 from scenic.runtime.regions.one_lane import in_lane
 from scenic.runtime.regions.pairs import Cell, PairTable
 from scenic.runtime.regions.planar import Footprint, PlanarRegion, PolygonalFootprintRegion, PolygonalRegion
+from scenic.runtime.regions.region_containment import HOLDS
 from scenic.runtime.regions.region_field import RegionField
 from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.spaces import Everywhere, Nowhere, Workspace, nowhere
 from scenic.runtime.regions.stacked import is_body
 from scenic.runtime.regions.terms import flat_of, holds, pieces_inside, prism_about, solid_of
-from scenic.runtime.regions.views import ViewRegion
+from scenic.runtime.regions.view_regions import ViewRegion
 from scenic.runtime.regions.volumes import PlacedVolume
 from scenic.runtime.regions.voxels import VoxelRegion
 from scenic.runtime.regions.voxels import voxelized as cells_of
+from scenic.runtime.shapes.shapes import Shape, ShapeSource
 from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.values import (
     Orientation,

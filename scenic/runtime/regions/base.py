@@ -25,8 +25,8 @@ from scenic.language.errors import (
     UnsupportedError,
 )
 from scenic.language.types import OBJECT
-from scenic.runtime.geometry.collision import Body
-from scenic.runtime.program.context import here
+from scenic.runtime.geometry.contact.collision import Body
+from scenic.runtime.ground.context import here
 from scenic.runtime.python.bounded import bounds_of_region
 from scenic.runtime.regions import generic
 from scenic.runtime.regions.flat import Flat

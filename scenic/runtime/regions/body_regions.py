@@ -13,12 +13,14 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError
-from scenic.runtime.geometry import body_points, containment, distance, projection, surface
-from scenic.runtime.geometry.collision import Body, collide
-from scenic.runtime.geometry.polytopes import half_spaces
-from scenic.runtime.geometry.scalar_bodies import gap
-from scenic.runtime.geometry.surface import Side
-from scenic.runtime.program.context import here
+from scenic.runtime.geometry.contact.collision import Body, collide
+from scenic.runtime.geometry.contact.scalar_bodies import gap
+from scenic.runtime.geometry.containment import body_containment as containment
+from scenic.runtime.geometry.containment import body_points, distance
+from scenic.runtime.geometry.meshes import projection, surface
+from scenic.runtime.geometry.meshes.polytopes import half_spaces
+from scenic.runtime.geometry.meshes.surface import Side
+from scenic.runtime.ground.context import here
 from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Mask, Points, Region, unsupported
 from scenic.runtime.regions.fixed_sides import FixedSide

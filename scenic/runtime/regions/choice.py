@@ -13,7 +13,7 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
 from scenic.language.errors import InvalidScenarioError
-from scenic.runtime.program.context import here
+from scenic.runtime.ground.context import here
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.nearness import hull_of
 from scenic.runtime.regions.varying import VaryingRegion

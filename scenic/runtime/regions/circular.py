@@ -10,10 +10,10 @@ from scenic.graph.bounds import Bounds, outward
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations.functions import cos_bounds, sin_bounds
-from scenic.runtime.geometry import containment
-from scenic.runtime.geometry.collision import Body
-from scenic.runtime.geometry.outlines import Geometries
-from scenic.runtime.geometry.rectangles import Rectangles
+from scenic.runtime.geometry.contact.collision import Body
+from scenic.runtime.geometry.containment import body_containment as containment
+from scenic.runtime.geometry.flat.outlines import Geometries
+from scenic.runtime.geometry.flat.rectangles import Rectangles
 from scenic.runtime.regions.base import Mask, Points
 from scenic.runtime.regions.flat import rows_of
 from scenic.runtime.regions.planar import PlanarRegion, positive, rounded_outward

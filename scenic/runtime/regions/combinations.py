@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column
 from scenic.language.errors import ScenicTypeError, UndefinedSamplingException
-from scenic.runtime.geometry import polytopes
-from scenic.runtime.geometry.collision import Body
-from scenic.runtime.program.context import here
+from scenic.runtime.geometry.contact.collision import Body
+from scenic.runtime.geometry.meshes import polytopes
+from scenic.runtime.ground.context import here
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.composite import (
     PROBES,

@@ -16,10 +16,10 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.draws import mix, open_unit
 from scenic.graph.kinds import Column
 from scenic.language.errors import UndefinedSamplingException
-from scenic.runtime.geometry import polytopes
-from scenic.runtime.geometry.collision import Body
-from scenic.runtime.geometry.containment import extreme_corners
-from scenic.runtime.program.context import here
+from scenic.runtime.geometry.contact.collision import Body
+from scenic.runtime.geometry.containment.body_containment import extreme_corners
+from scenic.runtime.geometry.meshes import polytopes
+from scenic.runtime.ground.context import here
 from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.choice import RegionChoice

@@ -20,8 +20,8 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import RejectionException, ScenicTypeError, ScenicValueError
 from scenic.language.types import FIELD
-from scenic.runtime.geometry.cell_index import CellIndex
-from scenic.runtime.program.context import here
+from scenic.runtime.geometry.flat.cell_index import CellIndex
+from scenic.runtime.ground.context import here
 from scenic.runtime.python.opaque import Calls, Rows, evaluated, is_later, later, together
 from scenic.runtime.values.lane_methods import node_over_lanes
 from scenic.runtime.values.lazy import Lazy, defer, reads_of, resolve

@@ -17,11 +17,11 @@ from scenic.graph.intervals import EPSILON
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations.distributions import LOOKUP, Table
-from scenic.runtime.elements.distributions import primitive
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.surface import Side, face_orientations, side_contains
 from scenic.runtime.geometry.poses import Floats, Poses
-from scenic.runtime.geometry.surface import Side, face_orientations, side_contains
+from scenic.runtime.values.distributions import primitive
 from scenic.runtime.values.values import Orientation, apply, uniform
 
 _MOST_FACES: Final = 4096

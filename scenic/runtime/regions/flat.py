@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
 from scenic.graph.kinds import Column
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.outlines import Geometries, cuts, shadows, shadows_meet, upright
-from scenic.runtime.geometry.polygons import TOLERANCE
+from scenic.runtime.geometry.flat.outlines import Geometries, cuts, shadows, shadows_meet, upright
+from scenic.runtime.geometry.flat.polygons import TOLERANCE
+from scenic.runtime.geometry.flat.rectangles import Rectangles
+from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.rectangles import Rectangles
 
 Mask = NDArray[np.bool_]
 _SLACK = 1e-9

@@ -10,7 +10,7 @@ from typing import Any
 
 from scenic.graph.kinds import Column
 from scenic.language.errors import InternalError
-from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.meshes.bodies import Body
 
 __all__ = [
     "boundary",
@@ -21,6 +21,7 @@ __all__ = [
     "joint_field",
     "meets_bodies",
     "meshed",
+    "oriented_point",
     "outline_from_above",
     "own_field",
     "part_between",
@@ -75,6 +76,12 @@ def meets_bodies(region: Any, body: Body, lanes: int, columns: Sequence[Column])
 def boundary(region: Any) -> Any:
     """The outline of a region of the plane, as a line."""
     raise _missing("the boundary", region)
+
+
+@singledispatch
+def oriented_point(position: Any, orientation: Any, *, by_angles: bool = False) -> Any:  # noqa: ARG001
+    """The oriented point at a place, with an orientation (`scenic.runtime.instances.objects`)."""
+    raise _missing("the oriented point", position)
 
 
 @singledispatch

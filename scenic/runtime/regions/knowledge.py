@@ -17,8 +17,8 @@ from scenic.graph.bounds import Bounds, Floats
 from scenic.graph.operations.narrowing import truth, where
 from scenic.graph.operations.orientations import matrix, turned_by
 from scenic.language.errors import UnsupportedError
-from scenic.runtime.geometry.containment import extreme_corners
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.containment.body_containment import extreme_corners
+from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.regions.nearness import SLACK, grown, near, separation
 
 if TYPE_CHECKING:

@@ -12,14 +12,15 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError, ScenicValueError
-from scenic.runtime.geometry.collision import Body
-from scenic.runtime.geometry.segments import Segments
-from scenic.runtime.instances.objects import OrientedPoint, Point, oriented_point
-from scenic.runtime.program.context import here, warn
+from scenic.runtime.geometry.contact.collision import Body
+from scenic.runtime.geometry.flat.segments import Segments
+from scenic.runtime.ground.context import here, warn
+from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.fields import VectorField
 from scenic.runtime.regions.nearness import SLACK
 from scenic.runtime.regions.region_field import RegionField
+from scenic.runtime.values.instance_base import Instance
 from scenic.runtime.values.lane_methods import over_lanes
 from scenic.runtime.values.values import Orientation, Vector, apply, is_random, to_scalar, to_vector
 
@@ -29,7 +30,9 @@ TOUCH: Final = 1e-6
 
 def _point_given(point: Any, *rest: Any) -> tuple[tuple[Any], None] | None:
     """The point of a call; `None` for an instance, which is read on samples."""
-    return None if rest or isinstance(point, Point) else ((to_vector(point, "a point beside a line"),), None)
+    return (
+        None if rest or isinstance(point, Instance) else ((to_vector(point, "a point beside a line"),), None)
+    )
 
 
 def _way_given(distance: Any, normalized: Any = False) -> tuple[tuple[Any], bool] | None:
@@ -237,9 +240,9 @@ class PolylineRegion(LineRegion):
         ends = zip(self.pieces.starts.tolist(), self.pieces.ends.tolist(), strict=True)
         return [(Vector.of(start), Vector.of(end)) for start, end in ends]
 
-    def _end(self, point: Any, segment: int) -> OrientedPoint:
+    def _end(self, point: Any, segment: int) -> Any:
         place = Vector.of(point)
-        return oriented_point(place, self._direction(place, segment), by_angles=True)
+        return generic.oriented_point(place, self._direction(place, segment), by_angles=True)
 
     def _direction(self, place: Vector, segment: int) -> Orientation:
         """The orientation at a place of a segment."""
@@ -249,12 +252,12 @@ class PolylineRegion(LineRegion):
         return found
 
     @property
-    def start(self) -> OrientedPoint:
+    def start(self) -> Any:
         """The first point, with the orientation there; that of the world where the line has none."""
         return self._end(self.pieces.starts[0].tolist(), 0)
 
     @property
-    def end(self) -> OrientedPoint:
+    def end(self) -> Any:
         """The last point, with the orientation there; that of the world where the line has none."""
         return self._end(self.pieces.ends[-1].tolist(), len(self.pieces.starts) - 1)
 

@@ -5,11 +5,11 @@ from typing import Any, Final
 
 import numpy as np
 
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.collision import collide
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.contact.collision import collide
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.prisms import slice_at
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.prisms import slice_at
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.body_regions import OccupiedSpace, SideSurface
 from scenic.runtime.regions.lines import LineRegion, PathRegion, PolylineRegion
@@ -17,7 +17,7 @@ from scenic.runtime.regions.meshes import surface_in_world
 from scenic.runtime.regions.pairs import Cell
 from scenic.runtime.regions.planar import Footprint, PlanarRegion
 from scenic.runtime.regions.terms import are_inside, crossings, flat_of, meshed, prism_about
-from scenic.runtime.regions.views import ViewRegion
+from scenic.runtime.regions.view_regions import ViewRegion
 from scenic.runtime.regions.volumes import PlacedVolume
 from scenic.runtime.regions.voxels import VoxelRegion
 

@@ -7,19 +7,19 @@ import numpy as np
 
 from scenic.graph.kinds import Column
 from scenic.language.errors import InvalidScenarioError, ScenicTypeError, ScenicValueError
-from scenic.runtime.elements.shapes import Shape, ShapeSource
-from scenic.runtime.geometry import body_points, distance
-from scenic.runtime.geometry.loading import factor_of, load_mesh
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.solids import proper_volume
-from scenic.runtime.geometry.surface import side_contains
-from scenic.runtime.geometry.topology import without_unused
-from scenic.runtime.program.context import here
+from scenic.runtime.geometry.containment import body_points, distance
+from scenic.runtime.geometry.meshes.loading import factor_of, load_mesh
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.solids import proper_volume
+from scenic.runtime.geometry.meshes.surface import side_contains
+from scenic.runtime.geometry.meshes.topology import without_unused
+from scenic.runtime.ground.context import here
 from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.body_regions import Facing, OccupiedSpace, SideSurface
 from scenic.runtime.regions.region_field import RegionField
 from scenic.runtime.regions.stacked import body_of
+from scenic.runtime.shapes.shapes import Shape, ShapeSource
 from scenic.runtime.values.values import Orientation, is_number, operate, to_orientation, to_vector, vector
 
 

@@ -5,7 +5,7 @@ from typing import Any, Final
 
 from scenic.dataclass import dataclass
 from scenic.language.errors import UnknownPairError
-from scenic.runtime.program.context import here
+from scenic.runtime.ground.context import here
 from scenic.runtime.regions.base import Region
 
 Rule = Callable[..., Any]

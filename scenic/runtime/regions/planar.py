@@ -13,12 +13,12 @@ from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError, ScenicValueError, UndefinedSamplingException
-from scenic.runtime.geometry import containment
-from scenic.runtime.geometry.collision import Body
-from scenic.runtime.geometry.outlines import Geometries
-from scenic.runtime.geometry.polygons import Polygons
-from scenic.runtime.geometry.rectangles import Rectangles
-from scenic.runtime.program.context import here
+from scenic.runtime.geometry.contact.collision import Body
+from scenic.runtime.geometry.containment import body_containment as containment
+from scenic.runtime.geometry.flat.outlines import Geometries
+from scenic.runtime.geometry.flat.polygons import Polygons
+from scenic.runtime.geometry.flat.rectangles import Rectangles
+from scenic.runtime.ground.context import here
 from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Mask, Points, Region, unsupported
 from scenic.runtime.regions.flat import Flat, meets_flat, some_inside

@@ -8,10 +8,10 @@ import numpy as np
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column
 from scenic.graph.operations.functions import length_bounds
-from scenic.runtime.geometry import containment
-from scenic.runtime.geometry.collision import Body
-from scenic.runtime.geometry.outlines import Geometries
-from scenic.runtime.geometry.rectangles import Rectangles
+from scenic.runtime.geometry.contact.collision import Body
+from scenic.runtime.geometry.containment import body_containment as containment
+from scenic.runtime.geometry.flat.outlines import Geometries
+from scenic.runtime.geometry.flat.rectangles import Rectangles
 from scenic.runtime.regions.base import Mask, Points
 from scenic.runtime.regions.circular import disc_extent
 from scenic.runtime.regions.planar import PlanarRegion, positive

@@ -11,8 +11,8 @@ from typing import Protocol
 import numpy as np
 
 from scenic.graph import quaternions
-from scenic.runtime.geometry.polygons import Polygons
-from scenic.runtime.geometry.scalar_bodies import SLACK, Placed, Triple, meet
+from scenic.runtime.geometry.contact.scalar_bodies import SLACK, Placed, Triple, meet
+from scenic.runtime.geometry.flat.polygons import Polygons
 
 __all__ = ["Ball", "Box", "Disc", "Polygon", "Rectangle", "Single"]
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from scenic.graph.kinds import Column
 from scenic.language.errors import ScenicTypeError, ScenicValueError
-from scenic.runtime.geometry.collision import Body
-from scenic.runtime.program.context import here
+from scenic.runtime.geometry.contact.collision import Body
+from scenic.runtime.ground.context import here
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.values.values import Vector, is_random, to_vector
 

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from scenic.graph.bounds import Bounds
 from scenic.graph.kinds import Column
-from scenic.runtime.geometry import containment
-from scenic.runtime.geometry.collision import Body
-from scenic.runtime.geometry.outlines import Geometries
-from scenic.runtime.geometry.polygons import Polygons
-from scenic.runtime.geometry.rectangles import Rectangles
+from scenic.runtime.geometry.contact.collision import Body
+from scenic.runtime.geometry.containment import body_containment as containment
+from scenic.runtime.geometry.flat.outlines import Geometries
+from scenic.runtime.geometry.flat.polygons import Polygons
+from scenic.runtime.geometry.flat.rectangles import Rectangles
 from scenic.runtime.regions.base import Mask, Points
 from scenic.runtime.regions.circular import disc_extent
 from scenic.runtime.regions.flat import Flat, ragged_polygons, rows_of

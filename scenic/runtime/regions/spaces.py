@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from scenic.graph.kinds import Column
 from scenic.language.errors import InvalidScenarioError, RejectionException, ScenicTypeError
-from scenic.runtime.geometry.collision import Body
+from scenic.runtime.geometry.contact.collision import Body
 from scenic.runtime.geometry.patches import Patch
-from scenic.runtime.program.context import here
+from scenic.runtime.ground.context import here
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.flat import Flat
 from scenic.runtime.regions.scalar_regions import Single

@@ -12,12 +12,12 @@ import numpy as np
 
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call
-from scenic.runtime.elements.shapes import Shape
-from scenic.runtime.geometry import primitives
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.contact.scalar_bodies import Placed, placed
+from scenic.runtime.geometry.meshes import primitives
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Indices, Poses
-from scenic.runtime.geometry.scalar_bodies import Placed, placed
+from scenic.runtime.shapes.shapes import Shape
 from scenic.runtime.values.values import Orientation, Random, Vector, options_of, to_scalar, vector
 
 

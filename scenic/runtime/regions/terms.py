@@ -6,18 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.containment import contains_points
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.containment.body_containment import contains_points
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.prisms import prism
 from scenic.runtime.geometry.poses import Booleans, Floats, Poses
-from scenic.runtime.geometry.prisms import prism
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.body_regions import OccupiedSpace
 from scenic.runtime.regions.composite import exactly_contains
 from scenic.runtime.regions.lines import LineRegion, PolylineRegion
 from scenic.runtime.regions.meshes import solid_in_world
 from scenic.runtime.regions.planar import Footprint, PlanarRegion
-from scenic.runtime.regions.views import ViewRegion
+from scenic.runtime.regions.view_regions import ViewRegion
 from scenic.runtime.regions.volumes import PlacedVolume
 
 

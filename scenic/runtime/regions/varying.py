@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.graph.kinds import Column
-from scenic.runtime.geometry.collision import Body
+from scenic.runtime.geometry.contact.collision import Body
 from scenic.runtime.regions.base import Mask, Points, Region
 
 

@@ -11,13 +11,14 @@ from scenic.graph.bounds import Bounds, outward
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicValueError
-from scenic.runtime.geometry import containment, primitives
-from scenic.runtime.geometry.collision import Body, collide
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.polytopes import half_spaces
+from scenic.runtime.geometry.contact.collision import Body, collide
+from scenic.runtime.geometry.contact.scalar_bodies import Placed, placed
+from scenic.runtime.geometry.containment import body_containment as containment
+from scenic.runtime.geometry.meshes import primitives
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.polytopes import half_spaces
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.scalar_bodies import Placed, placed
-from scenic.runtime.program.context import here
+from scenic.runtime.ground.context import here
 from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.nearness import body_box

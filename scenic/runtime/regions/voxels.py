@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from scenic.graph.kinds import Column
 from scenic.language.errors import ScenicTypeError, ScenicValueError
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.body_points import bounds
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.program.context import here
+from scenic.runtime.geometry.containment.body_points import bounds
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.ground.context import here
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.meshes import MeshVolumeRegion
 from scenic.runtime.regions.spaces import nowhere

@@ -13,8 +13,8 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import FAULT, OK, REJECTED
 from scenic.language.spans import Span
-from scenic.runtime.geometry.collision import Body, Collider, collide
-from scenic.runtime.geometry.crowd import Crowd
+from scenic.runtime.geometry.contact.collision import Body, Collider, collide
+from scenic.runtime.geometry.contact.crowd import Crowd
 from scenic.runtime.regions.stacked import body_of
 from scenic.runtime.sampling.sizes import size_in_words
 

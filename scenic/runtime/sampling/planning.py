@@ -16,19 +16,21 @@ from scenic.graph.node import Graph, Node
 from scenic.graph.operations.possibilities import is_finite
 from scenic.language.errors import InvalidScenarioError
 from scenic.language.spans import Span
-from scenic.runtime.geometry.collision import collide
-from scenic.runtime.geometry.narrowphase import recall
+from scenic.runtime.description.conditions import connect, truth
+from scenic.runtime.description.outcome import Program, Requirement
+from scenic.runtime.geometry.contact.collision import collide
+from scenic.runtime.geometry.contact.narrowphase import recall
 from scenic.runtime.geometry.ragged import distinct
+from scenic.runtime.ground.context import warn
 from scenic.runtime.instances.objects import Object
-from scenic.runtime.instances.presence import absent, is_always_present
-from scenic.runtime.program.conditions import connect, truth
-from scenic.runtime.program.context import warn
-from scenic.runtime.program.outcome import Program, Requirement
 from scenic.runtime.python.samples import dependencies
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.choice import as_region
+from scenic.runtime.regions.planar_visibility import sees_in_mode
+from scenic.runtime.regions.presence import absent, is_always_present
 from scenic.runtime.regions.spaces import Everywhere, Nowhere, Workspace
 from scenic.runtime.regions.stacked import body_operands
+from scenic.runtime.regions.visibility_nodes import looks
 from scenic.runtime.sampling.checks import (
     BUILT_IN,
     Check,
@@ -40,8 +42,6 @@ from scenic.runtime.sampling.checks import (
 from scenic.runtime.sampling.engine import Plan
 from scenic.runtime.sampling.sizes import extents, outgrows, size_in_words
 from scenic.runtime.values.values import CODEC, Random, as_node, fixed_batch, is_random, operate
-from scenic.runtime.visibility.flat import sees_in_mode
-from scenic.runtime.visibility.seeing import looks
 
 _FAR: Final = 1e100
 """Metres, or any other unit, that nothing is away."""

@@ -9,10 +9,10 @@ import numpy as np
 
 from scenic.language.keywords import HARD_KEYWORDS
 from scenic.language.properties import CLASSES
-from scenic.runtime.elements.shapes import PrimitiveShape, Shape
 from scenic.runtime.instances.objects import Object, OrientedPoint, Point
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Everywhere
+from scenic.runtime.shapes.shapes import PrimitiveShape, Shape
 from scenic.runtime.values.values import Orientation, Vector
 
 _LEFT_OUT = frozenset(

@@ -14,10 +14,10 @@ from typing import Any, Final, TextIO
 import numpy as np
 
 from scenic.language.errors import ScenicTypeError
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.solids import proper_volume
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.solids import proper_volume
+from scenic.runtime.ground.context import verbosity as verbosity_now
 from scenic.runtime.instances.objects import Point
-from scenic.runtime.program.context import verbosity as verbosity_now
 from scenic.runtime.regions.algebra import region_of
 from scenic.runtime.regions.base import Region
 from scenic.runtime.scenes.dumping import NoLiteralError, literal

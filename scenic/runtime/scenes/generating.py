@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.language.errors import RejectionException, SerializationError
+from scenic.runtime.ground.choosable import Choosable
 from scenic.runtime.instances.objects import Object
-from scenic.runtime.program.external import Choosable
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Workspace
-from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
 from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.scenes.prefetching import SEED_BITS, Foreseen
 from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.scenes.services import Services

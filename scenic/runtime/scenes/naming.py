@@ -12,8 +12,8 @@ from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph, Node
 from scenic.language.properties import CLASSES, properties_of
 from scenic.language.spans import Span
+from scenic.runtime.description.outcome import Program
 from scenic.runtime.instances.objects import Point
-from scenic.runtime.program.outcome import Program
 from scenic.runtime.python.samples import dependencies
 from scenic.runtime.regions.base import Region
 from scenic.runtime.values.random_base import RandomBase

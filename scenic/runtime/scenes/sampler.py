@@ -12,11 +12,11 @@ from scenic.graph.node import Node
 from scenic.graph.points import PointSet
 from scenic.runtime.sampling.checks import NodeCheck
 from scenic.runtime.sampling.components import Components, components_of, divided
-from scenic.runtime.sampling.driving import driven
 from scenic.runtime.sampling.engine import Accepted, Engine, Plan
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.piecewise import PiecewiseEngine
 from scenic.runtime.sampling.planning import Outline
+from scenic.runtime.sampling.point_set_draws import driven
 from scenic.runtime.sampling.profiling import Meter, Profile
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.saving import fixed_draws

@@ -24,22 +24,22 @@ from scenic.language.errors import (
 )
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest_attribute
-from scenic.runtime.dynamics.declarations import Declared
+from scenic.runtime.description.declarations import Declared
+from scenic.runtime.description.outcome import Program
+from scenic.runtime.ground.choosable import Choosable
 from scenic.runtime.instances.objects import Object
-from scenic.runtime.instances.population import Populations
-from scenic.runtime.program.external import Choosable
-from scenic.runtime.program.outcome import Program
 from scenic.runtime.python.samples import dependencies
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.sampling.engine import Accepted, CandidateError
 from scenic.runtime.sampling.estimating import ComponentEstimate, estimate
-from scenic.runtime.sampling.foresight import SEED_BITS, Foreseen
 from scenic.runtime.sampling.planning import Outline
 from scenic.runtime.sampling.profiling import Profile
 from scenic.runtime.sampling.report import Approximation, Exhausted
 from scenic.runtime.scenes.fingerprint import fingerprint
 from scenic.runtime.scenes.generating import Generating
+from scenic.runtime.scenes.population import Populations
+from scenic.runtime.scenes.prefetching import SEED_BITS, Foreseen
 from scenic.runtime.scenes.sampler import Sampler
 from scenic.runtime.scenes.saving import SavedScene, draws_of, source_of
 from scenic.runtime.scenes.scene import Family, Scene

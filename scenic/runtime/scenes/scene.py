@@ -8,17 +8,17 @@ from typing import Any, TextIO
 from scenic.dataclass import dataclass
 from scenic.graph.node import Node
 from scenic.language.spans import Span
-from scenic.runtime.dynamics.declarations import Copier
+from scenic.runtime.description.declarations import Copier
+from scenic.runtime.description.outcome import Program, Requirement
+from scenic.runtime.ground.files import whole
 from scenic.runtime.instances.objects import Object, Point
-from scenic.runtime.instances.population import Populations
-from scenic.runtime.program.outcome import Program, Requirement
 from scenic.runtime.python.samples import dependencies
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.sampling.engine import Found
 from scenic.runtime.sampling.report import Approximation
 from scenic.runtime.scenes.dumping import program_of
-from scenic.runtime.scenes.files import whole
+from scenic.runtime.scenes.population import Populations
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,10 +15,10 @@ from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, always, by_lane
 from scenic.graph.operations import TABLE
 from scenic.language.errors import RejectionException
-from scenic.runtime.program.context import here
-from scenic.runtime.python.class_members import member
+from scenic.runtime.ground.context import here
 from scenic.runtime.values.applying import apply, operate
 from scenic.runtime.values.choices import MISSING, MOST_OPTIONS, REJECTED, drawn_option, rejection, select
+from scenic.runtime.values.class_members import member
 from scenic.runtime.values.frozen import is_frozen
 from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.lane_methods import are_open, node_over_lanes

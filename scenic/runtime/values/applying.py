@@ -15,7 +15,7 @@ from scenic.graph.operation import Call, Operation
 from scenic.graph.operations import TABLE
 from scenic.graph.schedule import Scheduler
 from scenic.language.errors import InvalidScenarioError, RejectionException
-from scenic.runtime.program.context import current, here, next_address, uniform_draw
+from scenic.runtime.ground.context import current, here, next_address, uniform_draw
 from scenic.runtime.values.choices import is_answered_by_code, over_options
 from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.lazy import Lazy, defer

@@ -14,11 +14,11 @@ from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
 from scenic.language.errors import RejectionException
-from scenic.runtime.program.context import current, here
-from scenic.runtime.python.ownership import is_own_function
+from scenic.runtime.ground.context import current, here
 from scenic.runtime.values.frozen import is_frozen
 from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.nodes import CONTAINERS_MADE, as_node, as_value, kind_of
+from scenic.runtime.values.ownership import is_own_function
 from scenic.runtime.values.random_base import RandomBase
 from scenic.runtime.values.rows import EXACT
 

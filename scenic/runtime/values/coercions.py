@@ -10,7 +10,7 @@ from scenic.graph.operation import Operation, always, by_lane
 from scenic.graph.operations import TABLE
 from scenic.language.errors import ScenicTypeError
 from scenic.language.types import HEADING, ORIENTATION, SCALAR, VECTOR
-from scenic.runtime.program.context import here
+from scenic.runtime.ground.context import here
 from scenic.runtime.values.applying import apply, operate
 from scenic.runtime.values.choices import drawn_option, select
 from scenic.runtime.values.describing import wrong_type

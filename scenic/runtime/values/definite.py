@@ -8,7 +8,7 @@ import numpy as np
 
 from scenic.graph import quaternions
 from scenic.language.errors import ScenicTypeError
-from scenic.runtime.program.context import here
+from scenic.runtime.ground.context import here
 from scenic.runtime.values.applying import operate, scalar_of
 from scenic.runtime.values.coercions import from_euler, to_orientation, vector
 from scenic.runtime.values.describing import describe

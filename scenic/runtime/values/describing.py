@@ -6,7 +6,7 @@ from typing import Any
 from scenic.graph.kinds import Kind
 from scenic.language.errors import ScenicTypeError
 from scenic.language.types import Type, wanted
-from scenic.runtime.program.context import here
+from scenic.runtime.ground.context import here
 from scenic.runtime.values.random_base import RandomBase
 
 

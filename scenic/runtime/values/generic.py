@@ -19,13 +19,13 @@ def call_later(function: Any, /, *args: Any, **keywords: Any) -> Any:  # noqa: A
 
 @singledispatch
 def sample_of(value: Any) -> Any:  # noqa: ARG001
-    """A single sample of a value, drawn now (`scenic.runtime.values.drawing`)."""
+    """A single sample of a value, drawn now (`scenic.runtime.python.drawing`)."""
     raise InternalError("no module has registered samples of values")
 
 
 @singledispatch
 def support_of(value: Any) -> tuple[float | None, float | None]:  # noqa: ARG001
-    """The least and the greatest value that a number can have (`scenic.runtime.values.drawing`)."""
+    """The least and the greatest value that a number can have (`scenic.runtime.python.drawing`)."""
     raise InternalError("no module has registered supports of values")
 
 

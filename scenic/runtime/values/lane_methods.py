@@ -16,7 +16,7 @@ from scenic.graph import construction
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node
 from scenic.graph.operation import Call, Operation, always
-from scenic.runtime.program.context import here
+from scenic.runtime.ground.context import here
 from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.lazy import Lazy, defer
 from scenic.runtime.values.nodes import as_node, as_value

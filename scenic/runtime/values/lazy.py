@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import Any
 
 from scenic.language.errors import InvalidScenarioError, RandomControlFlowError
-from scenic.runtime.program.context import here
+from scenic.runtime.ground.context import here
 
 
 class Lazy:

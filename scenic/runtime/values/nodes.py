@@ -10,7 +10,7 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.node import Node, constant
 from scenic.graph.operation import Operation, always, by_lane
 from scenic.language.errors import ScenicTypeError, UnsupportedError
-from scenic.runtime.program.context import here
+from scenic.runtime.ground.context import here
 from scenic.runtime.values.describing import describe
 from scenic.runtime.values.generic import as_orientation, as_vector
 from scenic.runtime.values.random_base import RandomBase, is_random, random_value

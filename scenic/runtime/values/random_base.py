@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Node
 from scenic.language.errors import RandomControlFlowError, RandomIndexError, ScenicTypeError
-from scenic.runtime.program.context import here, warn
+from scenic.runtime.ground.context import here, warn
 from scenic.runtime.values.source_text import spelled
 
 __all__ = ["RandomBase", "is_random", "random_value"]

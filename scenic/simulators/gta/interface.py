@@ -5,7 +5,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.dataclass import dataclass
-from scenic.runtime.elements.distributions import Discrete, Uniform
+from scenic.runtime.values.distributions import Discrete, Uniform
 
 __all__ = ["CarModel"]
 

@@ -4,7 +4,7 @@ The roads are those of a map in OpenDRIVE, `param map`; the game's own map is no
 """
 
 from scenic.domains.driving.model import *
-from scenic.simulators.absent import AbsentSimulator
+from scenic.simulators.absent.placeholder import AbsentSimulator
 from scenic.simulators.gta.interface import CarModel
 
 param time = Range(0, 1440)

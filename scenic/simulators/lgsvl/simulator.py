@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from scenic.simulators.absent import AbsentSimulator
+from scenic.simulators.absent.placeholder import AbsentSimulator
 
 __all__ = ["LGSVLSimulator"]
 

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from scenic.language.extras import installation
 from scenic.runtime.geometry.store import Arrays, kept
-from scenic.runtime.program.context import warn
+from scenic.runtime.ground.context import warn
 
 __all__ = ["convex_parts"]
 
@@ -29,7 +29,7 @@ def convex_parts(mesh: Any) -> tuple[npt.NDArray[np.float64], ...]:
     Parts of a mesh serve all its sizes. Finding them takes seconds, and is kept on disk.
 
     Args:
-        mesh: a `scenic.runtime.geometry.mesh.Mesh` in its unit box.
+        mesh: a `scenic.runtime.geometry.meshes.mesh.Mesh` in its unit box.
 
     """
     if not mesh.is_volume or mesh.is_convex or mesh.volume >= _NEARLY * mesh.hull.volume:

@@ -10,9 +10,9 @@ import numpy as np
 
 from scenic.graph.kinds import Kind
 from scenic.graph.operation import Operation, always, by_lane
-from scenic.runtime.elements.distributions import Discrete, Normal, Range
+from scenic.runtime.ground.context import next_address
 from scenic.runtime.instances.mutators import Mutator
-from scenic.runtime.program.context import next_address
+from scenic.runtime.values.distributions import Discrete, Normal, Range
 from scenic.runtime.values.values import apply, is_random
 
 __all__ = ["Color", "ColorMutator", "NoisyColorDistribution"]

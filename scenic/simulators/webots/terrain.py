@@ -6,8 +6,8 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from scenic.runtime.elements.functions import distributionFunction
-from scenic.runtime.elements.shapes import MeshShape
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.shapes.shapes import MeshShape
 
 __all__ = ["ground_shape", "heights_of", "hill_heights"]
 

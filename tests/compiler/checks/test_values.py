@@ -9,7 +9,7 @@ from scenic.language.members import MEMBERS
 from tests.compiler.golden_cases import read_cases
 from tests.each import each
 from tests.recorded import FOLDER
-from tests.runtime.test_recorded_operands import KINDS, PREAMBLE
+from tests.runtime.elements.test_recorded_operands import KINDS, PREAMBLE
 
 CODES = {"SC214", "SC404"}
 WRONG = [

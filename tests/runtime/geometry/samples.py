@@ -11,10 +11,10 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from scenic.graph import quaternions
-from scenic.runtime.geometry import primitives
-from scenic.runtime.geometry.booleans import difference, union
-from scenic.runtime.geometry.loading import load_mesh
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.meshes import primitives
+from scenic.runtime.geometry.meshes.booleans import difference, union
+from scenic.runtime.geometry.meshes.loading import load_mesh
+from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 
 FOLDER = os.environ.get("SCENIC_TEST_MESHES")

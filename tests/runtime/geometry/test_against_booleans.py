@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenic.runtime.geometry import containment
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.narrowphase import Solids
+from scenic.runtime.geometry.contact.narrowphase import Solids
+from scenic.runtime.geometry.containment import body_containment as containment
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 from tests.amounts import amount
 

@@ -5,14 +5,15 @@ import pytest
 import shapely
 import shapely.affinity
 
-from scenic.runtime.geometry import body_points, distance, primitives
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.containment import contains_points as contains_body_points
-from scenic.runtime.geometry.inside import contains_points
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.nearest import nearest_on_triangles
+from scenic.runtime.geometry.containment import body_points, distance
+from scenic.runtime.geometry.containment.body_containment import contains_points as contains_body_points
+from scenic.runtime.geometry.meshes import primitives
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.inside import contains_points
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.nearest import nearest_on_triangles
+from scenic.runtime.geometry.meshes.prisms import prism
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.prisms import prism
 
 from .samples import hollow, random_poses, table
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from scenic.runtime.geometry import booleans, primitives
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.meshes import booleans, primitives
+from scenic.runtime.geometry.meshes.mesh import Mesh
 
 from .samples import placed
 

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 from scipy.spatial.transform import Rotation
 
-from scenic.runtime.geometry import broadphase, primitives
+from scenic.runtime.geometry.contact import broadphase
+from scenic.runtime.geometry.meshes import primitives
 from scenic.runtime.geometry.poses import Poses
 
 from .samples import common_volume, in_batches, random_poses, world_vertices, yawed

@@ -5,7 +5,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scenic.runtime.geometry.cell_index import CellIndex
+from scenic.runtime.geometry.flat.cell_index import CellIndex
 
 grid = st.integers(-4, 4).map(lambda number: number / 2)
 boxes = st.builds(

@@ -5,12 +5,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from scenic.runtime.geometry import collision, narrowphase, primitives
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.broadphase import boxes_overlap
-from scenic.runtime.geometry.collision import Collider, collide
-from scenic.runtime.geometry.crowd import Crowd
-from scenic.runtime.geometry.narrowphase import meshes_intersect
+from scenic.runtime.geometry.contact import collision, narrowphase
+from scenic.runtime.geometry.contact.broadphase import boxes_overlap
+from scenic.runtime.geometry.contact.collision import Collider, collide
+from scenic.runtime.geometry.contact.crowd import Crowd
+from scenic.runtime.geometry.contact.narrowphase import meshes_intersect
+from scenic.runtime.geometry.meshes import primitives
+from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 from tests.amounts import amount
 

@@ -5,10 +5,11 @@ import shapely.affinity
 from scipy.spatial.transform import Rotation
 
 from scenic.graph import quaternions
-from scenic.runtime.geometry import containment, primitives
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.polygons import Polygons
+from scenic.runtime.geometry.containment import body_containment as containment
+from scenic.runtime.geometry.flat.polygons import Polygons
+from scenic.runtime.geometry.meshes import primitives
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 
 from .samples import (

@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize, nnls
 from scipy.spatial import ConvexHull
 
-from scenic.runtime.geometry import distance
-from scenic.runtime.geometry import scalar_bodies as single
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.depth import convex_depth, convex_gap
-from scenic.runtime.geometry.nearest import nearest_on_triangles
+from scenic.runtime.geometry.contact import scalar_bodies as single
+from scenic.runtime.geometry.contact.depth import convex_depth, convex_gap
+from scenic.runtime.geometry.containment import distance
+from scenic.runtime.geometry.flat.segments import Segments
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.nearest import nearest_on_triangles
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.segments import Segments
 
 from .samples import (
     SHAPES,

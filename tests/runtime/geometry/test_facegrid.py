@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from scenic.runtime.geometry import facegrid
-from scenic.runtime.geometry.facegrid import face_grid
-from scenic.runtime.geometry.nearest import nearest_on_triangles
+from scenic.runtime.geometry.meshes import facegrid
+from scenic.runtime.geometry.meshes.facegrid import face_grid
+from scenic.runtime.geometry.meshes.nearest import nearest_on_triangles
 
 from .samples import bumpy, table
 

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from scenic.runtime.geometry import primitives
-from scenic.runtime.geometry.inside import contains_lattice, contains_points
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.meshes import primitives
+from scenic.runtime.geometry.meshes.inside import contains_lattice, contains_points
+from scenic.runtime.geometry.meshes.mesh import Mesh
 
 from .samples import FILES, SHAPES, bumpy, hollow, in_batches, real_meshes, table, unit_mesh
 

@@ -11,12 +11,12 @@ import pytest
 import trimesh
 
 from scenic.language.errors import MeshError
-from scenic.runtime.geometry import loading, primitives
-from scenic.runtime.geometry.booleans import difference
-from scenic.runtime.geometry.inside import contains_points
-from scenic.runtime.geometry.loading import load_mesh
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.solids import _any_overlap, proper_volume
+from scenic.runtime.geometry.meshes import loading, primitives
+from scenic.runtime.geometry.meshes.booleans import difference
+from scenic.runtime.geometry.meshes.inside import contains_points
+from scenic.runtime.geometry.meshes.loading import load_mesh
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.solids import _any_overlap, proper_volume
 
 from .samples import FILES, bumpy, hollow, placed, real_meshes, table
 

@@ -8,8 +8,8 @@ import trimesh
 from scipy.spatial import ConvexHull
 
 from scenic.language.errors import MeshError
-from scenic.runtime.geometry import primitives
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.meshes import primitives
+from scenic.runtime.geometry.meshes.mesh import Mesh
 
 from .samples import FILES, SHAPES, hollow, placed, real_meshes, table, unit_mesh
 

@@ -5,11 +5,13 @@ import numpy as np
 import pytest
 
 from scenic.graph import quaternions
-from scenic.runtime.geometry import contact, facetree, narrowphase, primitives
 from scenic.runtime.geometry.affine import relative_map
-from scenic.runtime.geometry.booleans import difference
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.narrowphase import Solids, meshes_intersect
+from scenic.runtime.geometry.contact import narrowphase
+from scenic.runtime.geometry.contact import surface_contact as contact
+from scenic.runtime.geometry.contact.narrowphase import Solids, meshes_intersect
+from scenic.runtime.geometry.meshes import facetree, primitives
+from scenic.runtime.geometry.meshes.booleans import difference
+from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Poses
 from tests.amounts import amount
 

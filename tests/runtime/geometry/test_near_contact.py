@@ -8,12 +8,12 @@ import os
 import numpy as np
 import pytest
 
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.containment import TOLERANCE, in_body
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.narrowphase import Solids
+from scenic.runtime.geometry.contact.narrowphase import Solids
+from scenic.runtime.geometry.containment.body_containment import TOLERANCE, in_body
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.voxels import voxels
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.voxels import voxels
 from tests.amounts import amount
 
 from .samples import FILES, SHAPES, common_volume, random_poses, solid, unit_mesh

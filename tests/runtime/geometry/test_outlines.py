@@ -4,8 +4,8 @@ import numpy as np
 import shapely
 from scipy.spatial.transform import Rotation
 
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.outlines import shadows, shadows_meet
+from scenic.runtime.geometry.flat.outlines import shadows, shadows_meet
+from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.regions.circular import CircularRegion
 from scenic.runtime.regions.flat import Flat

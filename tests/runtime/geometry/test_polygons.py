@@ -3,7 +3,7 @@ import pytest
 import shapely
 from scipy.stats import chi2
 
-from scenic.runtime.geometry.polygons import Polygons
+from scenic.runtime.geometry.flat.polygons import Polygons
 
 HOLED = shapely.Polygon(
     [(0, 0), (4, 0), (4, 3), (2, 1.5), (0, 3)], [[(1, 0.5), (1.5, 0.5), (1.5, 1), (1, 1)]]

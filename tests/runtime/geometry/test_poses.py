@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scenic.runtime.geometry.affine import relative_map
-from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 
 from .samples import SHAPES, random_poses, table, world_vertices

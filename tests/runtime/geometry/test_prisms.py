@@ -5,10 +5,10 @@ import pytest
 import shapely
 from scipy.spatial.transform import Rotation
 
-from scenic.runtime.geometry import primitives
-from scenic.runtime.geometry.inside import contains_points
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.prisms import prism, shadow, slice_at
+from scenic.runtime.geometry.meshes import primitives
+from scenic.runtime.geometry.meshes.inside import contains_points
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.prisms import prism, shadow, slice_at
 
 from .samples import SHAPES, bumpy, hollow, placed, table
 

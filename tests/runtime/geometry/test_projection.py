@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from scenic.runtime.geometry import body_points, primitives, projection, surface
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.nearest import nearest_on_triangles
+from scenic.runtime.geometry.containment import body_points
+from scenic.runtime.geometry.meshes import primitives, projection, surface
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.nearest import nearest_on_triangles
 from scenic.runtime.geometry.poses import Poses
 
 from .samples import SHAPES, bumpy, in_batches, random_poses, table, world_vertices, yawed

@@ -12,13 +12,13 @@ import pytest
 import trimesh
 
 from scenic.language.errors import MeshError
-from scenic.runtime.geometry import loading
-from scenic.runtime.geometry.loading import load_mesh
-from scenic.runtime.geometry.reading.gltf import read_glb, read_gltf
-from scenic.runtime.geometry.reading.obj import read_obj
-from scenic.runtime.geometry.reading.ply import read_ply
-from scenic.runtime.geometry.reading.soup import NotCoveredError, Soup, joined
-from scenic.runtime.geometry.reading.stl import read_stl
+from scenic.runtime.geometry.meshes import loading
+from scenic.runtime.geometry.meshes.loading import load_mesh
+from scenic.runtime.geometry.meshes.reading.gltf import read_glb, read_gltf
+from scenic.runtime.geometry.meshes.reading.obj import read_obj
+from scenic.runtime.geometry.meshes.reading.ply import read_ply
+from scenic.runtime.geometry.meshes.reading.soup import NotCoveredError, Soup, joined
+from scenic.runtime.geometry.meshes.reading.stl import read_stl
 
 from .samples import FILES, bumpy, hollow, real_meshes, table
 

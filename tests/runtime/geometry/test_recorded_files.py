@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 import scenic.core.regions as named
 
-from scenic.runtime.elements.shapes import MeshShape
-from scenic.runtime.geometry.loading import load_mesh
-from scenic.runtime.geometry.primitives import cylinder
+from scenic.runtime.geometry.meshes.loading import load_mesh
+from scenic.runtime.geometry.meshes.primitives import cylinder
+from scenic.runtime.shapes.shapes import MeshShape
 from tests.recorded import FOLDER, hold
 from tests.runtime.matrices import attempt
 

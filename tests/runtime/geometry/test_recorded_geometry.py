@@ -8,15 +8,22 @@ import numpy as np
 import pytest
 import shapely
 
-from scenic.runtime.geometry import (
-    affine,
-    body_points,
+from scenic.runtime.geometry import affine, ragged
+from scenic.runtime.geometry.contact import broadphase, depth, triangles
+from scenic.runtime.geometry.contact import cell_proofs as proofs
+from scenic.runtime.geometry.contact import scalar_bodies as single
+from scenic.runtime.geometry.contact.collision import Collider, collide
+from scenic.runtime.geometry.contact.crowd import Crowd, Rows
+from scenic.runtime.geometry.contact.fronts import Fronts
+from scenic.runtime.geometry.contact.narrowphase import Solids, meshes_intersect
+from scenic.runtime.geometry.containment import body_containment as containment
+from scenic.runtime.geometry.containment import body_points, distance
+from scenic.runtime.geometry.flat import segments
+from scenic.runtime.geometry.flat.cell_index import CellIndex
+from scenic.runtime.geometry.flat.polygons import Polygons
+from scenic.runtime.geometry.meshes import (
     booleans,
-    broadphase,
     cells,
-    containment,
-    depth,
-    distance,
     embree,
     facegrid,
     facetree,
@@ -25,26 +32,15 @@ from scenic.runtime.geometry import (
     primitives,
     prisms,
     projection,
-    proofs,
-    ragged,
-    segments,
     solids,
     surface,
     topology,
-    triangles,
     voxels,
 )
-from scenic.runtime.geometry import scalar_bodies as single
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.cell_index import CellIndex
-from scenic.runtime.geometry.collision import Collider, collide
-from scenic.runtime.geometry.crowd import Crowd, Rows
-from scenic.runtime.geometry.fronts import Fronts
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.narrowphase import Solids, meshes_intersect
-from scenic.runtime.geometry.polygons import Polygons
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.surface import Side
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.surface import Side
 from tests.recorded import FOLDER, hold
 from tests.runtime.geometry.samples import bumpy, hollow, random_poses, table
 from tests.runtime.matrices import attempt, flips, numbers, summary

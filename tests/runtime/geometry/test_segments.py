@@ -5,8 +5,8 @@ import pytest
 import shapely
 
 from scenic.graph import quaternions
-from scenic.runtime.geometry import segments
-from scenic.runtime.geometry.segments import Segments
+from scenic.runtime.geometry.flat import segments
+from scenic.runtime.geometry.flat.segments import Segments
 
 FEW_AND_MANY = (7, 95, 96, 97, 128, 400)
 """Long lines are asked through a tree."""

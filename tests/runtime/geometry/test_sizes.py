@@ -6,18 +6,19 @@ import numpy as np
 import pytest
 import shapely
 
-from scenic.runtime.geometry import distance, primitives, projection, surface
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.inside import contains_lattice, contains_points
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.narrowphase import Solids
-from scenic.runtime.geometry.nearest import nearest_on_triangles
-from scenic.runtime.geometry.polygons import Polygons
+from scenic.runtime.geometry.contact.narrowphase import Solids
+from scenic.runtime.geometry.contact.triangles import separated_by_edges
+from scenic.runtime.geometry.containment import distance
+from scenic.runtime.geometry.flat.polygons import Polygons
+from scenic.runtime.geometry.flat.segments import Segments
+from scenic.runtime.geometry.meshes import primitives, projection, surface
+from scenic.runtime.geometry.meshes.bodies import Body
+from scenic.runtime.geometry.meshes.inside import contains_lattice, contains_points
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.nearest import nearest_on_triangles
+from scenic.runtime.geometry.meshes.solids import proper_volume
+from scenic.runtime.geometry.meshes.surface import Side
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.segments import Segments
-from scenic.runtime.geometry.solids import proper_volume
-from scenic.runtime.geometry.surface import Side
-from scenic.runtime.geometry.triangles import separated_by_edges
 
 from .samples import bumpy, hollow, random_poses, table
 

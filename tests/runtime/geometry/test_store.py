@@ -12,9 +12,9 @@ import trimesh
 
 import scenic
 from scenic.runtime.geometry import store
-from scenic.runtime.geometry.mesh import Mesh
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.voxels import voxels
 from scenic.runtime.geometry.store import digest_of, kept
-from scenic.runtime.geometry.voxels import voxels
 from tests.amounts import amount
 
 from .samples import bumpy, table

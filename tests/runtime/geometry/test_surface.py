@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from scipy.stats import chi2
 
 from scenic.graph import quaternions
-from scenic.runtime.geometry import primitives, surface
-from scenic.runtime.geometry.bodies import Body
+from scenic.runtime.geometry.meshes import primitives, surface
+from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 
 from .samples import SHAPES, bumpy, in_batches, random_poses, table, world_vertices

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from scenic.runtime.geometry import primitives, topology
+from scenic.runtime.geometry.meshes import primitives, topology
 from scenic.runtime.geometry.ragged import expand, group_starts, pieces, rows
 
 from .samples import bumpy, hollow

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import nnls
 from scipy.spatial.transform import Rotation
 
-from scenic.runtime.geometry.triangles import separated_by_edges
+from scenic.runtime.geometry.contact.triangles import separated_by_edges
 
 COUNT = 400
 

@@ -2,13 +2,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from scenic.runtime.geometry import primitives
-from scenic.runtime.geometry.cells import touched_cells
-from scenic.runtime.geometry.inside import contains_points
-from scenic.runtime.geometry.mesh import Mesh
-from scenic.runtime.geometry.nearest import nearest_on_triangles
-from scenic.runtime.geometry.proofs import ProofTable
-from scenic.runtime.geometry.voxels import PROBES, RESOLUTION, voxels
+from scenic.runtime.geometry.contact.cell_proofs import ProofTable
+from scenic.runtime.geometry.meshes import primitives
+from scenic.runtime.geometry.meshes.cells import touched_cells
+from scenic.runtime.geometry.meshes.inside import contains_points
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.nearest import nearest_on_triangles
+from scenic.runtime.geometry.meshes.voxels import PROBES, RESOLUTION, voxels
 
 from .samples import FILES, SHAPES, placed, real_meshes, unit_mesh
 

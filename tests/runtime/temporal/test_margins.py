@@ -10,16 +10,16 @@ from scipy.spatial import ConvexHull
 
 import scenic
 from scenic.runtime.dynamics.margins import margin
-from scenic.runtime.geometry import primitives
-from scenic.runtime.geometry.bodies import Body
-from scenic.runtime.geometry.broadphase import boxes_overlap
-from scenic.runtime.geometry.depth import convex_depth, convex_gap
-from scenic.runtime.geometry.distance import between as gaps
+from scenic.runtime.geometry.contact.broadphase import boxes_overlap
+from scenic.runtime.geometry.contact.depth import convex_depth, convex_gap
+from scenic.runtime.geometry.contact.scalar_bodies import Placed, overlap, placed
+from scenic.runtime.geometry.containment.distance import between as gaps
+from scenic.runtime.geometry.meshes import primitives
+from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.poses import Poses
-from scenic.runtime.geometry.scalar_bodies import Placed, overlap, placed
 from scenic.runtime.regions.circular import CircularRegion
+from scenic.runtime.regions.visibility_margins import clearance
 from scenic.runtime.values.values import Orientation, Vector
-from scenic.runtime.visibility.clearance import clearance
 from scenic.simulators.dummy import DummySimulator
 
 SCENE = """

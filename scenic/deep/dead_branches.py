@@ -1,0 +1,197 @@
+"""Branches that no scene reaches in code that runs during simulations: of `if`, `while`, interrupts, conditional expressions.
+
+A condition over drawn values alone, which no step of a simulation changes, is built again as a node of the value graph; then
+analysis decides whether the requirements leave scenes in which it holds, and scenes in which it does not.
+"""
+
+import ast
+from collections.abc import Container, Iterator, Mapping, Sequence
+from copy import deepcopy
+from enum import StrEnum
+from pathlib import Path
+from types import CodeType
+from typing import Any, Final, get_args
+
+from scenic.analysis.contraction import contract
+from scenic.analysis.facts import Fact
+from scenic.compiler import tree as scenic
+from scenic.compiler.compile import compile_text
+from scenic.compiler.parser import parse
+from scenic.compiler.traversal import parts
+from scenic.compiler.unparser import unparse
+from scenic.dataclass import dataclass
+from scenic.deep.constant_names import PARAMETERS, Code, Settled
+from scenic.graph.node import Graph, Node
+from scenic.language.diagnostics import Diagnostic, Severity
+from scenic.language.spans import Span
+from scenic.runtime.description.outcome import Program
+from scenic.runtime.ground.context import current
+from scenic.runtime.program.prelude import Loader
+
+__all__ = ["prove_branches"]
+
+_PREFIX: Final = "_branch_"
+_FILENAME: Final = "<branch>"
+
+_INNER: Final = (*get_args(Code), ast.AsyncFunctionDef, ast.ClassDef)
+"""Definitions, which are looked at by themselves."""
+
+
+class _Way(StrEnum):
+    """Ways on from a condition, each with what is said where it is never taken."""
+
+    BRANCH = "the branch of this condition is never taken: it holds in no scene that reaches it"
+    ELSE = "the `else` of this condition is never reached: the condition holds in every scene that reaches it"
+    LOOP = "the loop of this condition is never entered: it holds in no scene that reaches it"
+    INTERRUPT = "this interrupt never happens: its condition holds in no scene that reaches it"
+    VALUE = "the value before this condition is never used: it holds in no scene that reaches it"
+    OTHER_VALUE = "the value after the `else` of this condition is never used: the condition holds in every scene that reaches it"
+
+
+_Path = tuple[tuple[ast.expr, bool], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Branch:
+    """One way on: the conditions that lead to it, the last of which is the one that is blamed."""
+
+    path: _Path
+    way: _Way
+
+    @property
+    def test(self) -> ast.expr:
+        return self.path[-1][0]
+
+
+def prove_branches(
+    text: str, filename: str, program: Program, roots: Sequence[Node], facts: Sequence[Fact]
+) -> tuple[Diagnostic, ...]:
+    """Branches that no scene reaches (SC703), in program order. Never samples.
+
+    Args:
+        text: the program's text.
+        filename: its file.
+        program: what running it gave.
+        roots: the nodes that its scenes are made of.
+        facts: its requirements, which some scene meets as far as is known.
+
+    """
+    tree = parse(text, filename=filename).tree
+    settled = Settled(tree, program)
+    found: list[_Branch] = []
+    dead: set[_Path] = set()
+    for code, body in settled.code():
+        for branch in _branches(body):
+            told = [settled.readings(test, code) for test, _ in branch.path]
+            if not told[-1] or any(branch.path[:end] in dead for end in range(len(told))):
+                continue
+            uses = max(map(len, told))
+            if all(_is_dead(branch, told, use, program, roots, facts) for use in range(uses)):
+                found.append(branch)
+                dead.add(branch.path)
+    found.sort(key=lambda branch: (branch.test.lineno, branch.test.col_offset))
+    return tuple(_diagnostic(branch, filename) for branch in found)
+
+
+def _branches(body: Sequence[ast.stmt]) -> Iterator[_Branch]:
+    """All branches in the statements of a body, outer ones first."""
+    stack: list[tuple[ast.AST, _Path]] = [(item, ()) for item in reversed(body)]
+    while stack:
+        part, path = stack.pop()
+        if isinstance(part, _INNER):
+            continue
+        if isinstance(part, ast.If | ast.While | ast.IfExp):
+            taken, passed = (*path, (part.test, True)), (*path, (part.test, False))
+            inside, otherwise = (
+                ([part.body], [part.orelse]) if isinstance(part, ast.IfExp) else (part.body, part.orelse)
+            )
+            if isinstance(part, ast.If):
+                yield _Branch(taken, _Way.BRANCH)
+                is_elif = len(otherwise) == 1 and isinstance(otherwise[0], ast.If)
+                if otherwise and not is_elif:
+                    yield _Branch(passed, _Way.ELSE)
+            elif isinstance(part, ast.While):
+                yield _Branch(taken, _Way.LOOP)
+            else:
+                yield _Branch(taken, _Way.VALUE)
+                yield _Branch(passed, _Way.OTHER_VALUE)
+            stack += [(item, passed) for item in reversed(otherwise)]
+            stack += [(item, taken) for item in reversed(inside)]
+            stack.append((part.test, path))
+        elif isinstance(part, scenic.Interrupt):
+            taken = (*path, (part.condition, True))
+            yield _Branch(taken, _Way.INTERRUPT)
+            stack += [(item, taken) for item in reversed(part.body)]
+            stack.append((part.condition, path))
+        else:
+            stack += [(item, path) for item in reversed(parts(part))]
+
+
+def _is_dead(
+    branch: _Branch,
+    told: Sequence[Sequence[Mapping[str, Any]]],
+    use: int,
+    program: Program,
+    roots: Sequence[Node],
+    facts: Sequence[Fact],
+) -> bool:
+    """Return whether no scene meets the requirements and all conditions that lead to a branch."""
+    parts = []
+    for (test, holds), readings in zip(branch.path, told, strict=True):
+        if readings:  # conditions that may change say nothing
+            values = readings[use if len(readings) > 1 else 0]
+            parts.append(Fact(_condition(test, holds, values, program), "branch", None, False, None))
+    graph = Graph([*roots, *(part.node for part in parts)])
+    return bool(contract(graph, [*facts, *parts]).impossible)
+
+
+def _condition(test: ast.expr, holds: bool, values: Mapping[str, Any], program: Program) -> Node:
+    """The node of a condition over values of a program, or of its negation."""
+    written = f"({unparse(_Named(values).visit(deepcopy(test)))})"
+    compiled = compile_text(f"require {written if holds else f'not {written}'}\n", filename=_FILENAME)
+    assert compiled.code is not None
+    given = {_PREFIX + name: value for name, value in values.items()}
+    beside = Program(context=program.context, parameters={**program.parameters, **given})
+    token = current.set(program.context)
+    try:
+        Loader(_NoModules(), program.context, beside).run(compiled.code, _FILENAME)
+    finally:
+        current.reset(token)
+    return beside.requirements[0].condition
+
+
+class _Named(ast.NodeTransformer):
+    """Puts global parameters in the place of names: a program of one requirement has no others."""
+
+    def __init__(self, names: Container[str]) -> None:
+        self._names = names
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        if node.id not in self._names:
+            return node
+        return ast.Attribute(ast.Name(PARAMETERS, ast.Load()), _PREFIX + node.id, ast.Load())
+
+
+class _NoModules:
+    """Finds no modules: a condition imports none."""
+
+    def find(self, _name: str) -> Path | None:
+        return None
+
+    def code(self, path: Path) -> CodeType:
+        raise FileNotFoundError(path)
+
+
+def _diagnostic(branch: _Branch, filename: str) -> Diagnostic:
+    test = branch.test
+    assert test.end_lineno is not None
+    assert test.end_col_offset is not None
+    span = Span(test.lineno, test.col_offset, test.end_lineno, test.end_col_offset)
+    return Diagnostic(
+        "SC703",
+        branch.way.value,
+        span,
+        Severity.WARNING,
+        filename,
+        help="the values that it compares are drawn with the scene, and the requirements decide it; remove the branch, or correct the condition",
+    )

@@ -1,0 +1,189 @@
+"""Conditions of requirements: nodes of the graph if the compiler understands them, otherwise Python code on samples.
+
+The compiler gives every leaf of a condition twice: as an expression that builds a value, and as a function of the names that
+it reads. If the first can be built it becomes the leaf's node. If not, the leaf is *opaque*: the function is called
+with the sampled values of the names, lane by lane. The answer is the same; only analysis sees less, and it is slower.
+"""
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+
+from scenic.graph.construction import make_node
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.node import Node
+from scenic.graph.operation import Call, Operation, always
+from scenic.graph.operations import TABLE
+from scenic.runtime.description.declarations import Tree
+from scenic.runtime.ground.context import current, here
+from scenic.runtime.python.opaque import evaluated, later
+from scenic.runtime.python.samples import Globals
+from scenic.runtime.values.lazy import definite
+from scenic.runtime.values.values import as_node, is_answered_by_code
+
+Build = Callable[[], Node]
+
+_OF_TRUTH = ("__bool__", "__len__")
+
+
+class NotSymbolicError(Exception):
+    """Raised while an expression is built that has to be evaluated on samples instead."""
+
+
+class Condition:
+    """A condition: the formula that simulations follow and, while a scenario is compiled, what builds nodes.
+
+    ``build`` makes the node that says whether a scene may meet the condition. It is made where the condition stands, and once
+    more when the program has mutated something: a condition means the objects as they come out in the end. ``sure`` makes
+    the node that says whether a scene meets it however a simulation goes on; it differs where the condition speaks of time.
+    """
+
+    __slots__ = ("build", "sure", "tree")
+
+    def __init__(self, tree: Tree, build: Build | None = None, sure: Build | None = None) -> None:
+        self.tree = tree
+        self.build = build
+        self.sure = build if sure is None else sure
+
+
+def connected(operation: str, parts: Sequence[Condition]) -> Condition:
+    """``and`` or ``or``."""
+    tree: Tree = (operation, *(part.tree for part in parts))
+    builds = [part.build for part in parts if part.build is not None]
+    sures = [part.sure for part in parts if part.sure is not None]
+    if len(builds) < len(parts):
+        return Condition(tree)
+
+    def build() -> Node:
+        return connect(operation, [each() for each in builds])
+
+    def sure() -> Node:
+        return connect(operation, [each() for each in sures])
+
+    return Condition(tree, build, build if builds == sures else sure)
+
+
+def negated(part: Condition) -> Condition:
+    """``not``: it may hold where the part is not sure to."""
+    tree: Tree = ("not", part.tree)
+    may, certain = part.build, part.sure
+    if may is None or certain is None:
+        return Condition(tree)
+
+    def build() -> Node:
+        return connect("not", [certain()])
+
+    def sure() -> Node:
+        return connect("not", [may()])
+
+    return Condition(tree, build, build if may is certain else sure)
+
+
+def in_time(operator: str, parts: Sequence[Condition]) -> Condition:
+    """A temporal operator. A scene alone decides it only as far as the first state does."""
+    tree: Tree = (operator, *(part.tree for part in parts))
+    if operator == "implies":
+        either = connected("or", [negated(parts[0]), parts[1]])
+        return Condition(tree, either.build, either.sure)
+    if any(part.build is None for part in parts):
+        return Condition(tree)
+
+    def open_() -> Node:
+        return as_node(True)
+
+    def unsure() -> Node:
+        return as_node(False)
+
+    match operator:
+        case "always":
+            return Condition(tree, parts[0].build, unsure)
+        case "eventually":
+            return Condition(tree, open_, parts[0].sure)
+        case "next":
+            return Condition(tree, open_, unsure)
+        case _:
+            return Condition(tree, connected("or", parts).build, parts[1].sure)
+
+
+def leaf(
+    symbolic: Callable[..., Any] | None,
+    concrete: Callable[..., Any],
+    captured: Sequence[Any],
+    *,
+    awaits: bool = False,
+) -> Callable[[], Node]:
+    """A function that builds the node of one leaf of a condition; if the leaf ``awaits`` names, again when the program has ended."""
+    names: Globals | None = None
+
+    def build() -> Node:
+        nonlocal names
+        if symbolic is not None:
+            context = current.get()
+            if context is not None:
+                context.judging = True
+            try:
+                value = symbolic(*captured)
+            except Exception:  # noqa: BLE001 - whatever went wrong goes wrong again, with its place, on a sample
+                pass
+            else:
+                value = definite(value, "the requirement")
+                with suppress(NotSymbolicError):
+                    return truth(value)
+            finally:
+                if context is not None:
+                    context.judging = False
+        # The names that functions in reach have at the `require` statement count.
+        # Those that have no value yet are read again when the program has ended.
+        names = Globals() if names is None or awaits else names.completed() if names.lacks else names
+        node = later(OPAQUE, concrete, captured, names=names)
+        context = current.get()
+        if names.lacks and context is not None:
+            context.record.awaits = True
+        return node
+
+    return build
+
+
+def truth(value: Any) -> Node:
+    """The truth value of a value, as a node; raises `NotSymbolicError` if only a sample decides it."""
+    if is_answered_by_code(value, _OF_TRUTH):
+        raise NotSymbolicError
+    node = as_node(value)
+    if node.kind is Kind.BOOLEAN:
+        return node
+    if node.is_constant:
+        return as_node(bool(node.value))
+    return make_node(TABLE["truth"], [node], span=here())
+
+
+def connect(operation: str, conditions: Sequence[Node]) -> Node:
+    """``and``, ``or`` or ``not`` of conditions."""
+    return make_node(TABLE[operation], conditions, span=here())
+
+
+def presence(symbolic: Callable[[], Any], now: Callable[[], Any]) -> Any:
+    """The value of ``with present condition``: a truth value, random where its parts are."""
+    context = current.get()
+    if context is None or context.is_symbolic:
+        # What has no random truth value gives what Python says, or its error.
+        with suppress(NotSymbolicError):
+            return symbolic()
+    return now()
+
+
+def _truths(call: Call, *columns: Column) -> Column:
+    return np.array([bool(result) for result in evaluated(call, columns)], dtype=np.bool_)
+
+
+OPAQUE = Operation(
+    "opaque condition",
+    always(Kind.BOOLEAN),
+    _truths,
+    "A condition that is Python code, called with the sampled values of the names it reads.",
+    pure=False,
+    calls_code=True,
+    faults=True,
+    rejects=True,
+)

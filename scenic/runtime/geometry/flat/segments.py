@@ -1,0 +1,184 @@
+"""Chains of line segments: points by length, and nearest points, over arrays."""
+
+import itertools
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any, Final, Self
+
+import numpy as np
+
+from scenic.dataclass import dataclass
+from scenic.graph import quaternions
+from scenic.runtime.geometry.flat.near_boxes import near_boxes, tree_of_boxes
+from scenic.runtime.geometry.meshes.nearest import Nearest
+from scenic.runtime.geometry.poses import Booleans, Floats, Indices
+from scenic.runtime.geometry.ragged import choose
+
+_FEW: Final = 96
+"""Segments up to which looking at all of them is faster than a tree."""
+
+_SLACK: Final = 1e-9
+"""Metres by which boxes are widened in which points are drawn: more than rounding."""
+
+CHUNK: Final = 1 << 20
+"""Pairs of points and segments looked at together."""
+
+
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """Segments from ``starts`` to ``ends``, each ``(k, 3)``; none has length 0."""
+
+    starts: Floats
+    ends: Floats
+
+    @classmethod
+    def of_chains(cls, chains: Sequence[Sequence[Sequence[float]]]) -> Self:
+        """The segments between the vertices of chains; raises ``ValueError`` if there is none."""
+        pairs = [(a, b) for chain in chains for a, b in itertools.pairwise(chain) if tuple(a) != tuple(b)]
+        if not pairs:
+            raise ValueError("a line needs at least two different points")
+        ends = np.array(pairs, dtype=np.float64)
+        if not np.isfinite(ends).all():
+            raise ValueError("a coordinate is not a finite number")
+        return cls(np.ascontiguousarray(ends[:, 0]), np.ascontiguousarray(ends[:, 1]))
+
+    @cached_property
+    def _sums(self) -> Floats:
+        """Length of the line up to the end of each segment."""
+        along = self.ends - self.starts
+        return np.cumsum(np.sqrt((along * along).sum(axis=1)))
+
+    @property
+    def length(self) -> float:
+        """Metres."""
+        return float(self._sums[-1])
+
+    @cached_property
+    def lower(self) -> Floats:
+        """The lower corner ``(3,)`` of the bounding box."""
+        return np.asarray(np.minimum(self.starts, self.ends).min(axis=0))
+
+    @cached_property
+    def upper(self) -> Floats:
+        """The upper corner ``(3,)`` of the bounding box."""
+        return np.asarray(np.maximum(self.starts, self.ends).max(axis=0))
+
+    @cached_property
+    def frames(self) -> Floats:
+        """Orientations ``(k, 4)`` that look along the segments, without roll."""
+        x, y, z = (self.ends - self.starts).T
+        yaw, pitch = np.arctan2(-x, y), np.arctan2(z, np.hypot(x, y))
+        return quaternions.from_euler(yaw, pitch, np.zeros_like(yaw))
+
+    def number_at(self, ways: Floats) -> Indices:
+        """The segments ``(n,)`` at lengths ``(n,)`` along the line."""
+        return np.minimum(np.searchsorted(self._sums, ways, side="left"), len(self._sums) - 1)
+
+    def at(self, ways: Floats) -> Floats:
+        """The points ``(n, 3)`` at lengths ``(n,)`` along the line."""
+        sums = self._sums
+        chosen = self.number_at(ways)
+        before = np.where(chosen > 0, sums[chosen - 1], 0.0)
+        part = np.clip((ways - before) / (sums[chosen] - before), 0, 1)[:, np.newaxis]
+        return np.asarray(self.starts[chosen] * (1 - part) + self.ends[chosen] * part)
+
+    def at_in(self, numbers: Floats, lower: Floats, upper: Floats) -> tuple[Floats, Booleans]:
+        """Points ``(n, 3)`` of the parts of the line within boxes ``(n, 3)``, uniform by length, from numbers ``(n,)`` in (0, 1).
+
+        Also tells which boxes the line passes, ``(n,)``.
+        """
+        owner, number = near_boxes(self._tree, lower, upper)
+        start, along = self.starts[number], self.ends[number] - self.starts[number]
+        low, high = lower[owner] - _SLACK, upper[owner] + _SLACK
+        moving = along != 0
+        step = np.where(moving, along, 1.0)
+        ends = (low - start) / step, (high - start) / step
+        inside = (low <= start) & (start <= high)
+        first = np.where(moving, np.minimum(*ends), np.where(inside, -np.inf, np.inf)).max(axis=1)
+        last = np.where(moving, np.maximum(*ends), np.where(inside, np.inf, -np.inf)).min(axis=1)
+        first, last = np.clip(first, 0.0, 1.0), np.clip(last, 0.0, 1.0)
+        length = np.sqrt((along * along).sum(axis=1))
+        member, share, there = choose(owner, np.maximum(last - first, 0.0) * length, len(numbers), numbers)
+        if not len(owner):
+            return np.zeros((len(numbers), 3)), there
+        part = (first[member] + share * (last[member] - first[member]))[:, np.newaxis]
+        return start[member] + part * along[member], there
+
+    @cached_property
+    def _tree(self) -> Any:
+        ends = np.stack([self.starts, self.ends])
+        return tree_of_boxes(ends.min(axis=0), ends.max(axis=0))
+
+    def boxes_between(self, first: Floats, last: Floats) -> tuple[Floats, Floats]:
+        """The corners ``(m, 3)`` of boxes around the parts of the line between lengths ``(m,)`` along it."""
+        ends = self.at(first), self.at(last)
+        lower, upper = np.minimum(*ends), np.maximum(*ends)
+        runs = np.stack([self.number_at(first), self.number_at(last)], axis=1)
+        several = np.flatnonzero(runs[:, 0] < runs[:, 1])
+        if len(several):
+            # Between a segment and the next one lie the end of the first and the start of the other.
+            after = np.concatenate([self.starts[1:], self.ends[-1:]])
+            places = runs[several].ravel()
+            for corner, extreme in ((lower, np.minimum), (upper, np.maximum)):
+                passed = extreme.reduceat(extreme(self.ends, after), places)[::2]
+                corner[several] = extreme(corner[several], passed)
+        return lower, upper
+
+    def nearest(self, points: Floats) -> tuple[Floats, Indices, Floats]:
+        """For points ``(n, 3)``: distance ``(n,)``, segment ``(n,)`` and place ``(n, 3)`` of the nearest point of the line.
+
+        Where segments meet, the first of them counts, also where a line closes. Long lines are asked through a tree of boxes.
+        """
+        if len(self.starts) <= _FEW:
+            distance, number, place = self._nearest_of_all(points)
+        else:
+            distance, place, number = self._index.find(points)
+        return distance, self._first_there(points, number), place
+
+    def _first_there(self, points: Floats, number: Indices) -> Indices:
+        """The first segments that end where these nearest ones ``(n,)`` are nearest to points, if that is at an end.
+
+        Others may be as near only up to rounding, and a tree finds any of them.
+        """
+        starts = self.starts[number]
+        along, offset = self.ends[number] - starts, points - starts
+        share = (offset * along).sum(axis=1) / (along * along).sum(axis=1)
+        at_start, at_end = (first[number] for first in self._first_at_ends)
+        result: Indices = np.where(share <= 0, at_start, np.where(share >= 1, at_end, number))
+        return result
+
+    @cached_property
+    def _first_at_ends(self) -> tuple[Indices, Indices]:
+        """For each segment, the first one with an end where it starts, and the first one with an end where it ends."""
+        count = len(self.starts)
+        _, where = np.unique(np.concatenate([self.starts, self.ends]), axis=0, return_inverse=True)
+        first = np.full(2 * count, count, dtype=np.intp)
+        np.minimum.at(first, where.ravel(), np.tile(np.arange(count), 2))
+        return first[where.ravel()[:count]], first[where.ravel()[count:]]
+
+    @cached_property
+    def _index(self) -> Nearest:
+        return Nearest(np.stack([self.starts, self.ends, self.ends], axis=1))
+
+    def _nearest_of_all(self, points: Floats) -> tuple[Floats, Indices, Floats]:
+        """The same by looking at all segments."""
+        distance = np.empty(len(points))
+        segment = np.empty(len(points), dtype=np.intp)
+        place = np.empty((len(points), 3))
+        along = self.ends - self.starts
+        squares = (along * along).sum(axis=1)
+        step = max(1, CHUNK // len(self.starts))
+        for first in range(0, len(points), step):
+            part = slice(first, first + step)
+            offset = points[part, np.newaxis, :] - self.starts
+            share = np.clip((offset * along).sum(axis=2) / squares, 0, 1)
+            gap = offset - share[..., np.newaxis] * along
+            distances = np.sqrt((gap * gap).sum(axis=2))
+            best = distances.argmin(axis=1)
+            rows = np.arange(len(best))
+            distance[part], segment[part] = distances[rows, best], best
+            place[part] = self.starts[best] + share[rows, best, np.newaxis] * along[best]
+        return distance, segment, place
+
+
+__all__ = ["Segments"]
