@@ -135,22 +135,21 @@ _CONFLICT_END: Final = re.compile(r"^>{7}(?:[ \t][^\n]*+)?+\n", re.MULTILINE)
 _MARKS: Final = re.compile(r"\"[^\"\n]*+\"|'[^'\n]*+'|([()\[\]{}])|\#")
 
 
-def lex_carefully(text: str, words: Mapping[str, int], afresh: list[int] | None = None) -> Tokens:
+def lex_carefully(text: str, words: Mapping[str, int]) -> Tokens:
     """As `scenic.compiler.lexer.lex`, for a text with a mistake.
 
     ``afresh`` is given the tokens before which nothing mattered any more (see `scenic.compiler.relexing`).
     """
-    return prepared(text, words, lambda text, words: _CarefulLexer(text, words, afresh))
+    return prepared(text, words, _CarefulLexer)
 
 
 class _CarefulLexer(Lexer):
-    __slots__ = ("afresh", "columns", "conflicts_end", "in_conflict", "phantoms", "shifted", "specifiers")
+    __slots__ = ("columns", "conflicts_end", "in_conflict", "phantoms", "shifted", "specifiers")
 
     careful = True
 
-    def __init__(self, text: str, words: Mapping[str, int], afresh: list[int] | None = None) -> None:
+    def __init__(self, text: str, words: Mapping[str, int]) -> None:
         super().__init__(text, words)
-        self.afresh: list[int] = [] if afresh is None else afresh
         # The indentation of lines on which brackets are open.
         self.columns: dict[int, int] = {}
         # Whether a line has said that a merge conflict begins.
@@ -173,25 +172,12 @@ class _CarefulLexer(Lexer):
             start = found.start(1) if found else pos
             marker = _CONFLICT.match(text, start)
             if marker is None:
-                end = super().start_line(pos)
-                if self.is_afresh() and end < len(text):
-                    self.afresh.append(len(self.tokens.kinds))
-                return end
+                return super().start_line(pos)
             if start != pos:
                 self.comment_lines(pos, start, self.line)
                 self.line += text.count("\n", pos, start)
                 self.line_start = start
             pos = self.conflict(marker)
-
-    def is_afresh(self) -> bool:
-        """Return whether the lexer has nothing in mind at the beginning of a line."""
-        return (
-            len(self.indents) == 1
-            and self.shifted is None
-            and not (self.brackets or self.fields or self.in_conflict)
-            and self.conflicts_end
-            and self.afresh[-1:] != [len(self.tokens.kinds)]
-        )
 
     def conflict(self, marker: re.Match[str]) -> int:
         """Leave out the line with a marker, which is the present one, and the second side of a conflict."""

@@ -6,7 +6,7 @@ This one function is what ``scenic check`` and the language server show.
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 
-from scenic.compiler.compile import Checked, check_parsed
+from scenic.compiler.compile import check_parsed
 from scenic.compiler.ignores import apply_ignores
 from scenic.compiler.parser import ParseResult, parse
 from scenic.compiler.scopes import Resolution
@@ -15,7 +15,7 @@ from scenic.language.diagnostics import UNSUPPORTED, Diagnostic, Severity
 from scenic.language.garbage import no_garbage_collection
 from scenic.language.source import Source
 
-__all__ = ["check_again", "check_text", "in_order"]
+__all__ = ["check_text", "check_tree", "in_order"]
 
 
 def check_text(
@@ -31,35 +31,25 @@ def check_text(
     with no_garbage_collection():
         source = Source(text, filename)
         parsed = parse(source.text, filename=filename)
-        return check_again(parsed, source, surroundings_of=surroundings_of, typing=typing).diagnostics
+        return check_tree(parsed, source, surroundings_of=surroundings_of, typing=typing)
 
 
-def check_again(
+def check_tree(
     parsed: ParseResult,
     source: Source,
     *,
     resolution: Resolution | None = None,
     surroundings_of: SurroundingsOf | None = None,
-    before: Checked | None = None,
     go_on: Callable[[], None] = lambda: None,
     typing: bool = False,
-) -> Checked:
-    """The same for a program that is parsed already, and of which an earlier version may have been checked.
-
-    See `scenic.compiler.compile.check_parsed` for the rest.
-    """
-    checked = check_parsed(
-        parsed,
-        source,
-        resolution=resolution,
-        surroundings_of=surroundings_of,
-        before=before,
-        go_on=go_on,
-        typing=typing,
+) -> tuple[Diagnostic, ...]:
+    """The findings of `check_text` in a program that is parsed already; ``resolution`` are its names, if they are bound."""
+    found = check_parsed(
+        parsed, source, resolution=resolution, surroundings_of=surroundings_of, go_on=go_on, typing=typing
     )
-    found = in_order(map(_as_shown, checked.diagnostics), filename=source.filename)
+    found = in_order(map(_as_shown, found), filename=source.filename)
     kept = apply_ignores(source.text, found, filename=source.filename)
-    return replace(checked, diagnostics=in_order(kept, filename=source.filename))
+    return in_order(kept, filename=source.filename)
 
 
 def _as_shown(diagnostic: Diagnostic) -> Diagnostic:

@@ -4,13 +4,11 @@ import ast
 import re
 import threading
 import warnings
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
-from types import CodeType, MappingProxyType
-from typing import Final, TypeAlias
+from collections.abc import Callable
+from types import CodeType
+from typing import Final
 
 from scenic.compiler.checks import lint
-from scenic.compiler.checks.kept import Kept
 from scenic.compiler.complaints import suspects
 from scenic.compiler.lowering import lower
 from scenic.compiler.parser import DEEPEST, ParseResult, ordinary_recursion, parse, recursion_limit
@@ -28,7 +26,7 @@ _DEEPEST_IN_C: Final = 10_000
 _STACK: Final = 128 * 1024 * 1024
 """Bytes for these; only what is used of them takes memory."""
 
-__all__ = ["Checked", "Compiled", "Lowered", "Warned", "check_parsed", "compile_text", "lower_text"]
+__all__ = ["Compiled", "Lowered", "check_parsed", "compile_text", "lower_text"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,24 +45,11 @@ class Compiled:
     diagnostics: tuple[Diagnostic, ...]
 
 
-Warned: TypeAlias = Mapping[str, tuple[tuple[int, str], ...]]
-"""Python's warnings about statements of the top level, by their text: lines from 0, and messages."""
-
-
-@dataclass(frozen=True, slots=True)
-class Checked:
-    """The findings in a program; the rest saves the check of its next version from looking at unchanged parts."""
-
-    diagnostics: tuple[Diagnostic, ...]
-    warned: Warned = field(default_factory=dict, repr=False)
-    kept: Kept | None = field(default=None, repr=False)
-
-
 def lower_text(text: str, *, filename: str) -> Lowered:
     """Parses, checks and lowers a program. Whatever is wrong with it is in the diagnostics."""
     source = Source(text, filename)
     parsed = parse(source.text, filename=filename)
-    found, resolution, _ = _checked(parsed, source, False, None)
+    found, resolution = _checked(parsed, source)
     if resolution is None:
         return Lowered(None, found)
     try:
@@ -97,125 +82,47 @@ def check_parsed(
     *,
     resolution: Resolution | None = None,
     surroundings_of: SurroundingsOf | None = None,
-    before: Checked | None = None,
     go_on: Callable[[], None] = lambda: None,
     typing: bool = False,
-) -> Checked:
+) -> tuple[Diagnostic, ...]:
     """The findings about a program without running any of it.
 
-    That is all that `compile_text` says, what is legal but hardly meant, and what will fail once it is reached. Only
-    what Python may complain of is compiled, and only what has changed of that. ``surroundings_of`` finds out about the
-    modules that the program imports. ``resolution`` are its names, if they are bound already, ``before`` is what was
-    found in an earlier version of it. ``go_on`` is called between steps, and may raise to stop. ``typing`` says that
-    somebody is writing the program.
+    They are all that `compile_text` reports, and what is legal but hardly meant, or will fail once it is reached. Only
+    the statements that Python may complain about are compiled. ``surroundings_of`` finds out about the modules that the
+    program imports. ``resolution`` are its names, if they are bound already. ``go_on`` is called now and then,
+    and may raise to stop. ``typing`` says that somebody is writing the program.
     """
-    warned = MappingProxyType({}) if before is None else before.warned
-    found, names, kept = _checked(
-        parsed,
-        source,
-        True,
-        surroundings_of,
-        go_on,
-        resolution,
-        None if before is None else before.kept,
-        typing,
-    )
+    found, names = _checked(parsed, source, True, surroundings_of, resolution, go_on, typing)
     if names is None:
-        return Checked(found, warned, kept)
+        return found
     go_on()
-    suspected = suspects(names, source, longest_line=parsed.longest_line)
+    suspected = suspects(parsed.tree, names, source, longest_line=parsed.longest_line)
     if not suspected:
-        return Checked(found, warned, kept)
-    blocks = _blocks(suspected, source)
-    fresh = [block for block in blocks if block.text not in warned]
-    if warned and len(fresh) * 2 < len(blocks) and len(suspected) < len(parsed.tree.body):
-        error, noted = _complaints([each for block in fresh for each in block.statements], names, source)
-        if error is None:
-            known = {block.text: warned[block.text] for block in blocks if block.text in warned}
-            noticed = {**_by_block(fresh, noted), **known}
-            return Checked((*found, *_warnings(source, blocks, noticed)), noticed, kept)
-    # Python stops at the first error, whichever it takes for that: all must be there.
-    error, noted = _complaints(suspected, names, source)
-    if error is not None:
-        warnings_found = [_python_warning(line, message, source) for line, message in noted]
-        return Checked((*found, error, *warnings_found), kept=kept)
-    noticed = _by_block(blocks, noted)
-    return Checked((*found, *_warnings(source, blocks, noticed)), noticed, kept)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Block:
-    """The statements of the top level that begin on one line, with their text, from ``line`` on."""
-
-    line: int
-    text: str
-    statements: list[ast.stmt]
-
-
-def _blocks(statements: Sequence[ast.stmt], source: Source) -> list[_Block]:
-    found: list[_Block] = []
-    end = 0
-    for node in statements:
-        decorators = getattr(node, "decorator_list", None)
-        line = decorators[0].lineno if decorators else node.lineno
-        last = node.end_lineno or node.lineno
-        if found and line <= end:
-            before = found.pop()
-            line, statements = before.line, [*before.statements, node]
-        else:
-            statements = [node]
-        end = max(end, last)
-        found.append(_Block(line, "\n".join(source.lines[line - 1 : end]), statements))
-    return found
-
-
-def _by_block(
-    blocks: Sequence[_Block], noted: Sequence[tuple[int, str]]
-) -> dict[str, tuple[tuple[int, str], ...]]:
-    return {
-        block.text: tuple(
-            (line - block.line, message)
-            for line, message in noted
-            if block.line <= line <= block.line + block.text.count("\n")
-        )
-        for block in blocks
-    }
-
-
-def _warnings(source: Source, blocks: Sequence[_Block], warned: Warned) -> list[Diagnostic]:
-    return [
-        _python_warning(block.line + line, message, source)
-        for block in blocks
-        for line, message in warned[block.text]
-    ]
+        return found
+    error, warned = _complaints(suspected, names, source)
+    errors = () if error is None else (error,)
+    return (*found, *errors, *(_python_warning(line, message, source) for line, message in warned))
 
 
 def _checked(
     parsed: ParseResult,
     source: Source,
-    thorough: bool,
-    surroundings_of: SurroundingsOf | None,
-    go_on: Callable[[], None] = lambda: None,
+    thorough: bool = False,
+    surroundings_of: SurroundingsOf | None = None,
     bound: Resolution | None = None,
-    before: Kept | None = None,
+    go_on: Callable[[], None] = lambda: None,
     typing: bool = False,
-) -> tuple[tuple[Diagnostic, ...], Resolution | None, Kept | None]:
-    """Check a parsed program; return its diagnostics, its names if it has no errors, and the data to keep for
-    its next version.
-    """
+) -> tuple[tuple[Diagnostic, ...], Resolution | None]:
+    """Check a parsed program; return its diagnostics, and its names if it has no errors."""
     found = list(parsed.diagnostics)
     try:
         with recursion_limit(DEEPEST):
-            go_on()
-            resolution, context = resolve_within(
-                parsed.tree, source, surroundings_of, bound, go_on, before, typing
-            )
-            go_on()
+            resolution, context = resolve_within(parsed.tree, source, surroundings_of, bound, go_on, typing)
             hints = lint(context, go_on) if thorough else ()
     except RecursionError:
-        return (*found, _too_deep(source)), None, None
+        return (*found, _too_deep(source)), None
     found = list(dict.fromkeys([*found, *resolution.diagnostics, *hints]))
-    return tuple(found), None if _has_errors(found) else resolution, context.kept
+    return tuple(found), None if _has_errors(found) else resolution
 
 
 def _complaints(

@@ -11,7 +11,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.scopes import BindingKind, Resolution, Stretch
+from scenic.compiler.scopes import BindingKind, Resolution, Scope
+from scenic.compiler.traversal import first_position, walk
 from scenic.language.source import Source
 
 __all__ = ["suspects"]
@@ -50,59 +51,61 @@ _VARIABLE: Final = (ast.Attribute, ast.Call, ast.Name, ast.Subscript)
 identity instead."""
 
 
-def suspects(resolution: Resolution, source: Source, *, longest_line: int) -> list[ast.stmt]:
+def suspects(
+    tree: ast.Module, resolution: Resolution, source: Source, *, longest_line: int
+) -> list[ast.stmt]:
     """The statements of the top level that have to be compiled to get Python's complaints, in order.
 
     ``resolution`` are the names of a program without errors, ``longest_line`` is the number of tokens of its longest
-    logical line. Where what is said of one statement depends on others, they are all of them.
+    logical line. If Python's complaints about one statement depend on others, the result is all of them.
     """
-    stretches = resolution.stretches
-    if longest_line > _LONGEST or any(each.common("joins", _joins) for each in stretches):
-        return [statement for each in stretches for statement in each.statements]
-    return [
-        statement
-        for each in stretches
-        if each.common("suspect", lambda own: _is_suspect_anywhere(own, source))
-        for statement in each.statements
-    ]
+    if longest_line > _LONGEST or any(map(_joins, tree.body)):
+        return tree.body
+    text = source.text
+    if not (
+        resolution.classes <= _HARMLESS
+        and not _has_suspect_words(text)
+        and not any(test(node) for cls, test in _TESTS.items() for node, _ in resolution.nodes(cls))
+        and not any(map(_repeats_parameters, resolution.scopes.values()))
+        and not _is_deep(tree.body)
+    ):
+        return [statement for statement in tree.body if _is_suspect(statement, resolution, source)]
+    return []
 
 
-def _is_suspect_anywhere(stretch: Stretch, source: Source) -> bool:
-    """Return whether Python may complain about a stretch, wherever it is."""
+def _joins(statement: ast.stmt) -> bool:
+    """Return whether Python's complaints about other statements depend on a statement of the top level."""
+    return isinstance(statement, ast.Global) or (
+        isinstance(statement, ast.ImportFrom) and statement.module == "__future__"
+    )
+
+
+def _is_suspect(statement: ast.stmt, resolution: Resolution, source: Source) -> bool:
+    """Return whether Python may complain about a statement of the top level."""
+    lines = source.lines[first_position(statement)[0] - 1 : statement.end_lineno]
     return (
-        not stretch.contents.classes <= _HARMLESS
-        or _is_suspect(stretch)
-        or _has_suspect_words(stretch.statements, source)
-        or _is_deep(stretch.statements)
+        _has_suspect_words("\n".join(lines))
+        or _is_deep([statement])
+        or any(_is_suspect_node(node, resolution) for node in walk(statement))
     )
 
 
-def _joins(stretch: Stretch) -> bool:
-    """Return whether Python's complaints about one statement of the top level depend on others."""
-    return any(
-        isinstance(node, ast.Global) or (isinstance(node, ast.ImportFrom) and node.module == "__future__")
-        for node in stretch.statements
+def _is_suspect_node(node: ast.AST, resolution: Resolution) -> bool:
+    test, scope = _TESTS.get(type(node)), resolution.scopes.get(node)
+    return (
+        type(node) not in _HARMLESS
+        or (test is not None and test(node))
+        or (scope is not None and _repeats_parameters(scope))
     )
 
 
-def _is_suspect(stretch: Stretch) -> bool:
-    """Return whether there is a node about which Python may complain."""
-    for cls, test in _TESTS.items():
-        if any(test(node) for node, _ in stretch.nodes(cls)):
-            return True
-    return any(
-        binding.kinds & _PARAMETERS and len(binding.sites) > 1 and _is_repeated(binding.sites)
-        for scope in stretch.scopes.values()
-        for binding in scope.bindings.values()
-    )
-
-
-_PARAMETERS: Final = frozenset({BindingKind.PARAMETER})
-
-
-def _is_repeated(sites: Iterable[ast.AST]) -> bool:
+def _repeats_parameters(scope: Scope) -> bool:
     """Return whether two parameters have a name; behaviors and monitors bind theirs, by their own node, to ``self``."""
-    return sum(isinstance(site, ast.arg | scenic.BehaviorDef | scenic.MonitorDef) for site in sites) > 1
+    return any(
+        sum(isinstance(site, ast.arg | scenic.BehaviorDef | scenic.MonitorDef) for site in binding.sites) > 1
+        for binding in scope.bindings.values()
+        if BindingKind.PARAMETER in binding.kinds and len(binding.sites) > 1
+    )
 
 
 def _call(node: ast.Call) -> bool:
@@ -139,14 +142,8 @@ _TESTS: Final[Mapping[type[ast.AST], Callable[[Any], bool]]] = {
 }
 
 
-def _has_suspect_words(statements: Sequence[ast.stmt], source: Source) -> bool:
+def _has_suspect_words(text: str) -> bool:
     """Return whether there are comprehensions that wait, indentation that is hidden, or special names, however spelt."""
-    if not statements:
-        return False
-    first, last = statements[0], statements[-1]
-    decorators = getattr(first, "decorator_list", None)
-    line = decorators[0].lineno if decorators else first.lineno
-    text = "\n".join(source.lines[line - 1 : last.end_lineno])
     return (
         not text.isascii()
         or "async" in text

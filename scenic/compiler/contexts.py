@@ -1,7 +1,6 @@
 """The contexts of names, attributes, items and displays: whether they are read, assigned or deleted."""
 
 import ast
-from collections.abc import Container
 from typing import Any, Final
 
 from scenic.compiler.traversal import FIELDS
@@ -26,8 +25,8 @@ _HOLDERS: Final = frozenset({ast.Tuple, ast.List, ast.Starred})
 """Nodes that pass their context on to their elements."""
 
 
-def set_contexts(tree: ast.AST, right: Container[ast.AST] = ()) -> None:
-    """Give every expression in a tree the context of its place; in the nodes that are ``right`` they have it already.
+def set_contexts(tree: ast.AST) -> None:
+    """Give every expression in a tree the context of its place.
 
     The parser makes targets of expressions in place. Where it tries several readings of a text with a mistake, an
     expression may be a target in one that was given up, and a value in the other.
@@ -35,8 +34,6 @@ def set_contexts(tree: ast.AST, right: Container[ast.AST] = ()) -> None:
     stack: list[tuple[Any, ast.expr_context]] = [(tree, _LOAD)]
     while stack:
         node, context = stack.pop()
-        if node in right:
-            continue
         kind, values = node.__class__, node.__dict__
         if "ctx" in values:
             node.ctx = context

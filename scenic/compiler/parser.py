@@ -25,7 +25,7 @@ from scenic.language.garbage import no_garbage_collection
 from scenic.language.source import Source
 from scenic.language.spans import Span
 
-__all__ = ["ParseResult", "bare_text", "parse"]
+__all__ = ["ParseResult", "bare_text", "parse", "parse_lexed"]
 
 DEEPEST: Final = 1_000_000
 """The deepest recursion that is tried; some 300 MB of Python frames, which use no C stack."""
@@ -43,28 +43,17 @@ class ParseResult:
     longest_line: int = field(default=sys.maxsize, compare=False)
 
 
-Statements: TypeAlias = Mapping[int, tuple[list[ast.stmt], int]]
-"""Statements of the top level by the token with which they begin: what was made of one, and the token after it."""
-
 Run: TypeAlias = Callable[[str, int], tuple[Any, int]]
 """Parses what a rule has from a token on: what was made of it (``None`` if it does not stand there), and the token after."""
-
-Known: TypeAlias = Callable[[Tokens], Statements]
-"""Finds the statements in some tokens that are known already."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Parsed:
-    """The result of parsing: the tree, the mistakes, and the places of the statements of the top level."""
+    """The result of parsing: the tokens that were parsed, the tree, and the mistakes."""
 
     tokens: Tokens
     tree: ast.Module
     problems: list[Problem]
-    statements: Statements
-
-
-Reread: TypeAlias = Callable[[str], Tokens]
-"""Reads a text that is known to be wrong."""
 
 
 def parse(text: str, *, filename: str = "<string>") -> ParseResult:
@@ -74,8 +63,21 @@ def parse(text: str, *, filename: str = "<string>") -> ParseResult:
     `scenic.compiler.tree.ErrorStatement` nodes in the tree, and the diagnostics describe their errors.
     """
     with no_garbage_collection():
-        parsed = parse_tokens(lex(text, WORDS))
-        return result_of(parsed, filename)
+        return parse_lexed(lex(text, WORDS), filename=filename)
+
+
+def parse_lexed(tokens: Tokens, *, filename: str) -> ParseResult:
+    """Parse the tokens of a text, as the plain lexer gives them."""
+    with no_garbage_collection():
+        parsed = _parse_tokens(tokens)
+    problems = parsed.problems
+    tokens = parsed.tokens
+    if not problems and not tokens.diagnostics:
+        return ParseResult(parsed.tree, (), _tokens_of_longest_line(tokens.kinds))
+    source = Source(tokens.text, filename)
+    diagnostics = {replace(each, filename=filename) for each in tokens.diagnostics}
+    diagnostics.update(_diagnostic(each, source) for each in problems)
+    return ParseResult(parsed.tree, tuple(sorted(diagnostics, key=_order)))
 
 
 def bare_text(text: str) -> str:
@@ -90,20 +92,7 @@ _LAYOUT: Final[Mapping[int, str]] = MappingProxyType({NEWLINE: "end", INDENT: "i
 """Symbols for tokens that are only layout."""
 
 
-def result_of(parsed: Parsed, filename: str, longest_line: int | None = None) -> ParseResult:
-    """The tree, and what is wrong as diagnostics; ``longest_line`` is that of the result, if it is known."""
-    tokens, problems = parsed.tokens, parsed.problems
-    if not problems and not tokens.diagnostics:
-        if longest_line is None:
-            longest_line = tokens_of_longest_line(tokens.kinds)
-        return ParseResult(parsed.tree, (), longest_line)
-    source = Source(tokens.text, filename)
-    diagnostics = {replace(each, filename=filename) for each in tokens.diagnostics}
-    diagnostics.update(_diagnostic(each, source) for each in problems)
-    return ParseResult(parsed.tree, tuple(sorted(diagnostics, key=_order)))
-
-
-def tokens_of_longest_line(kinds: list[int]) -> int:
+def _tokens_of_longest_line(kinds: list[int]) -> int:
     """The number of tokens of the longest logical line."""
     longest = start = 0
     for _ in range(kinds.count(NEWLINE)):
@@ -114,13 +103,9 @@ def tokens_of_longest_line(kinds: list[int]) -> int:
     return max(longest, len(kinds) - start)
 
 
-def parse_tokens(tokens: Tokens, known: Known = lambda _tokens: {}, reread: Reread | None = None) -> Parsed:
-    """Parse the tokens of a text, as the plain lexer gives them; statements that are ``known`` are taken over.
-
-    ``reread`` is the careful lexer, or what gives the same.
-    """
+def _parse_tokens(tokens: Tokens) -> Parsed:
     text = tokens.text
-    parsed = _fast(tokens, known)
+    parsed = _fast(tokens)
     if parsed is not None:
         return parsed
     # A text without mistakes does not wait for all that reads another one.
@@ -130,16 +115,16 @@ def parse_tokens(tokens: Tokens, known: Known = lambda _tokens: {}, reread: Rere
     # Statements that are wrong because an operator took a closing word from another are read once more without that.
     operands = None if tokens.diagnostics else closed_operands(tokens)
     if operands:
-        parsed = _fast(in_parentheses(tokens, operands), known)
+        parsed = _fast(in_parentheses(tokens, operands))
         if parsed is not None:
             return parsed
     # Now the text is known to be wrong.
-    tokens = lex_carefully(text, WORDS) if reread is None else reread(text)
+    tokens = lex_carefully(text, WORDS)
     operands = [] if operands == [] else closed_operands(tokens)
     for _ in range(2):
         if not operands:
             break
-        parsed = _recovered(in_parentheses(tokens, operands), known)
+        parsed = _recovered(in_parentheses(tokens, operands))
         wrong = [problem.place[:2] for problem in parsed.problems]
         wrong += [(each.span.line, each.span.column) for each in tokens.diagnostics if each.span is not None]
         wrong.sort()
@@ -149,62 +134,48 @@ def parse_tokens(tokens: Tokens, known: Known = lambda _tokens: {}, reread: Rere
         if len(right) == len(operands):
             return parsed
         operands = right
-    return _recovered(tokens, known)
+    return _recovered(tokens)
 
 
-def _fast(tokens: Tokens, known: Known) -> Parsed | None:
+def _fast(tokens: Tokens) -> Parsed | None:
     """Parse the tokens of a text without syntax errors; return ``None`` if the text has an error."""
     if tokens.diagnostics:
         return None
     actions = Actions(tokens)
     lists = tokens.lists()
     with _PARSERS.reading(lists, actions) as run:
-        statements = _statements(run, lists[0], dict(known(tokens)))
+        statements = _statements(run, lists[0])
     if statements is None:
         return None
-    tree = actions.module([node for found, _ in statements.values() for node in found])
-    return Parsed(tokens, tree, list(actions.problems.values()), statements)
+    return Parsed(tokens, actions.module(statements), list(actions.problems.values()))
 
 
-def _statements(
-    run: Run, kinds: Sequence[int], old: dict[int, tuple[list[ast.stmt], int]]
-) -> Statements | None:
-    """The statements of the top level, of which some are known; ``None`` if there is a mistake."""
-    statements: dict[int, tuple[list[ast.stmt], int]] = {}
+def _statements(run: Run, kinds: Sequence[int]) -> list[ast.stmt] | None:
+    """The statements of the top level; ``None`` if there is a mistake."""
+    statements: list[ast.stmt] = []
     position = 0
-    before: int | None = None
     try:
         while kinds[position] != ENDMARKER:
-            found = old.get(position)
-            if found is None:
-                node, end = run("statement", position)
-                if node is None:
-                    if before not in old:
-                        return None
-                    # The known statement before may go on with what is no statement by itself.
-                    position = before
-                    del old[position], statements[position]
-                    before = None
-                    continue
-                found = (node if isinstance(node, list) else [node], end)
-            statements[position] = found
-            before, position = position, found[1]
+            node, position = run("statement", position)
+            if node is None:
+                return None
+            statements += node if isinstance(node, list) else [node]
     except RecursionError:
         return None
     return statements
 
 
-def _recovered(tokens: Tokens, known: Known) -> Parsed:
+def _recovered(tokens: Tokens) -> Parsed:
     """Parse the tokens of a text with syntax errors, recovering from each."""
     # A text without mistakes does not wait for all that explains them.
     from scenic.compiler.recovery import Recovery
 
     actions = Actions(tokens)
-    recovery = Recovery(tokens, actions, known(tokens))
+    recovery = Recovery(tokens, actions)
     with recursion_limit(DEEPEST):
         tree = recovery.file()
     problems = [*actions.problems.values(), *recovery.problems]
-    return Parsed(tokens, tree, problems, recovery.top_level)
+    return Parsed(tokens, tree, problems)
 
 
 class _Parsers:

@@ -8,8 +8,6 @@ themselves, and an `ErrorStatement` holds what was in them.
 
 import ast
 from bisect import bisect_left, bisect_right
-from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.compiler import tree
@@ -67,20 +65,9 @@ for every block around it."""
 
 
 class Recovery:
-    """Parses the tokens of one text that has a mistake; ``problems`` holds what was found.
+    """Parses the tokens of one text that has a mistake; ``problems`` holds what was found."""
 
-    ``known`` are statements of the top level that have been parsed before and are right, by their first token; in
-    ``top_level`` are all such in the end, with the token after each.
-    """
-
-    def __init__(
-        self,
-        tokens: Tokens,
-        actions: Actions,
-        known: Mapping[int, tuple[list[ast.stmt], int]] = MappingProxyType({}),
-    ) -> None:
-        self._known = known
-        self.top_level: dict[int, tuple[list[ast.stmt], int]] = {}
+    def __init__(self, tokens: Tokens, actions: Actions) -> None:
         self.tokens = tokens
         self.actions = actions
         self.problems: list[Problem] = []
@@ -108,7 +95,7 @@ class Recovery:
             if self._kinds[position] == ENDMARKER:
                 self._forget_guards()
                 module = self.actions.module(body)
-                set_contexts(module, {node for nodes, _ in self._known.values() for node in nodes})
+                set_contexts(module)
                 return module
             position += 1  # the end of a block that never began
 
@@ -206,15 +193,12 @@ class Recovery:
         outer_failure = actions.failure
         try:
             if self._depth <= DEEPEST_RETRY:
-                known = self._known.get(start) if self._depth == 1 else None
-                node, end = self._fast(rule, start) if known is None else known
+                node, end = self._fast(rule, start)
                 # If what follows belongs to it, its end may not be where it seemed.
                 cut_short = self._kinds[end] == INDENT or (
                     self._kinds[start] in _CLAUSED and self._is_clause(end)
                 )
                 if node is not None and not cut_short:
-                    if self._depth == 1 and rule == "statement":
-                        self.top_level[start] = (node if isinstance(node, list) else [node], end)
                     return node, end
             actions.failure = None
             node, end, farthest, expected = self._recording(rule, start)

@@ -1,30 +1,24 @@
-"""Name resolution: which scope each name of a program belongs to.
+"""Name resolution: the scope that each name of a program belongs to.
 
 `resolve` also runs the static checks, so its result holds everything that can be said about names and places without
 running the program. It uses an explicit stack, so that no depth of nesting is too much for it.
 """
 
 import ast
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from itertools import pairwise
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks import NOTED, Context, check
-from scenic.compiler.checks.kept import Kept
 from scenic.compiler.scopes import (
-    PROVIDED,
-    REFLECTION,
     Binding,
     BindingKind,
-    Contents,
     Reference,
     Resolution,
     Scope,
     ScopeKind,
-    Stretch,
-    key_of,
 )
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.compiler.traversal import FIELDS, parts, position, walk
@@ -33,10 +27,7 @@ from scenic.language.names import RESERVED, TRACKED
 from scenic.language.source import Source
 from scenic.language.spelling import nearest
 
-__all__ = ["bind", "bind_again", "resolve", "resolve_within"]
-
-_STRETCH: Final = 16
-"""So many statements of the top level are bound together, where the next version of a text may take them over."""
+__all__ = ["bind", "resolve", "resolve_within"]
 
 
 def resolve(tree: ast.Module, source: Source) -> Resolution:
@@ -53,14 +44,12 @@ def resolve_within(
     surroundings_of: SurroundingsOf | None,
     resolution: Resolution | None = None,
     go_on: Callable[[], None] = lambda: None,
-    before: Kept | None = None,
     typing: bool = False,
 ) -> tuple[Resolution, Context]:
-    """The same, with what ``surroundings_of`` finds out about the imports; also returns what further checks need.
+    """Bind and check the names of a module, with what ``surroundings_of`` finds out about its imports.
 
-    ``resolution`` are the names of the tree, if they are bound already, ``before`` is what was said of the version before.
-    ``go_on`` is called now and then, and may raise to stop. ``typing`` says that somebody is writing the program, so that
-    what a half-typed line may still bind is not missed.
+    Also returns what further checks need. ``resolution`` are the names of the tree, if they are bound already. ``go_on``
+    is called now and then, and may raise to stop. ``typing`` says that somebody is writing the program, so that what a half-typed line may still bind is not missed.
     """
     with no_garbage_collection():
         bound = bind(tree) if resolution is None else resolution
@@ -70,69 +59,16 @@ def resolve_within(
             wildcard = bound.rebinding or not surroundings.complete
         if any(_brings_names(source.line(node.lineno)) for node, _ in bound.nodes(scenic.ErrorStatement)):
             wildcard = True
-        known = bound.with_findings((), wildcard=wildcard)
-        go_on()
-        context = Context(tree, source, known, surroundings, before, typing=typing)
-        diagnostics = check(context, provided=PROVIDED, go_on=go_on)
-    return known.with_findings(diagnostics, wildcard=wildcard), context
+        bound = replace(bound, wildcard=wildcard)
+        context = Context(tree, source, bound, surroundings, typing=typing)
+        diagnostics = check(context, go_on)
+    return replace(bound, diagnostics=diagnostics), context
 
 
 def bind(tree: ast.Module) -> Resolution:
     """Bind every name of a module, of Scenic or of Python, without any check: ``diagnostics`` stays empty."""
     with no_garbage_collection():
-        module = _module_scope()
-        return Resolution(tree, module, [Stretch(tree.body, _collector(module))])
-
-
-def bind_again(tree: ast.Module, before: Resolution | None) -> Resolution:
-    """The same for the next version of a module: of statements that are still there, everything is known already.
-
-    Of the first version, there is none before it.
-    """
-    with no_garbage_collection():
-        body = tree.body
-        module = _module_scope() if before is None else before.module
-        known = {} if before is None else {each.keys[0]: each for each in before.stretches if each.keys}
-        keys = [key_of(statement) for statement in body]
-        found: list[Stretch] = []
-        begin = index = 0
-        while index < len(body):
-            old = known.get(keys[index])
-            end = index if old is None else index + len(old.keys)
-            if old is None or tuple(keys[index:end]) != old.keys:
-                index += 1
-                continue
-            found += _in_stretches(body[begin:index], module)
-            own = tuple(body[index:end])
-            # Nodes are equal only to themselves.
-            found.append(old if own == old.statements else old.moved(own))
-            begin = index = end
-        found += _in_stretches(body[begin:], module)
-        return Resolution(tree, module, found)
-
-
-def _in_stretches(body: list[ast.stmt], module: Scope) -> list[Stretch]:
-    """Some statements, divided evenly."""
-    count = -(-len(body) // _STRETCH)
-    ends = [len(body) * index // count for index in range(count + 1)] if count else []
-    collect = _collector(module)
-    return [Stretch(body[begin:end], collect) for begin, end in pairwise(ends)]
-
-
-def _module_scope() -> Scope:
-    return Scope(ScopeKind.MODULE, "<module>", ast.Module(body=[], type_ignores=[]), None)
-
-
-def _collector(module: Scope) -> Callable[[Stretch], Contents]:
-    """Return a function that collects the scopes, bindings and references of a stretch."""
-
-    def collect(stretch: Stretch) -> Contents:
-        with no_garbage_collection():
-            collector = _Collector(stretch.statements, module)
-            collector.walk()
-            return collector.finish()
-
-    return collect
+        return _Collector(tree).resolution()
 
 
 def _brings_names(line: str) -> bool:
@@ -156,27 +92,25 @@ _Task = tuple[ast.AST, Scope]
 
 
 class _Collector:
-    """Walks some statements once and notes scopes, bindings and uses of names."""
+    """Walks a module once and notes scopes, bindings and uses of names."""
 
-    def __init__(self, statements: Sequence[ast.stmt], module: Scope) -> None:
-        self._statements = statements
-        self._module = module
-        self._scopes: dict[ast.AST, Scope] = {}
+    def __init__(self, tree: ast.Module) -> None:
+        self._module = Scope(ScopeKind.MODULE, "<module>", tree, None)
+        self._scopes: dict[ast.AST, Scope] = {tree: self._module}
         self._events: list[_Event] = []
         self._uses: list[tuple[ast.Name, Scope]] = []
         self._nonlocals: dict[ast.AST, Scope] = {}
         self._plain_targets: set[ast.AST] = set()
         self._nodes: dict[type[ast.AST], list[tuple[Any, Scope]]] = {cls: [] for cls in NOTED}
-        self._pending: list[tuple[Scope, list[Any]]] = []
+        self._pending: list[tuple[Scope, list[Any]]] = [(self._module, list(tree.body))]
         self._classes: set[type] = set()
         self._wildcard = False
         self._tolerated: set[ast.AST] = set()
         """Names read where a ``NameError`` is caught."""
 
-    def walk(self) -> None:
+    def _walk(self) -> None:
         """Visit every node once, scope by scope. Most nodes belong to the scope of what they are part of."""
         pending = self._pending
-        pending.append((self._module, list(self._statements)))
         handlers, fields, noted, uses = _HANDLERS, FIELDS, self._nodes, self._uses
         seen = self._classes.add
         while pending:
@@ -211,41 +145,28 @@ class _Collector:
                     elif part is not None:
                         stack.append(part)
 
-    def finish(self) -> Contents:
-        """Return all that has been collected; nodes are in the order of the text, however the statements are divided up."""
+    def resolution(self) -> Resolution:
+        """Visit all nodes, and return what has been collected."""
+        self._walk()
         for noted in self._nodes.values():
             if len(noted) > 1:
                 noted.sort(key=lambda item: position(item[0]))
-        inner = {(event.scope, event.name) for event in self._events}
-        bound: dict[str, list[tuple[BindingKind, ast.AST]]] = {}
+        bound = {(event.scope, event.name) for event in self._events}
         reserved: list[tuple[str, ast.AST]] = []
         for event in self._events:
             if event.name in RESERVED:
                 reserved.append((event.name, event.site))
-            elif event.scope is self._module:
-                bound.setdefault(event.name, []).append((event.kind, event.site))
             else:
-                self._bind(event, inner, bound)
+                self._bind(event, bound)
         references: dict[ast.AST, Reference] = {}
         meanings: dict[tuple[Scope, str], Binding | None] = {}
-        free: set[str] = set()
-        module = self._module
         for node, scope in self._uses:
-            name = node.id
-            if scope is module:
-                references[node] = Reference(node, scope, None)
-                free.add(name)
-                continue
-            key = (scope, name)
-            if key in meanings:
-                binding = meanings[key]
-            else:
-                binding = meanings[key] = scope.lookup(name)
-                if binding is None:
-                    free.add(name)
-            references[node] = Reference(node, scope, binding)
-        return Contents(
-            bound,
+            key = (scope, node.id)
+            if key not in meanings:
+                meanings[key] = scope.lookup(node.id)
+            references[node] = Reference(node, scope, meanings[key])
+        resolution = Resolution(
+            self._module,
             references,
             self._scopes,
             self._nonlocals,
@@ -253,29 +174,23 @@ class _Collector:
             frozenset(self._classes),
             self._tolerated,
             reserved,
-            frozenset(free & REFLECTION),
             self._wildcard,
         )
+        return replace(resolution, wildcard=True) if resolution.rebinding else resolution
 
-    def _bind(
-        self,
-        event: _Event,
-        inner: set[tuple[Scope, str]],
-        bound: dict[str, list[tuple[BindingKind, ast.AST]]],
-    ) -> None:
-        """Bind a name in a scope within the module, or in the one that its declarations name."""
+    def _bind(self, event: _Event, bound: set[tuple[Scope, str]]) -> None:
+        """Bind a name in the scope that its declarations name."""
         scope = event.scope
         if event.name in scope.global_names:
-            bound.setdefault(event.name, []).append((event.kind, event.site))
-            return
-        if event.name in scope.nonlocal_names:
+            scope = self._module
+        elif event.name in scope.nonlocal_names:
             scope = next(
                 (
                     outer
                     for outer in scope.ancestors()
                     if event.name not in outer.nonlocal_names
                     and outer.kind not in (ScopeKind.CLASS, ScopeKind.MODULE)
-                    and (outer, event.name) in inner
+                    and (outer, event.name) in bound
                 ),
                 scope,
             )

@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from scenic.compiler import tree
 
-__all__ = ["FIELDS", "first_line", "parts", "position", "walk"]
+__all__ = ["FIELDS", "first_position", "parts", "position", "walk"]
 
 _PLAIN: Final = frozenset(
     {
@@ -71,12 +71,12 @@ def walk(node: ast.AST) -> Iterator[ast.AST]:
         stack.extend(inner)
 
 
-def first_line(statement: ast.stmt) -> int:
-    """The line on which a statement begins; a decorated definition begins with its decorators."""
-    decorators = getattr(statement, "decorator_list", None)
-    return decorators[0].lineno if decorators else statement.lineno
-
-
 def position(node: Any) -> tuple[int, int]:
     """Return the line and column at which a node begins, for comparisons; nodes without a place come first."""
     return getattr(node, "lineno", 0), getattr(node, "col_offset", 0)
+
+
+def first_position(statement: ast.stmt) -> tuple[int, int]:
+    """Return the line and column at which a statement begins; a decorated definition begins with its decorators."""
+    decorators = getattr(statement, "decorator_list", None)
+    return position(decorators[0] if decorators else statement)

@@ -399,7 +399,7 @@ def _names(
     for outer in scope.ancestors():
         if outer is not scope and outer.kind is ScopeKind.CLASS:
             continue
-        for name, binding in snapshot.resolution.bindings(outer).items():
+        for name, binding in outer.bindings.items():
             if name not in seen:
                 seen.add(name)
                 local = outer.kind is not ScopeKind.MODULE

@@ -52,8 +52,10 @@ def expression(
         return None
     scope = snapshot.scope_at(line, column)
     found: dict[ast.AST, Reference] = {
-        node: Reference(node, scope, snapshot.resolution.lookup(node.id, scope))
+        node: Reference(node, scope, scope.lookup(node.id))
         for node in ast.walk(statement)
         if isinstance(node, ast.Name)
     }
-    return replace(module, resolution=module.resolution.with_references(found)), statement.value
+    resolution = module.resolution
+    resolution = replace(resolution, references={**resolution.references, **found})
+    return replace(module, resolution=resolution), statement.value

@@ -18,7 +18,9 @@ from dataclasses import field
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.incremental import revise
+from scenic.compiler.generated import WORDS
+from scenic.compiler.lexer import lex
+from scenic.compiler.parser import parse_lexed
 from scenic.compiler.tokens import DEDENT, ENDMARKER, FSTRING_MIDDLE, INDENT, NEWLINE, STRING, Tokens
 from scenic.compiler.unparser import UnparseError, unparse
 from scenic.dataclass import dataclass
@@ -497,12 +499,13 @@ def _lines_in_strings(tokens: Tokens) -> Iterator[int]:
 
 def _same(tree: ast.Module, tokens: Tokens, result: str) -> bool:
     """Return whether a text has this tree, and the comments of these tokens."""
-    again = revise(result)
-    if again.result.diagnostics:
+    read = lex(result, WORDS)
+    again = parse_lexed(read, filename="")
+    if again.diagnostics:
         return False
     before = [text.rstrip() for _, _, text in tokens.comments]
-    after = [text.rstrip() for _, _, text in again.tokens.comments]
-    return before == after and _equal(tree, again.result.tree)
+    after = [text.rstrip() for _, _, text in read.comments]
+    return before == after and _equal(tree, again.tree)
 
 
 def _equal(one: ast.AST, other: ast.AST) -> bool:

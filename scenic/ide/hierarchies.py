@@ -154,7 +154,7 @@ def _around(module: Module, span: Span) -> Symbol:
             start, end = (node.lineno, node.col_offset), (node.end_lineno or 0, node.end_col_offset or 0)
             if start <= place < end:
                 inner = node
-    binding = None if inner is None else module.resolution.binding_at(inner)
+    binding = None if inner is None else module.resolution.sites.get(inner)
     if binding is not None:
         return symbol_of_binding(module, binding)
     return module_symbol(module)

@@ -128,7 +128,7 @@ def _parameters(snapshot: Snapshot, node: ast.Call) -> Iterator[Hint]:
     """Names of parameters before plain values that are given by position to what the language provides."""
     if not isinstance(node.func, ast.Name) or node.func.id not in NAMES:
         return
-    reference = snapshot.resolution.reference(node.func)
+    reference = snapshot.resolution.references.get(node.func)
     if reference is not None and reference.binding is not None:
         return
     parameters = NAMES[node.func.id].parameters

@@ -144,7 +144,7 @@ def declarations(project: Project, snapshot: Snapshot, line: int, column: int) -
     if module is None or found is None:
         return ()
     if isinstance(found.node, ast.Name):
-        reference = module.resolution.reference(found.node)
+        reference = module.resolution.references.get(found.node)
         binding = None if reference is None else reference.binding
         if binding is not None:
             symbol = symbol_of_binding(module, binding)
@@ -302,7 +302,7 @@ def rename(
     assert symbol is not None
     binding = symbol.binding
     names = (symbol.module or module).resolution
-    if name != found.name and binding is not None and name in names.bindings(binding.scope):
+    if name != found.name and binding is not None and name in binding.scope.bindings:
         raise RenameError(f"there is a `{name}` already in the same scope")
     related = family(project, symbol)
     if name != found.name:

@@ -75,7 +75,7 @@ def inline_variable(snapshot: Snapshot, line: int, column: int) -> Refactoring |
     resolution = snapshot.resolution
     if resolution.reflective or resolution.wildcard:
         return None
-    reference = resolution.reference(node)
+    reference = resolution.references.get(node)
     binding = None if reference is None else reference.binding
     if binding is None or len(binding.sites) != 1:
         return None
@@ -135,7 +135,7 @@ def _own_names(snapshot: Snapshot, expression: ast.AST) -> bool:
         if isinstance(node, ast.NamedExpr):
             return True
         if isinstance(node, ast.Name) and node.id == "self":
-            reference = snapshot.resolution.reference(node)
+            reference = snapshot.resolution.references.get(node)
             if reference is None or reference.binding is None:
                 return True
     return False

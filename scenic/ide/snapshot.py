@@ -7,13 +7,11 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator
 from typing import Any, Final, TypeVar
 
-from scenic.compiler.check import check_again
-from scenic.compiler.compile import Checked
+from scenic.compiler.check import check_tree
 from scenic.compiler.generated import WORDS
-from scenic.compiler.incremental import Revision, revise
 from scenic.compiler.lexer import lex
-from scenic.compiler.parser import DEEPEST, ParseResult, recursion_limit
-from scenic.compiler.resolver import bind_again
+from scenic.compiler.parser import DEEPEST, ParseResult, parse_lexed, recursion_limit
+from scenic.compiler.resolver import bind
 from scenic.compiler.scopes import Binding, BindingKind, Resolution, Scope, ScopeKind
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.compiler.tokens import NAME, Tokens
@@ -41,11 +39,8 @@ class Snapshot:
     as in `ast`. Tokens are known by their index in `tokens`.
     """
 
-    def __init__(self, text: str, filename: str, *, before: "Snapshot | None" = None) -> None:
+    def __init__(self, text: str, filename: str) -> None:
         self.source = Source(text, filename)
-        self._before = None if before is None else before._latest()
-        self._before_names = None if before is None else before._latest_names()
-        self._checked: Checked | None = None if before is None else before._checked
         self._lock = threading.Lock()
         self._making: dict[str, threading.RLock] = {}
         self._known: dict[str, Any] = {}
@@ -63,17 +58,12 @@ class Snapshot:
     @property
     def tokens(self) -> Tokens:
         """The tokens of the text."""
-        return self.revision.tokens
-
-    @property
-    def revision(self) -> Revision:
-        """The text as it was lexed and parsed, for the next version to take over what stays the same."""
-        return self._once("revision", self._revise)
+        return self._once("tokens", lambda: lex(self.text, WORDS))
 
     @property
     def parsed(self) -> ParseResult:
         """The tree and what is wrong with the syntax."""
-        return self.revision.result
+        return self._once("parsed", lambda: parse_lexed(self.tokens, filename=self.filename))
 
     @property
     def tree(self) -> ast.Module:
@@ -165,7 +155,7 @@ class Snapshot:
         found = resolution.module
         path = self.path_to(line, column)
         for node in [*path, *self._blocks_after(path[-1], line, column)]:
-            found = resolution.scope(node) or found
+            found = resolution.scopes.get(node) or found
         if found.kind is ScopeKind.CLASS and _PROPERTY.match(self.source.line(line)[:column]):
             # A property whose default is still to be written is not in the tree yet.
             return _scope_of_default(found)
@@ -202,40 +192,19 @@ class Snapshot:
     def check(
         self, surroundings_of: SurroundingsOf | None, go_on: Callable[[], None] = lambda: None
     ) -> tuple[Diagnostic, ...]:
-        """The findings of the static check. Looks only at parts that may differ from the version that was checked before."""
-        checked = check_again(
+        """The findings of the static check; ``go_on`` is called now and then, and may raise to stop."""
+        return check_tree(
             self.parsed,
             self.source,
             resolution=self.resolution,
             surroundings_of=surroundings_of,
-            before=self._checked,
             go_on=go_on,
             typing=True,
         )
-        self._checked = checked
-        return checked.diagnostics
-
-    def _latest(self) -> Revision | None:
-        """The revision, if it has been made; otherwise the one before it."""
-        revision: Revision | None = self._known.get("revision", self._before)
-        return revision
-
-    def _latest_names(self) -> Resolution | None:
-        """The names, if they have been bound; otherwise those of the version before."""
-        resolution: Resolution | None = self._known.get("resolution", self._before_names)
-        return resolution
-
-    def _revise(self) -> Revision:
-        revision = revise(self.source.text, self._before, filename=self.filename)
-        self._before = None
-        return revision
 
     def _resolve(self) -> Resolution:
-        tree = self.tree
         with recursion_limit(DEEPEST):
-            resolution = bind_again(tree, self._before_names)
-        self._before_names = None
-        return resolution
+            return bind(self.tree)
 
 
 class PythonSnapshot(Snapshot):
@@ -244,11 +213,6 @@ class PythonSnapshot(Snapshot):
     def __init__(self, source: Source, tree: ast.Module) -> None:
         super().__init__(source.text, source.filename)
         self._tree = tree
-
-    @property
-    def tokens(self) -> Tokens:
-        """The tokens of the text."""
-        return self._once("tokens", lambda: lex(self.text, WORDS))
 
     @property
     def tree(self) -> ast.Module:

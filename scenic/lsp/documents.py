@@ -61,11 +61,11 @@ class Document:
             return False
 
 
-def snapshot_of(text: str, uri: str, before: Snapshot | None = None) -> Snapshot:
-    """The snapshot of a text; ``before`` is that of the version before it, of which most may still hold."""
+def snapshot_of(text: str, uri: str) -> Snapshot:
+    """The snapshot of a text."""
     # What is no file gets a name that is none either, and that no file has.
     path = to_path(uri) or os.path.abspath(os.sep + re.sub(r"[/\\]", "_", uri))
-    return Snapshot(text, path, before=before)
+    return Snapshot(text, path)
 
 
 def changed(text: str, changes: Sequence[types.TextDocumentContentChangeEvent], encoding: Encoding) -> str:

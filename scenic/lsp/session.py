@@ -148,8 +148,7 @@ class Session:
     def open(self, uri: str, language: str, version: int, text: str) -> Document:
         """Take a document, or a new version of it, into the keeping of the server."""
         self.generation += 1
-        before = self.documents.get(uri)
-        snapshot = snapshot_of(text, uri, None if before is None else before.snapshot)
+        snapshot = snapshot_of(text, uri)
         document = Document(uri, language, version, text, self.encoding, snapshot)
         self.documents[uri] = document
         return document

@@ -222,7 +222,7 @@ def _own(module: Module, symbol: Symbol, node: ast.ClassDef) -> list[Member]:
                     symbol=place,
                 )
             )
-    scope = module.resolution.scope(node)
+    scope = module.resolution.scopes.get(node)
     for binding in () if scope is None else scope.bindings.values():
         inner = symbol_of_binding(module, binding)
         kind = SymbolKind.METHOD if inner.kind is SymbolKind.METHOD else SymbolKind.ATTRIBUTE
@@ -302,7 +302,7 @@ def _meaning(project: Project, module: Module, node: ast.expr, depth: int) -> Sy
 
 
 def _of_name(project: Project, module: Module, node: ast.Name) -> Symbol | None:
-    reference = module.resolution.reference(node)
+    reference = module.resolution.references.get(node)
     binding = None if reference is None else reference.binding
     if binding is not None:
         exported = project.own(module, binding)
@@ -321,7 +321,7 @@ def module_behind(project: Project, module: Module, node: ast.expr) -> Found | N
         node = node.value
     if not isinstance(node, ast.Name):
         return None
-    reference = module.resolution.reference(node)
+    reference = module.resolution.references.get(node)
     binding = None if reference is None else reference.binding
     if binding is None:
         exported = project.exports(module).names.get(node.id)
@@ -488,7 +488,7 @@ def _annotated(project: Project, module: Module, annotation: ast.expr, depth: in
 
 
 def _value_of_name(project: Project, module: Module, node: ast.Name, depth: int) -> _Value | None:
-    reference = module.resolution.reference(node)
+    reference = module.resolution.references.get(node)
     if reference is None:
         return None
     binding = reference.binding
@@ -538,5 +538,5 @@ def _class_of_self(module: Module, scope: Scope, name: str) -> Symbol | None:
         first = [*args.posonlyargs, *args.args][:1] if args is not None else []
         if not first or first[0].arg != name:
             return None
-    binding = module.resolution.binding_at(owner.node)
+    binding = module.resolution.sites.get(owner.node)
     return None if binding is None else symbol_of_binding(module, binding)

@@ -8,8 +8,8 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.places import header_span, word_span
-from scenic.compiler.scopes import BindingKind, Resolution, Stretch
-from scenic.compiler.traversal import position, walk
+from scenic.compiler.scopes import BindingKind, Resolution
+from scenic.compiler.traversal import position
 from scenic.established import MODULES as ESTABLISHED
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
 from scenic.language.libraries import FAMILIES, LIBRARIES, how_to_get
@@ -261,14 +261,11 @@ class Imports:
         }
         if not imported:
             return
-        reads = (
-            read
-            for stretch in self._resolution.stretches
-            if not imported.isdisjoint(stretch.common("bases", _bases))
-            for read in _attributes(stretch)
-        )
-        for node, base in reads:
-            if base not in imported:
+        for node, _ in self._resolution.nodes(ast.Attribute):
+            base = node.value
+            while isinstance(base, ast.Attribute):
+                base = base.value
+            if not (isinstance(base, ast.Name) and base.id in imported and isinstance(node.ctx, ast.Load)):
                 continue
             home = self._module(node.value)
             if home is None or home.is_missing or home.kind is ModuleKind.NAMESPACE:
@@ -333,11 +330,9 @@ class Imports:
         """The beginning and the end of each ``try`` that catches errors."""
         return [
             (position(owner), (owner.end_lineno or 0, owner.end_col_offset or 0))
-            for stretch in self._resolution.stretches
-            if stretch.common("guarded", _has_guards)
-            for statement in stretch.statements
-            for owner in walk(statement)
-            if isinstance(owner, _GUARDS) and owner.handlers
+            for cls in _GUARDS
+            for owner, _ in self._resolution.nodes(cls)
+            if owner.handlers
         ]
 
     def _place(self, node: Any, name: str) -> Span:
@@ -352,14 +347,6 @@ class Imports:
 
     def _alias_place(self, alias: ast.alias) -> Span:
         return word_span(self._source, alias, alias.name)
-
-
-def _has_guards(stretch: Stretch) -> bool:
-    return any(
-        isinstance(owner, _GUARDS) and owner.handlers
-        for statement in stretch.statements
-        for owner in walk(statement)
-    )
 
 
 def _judgement(found: Found, node: Any, level: int) -> tuple[Severity | None, str | None]:
@@ -392,17 +379,3 @@ def _shown(folder: str, own: str) -> str:
     except ValueError:  # on another drive
         return folder
     return folder if relative.startswith(os.path.join(os.pardir, os.pardir)) else relative
-
-
-def _attributes(stretch: Stretch) -> Iterator[tuple[ast.Attribute, str]]:
-    """The attributes that are read, however deep, of what names mean; with the names."""
-    for node, _ in stretch.nodes(ast.Attribute):
-        base = node.value
-        while isinstance(base, ast.Attribute):
-            base = base.value
-        if isinstance(base, ast.Name) and isinstance(node.ctx, ast.Load):
-            yield node, base.id
-
-
-def _bases(stretch: Stretch) -> frozenset[str]:
-    return frozenset(name for _, name in _attributes(stretch))

@@ -132,7 +132,7 @@ def _chain(node: ast.expr, resolution: Resolution, brought: Collection[str]) -> 
         node = value
     if node.id not in brought and node.id != "ego":
         # A name of the program means the same everywhere if the module binds it just once, and no function does.
-        reference = resolution.reference(node)
+        reference = resolution.references.get(node)
         binding = None if reference is None else reference.binding
         if binding is None or len(binding.sites) != 1:
             return None

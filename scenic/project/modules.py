@@ -151,7 +151,7 @@ class Module:
         binding = self.resolution.names.get("__all__")
         if binding is None:
             return None
-        for reference in self.resolution.uses("__all__"):
+        for reference in self.resolution.uses.get("__all__", ()):
             if isinstance(reference.node.ctx, ast.Load) and reference.scope.kind is ScopeKind.MODULE:
                 return None  # It may be changed in place: `__all__.append("name")`.
         names: set[str] = set()
@@ -183,7 +183,7 @@ class Module:
         """Return whether running the module may set the ego (that of a scenario in it does not count)."""
         return any(
             not isinstance(reference.node.ctx, ast.Load) and not _in_scenario(reference.scope)
-            for reference in self.resolution.uses("ego")
+            for reference in self.resolution.uses.get("ego", ())
         )
 
 

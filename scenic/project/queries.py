@@ -77,7 +77,7 @@ def occurrences(module: Module) -> Sequence[Occurrence]:
     resolution = module.resolution
 
     def find() -> tuple[Occurrence, ...]:
-        return _in_order(_occurrences(module, module.tree, resolution.references, dict(resolution.sites())))
+        return _in_order(_occurrences(module, module.tree, resolution.references, resolution.sites))
 
     return module.derived("occurrences", find)
 
@@ -167,8 +167,8 @@ def occurrence_at(module: Module, line: int, column: int) -> Occurrence | None:
         resolution = module.resolution
         parts = [each for each in module.tree.body if _first_line(each) <= line <= (each.end_lineno or line)]
         nodes = [node for part in parts for node in walk(part)]
-        bindings = {node: found for node in nodes if (found := resolution.binding_at(node)) is not None}
-        names = {node for node in nodes if resolution.reference(node) is not None}
+        bindings = {node: found for node in nodes if (found := resolution.sites.get(node)) is not None}
+        names = {node for node in nodes if node in resolution.references}
         around = ast.Module(body=parts, type_ignores=[])
         every = _in_order(_occurrences(module, around, names, bindings))
     index = bisect_right(every, (line, column), key=lambda each: (each.span.line, each.span.column)) - 1
@@ -227,7 +227,7 @@ def symbol_of(project: Project, module: Module, occurrence: Occurrence) -> Symbo
 
 
 def _bound(project: Project, module: Module, node: ast.AST) -> Symbol | None:
-    binding = module.resolution.binding_at(node)
+    binding = module.resolution.sites.get(node)
     return None if binding is None else symbol_of_exported(project, Exported(binding.name, module, binding))
 
 
@@ -266,9 +266,9 @@ def _property(project: Project, module: Module, node: scenic.SpecifierPhrase) ->
 
 
 def _own_property(project: Project, module: Module, node: scenic.PropertyDef) -> Symbol | None:
-    scope = module.resolution.scope(node)
+    scope = module.resolution.scopes.get(node)
     owner = None if scope is None else scope.parent
-    binding = None if owner is None else module.resolution.binding_at(owner.node)
+    binding = None if owner is None else module.resolution.sites.get(owner.node)
     known = None if binding is None else class_of_symbol(project, symbol_of_binding(module, binding))
     member = None if known is None else known.member(node.name)
     return None if member is None else member.symbol
@@ -284,7 +284,7 @@ def _keyword(project: Project, module: Module, node: ast.keyword) -> Symbol | No
         callee = None if initial is None else initial.symbol
     if callee is None or callee.module is None or not isinstance(callee.node, DEFINITIONS):
         return None
-    scope: Scope | None = callee.module.resolution.scope(callee.node)
+    scope: Scope | None = callee.module.resolution.scopes.get(callee.node)
     binding = None if scope is None else scope.bindings.get(node.arg or "")
     return None if binding is None else symbol_of_binding(callee.module, binding)
 

@@ -11,9 +11,13 @@ from scenic.compiler.parser import parse
 from scenic.compiler.resolver import bind
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.source import Source
-from tests.compiler.test_incremental import TEXTS
 
 ROOT = Path(__file__).parents[2]
+TEXTS = [
+    text
+    for file in sorted([*ROOT.glob("tests/data/**/*.scenic"), *ROOT.glob("examples/**/*.scenic")])
+    if 200 < len(text := Source(file.read_text(encoding="utf-8"), "").text) < 6000
+]
 PROGRAMS = sorted(
     path for folder in ("examples", "tests/data", "benchmarks") for path in (ROOT / folder).rglob("*.scenic")
 )
@@ -101,7 +105,7 @@ def compiled(text: str, monkeypatch: pytest.MonkeyPatch) -> tuple[Diagnostic, ..
         patched.setattr(
             compiling,
             "suspects",
-            lambda names, *_, **__: [s for each in names.stretches for s in each.statements],
+            lambda tree, *_, **__: tree.body,
         )
         return check_text(text, filename="f")
 
@@ -123,7 +127,7 @@ def test_lines(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_harmless_statements_are_not_compiled(line: str) -> None:
     text = line.replace("\\n", "\n") + "\n"
     parsed = parse(text)
-    assert not suspects(bind(parsed.tree), Source(text, "f"), longest_line=parsed.longest_line)
+    assert not suspects(parsed.tree, bind(parsed.tree), Source(text, "f"), longest_line=parsed.longest_line)
 
 
 @pytest.mark.parametrize(

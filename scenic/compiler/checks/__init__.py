@@ -7,7 +7,7 @@ that no rule has to walk it again.
 
 import ast
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Final
 
 from scenic.compiler import tree as scenic
@@ -37,7 +37,6 @@ from scenic.compiler.checks import (
     values,
 )
 from scenic.compiler.checks.context import Context, NodeRule, ProgramRule
-from scenic.compiler.checks.pieces import Piece, PieceRule, piecewise
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.garbage import no_garbage_collection
 
@@ -63,37 +62,39 @@ _NODE_RULES: Final[tuple[tuple[type[ast.AST], NodeRule], ...]] = tuple(
 )
 
 
-def _nodes(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+def _nodes(context: Context) -> Iterator[Diagnostic]:
     """Yield the diagnostics of rules about single nodes."""
     for cls, rule in _NODE_RULES:
-        for node, scope in piece.nodes(cls):
+        for node, scope in context.nodes(cls):
             yield from rule(node, scope, context)
 
 
-def _misplaced(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+def _misplaced(context: Context) -> Iterator[Diagnostic]:
     """Yield the diagnostics of statements in the wrong place, and of statements that are not supported at all."""
-    misplaced = dict(placement.check_placement(piece, context))
+    misplaced = dict(placement.check_placement(context))
     yield from filter(None, misplaced.values())
-    yield from support.check_support(piece, context, misplaced)
+    yield from support.check_support(context, misplaced)
 
 
-_CHECKS: Final[tuple[PieceRule, ...]] = (
+_CHECKS: Final[tuple[ProgramRule, ...]] = (
+    names.check_reserved,
+    names.check_names,
     names.check_classes,
     _misplaced,
     declarations.check_declarations,
     making.check_monitors,
     meant_specifiers.check_meant_specifiers,
+    support.check_supported_names,
 )
-_LINTS: Final[tuple[PieceRule, ...]] = (
+_LINTS: Final[tuple[ProgramRule, ...]] = (
     _nodes,
     defaults.check_defaults,
     flow.check_flow,
     guards.check_guards,
     instances.check_instances,
-    uses.check_replaced,
-    uses.check_unused,
+    order.check_order,
+    uses.check_uses,
 )
-_PROGRAM_RULES: Final[tuple[ProgramRule, ...]] = (flow.check_end, order.check_order, uses.check_uses)
 
 MOST_OF_ONE_CODE: Final = 200
 """Largest number of findings of one kind that are reported."""
@@ -111,6 +112,7 @@ NOTED: Final = frozenset(
         ast.Return,
         ast.Subscript,
         ast.Try,
+        ast.TryStar,
         ast.UnaryOp,
         scenic.BehaviorDef,
         scenic.Model,
@@ -119,28 +121,23 @@ NOTED: Final = frozenset(
         scenic.Record,
         scenic.ScenarioDef,
         scenic.TerminateWhen,
+        scenic.TryInterrupt,
         *(cls for cls, _ in _NODE_RULES),
     }.union(declarations.NOTED, meant_specifiers.NOTED, names.NOTED, placement.NOTED, support.NOTED)
 )
 """The classes of nodes that rules look for, wherever in the tree they stand."""
 
 
-def check(
-    context: Context, *, provided: Collection[str], go_on: Callable[[], None] = lambda: None
-) -> tuple[Diagnostic, ...]:
-    """Findings about constructs that no program may contain, ordered by place. ``provided`` are the names in scope that nothing binds.
+def check(context: Context, go_on: Callable[[], None] = lambda: None) -> tuple[Diagnostic, ...]:
+    """Findings about constructs that no program may contain, ordered by place.
 
     ``go_on`` is called now and then, and may raise to stop.
     """
-
-    def findings() -> Iterator[Diagnostic]:
-        yield from names.check_reserved(context, context.resolution.reserved)
-        yield from names.check_names(context, provided)
-        yield from piecewise(context, "check", _CHECKS, go_on)
+    diagnostics: list[Diagnostic] = []
+    for rule in _CHECKS:
         go_on()
-        yield from support.check_supported_names(context)
-
-    return tuple(_capped(sorted(findings(), key=_order)))
+        diagnostics += rule(context)
+    return tuple(_capped(sorted(diagnostics, key=_order)))
 
 
 def lint(context: Context, go_on: Callable[[], None] = lambda: None) -> tuple[Diagnostic, ...]:
@@ -149,19 +146,17 @@ def lint(context: Context, go_on: Callable[[], None] = lambda: None) -> tuple[Di
     ``go_on`` is called now and then, and may raise to stop.
     """
     surroundings = context.surroundings
-
-    def findings() -> Iterator[Diagnostic]:
-        yield from piecewise(context, "lint", _LINTS, go_on)
-        wrong = () if surroundings is None else tuple(surroundings.findings())
-        yield from wrong
-        places = {item.span for item in wrong}
-        for program_rule in _PROGRAM_RULES:
+    with no_garbage_collection():
+        missing = () if surroundings is None else tuple(surroundings.findings())
+        places = {item.span for item in missing}
+        diagnostics = list(missing)
+        for rule in _LINTS:
             go_on()
             # A name that cannot be imported is not unused as well.
-            yield from (item for item in program_rule(context) if item.span not in places)
-
-    with no_garbage_collection():
-        return tuple(_capped(sorted(dict.fromkeys(findings()), key=_order)))
+            diagnostics += (
+                item for item in rule(context) if rule is not uses.check_uses or item.span not in places
+            )
+        return tuple(_capped(sorted(dict.fromkeys(diagnostics), key=_order)))
 
 
 def _capped(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:

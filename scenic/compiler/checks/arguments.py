@@ -266,12 +266,11 @@ def _uncalled(value: ast.expr | None, context: Context) -> Iterator[Diagnostic]:
 
 def _returns(function: ast.FunctionDef, context: Context) -> bool:
     """Return whether calls of a function may give anything else than ``None``."""
-    scope = context.resolution.scope(function)
-    return any(
-        where is scope and (cls is not ast.Return or node.value is not None)
-        for stretch in context.resolution.around(function)
+    scope = context.resolution.scopes.get(function)
+    return scope is not None and any(
+        cls is not ast.Return or node.value is not None
         for cls in (ast.Return, ast.Yield, ast.YieldFrom)
-        for node, where in stretch.nodes(cls)
+        for node in context.resolution.nodes_in(scope, cls)
     )
 
 

@@ -1,6 +1,7 @@
 """The input of every rule: the program, what its names mean, and the making of diagnostics."""
 
 import ast
+from bisect import bisect_left, bisect_right
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cached_property
@@ -10,21 +11,12 @@ from weakref import proxy
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import Block, blocks
 from scenic.compiler.checks.classes import Classes
-from scenic.compiler.checks.kept import Kept, Moves, Said, changed_names
 from scenic.compiler.checks.meanings import ProgramMeanings
 from scenic.compiler.checks.places import header_span, word_span
 from scenic.compiler.kinds import Kind, KindOf
-from scenic.compiler.scopes import (
-    PROVIDED,
-    Binding,
-    BindingKind,
-    Resolution,
-    Scope,
-    ScopeKind,
-    Stretch,
-)
+from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Resolution, Scope, ScopeKind
 from scenic.compiler.surroundings import Foreign, Surroundings
-from scenic.compiler.traversal import position
+from scenic.compiler.traversal import first_position, position
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label, Severity
 from scenic.language.members import Member
 from scenic.language.source import Source
@@ -72,7 +64,6 @@ class Context:
         source: Source,
         resolution: Resolution,
         surroundings: Surroundings | None = None,
-        before: Kept | None = None,
         *,
         typing: bool = False,
     ) -> None:
@@ -82,19 +73,9 @@ class Context:
         self.surroundings = surroundings
         self.typing: Final = typing
         """True if somebody is writing the program, in an editor."""
-        if before is None:
-            # All of them will be asked for: they are put together at once.
-            _ = resolution.references
         self.brought: Final[Collection[str]] = () if surroundings is None else surroundings.names
         """The names that star imports and the model are known to bring."""
-        self.before: Final = before
-        self.said: Final[dict[tuple[str, tuple[object, ...]], Said]] = {}
-        """Findings of each group of rules about each stretch."""
-        self.asked: Final[set[str]] = set()
-        """The facts about the whole program that rules have read."""
-        self._facts: Final[dict[str, Any]] = {}
         self._foreign: Final[dict[ast.expr, Foreign | None]] = {}
-        self._cut: Final[dict[Stretch, frozenset[ast.AST]]] = {}
 
     # What the program is
 
@@ -126,125 +107,76 @@ class Context:
         """The declared method of a value that a call of an attribute calls."""
         return self._kinds.method(function)
 
-    # What has changed since the version before
+    # Facts about the whole program
 
     @cached_property
-    def kept(self) -> Kept:
-        """The findings, kept for the next version."""
-        return Kept(self._state, self.resolution.names, self.resolution.stretches, self.said)
+    def broken(self) -> bool:
+        """Return whether parts could not be parsed: then nothing can be reported as missing or unused."""
+        return bool(self.nodes(scenic.ErrorStatement))
 
     @cached_property
-    def _state(self) -> tuple[object, ...]:
-        """The state, beside the statements themselves, on which every rule may depend."""
-        resolution, surroundings = self.resolution, self.surroundings
-        imports = [key for stretch in resolution.stretches for key in stretch.importing]
-        modules = None if surroundings is None else surroundings.state
-        return (
-            self.typing,
-            self.source.filename,
-            resolution.wildcard,
-            resolution.reflective,
-            modules,
-            *imports,
+    def attributes(self) -> frozenset[str]:
+        """The names of all attributes that the program reads or writes."""
+        return frozenset(node.attr for node, _ in self.nodes(ast.Attribute))
+
+    @cached_property
+    def stored_attributes(self) -> frozenset[str]:
+        """The names of all attributes that the program writes."""
+        return frozenset(
+            node.attr for node, _ in self.nodes(ast.Attribute) if not isinstance(node.ctx, ast.Load)
         )
 
     @cached_property
-    def _changed(self) -> frozenset[str] | None:
-        """The names of the module that no longer mean the same; ``None`` if anything may have changed."""
-        before = self.before
-        if (
-            before is None
-            or len(before.state) != len(self._state)
-            or not all(
-                one is other or one == other for one, other in zip(before.state, self._state, strict=True)
-            )
-        ):
-            return None
-        return changed_names(before.names, self.resolution.names, self.resolution.stretches)
-
-    def is_unchanged(self, stretch: Stretch) -> bool:
-        """Return whether all that a stretch that stood in the version before may depend on is as it was, but for `fact`."""
-        return self._changed is not None and self._changed.isdisjoint(stretch.used)
-
-    @cached_property
-    def moves(self) -> Moves:
-        """A map from the statements of the previous version to their places in this version."""
-        return Moves(() if self.before is None else self.before.stretches, self.resolution.stretches)
-
-    def follows_error(self, stretch: Stretch) -> bool:
-        """Return whether the last thing before a stretch that could be a header could not be parsed."""
-        return stretch in self._after_errors
-
-    @cached_property
-    def _after_errors(self) -> frozenset[Stretch]:
-        found = set()
-        wrong = False
-        for stretch in self.resolution.stretches if self.nodes(scenic.ErrorStatement) else ():
-            if wrong:
-                found.add(stretch)
-            for statement in stretch.statements:
-                if isinstance(statement, scenic.ErrorStatement):
-                    wrong = True
-                elif isinstance(statement, HEADED):
-                    wrong = False
-        return frozenset(found)
-
-    # Facts about the whole program
-
-    def fact(self, name: str) -> Any:
-        """Return one of the facts below by its name, and record that it was read."""
-        self.asked.add(name)
-        if name not in self._facts:
-            self._facts[name] = _FACTS[name](self)
-        return self._facts[name]
-
-    @property
-    def broken(self) -> bool:
-        """Return whether parts could not be parsed: then nothing can be reported as missing or unused."""
-        found: bool = self.fact("broken")
-        return found
-
-    @property
-    def attributes(self) -> frozenset[str]:
-        """The names of all attributes that the program reads or writes."""
-        found: frozenset[str] = self.fact("attributes")
-        return found
-
-    @property
-    def stored_attributes(self) -> frozenset[str]:
-        """The names of all attributes that the program writes."""
-        found: frozenset[str] = self.fact("stored attributes")
-        return found
-
-    @property
     def grown(self) -> frozenset[str]:
         """The names of lists and dictionaries whose elements the program may change."""
-        found: frozenset[str] = self.fact("grown")
-        return found
+        called = (node.value for node, _ in self.nodes(ast.Attribute) if node.attr in _GROWING)
+        stored = (node.value for node, _ in self.nodes(ast.Subscript) if not isinstance(node.ctx, ast.Load))
+        return frozenset(value.id for value in (*called, *stored) if isinstance(value, ast.Name))
 
-    @property
+    @cached_property
     def given(self) -> frozenset[str]:
         """The properties that the program gives with `with`."""
-        found: frozenset[str] = self.fact("given")
-        return found
+        return frozenset(node.property for node, _ in self.nodes(scenic.SpecifierPhrase))
 
-    @property
+    @cached_property
     def parameters(self) -> frozenset[str]:
         """The names of the global parameters that the program sets."""
-        found: frozenset[str] = self.fact("parameters")
-        return found
+        return frozenset(item.name for node, _ in self.nodes(scenic.Param) for item in node.items)
 
-    @property
+    @cached_property
     def owners(self) -> Mapping[str, int]:
         """Numbers of classes of the program that define an attribute or method of each name."""
-        found: Mapping[str, int] = self.fact("owners")
-        return found
+        classes = (scope for scope in self.resolution.scopes.values() if scope.kind is ScopeKind.CLASS)
+        return Counter(name for scope in classes for name in scope.bindings)
 
-    @property
+    @cached_property
     def class_names(self) -> frozenset[str]:
         """The names of the classes that are defined at the top level."""
-        found: frozenset[str] = self.fact("class names")
-        return found
+        names = self.resolution.names
+        return frozenset(name for name, binding in names.items() if BindingKind.CLASS in binding.kinds)
+
+    @cached_property
+    def ego_value(self) -> ast.expr | None:
+        """The value of the ego, if the program sets it just once."""
+        uses = self.resolution.uses.get("ego", ())
+        stores = [use.node for use in uses if isinstance(use.node.ctx, ast.Store)]
+        return self.assigned.get(stores[0]) if len(stores) == 1 else None
+
+    @cached_property
+    def ego_members(self) -> frozenset[str] | None:
+        """All attributes and methods of the ego, if the program sets it just once and makes it there."""
+        value = self.ego_value
+        return self.meanings.members(value.cls) if isinstance(value, scenic.New) else None
+
+    @cached_property
+    def unresolved(self) -> frozenset[str]:
+        """The names that are read and mean nothing that is known."""
+        names = self.resolution.names
+        return frozenset(
+            name
+            for name in self.resolution.uses
+            if name not in names and name not in PROVIDED and name not in self.brought
+        )
 
     # What its names mean
 
@@ -253,21 +185,31 @@ class Context:
         return self.resolution.nodes(cls)
 
     def nodes_around(self, node: ast.AST, cls: type[ast.AST]) -> Iterator[Any]:
-        """The nodes of a class that may stand around or in a node: those near it, and maybe others."""
-        return (found for stretch in self.resolution.around(node) for found, _ in stretch.nodes(cls))
+        """The nodes of a class in the statement of the top level that a node stands in."""
+        nodes, starts = self.nodes(cls), self._starts
+        index = bisect_right(starts, position(node))
+        begin = bisect_left(nodes, starts[index - 1], key=_position_of_noted) if index else 0
+        for each, _ in nodes[begin:]:
+            if index < len(starts) and position(each) >= starts[index]:
+                return
+            yield each
+
+    @cached_property
+    def _starts(self) -> list[tuple[int, int]]:
+        """The places at which the statements of the top level begin."""
+        return [first_position(each) for each in self.tree.body]
 
     def is_cut(self, node: ast.AST) -> bool:
         """Return whether a comma separates an object from the rest of its last operand, which SC311 reports."""
-        for stretch in self.resolution.around(node):
-            if stretch not in self._cut:
-                self._cut[stretch] = frozenset(
-                    each.value.elts[0]
-                    for each, _ in stretch.nodes(ast.Assign)
-                    if isinstance(each.value, ast.Tuple) and each.value.elts
-                )
-            if node in self._cut[stretch]:
-                return True
-        return False
+        return node in self._cut
+
+    @cached_property
+    def _cut(self) -> frozenset[ast.AST]:
+        return frozenset(
+            each.value.elts[0]
+            for each, _ in self.nodes(ast.Assign)
+            if isinstance(each.value, ast.Tuple) and each.value.elts
+        )
 
     @cached_property
     def _last_wildcard(self) -> tuple[int, int]:
@@ -281,6 +223,11 @@ class Context:
     def binding(self, name: ast.Name) -> Binding | None:
         """The meaning of a name of the program, as far as the text shows it."""
         return self.resolution.binding(name)
+
+    def is_unbound(self, name: ast.Name) -> bool:
+        """Return whether the text binds a name of the program nowhere in reach."""
+        reference = self.resolution.references.get(name)
+        return reference is not None and reference.binding is None
 
     def definition(self, name: ast.expr | None) -> Definition | None:
         """The one definition that an expression can only mean; ``None`` if there may be others, or decorators."""
@@ -312,7 +259,7 @@ class Context:
     def _foreign_of(self, name: ast.expr, surroundings: Surroundings) -> Foreign | None:
         if isinstance(name, ast.Attribute):
             return surroundings.attribute(name)
-        reference = self.resolution.reference(name) if isinstance(name, ast.Name) else None
+        reference = self.resolution.references.get(name) if isinstance(name, ast.Name) else None
         if reference is None:
             return None
         binding = reference.binding
@@ -330,7 +277,7 @@ class Context:
         """The kind of the value that another module defines under a name, in the word of the declared type."""
         if self.surroundings is None or not isinstance(name, ast.Name) or self.resolution.reflective:
             return None
-        reference = self.resolution.reference(name)
+        reference = self.resolution.references.get(name)
         if reference is None or reference.binding is not None or self.resolution.wildcard:
             return None
         return self.surroundings.kind_of(name.id) if name.id in self.brought else None
@@ -339,7 +286,7 @@ class Context:
         """The name that an expression is, if it means what the language provides under that name."""
         if not isinstance(name, ast.Name) or self.resolution.wildcard:
             return None
-        reference = self.resolution.reference(name)
+        reference = self.resolution.references.get(name)
         own = reference is not None and reference.binding is None and name.id not in self.brought
         return name.id if own else None
 
@@ -376,20 +323,17 @@ class Context:
             for alias in statement.names
         }
 
-    @property
-    def unresolved(self) -> frozenset[str]:
-        """The names that are read and mean nothing that is known."""
-        found: frozenset[str] = self.fact("unresolved")
-        return found
+    @cached_property
+    def _mentions(self) -> Mapping[str, list[tuple[int, int]]]:
+        places: dict[str, list[tuple[int, int]]] = {}
+        for node in self.resolution.references:
+            assert isinstance(node, ast.Name)
+            places.setdefault(node.id, []).append(position(node))
+        return places
 
     def mentions(self, name: str) -> list[tuple[int, int]]:
         """Return the places where a name is read or written, in order."""
-        return sorted(
-            place
-            for stretch in self.resolution.stretches
-            if name in stretch.common("mentioned", _mentioned)
-            for place in stretch.mentions[name]
-        )
+        return sorted(self._mentions.get(name, ()))
 
     # What is said about it
 
@@ -457,117 +401,37 @@ class Context:
         return self.replacement(f"Write `{meant}`", place, meant, certain=certain and is_slip(name, meant))
 
 
-def _united(context: Context, key: str, find: Callable[[Stretch], frozenset[str]]) -> frozenset[str]:
-    """Return the union of the sets found in all stretches."""
-    return frozenset().union(*(each.common(key, find) for each in context.resolution.stretches))
-
-
-def _attributes(context: Context) -> frozenset[str]:
-    return _united(
-        context, "attributes", lambda own: frozenset(node.attr for node, _ in own.nodes(ast.Attribute))
-    )
-
-
-def _stored_attributes(context: Context) -> frozenset[str]:
-    return _united(
-        context,
-        "stored attributes",
-        lambda own: frozenset(
-            node.attr for node, _ in own.nodes(ast.Attribute) if not isinstance(node.ctx, ast.Load)
-        ),
-    )
-
-
 _GROWING: Final = frozenset(
     {"append", "clear", "extend", "insert", "pop", "popitem", "remove", "setdefault", "update"}
 )
 """Methods that change the elements of a list or dictionary."""
 
 
-def _grown(context: Context) -> frozenset[str]:
-    return _united(context, "grown", _grown_in)
-
-
-def _grown_in(own: Stretch) -> frozenset[str]:
-    called = (node.value for node, _ in own.nodes(ast.Attribute) if node.attr in _GROWING)
-    stored = (node.value for node, _ in own.nodes(ast.Subscript) if not isinstance(node.ctx, ast.Load))
-    return frozenset(value.id for value in (*called, *stored) if isinstance(value, ast.Name))
-
-
-def _given(context: Context) -> frozenset[str]:
-    return _united(
-        context,
-        "given",
-        lambda own: frozenset(node.property for node, _ in own.nodes(scenic.SpecifierPhrase)),
-    )
-
-
-def _parameters(context: Context) -> frozenset[str]:
-    return _united(
-        context,
-        "parameters",
-        lambda own: frozenset(item.name for node, _ in own.nodes(scenic.Param) for item in node.items),
-    )
-
-
-def _ego_value(context: Context) -> ast.expr | None:
-    """The value of the ego, if the program sets it just once."""
-    stores = [use.node for use in context.resolution.uses("ego") if isinstance(use.node.ctx, ast.Store)]
-    return context.assigned.get(stores[0]) if len(stores) == 1 else None
-
-
-def _ego_members(context: Context) -> frozenset[str] | None:
-    """All attributes and methods of the ego, if the program sets it just once and makes it there."""
-    value = _ego_value(context)
-    return context.meanings.members(value.cls) if isinstance(value, scenic.New) else None
-
-
-def _owners(context: Context) -> Mapping[str, int]:
-    found: Counter[str] = Counter()
-    for stretch in context.resolution.stretches:
-        found.update(stretch.common("owners", _owners_in))
-    return found
-
-
-def _owners_in(stretch: Stretch) -> Counter[str]:
-    classes = (scope for scope in stretch.scopes.values() if scope.kind is ScopeKind.CLASS)
-    return Counter(name for scope in classes for name in scope.bindings)
-
-
-def _unresolved(context: Context) -> frozenset[str]:
-    resolution = context.resolution
-    return frozenset(
-        name
-        for name in resolution.used
-        if name not in resolution.names and name not in PROVIDED and name not in context.brought
-    )
+def _position_of_noted(noted: tuple[ast.AST, Scope]) -> tuple[int, int]:
+    return position(noted[0])
 
 
 class Assigned:
     """The values of names in targets of assignments, by the nodes of the names."""
 
     def __init__(self, resolution: Resolution) -> None:
-        self._resolution = resolution
-        self._known: dict[Stretch, Mapping[ast.AST, tuple[ast.expr, bool]]] = {}
+        values: dict[ast.AST, tuple[ast.expr, bool]] = {}
+        for node, _ in resolution.nodes(ast.Assign):
+            for target in node.targets:
+                values.update(_parts(target, node.value))
+        for node, _ in resolution.nodes(ast.AnnAssign):
+            if isinstance(node.target, ast.Name) and node.value is not None:
+                values[node.target] = (node.value, True)
+        self._values = values
 
     def get(self, site: ast.AST) -> ast.expr | None:
         """The value that is assigned to a name there, which is a whole target."""
-        found = self._found(site)
-        return found[0] if found is not None and found[1] else None
+        value, whole = self._values.get(site, (None, False))
+        return value if whole else None
 
     def part(self, site: ast.AST) -> ast.expr | None:
         """The value that is assigned to a name there, also as a part of a tuple."""
-        found = self._found(site)
-        return None if found is None else found[0]
-
-    def _found(self, site: ast.AST) -> tuple[ast.expr, bool] | None:
-        for stretch in self._resolution.around(site):
-            if stretch not in self._known:
-                self._known[stretch] = _assigned_in(stretch)
-            value = self._known[stretch].get(site)
-            if value is not None:
-                return value
-        return None
+        return self._values.get(site, (None, False))[0]
 
 
 def _parts(
@@ -583,46 +447,8 @@ def _parts(
                 yield from _parts(part, of, whole=False)
 
 
-def _assigned_in(stretch: Stretch) -> Mapping[ast.AST, tuple[ast.expr, bool]]:
-    found: dict[ast.AST, tuple[ast.expr, bool]] = {}
-    for node, _ in stretch.nodes(ast.Assign):
-        for target in node.targets:
-            found.update(_parts(target, node.value))
-    for node, _ in stretch.nodes(ast.AnnAssign):
-        if isinstance(node.target, ast.Name) and node.value is not None:
-            found[node.target] = (node.value, True)
-    return found
-
-
-def _class_names(context: Context) -> frozenset[str]:
-    return _united(
-        context,
-        "class names",
-        lambda own: frozenset(name for name, kinds in own.kinds.items() if BindingKind.CLASS in kinds),
-    )
-
-
-_FACTS: Final[Mapping[str, Callable[[Context], Any]]] = {
-    "attributes": _attributes,
-    "broken": lambda context: bool(context.nodes(scenic.ErrorStatement)),
-    "class names": _class_names,
-    "ego members": _ego_members,
-    "ego value": _ego_value,
-    "given": _given,
-    "grown": _grown,
-    "owners": _owners,
-    "parameters": _parameters,
-    "stored attributes": _stored_attributes,
-    "unresolved": _unresolved,
-}
-
-
 NodeRule = Callable[[Any, Scope, Context], Iterator[Diagnostic]]
 """A rule about one node in a scope."""
 
 ProgramRule = Callable[[Context], Iterator[Diagnostic]]
 """A rule about a program as a whole."""
-
-
-def _mentioned(stretch: Stretch) -> frozenset[str]:
-    return frozenset(stretch.mentions)

@@ -6,7 +6,6 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context
-from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import ScopeKind
 from scenic.compiler.traversal import walk
@@ -28,14 +27,14 @@ NOTED: Final = (
 """The nodes that declare something."""
 
 
-def check_declarations(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+def check_declarations(context: Context) -> Iterator[Diagnostic]:
     """SC110, SC200, SC210, SC220 and SC300 in declarations and specifiers."""
-    for node, _ in piece.nodes(ast.ClassDef):
+    for node, _ in context.nodes(ast.ClassDef):
         definitions = [item for item in node.body if isinstance(item, scenic.PropertyDef)]
         yield from _duplicates(context, [(item.name, item) for item in definitions], "property")
-    for node, _ in piece.nodes(scenic.PropertyDef):
+    for node, _ in context.nodes(scenic.PropertyDef):
         yield from _property(context, node)
-    for node, _ in piece.nodes(scenic.Require):
+    for node, _ in context.nodes(scenic.Require):
         if node.probability is not None and not 0 <= node.probability <= 1:
             yield context.error(
                 "SC220",
@@ -43,10 +42,10 @@ def check_declarations(piece: Piece, context: Context) -> Iterator[Diagnostic]:
                 node,
                 "write for example `require[0.9] condition`",
             )
-    for node, _ in piece.nodes(scenic.New):
+    for node, _ in context.nodes(scenic.New):
         yield from _misspelt(context, node)
     for cls in (scenic.BehaviorDef, scenic.MonitorDef):
-        for node, _ in piece.nodes(cls):
+        for node, _ in context.nodes(cls):
             yield from _self(context, node)
 
 
@@ -88,9 +87,9 @@ def _property(context: Context, node: scenic.PropertyDef) -> Iterator[Diagnostic
                 word_span(context.source, node, attribute),
                 "use `additive`, `dynamic` or `final`",
             )
-    scope = context.resolution.scope(node)
+    scope = context.resolution.scopes.get(node)
     own = None if scope is None else scope.bindings.get("self")
-    if own is None or not context.resolution.is_read(own):
+    if own is None or own not in context.resolution.read:
         return
     read = {id(part.value) for part in walk(node.value) if isinstance(part, ast.Attribute)}
     for part in walk(node.value):

@@ -7,7 +7,6 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context
-from scenic.compiler.checks.pieces import Piece
 from scenic.language.diagnostics import Diagnostic
 
 __all__ = ["check_defaults"]
@@ -36,7 +35,7 @@ _KEPT: Final = re.compile(r"^_|cache|memo", re.IGNORECASE)
 """Names of parameters whose defaults are meant to last from call to call."""
 
 
-def check_defaults(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+def check_defaults(context: Context) -> Iterator[Diagnostic]:
     """SC309: a list, dictionary or set that is the default of a parameter and changed in the body."""
     changed: dict[ast.AST, ast.AST] | None = None
     for cls in (
@@ -46,7 +45,7 @@ def check_defaults(piece: Piece, context: Context) -> Iterator[Diagnostic]:
         scenic.MonitorDef,
         scenic.ScenarioDef,
     ):
-        for node, _ in piece.nodes(cls):
+        for node, _ in context.nodes(cls):
             args = node.args
             if args is None or not (args.defaults or args.kw_defaults):
                 continue
@@ -58,7 +57,7 @@ def check_defaults(piece: Piece, context: Context) -> Iterator[Diagnostic]:
             for arg, default in pairs:
                 if not _mutable(default, context):
                     continue
-                changed = _changed(piece, context) if changed is None else changed
+                changed = _changed(context) if changed is None else changed
                 if arg not in changed or _KEPT.search(arg.arg):
                     continue
                 yield context.warning(
@@ -76,7 +75,7 @@ def _mutable(default: ast.expr | None, context: Context) -> bool:
     return isinstance(default, ast.Dict | ast.List | ast.Set)
 
 
-def _changed(piece: Piece, context: Context) -> dict[ast.AST, ast.AST]:
+def _changed(context: Context) -> dict[ast.AST, ast.AST]:
     """The parameters, bound just once, whose values are changed, and where."""
     found: dict[ast.AST, ast.AST] = {}
 
@@ -85,10 +84,10 @@ def _changed(piece: Piece, context: Context) -> dict[ast.AST, ast.AST]:
         if binding is not None and len(binding.sites) == 1:
             found.setdefault(binding.sites[0], place)
 
-    for node, _ in piece.nodes(ast.Call):
+    for node, _ in context.nodes(ast.Call):
         if isinstance(node.func, ast.Attribute) and node.func.attr in _MUTATING:
             note(node.func.value, node)
-    for node, _ in piece.nodes(ast.Subscript):
+    for node, _ in context.nodes(ast.Subscript):
         if not isinstance(node.ctx, ast.Load):
             note(node.value, node)
     return found

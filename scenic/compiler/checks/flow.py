@@ -8,13 +8,12 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import DYNAMIC, Where
 from scenic.compiler.checks.conditions import truth
 from scenic.compiler.checks.context import Context
-from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import PROVIDED
 from scenic.compiler.traversal import parts
 from scenic.language.diagnostics import Diagnostic
 
-__all__ = ["check_end", "check_flow"]
+__all__ = ["check_flow"]
 
 _LASTING: Final = (
     scenic.Take,
@@ -43,15 +42,10 @@ _OWN_BODIES: Final = (
 """Nodes whose contents run at other times than what surrounds them."""
 
 
-def check_end(context: Context) -> Iterator[Diagnostic]:
-    """SC303: code of the module that is never reached."""
-    yield from _after_end(context.tree.body, Where(), context)
-
-
-def check_flow(piece: Piece, context: Context) -> Iterator[Diagnostic]:
-    """SC303: code of blocks that is never reached; SC304, SC305: no time passes."""
+def check_flow(context: Context) -> Iterator[Diagnostic]:
+    """SC303: code that is never reached; SC304, SC305: no time passes."""
     endless: set[ast.AST] = set()
-    for _, statements, where in piece.inner_blocks:
+    for _, statements, where in context.blocks:
         yield from _after_end(statements, where, context)
         if where.place in DYNAMIC and where.function is None:
             for statement in statements:
@@ -63,7 +57,7 @@ def check_flow(piece: Piece, context: Context) -> Iterator[Diagnostic]:
                 ):
                     endless.add(statement)
                     yield _endless(context, statement)
-    yield from _timeless(piece, context, endless)
+    yield from _timeless(context, endless)
 
 
 def _after_end(statements: Sequence[Any], where: Where, context: Context) -> Iterator[Diagnostic]:
@@ -165,9 +159,9 @@ def _endless(context: Context, loop: ast.While) -> Diagnostic:
     )
 
 
-def _timeless(piece: Piece, context: Context, endless: set[ast.AST]) -> Iterator[Diagnostic]:
+def _timeless(context: Context, endless: set[ast.AST]) -> Iterator[Diagnostic]:
     for cls in (scenic.BehaviorDef, scenic.MonitorDef, scenic.ScenarioDef):
-        for node, _ in piece.nodes(cls):
+        for node, _ in context.nodes(cls):
             body = node.compose if cls is scenic.ScenarioDef else node.body
             if (
                 not body

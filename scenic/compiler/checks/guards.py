@@ -6,17 +6,16 @@ from typing import Any
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context
-from scenic.compiler.checks.pieces import Piece
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.spelling import nearest
 
 __all__ = ["check_guards"]
 
 
-def check_guards(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+def check_guards(context: Context) -> Iterator[Diagnostic]:
     """SC310: ``precondtion: condition`` in a behavior or scenario."""
     for cls in (scenic.BehaviorDef, scenic.ScenarioDef):
-        for node, _ in piece.nodes(cls):
+        for node, _ in context.nodes(cls):
             body = node.body if isinstance(node, scenic.BehaviorDef) else node.setup or []
             for index, statement in enumerate(body):
                 yield from _misspelt(context, body, index, statement)
@@ -49,7 +48,7 @@ def _misspelt(context: Context, body: Sequence[Any], index: int, statement: Any)
 def _used(context: Context, target: ast.Name) -> bool:
     """Return whether a name is assigned elsewhere or read: then it is meant to be a variable."""
     binding = context.binding(target)
-    return binding is not None and (len(binding.sites) > 1 or context.resolution.is_read(binding))
+    return binding is not None and (len(binding.sites) > 1 or binding in context.resolution.read)
 
 
 def _is_alone(context: Context, statement: ast.stmt) -> bool:

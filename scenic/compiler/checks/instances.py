@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from typing import Final
 
 from scenic.compiler.checks.context import Context
-from scenic.compiler.checks.pieces import Piece
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
 from scenic.language.spans import Span
 
@@ -15,9 +14,9 @@ __all__ = ["check_instances", "missing_new"]
 _HOLDING: Final = frozenset({ast.Assign, ast.Expr})
 
 
-def check_instances(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+def check_instances(context: Context) -> Iterator[Diagnostic]:
     """SC111: ``ego = Car``, and a class that is a whole statement."""
-    for block in piece.blocks:
+    for block in context.blocks:
         for statement in block.statements:
             if statement.__class__ not in _HOLDING:
                 continue

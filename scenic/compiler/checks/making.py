@@ -7,7 +7,6 @@ from typing import Any, Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import DYNAMIC, where_of
 from scenic.compiler.checks.context import Context, NodeRule
-from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.scopes import Scope
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
@@ -106,9 +105,9 @@ def _statement(node: ast.Expr, scope: Scope, context: Context) -> Iterator[Diagn
     yield context.warning("SC312", f"this makes the {kind} `{name}`, and nothing runs it", node, advice)
 
 
-def check_monitors(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+def check_monitors(context: Context) -> Iterator[Diagnostic]:
     """SC114: ``require M()`` where ``M`` is a monitor."""
-    for node, _ in piece.nodes(scenic.Require):
+    for node, _ in context.nodes(scenic.Require):
         yield from _required(node, context)
 
 

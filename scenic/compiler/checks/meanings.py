@@ -7,7 +7,7 @@ from typing import Any, Final, Protocol
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.classes import Classes
-from scenic.compiler.scopes import Binding, Resolution, Scope
+from scenic.compiler.scopes import Binding, Resolution
 from scenic.compiler.surroundings import Foreign
 from scenic.language.properties import CLASSES, attributes_of, properties_of
 
@@ -55,7 +55,8 @@ class Program(Protocol):
     def foreign(self, name: ast.expr | None) -> Foreign | None: ...
     def kind_of_brought(self, name: ast.expr) -> str | None: ...
     def nodes_around(self, node: ast.AST, cls: type[ast.AST]) -> Iterator[Any]: ...
-    def fact(self, name: str) -> Any: ...
+    @property
+    def ego_members(self) -> frozenset[str] | None: ...
 
 
 class ProgramMeanings:
@@ -113,16 +114,14 @@ class ProgramMeanings:
     def returned(self, function: ast.expr) -> Sequence[ast.expr]:
         """The expressions of which a function of the program certainly returns one; none if it may return others."""
         definition = self._context.definition(function)
-        scope = None if definition is None else self._context.resolution.scope(definition)
+        scope = None if definition is None else self._context.resolution.scopes.get(definition)
         if not isinstance(definition, ast.FunctionDef) or scope is None:
             return ()
-        if any(where is scope for cls in _YIELDS for _, where in self._around(definition, cls)):
+        resolution = self._context.resolution
+        if any(resolution.nodes_in(scope, cls) for cls in _YIELDS):
             return ()
-        found = [node.value for node, where in self._around(definition, ast.Return) if where is scope]
+        found = [node.value for node in resolution.nodes_in(scope, ast.Return)]
         return () if None in found else found
-
-    def _around(self, node: ast.AST, cls: type[ast.AST]) -> Iterator[tuple[Any, Scope]]:
-        return (found for stretch in self._context.resolution.around(node) for found in stretch.nodes(cls))
 
     def kind_of_brought(self, name: ast.expr) -> str | None:
         """The kind of a value that a module defines, in the word of the declared type."""
@@ -165,7 +164,7 @@ class ProgramMeanings:
     def members_of(self, definition: ast.ClassDef, depth: int = 0) -> frozenset[str] | None:
         """All attributes and methods of the instances of a class that the program defines."""
         properties = self._context.classes.of(definition)
-        scope = self._context.resolution.scope(definition)
+        scope = self._context.resolution.scopes.get(definition)
         if properties is None or scope is None or definition.decorator_list:
             return None
         found = frozenset(properties).union(scope.bindings, attributes_of("Object"))
@@ -178,5 +177,4 @@ class ProgramMeanings:
 
     def ego_members(self) -> frozenset[str] | None:
         """All attributes and methods of the ego."""
-        found: frozenset[str] | None = self._context.fact("ego members")
-        return found
+        return self._context.ego_members

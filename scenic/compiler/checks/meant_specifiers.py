@@ -6,7 +6,6 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context
-from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
 from scenic.language.spans import Span
@@ -18,15 +17,15 @@ NOTED: Final = frozenset({ast.Assign, ast.Expr, scenic.Operation, scenic.Specifi
 _DIRECTIONS: Final = frozenset({"is ahead of", "is behind", "is left of", "is right of"})
 
 
-def check_meant_specifiers(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+def check_meant_specifiers(context: Context) -> Iterator[Diagnostic]:
     """SC111, SC113 and SC311: a specifier without `new`, without a comma before it, or missing after one."""
     for cls in (ast.Assign, ast.Expr):
-        for node, _ in piece.nodes(cls):
+        for node, _ in context.nodes(cls):
             targets = node.targets if cls is ast.Assign else ()
             yield from _dangling_comma(node.value, targets, context)
-    for node, _ in piece.nodes(scenic.Operation):
+    for node, _ in context.nodes(scenic.Operation):
         yield from _missing_new(node, context)
-    for node, _ in piece.nodes(scenic.SpecifierPhrase):
+    for node, _ in context.nodes(scenic.SpecifierPhrase):
         yield from _missing_comma(node, context)
 
 

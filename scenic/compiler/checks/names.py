@@ -3,13 +3,12 @@
 import ast
 import builtins
 import re
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.arguments import kind_of
 from scenic.compiler.checks.context import Context
-from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.unfinished import (
     alone_names,
@@ -20,7 +19,7 @@ from scenic.compiler.checks.unfinished import (
     text_before,
     unfinished,
 )
-from scenic.compiler.scopes import Binding, BindingKind, Reference, Scope, ScopeKind, Stretch
+from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Reference, ScopeKind
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.names import CONVERSIONS, IMPORTABLE, NAMES, TRACKED, NameKind
@@ -43,9 +42,9 @@ _NOT_SCENIC: Final = frozenset({NameKind.DISTRIBUTION, NameKind.FUNCTION, NameKi
 """Kinds of provided names that are not classes of objects, even if they are classes in Python."""
 
 
-def check_reserved(context: Context, reserved: Iterable[tuple[str, ast.AST]]) -> Iterator[Diagnostic]:
+def check_reserved(context: Context) -> Iterator[Diagnostic]:
     """SC200: bindings of names with a fixed meaning (section 1.3)."""
-    for name, site in reserved:
+    for name, site in context.resolution.reserved:
         if name in TRACKED:
             message = f"`{name}` can only be set by `{name} = value`"
             help_ = f"write `{name} = value` as a statement of its own, or use another name here"
@@ -58,7 +57,7 @@ def check_reserved(context: Context, reserved: Iterable[tuple[str, ast.AST]]) ->
         yield context.error("SC200", message, word_span(context.source, site, name), help_)
 
 
-def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnostic]:
+def check_names(context: Context) -> Iterator[Diagnostic]:
     """SC202: names that are read and that nothing binds; SC203 if they stand after ``new``."""
     resolution = context.resolution
     if resolution.wildcard:
@@ -71,12 +70,7 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
     slips: set[str] = set()
     importing = half_typed = False
     suggestions: dict[str, str | None] = {}
-    missing = [
-        reference
-        for name in resolution.used
-        if name not in resolution.names and name not in provided and name not in context.brought
-        for reference in resolution.uses(name)
-    ]
+    missing = [reference for name in context.unresolved for reference in resolution.uses[name]]
     for reference in sorted(missing, key=lambda each: position(each.node)):
         node = reference.node
         name = node.id
@@ -138,7 +132,7 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             own = resolution.names_in_reach(reference.scope).union(context.brought)
             suggestions[name] = (
                 begun_word(context, node)
-                or nearest(name, own | {word for word in provided if word[0] != "_"})
+                or nearest(name, own | {word for word in PROVIDED if word[0] != "_"})
                 or _only_one(each for each in own.union(TRACKED) if len(name) > 1 and each.startswith(name))
             )
         suggestion = suggestions.get(name)
@@ -157,7 +151,7 @@ def check_names(context: Context, provided: Collection[str]) -> Iterator[Diagnos
             if name in IMPORTABLE
             else "define it before it is used, or import it",
             # What the program does not define may be any of the many names that are always there.
-            fix=context.renaming(node, name, suggestion, certain=suggestion not in provided)
+            fix=context.renaming(node, name, suggestion, certain=suggestion not in PROVIDED)
             if suggestion
             else None,
         )
@@ -210,7 +204,7 @@ def _missing_imports(context: Context) -> list[Binding]:
         binding
         for binding in context.resolution.names.values()
         if binding.kinds <= {BindingKind.MODULE, BindingKind.IMPORTED}
-        and not context.resolution.is_read(binding)
+        and binding not in context.resolution.read
         and all(
             isinstance(site, ast.alias)
             and (context.surroundings is None or context.surroundings.is_missing(site))
@@ -221,23 +215,12 @@ def _missing_imports(context: Context) -> list[Binding]:
 
 def _bound_somewhere(name: str, context: Context) -> Binding | None:
     """The first binding of a name in any scope but the module's."""
-    for stretch in context.resolution.stretches:
-        if name in stretch.common("bound within", _bound_within):
-            scopes = [
-                scope for scope in stretch.scopes.values() if _is_told_of(scope) and name in scope.bindings
-            ]
-            return min(scopes, key=lambda each: position(each.node)).bindings[name]
-    return None
-
-
-def _bound_within(stretch: Stretch) -> frozenset[str]:
-    return frozenset(
-        name for scope in stretch.scopes.values() if _is_told_of(scope) for name in scope.bindings
-    )
-
-
-def _is_told_of(scope: Scope) -> bool:
-    return scope.kind not in (ScopeKind.MODULE, ScopeKind.PROPERTY)
+    scopes = [
+        scope
+        for scope in context.resolution.scopes.values()
+        if name in scope.bindings and scope.kind not in (ScopeKind.MODULE, ScopeKind.PROPERTY)
+    ]
+    return min(scopes, key=lambda each: position(each.node)).bindings[name] if scopes else None
 
 
 def _out_of_reach(context: Context, reference: Reference, binding: Binding) -> Diagnostic:
@@ -283,9 +266,9 @@ def _without_self(context: Context, reference: Reference) -> Diagnostic:
     )
 
 
-def check_classes(piece: Piece, context: Context) -> Iterator[Diagnostic]:
+def check_classes(context: Context) -> Iterator[Diagnostic]:
     """SC203: classes after ``new`` that are none."""
-    for node, _ in piece.nodes(scenic.New):
+    for node, _ in context.nodes(scenic.New):
         yield from _no_class(context, node.cls)
 
 
@@ -297,7 +280,7 @@ def _no_class(context: Context, name: ast.Name) -> Iterator[Diagnostic]:
         yield context.error("SC203", what, name, f"leave out `new`: write `{NAMES[provided].signature}`")
         return
     if provided is not None and provided in _BUILTINS and provided not in NAMES:
-        reference = context.resolution.reference(name)
+        reference = context.resolution.references.get(name)
         meant = None if reference is None else nearest(provided, _classes_in_reach(reference, context))
         # A warning: running the program raises the `TypeError` that scripts may expect.
         yield context.warning(

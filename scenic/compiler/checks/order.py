@@ -11,7 +11,7 @@ from scenic.compiler.checks.blocks import in_compose
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.unfinished import begun_names
-from scenic.compiler.scopes import PROVIDED, Scope, ScopeKind, Stretch
+from scenic.compiler.scopes import PROVIDED, Scope, ScopeKind
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.operators import OPERATORS
@@ -56,24 +56,13 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
     body = context.tree.body
     first: dict[str, int] = {}
     early: list[ast.Name] = []
-    defined: set[str] = set()
-    for stretch in resolution.stretches:
-        # What is bound here may be read here before; what is bound only further down is read too early for certain.
-        candidates = {
-            *stretch.common("read early", _read_early),
-            *(
-                (stretch.common("read at once", _read_at_once) & resolution.names.keys())
-                - stretch.kinds.keys()
-            ),
-        }
-        for name in candidates - defined - PROVIDED:
-            if name in context.brought:
-                continue
-            if name not in first:
-                first[name] = _statement(starts, resolution.names[name].first_site)
-            last_line = getattr(body[first[name]], "end_lineno", None) or 0
-            early += [node for node in _reads_at_once(stretch, name) if node.lineno <= last_line]
-        defined.update(stretch.kinds)
+    for name, references in resolution.uses.items():
+        if name not in resolution.names or name in PROVIDED or name in context.brought:
+            continue
+        reads = [each.node for each in references if each.scope is resolution.module]
+        first[name] = _statement(starts, resolution.names[name].first_site)
+        last_line = getattr(body[first[name]], "end_lineno", None) or 0
+        early += [node for node in reads if isinstance(node.ctx, ast.Load) and node.lineno <= last_line]
     reported: set[str] = set()
     half_typed = min(map(position, begun_names(context)), default=None)
     for node in sorted(early, key=position):
@@ -109,32 +98,6 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
         )
 
 
-def _reads_at_once(stretch: Stretch, name: str) -> Iterator[ast.Name]:
-    """The reads of a name that no scope within the module binds, outside of definitions."""
-    return (
-        each.node
-        for each in stretch.named.get(name, ())
-        if each.scope.kind is ScopeKind.MODULE and isinstance(each.node.ctx, ast.Load)
-    )
-
-
-def _read_at_once(stretch: Stretch) -> frozenset[str]:
-    return frozenset(name for name in stretch.read if any(_reads_at_once(stretch, name)))
-
-
-def _read_early(stretch: Stretch) -> frozenset[str]:
-    """The names bound in a stretch that are read there on the line where that first ends, or before."""
-    found = set()
-    starts = [position(each) for each in stretch.statements]
-    for name in stretch.common("read at once", _read_at_once) & stretch.kinds.keys():
-        site = min((site for _, site in stretch.bound[name]), key=position)
-        index = max(0, bisect_right(starts, position(site)) - 1)
-        last_line = stretch.statements[index].end_lineno or 0
-        if any(node.lineno <= last_line for node in _reads_at_once(stretch, name)):
-            found.add(name)
-    return frozenset(found)
-
-
 def _ego(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic]:
     """SC209: an explicit or implicit use of the ego before the first assignment to it."""
     if context.resolution.reflective or any("ego".startswith(name.id) for name in begun_names(context)):
@@ -145,7 +108,7 @@ def _ego(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic
     module = context.resolution.module
     assignments = [
         (reference.node, reference.scope)
-        for reference in context.resolution.uses("ego")
+        for reference in context.resolution.uses.get("ego", ())
         if not isinstance(reference.node.ctx, ast.Load)
     ]
     end = len(context.tree.body)
@@ -154,8 +117,7 @@ def _ego(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic
             # A Scenic module brings its ego along.
             end = min(end, _statement(starts, statement) - 1)
     own = [item for item in assignments if not _in_scenario(item[1])]
-    # All that is used after it has been set is right.
-    uses = list(_uses(context, min((node.lineno for node, _ in own), default=None)))
+    uses = list(_uses(context))
     yield from _ego_of(context, module, context.tree.body, own, uses, end)
     scenarios = context.nodes(scenic.ScenarioDef)
     if own or end < len(context.tree.body):
@@ -221,24 +183,15 @@ def _in_scenario(scope: Scope) -> bool:
     return any(outer.kind in own for outer in scope.ancestors())
 
 
-def _uses(context: Context, last: int | None) -> Iterator[tuple[ast.AST, Scope]]:
-    """Everything that reads the ego, and the scope in which it stands; of what is after the last line, maybe not all."""
-    for stretch in context.resolution.stretches:
-        if last is not None and stretch.lines and stretch.lines[0] > last:
-            return
-        if stretch.common("uses ego", lambda own: any(_uses_in(own))):
-            tolerated = context.resolution.tolerated
-            yield from ((node, scope) for node, scope in _uses_in(stretch) if node not in tolerated)
-
-
-def _uses_in(stretch: Stretch) -> Iterator[tuple[ast.AST, Scope]]:
-    for reference in stretch.named.get("ego", ()):
-        if isinstance(reference.node.ctx, ast.Load):
+def _uses(context: Context) -> Iterator[tuple[ast.AST, Scope]]:
+    """Yield every node that reads the ego, and the scope in which it stands."""
+    for reference in context.resolution.uses.get("ego", ()):
+        if isinstance(reference.node.ctx, ast.Load) and reference.node not in context.resolution.tolerated:
             yield reference.node, reference.scope
-    for node, scope in stretch.nodes(scenic.Operation):
+    for node, scope in context.nodes(scenic.Operation):
         if node.operator in _OPERATORS and _implied(node, OPERATORS[node.operator].operands):
             yield node, scope
-    for node, scope in stretch.nodes(scenic.SpecifierPhrase):
+    for node, scope in context.nodes(scenic.SpecifierPhrase):
         if node.specifier in _SPECIFIERS:
             declared = SPECIFIERS[node.specifier]
             if declared.reads_ego or _implied(node, declared.operands):

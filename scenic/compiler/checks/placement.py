@@ -7,7 +7,6 @@ from typing import Any, Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import DYNAMIC, Where, where_of
 from scenic.compiler.checks.context import HEADED, Context
-from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import TRACKED
@@ -22,15 +21,15 @@ NOTED: Final = (ast.Await, ast.Yield, ast.YieldFrom)
 """The expressions that cannot stand everywhere."""
 
 
-def check_placement(piece: Piece, context: Context) -> Iterator[tuple[ast.AST, Diagnostic | None]]:
+def check_placement(context: Context) -> Iterator[tuple[ast.AST, Diagnostic | None]]:
     """SC201: the misplaced nodes, each with its diagnostic.
 
     Nothing is said where that follows from another mistake.
     """
-    for number, (_, statements, where) in enumerate(piece.blocks):
+    for _, statements, where in context.blocks:
         if where.broken:
             continue
-        header_before = piece.follows_error and not number
+        header_before = False
         for statement in statements:
             if statement.__class__ is scenic.ErrorStatement:
                 header_before = True
@@ -43,15 +42,15 @@ def check_placement(piece: Piece, context: Context) -> Iterator[tuple[ast.AST, D
                     continue
                 for message, help_ in _problems(statement, where):
                     yield statement, context.error("SC201", message, statement, help_)
-    found = list(_misplaced_expressions(piece, context))
+    found = list(_misplaced_expressions(context))
     if found and not context.broken:
         yield from found
 
 
-def _misplaced_expressions(piece: Piece, context: Context) -> Iterator[tuple[ast.AST, Diagnostic]]:
-    later = _evaluated_later(piece)
+def _misplaced_expressions(context: Context) -> Iterator[tuple[ast.AST, Diagnostic]]:
+    later = _evaluated_later(context)
     for cls in NOTED:
-        for node, scope in piece.nodes(cls):
+        for node, scope in context.nodes(cls):
             if node in later:
                 message = "`await` cannot be used in what simulations ask for later, outside of the function"
                 yield node, context.error("SC201", message, node, "await the value before, and name it here")
@@ -60,14 +59,14 @@ def _misplaced_expressions(piece: Piece, context: Context) -> Iterator[tuple[ast
                 yield node, context.error("SC201", message, node, help_)
 
 
-def _evaluated_later(piece: Piece) -> set[ast.AST]:
+def _evaluated_later(context: Context) -> set[ast.AST]:
     """The expressions with ``await`` in conditions and values that become functions of their own."""
-    awaiting = {node for node, _ in piece.nodes(ast.Await)}
+    awaiting = {node for node, _ in context.nodes(ast.Await)}
     if not awaiting:
         return set()
     return {
         part
-        for block in piece.blocks
+        for block in context.blocks
         for statement in block.statements
         if isinstance(statement, _ASKED)
         for part in walk(statement)

@@ -55,7 +55,7 @@ def _is_placed_at_random(owner: ast.expr, context: Context, depth: int) -> bool:
     if isinstance(owner, ast.Attribute) and owner.attr == "position":
         owner = owner.value
     if context.provided(owner) == "ego":
-        made = context.fact("ego value")
+        made = context.ego_value
     else:
         made = _assigned(owner, context) if isinstance(owner, ast.Name) else None
     if not isinstance(made, scenic.New):

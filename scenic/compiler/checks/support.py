@@ -8,7 +8,6 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import in_compose
 from scenic.compiler.checks.context import Context
 from scenic.compiler.checks.instances import missing_new
-from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.scopes import BindingKind, Scope, ScopeKind
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic
@@ -45,16 +44,16 @@ def _checked() -> frozenset[type[ast.AST]]:
 _CHECKED: Final = _checked()
 
 
-def check_support(piece: Piece, context: Context, misplaced: Container[ast.AST]) -> Iterator[Diagnostic]:
+def check_support(context: Context, misplaced: Container[ast.AST]) -> Iterator[Diagnostic]:
     """SC900: every use of a feature that is declared but not available, but for statements that are misplaced anyway.
 
     What only simulations run is refused when one comes to it; so may be what stands in a block whose beginning is wrong.
     """
-    gaps = [node for node, _ in piece.nodes(scenic.ErrorStatement)]
+    gaps = [node for node, _ in context.nodes(scenic.ErrorStatement)]
     for cls in NOTED:
         if cls not in _CHECKED:
             continue
-        for node, scope in piece.nodes(cls):
+        for node, scope in context.nodes(cls):
             if cls is scenic.Operation:
                 forgotten = _class_without_new(node, context)
                 if forgotten is not None:
@@ -75,7 +74,7 @@ def check_supported_names(context: Context) -> Iterator[Diagnostic]:
     """SC900: every use of a name that is declared but not available."""
     if _NAMES and not context.resolution.wildcard:
         for name in _NAMES.difference(context.resolution.names):
-            for reference in context.resolution.uses(name):
+            for reference in context.resolution.uses.get(name, ()):
                 if not _carried(reference.node, reference.scope):
                     yield _refusal(f"`{name}`", reference.node, context)
 
@@ -84,7 +83,7 @@ def _class_without_new(node: scenic.Operation, context: Context) -> ast.Name | N
     """The class in ``C at position``, which reads as the operator but can only be meant as a specifier."""
     match node:
         case scenic.Operation(operator="at", operands=[ast.Name(id=name) as cls, *_]):
-            reference = context.resolution.reference(cls)
+            reference = context.resolution.references.get(cls)
             binding = None if reference is None else reference.binding
             is_class = name in CLASSES if binding is None else binding.kinds == {BindingKind.CLASS}
             return cls if is_class else None

@@ -11,7 +11,6 @@ from typing import Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context
 from scenic.compiler.forms import declared_forms
-from scenic.compiler.scopes import Stretch
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.keywords import SOFT_KEYWORDS, TEMPORAL_OPERATORS
 from scenic.language.statements import STATEMENTS
@@ -139,49 +138,27 @@ def unfinished(context: Context, node: ast.Name) -> Diagnostic | None:
 
 def alone_names(context: Context) -> set[ast.Name]:
     """The names that nothing binds and that are whole statements, alone or in a row: all have just begun to be typed."""
-    resolution = context.resolution
     return {
         name
-        for stretch in resolution.stretches
-        if any(each not in resolution.names for each in stretch.common("alone", _alone_in))
-        for name in _alone(stretch)
-        if (reference := resolution.reference(name)) is not None and reference.binding is None
+        for node, _ in context.nodes(ast.Expr)
+        for name in _names_in_row(node.value)
+        if context.is_unbound(name)
     }
 
 
 def begun_names(context: Context) -> set[ast.Name]:
-    """The same while somebody is typing; none in a program that is written."""
+    """The names of `alone_names` while somebody is typing; none in a program that is written."""
     return alone_names(context) if context.typing else set()
-
-
-def _alone_in(stretch: Stretch) -> frozenset[str]:
-    return frozenset(name.id for name in _alone(stretch))
-
-
-def _alone(stretch: Stretch) -> Iterator[ast.Name]:
-    return (name for node, _ in stretch.nodes(ast.Expr) for name in _names_in_row(node.value))
 
 
 def compared_names(context: Context) -> set[ast.Name]:
     """The names that nothing binds on the left of ``==`` in statements that only compare: they were meant to be bound."""
-    resolution = context.resolution
-    return {
-        name
-        for stretch in resolution.stretches
-        if any(
-            each not in resolution.names
-            for each in stretch.common("compared", lambda own: frozenset(name.id for name in _compared(own)))
-        )
-        for name in _compared(stretch)
-        if (reference := resolution.reference(name)) is not None and reference.binding is None
-    }
-
-
-def _compared(stretch: Stretch) -> Iterator[ast.Name]:
-    for node, _ in stretch.nodes(ast.Expr):
+    names = set()
+    for node, _ in context.nodes(ast.Expr):
         match node.value:
-            case ast.Compare(left=ast.Name() as name, ops=[ast.Eq()]):
-                yield name
+            case ast.Compare(left=ast.Name() as name, ops=[ast.Eq()]) if context.is_unbound(name):
+                names.add(name)
+    return names
 
 
 def _names_in_row(value: ast.expr) -> Iterator[ast.Name]:

@@ -9,7 +9,6 @@ from typing import Any, Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.arguments import kind_of
 from scenic.compiler.checks.context import DEFINITIONS, Context
-from scenic.compiler.checks.pieces import Piece
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import Binding, BindingKind, Scope, ScopeKind
 from scenic.compiler.traversal import position, walk
@@ -18,7 +17,7 @@ from scenic.language.names import NAMES, NameKind
 from scenic.language.spans import Span
 from scenic.language.spelling import is_slip
 
-__all__ = ["check_replaced", "check_unused", "check_uses"]
+__all__ = ["check_uses"]
 
 _PYTHON_MODULES: Final = sys.stdlib_module_names | {"numpy", "scipy", "shapely", "trimesh"}
 """Modules that are certainly no Scenic modules: importing one of those has effects, used or not."""
@@ -43,23 +42,29 @@ _HIDING: Final = frozenset(
 
 
 def check_uses(context: Context) -> Iterator[Diagnostic]:
-    """SC206, SC207 and SC208, of what the module binds and of imports."""
+    """SC205 to SC208 and SC312: bindings that are never read, that hide others, or that are replaced."""
     resolution = context.resolution
-    for name in resolution.names.keys() & NAMES.keys():
-        yield from _hidden(resolution.names[name], context)
+    for scope in resolution.scopes.values():
+        local = scope.kind in (ScopeKind.FUNCTION, ScopeKind.BEHAVIOR, ScopeKind.MONITOR)
+        for binding in scope.bindings.values():
+            if binding.name in NAMES:
+                yield from _hidden(binding, context)
+            if (
+                local
+                and binding.kinds == {BindingKind.VARIABLE}
+                and binding not in resolution.read
+                and not resolution.reflective
+            ):
+                yield from _unused(binding, scope, context)
     if resolution.reflective or context.broken:
         return
-    imported: dict[Binding, Scope] = {}
-    for cls in (ast.Import, ast.ImportFrom):
-        for node, _ in context.nodes(cls):
-            for alias in node.names:
-                binding = resolution.binding_at(alias)
-                if binding is not None:
-                    imported[binding] = binding.scope
-    for binding, scope in imported.items():
-        if _is_imported(binding) and not resolution.is_read(binding) and _is_of_concern(binding, context):
-            yield from _unused_import(binding, scope, context)
-    yield from _replaced(context, context.tree.body)
+    imports = (node for cls in (ast.Import, ast.ImportFrom) for node, _ in context.nodes(cls))
+    imported = (resolution.sites.get(alias) for node in imports for alias in node.names)
+    for binding in dict.fromkeys(each for each in imported if each is not None):
+        if _is_imported(binding) and binding not in resolution.read and _is_of_concern(binding, context):
+            yield from _unused_import(binding, binding.scope, context)
+    for block in context.blocks:
+        yield from _replaced(context, block.statements)
     yield from _monitors(context)
 
 
@@ -67,7 +72,7 @@ def _monitors(context: Context) -> Iterator[Diagnostic]:
     """SC312: a monitor of a program, not of a library, that nothing names."""
     resolution = context.resolution
     for binding in resolution.names.values():
-        if binding.kinds != {BindingKind.MONITOR} or resolution.is_read(binding) or _is_library(context):
+        if binding.kinds != {BindingKind.MONITOR} or binding in resolution.read or _is_library(context):
             continue
         if binding.name.startswith("_") or not _is_of_concern(binding, context):
             continue
@@ -77,31 +82,6 @@ def _monitors(context: Context) -> Iterator[Diagnostic]:
             word_span(context.source, binding.first_site, binding.name),
             f"start it with `require monitor {binding.name}()`",
         )
-
-
-def check_unused(piece: Piece, context: Context) -> Iterator[Diagnostic]:
-    """SC205 and SC207, of what other scopes than the module's bind."""
-    for scope in piece.scopes:
-        local = scope.kind in (ScopeKind.FUNCTION, ScopeKind.BEHAVIOR, ScopeKind.MONITOR)
-        for binding in scope.bindings.values():
-            if binding.name in NAMES:
-                yield from _hidden(binding, context)
-            if (
-                local
-                and binding.kinds == {BindingKind.VARIABLE}
-                and binding not in piece.loaded
-                and not context.resolution.reflective
-            ):
-                yield from _unused(binding, scope, context)
-
-
-def check_replaced(piece: Piece, context: Context) -> Iterator[Diagnostic]:
-    """SC208 in blocks."""
-    for _, statements, _ in piece.inner_blocks:
-        if sum(isinstance(statement, DEFINITIONS) for statement in statements) > 1:
-            if context.resolution.reflective or context.broken:
-                return
-            yield from _replaced(context, statements)
 
 
 def _hidden(binding: Binding, context: Context) -> Iterator[Diagnostic]:
@@ -185,7 +165,10 @@ def _is_library(context: Context) -> bool:
     return any(isinstance(statement, DEFINITIONS) for statement in context.tree.body) and not (
         bool(context.nodes(scenic.ScenarioDef))
         or any(scope is module for _, scope in context.nodes(scenic.New))
-        or any(not isinstance(reference.node.ctx, ast.Load) for reference in context.resolution.uses("ego"))
+        or any(
+            not isinstance(reference.node.ctx, ast.Load)
+            for reference in context.resolution.uses.get("ego", ())
+        )
     )
 
 
@@ -199,8 +182,8 @@ def _has_no_effects(statement: Any, site: ast.alias, context: Context) -> bool:
     if not statement.level and module.partition(".")[0] in _PYTHON_MODULES:
         return True
     # The module is imported all the same for the sake of another name.
-    others = (context.resolution.binding_at(other) for other in statement.names if other is not site)
-    return any(other is not None and context.resolution.is_read(other) for other in others)
+    others = (context.resolution.sites.get(other) for other in statement.names if other is not site)
+    return any(other is not None and other in context.resolution.read for other in others)
 
 
 def _removal(statement: Any, site: ast.alias, span: Span, context: Context) -> Edit:

@@ -79,7 +79,6 @@ class Conditions:
             if scope.kind is not ScopeKind.MODULE
             for name in scope.global_names
         }
-        self._statements: list[ast.stmt] | None = None
 
     def condition(self, node: ast.expr) -> ast.expr:
         """The argument of the prelude's ``require``."""
@@ -188,10 +187,9 @@ class Conditions:
 
     def _statement_of(self, part: ast.AST) -> ast.stmt | None:
         """The statement of the module around a node."""
-        if self._statements is None:
-            self._statements = [item for each in self._resolution.stretches for item in each.statements]
-        place = bisect_right(self._statements, position(part), key=position) - 1
-        return self._statements[place] if place >= 0 else None
+        statements: list[ast.stmt] = self._resolution.module.node.body  # type: ignore[attr-defined]
+        place = bisect_right(statements, position(part), key=position) - 1
+        return statements[place] if place >= 0 else None
 
     def _may_be_bound(self, identifier: str) -> bool:
         """Return whether a name that the text does not bind may come from a module."""
