@@ -7,18 +7,19 @@ most of which programs do not have: those are not looked at more closely.
 
 import ast
 import re
+from bisect import bisect_left
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import BindingKind, Resolution, Scope
-from scenic.compiler.traversal import first_position, walk
+from scenic.compiler.traversal import first_position
 from scenic.language.source import Source
 
 __all__ = ["suspects"]
 
-_NAMES: Final = re.compile("__(?:class|debug|instance|scenic|value)")
-"""Beginnings of names that cannot be bound, or that lowered code binds."""
+_WORDS: Final = re.compile("async|\f|__(?:class|debug|instance|scenic|value)")
+"""Comprehensions that wait, indentation that is hidden, and beginnings of names that cannot be bound, or that lowered code binds."""
 
 _LONGEST: Final = 500
 """So many tokens of a logical line cannot be nested too deeply for any compiler: few nodes have less than one token."""
@@ -61,41 +62,32 @@ def suspects(
     """
     if longest_line > _LONGEST or any(map(_joins, tree.body)):
         return tree.body
-    text = source.text
-    if not (
-        resolution.classes <= _HARMLESS
-        and not _has_suspect_words(text)
-        and not any(test(node) for cls, test in _TESTS.items() for node, _ in resolution.nodes(cls))
-        and not any(map(_repeats_parameters, resolution.scopes.values()))
-        and not _is_deep(tree.body)
-    ):
-        return [statement for statement in tree.body if _is_suspect(statement, resolution, source)]
-    return []
+    lines = {
+        line
+        for line, text in enumerate(source.lines, 1)
+        if not text.isascii() or _WORDS.search(text) is not None
+    }
+    nodes = [node for cls in resolution.by_class.keys() - _HARMLESS for node, _ in resolution.by_class[cls]]
+    nodes += [
+        node for cls, test in _TESTS.items() for node, _ in resolution.by_class.get(cls, ()) if test(node)
+    ]
+    nodes += [scope.node for scope in resolution.scopes.values() if _repeats_parameters(scope)]
+    lines.update(node.lineno for node in nodes if hasattr(node, "lineno"))
+    ordered = sorted(lines)
+
+    def is_suspect(statement: ast.stmt) -> bool:
+        index = bisect_left(ordered, first_position(statement)[0])
+        return (index < len(ordered) and ordered[index] <= (statement.end_lineno or 0)) or _is_deep(
+            [statement]
+        )
+
+    return [statement for statement in tree.body if is_suspect(statement)]
 
 
 def _joins(statement: ast.stmt) -> bool:
     """Return whether Python's complaints about other statements depend on a statement of the top level."""
     return isinstance(statement, ast.Global) or (
         isinstance(statement, ast.ImportFrom) and statement.module == "__future__"
-    )
-
-
-def _is_suspect(statement: ast.stmt, resolution: Resolution, source: Source) -> bool:
-    """Return whether Python may complain about a statement of the top level."""
-    lines = source.lines[first_position(statement)[0] - 1 : statement.end_lineno]
-    return (
-        _has_suspect_words("\n".join(lines))
-        or _is_deep([statement])
-        or any(_is_suspect_node(node, resolution) for node in walk(statement))
-    )
-
-
-def _is_suspect_node(node: ast.AST, resolution: Resolution) -> bool:
-    test, scope = _TESTS.get(type(node)), resolution.scopes.get(node)
-    return (
-        type(node) not in _HARMLESS
-        or (test is not None and test(node))
-        or (scope is not None and _repeats_parameters(scope))
     )
 
 
@@ -140,16 +132,6 @@ _TESTS: Final[Mapping[type[ast.AST], Callable[[Any], bool]]] = {
     ast.Subscript: lambda node: not isinstance(node.value, _VARIABLE),
     ast.UnaryOp: lambda node: isinstance(node.op, ast.Invert),
 }
-
-
-def _has_suspect_words(text: str) -> bool:
-    """Return whether there are comprehensions that wait, indentation that is hidden, or special names, however spelt."""
-    return (
-        not text.isascii()
-        or "async" in text
-        or "\f" in text
-        or ("__" in text and _NAMES.search(text) is not None)
-    )
 
 
 def _is_deep(statements: Iterable[ast.stmt]) -> bool:

@@ -5,13 +5,13 @@ running the program. It uses an explicit stack, so that no depth of nesting is t
 """
 
 import ast
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks import NOTED, Context, check
+from scenic.compiler.checks import Context, check
 from scenic.compiler.scopes import (
     Binding,
     BindingKind,
@@ -21,7 +21,7 @@ from scenic.compiler.scopes import (
     ScopeKind,
 )
 from scenic.compiler.surroundings import SurroundingsOf
-from scenic.compiler.traversal import FIELDS, parts, position, walk
+from scenic.compiler.traversal import FIELDS, parts, walk
 from scenic.language.garbage import no_garbage_collection
 from scenic.language.names import RESERVED, TRACKED
 from scenic.language.source import Source
@@ -59,10 +59,10 @@ def resolve_within(
             wildcard = bound.rebinding or not surroundings.complete
         if any(_brings_names(source.line(node.lineno)) for node, _ in bound.nodes(scenic.ErrorStatement)):
             wildcard = True
-        bound = replace(bound, wildcard=wildcard)
+        bound = bound.with_findings(wildcard=wildcard)
         context = Context(tree, source, bound, surroundings, typing=typing)
         diagnostics = check(context, go_on)
-    return replace(bound, diagnostics=diagnostics), context
+    return bound.with_findings(diagnostics, wildcard=wildcard), context
 
 
 def bind(tree: ast.Module) -> Resolution:
@@ -101,9 +101,8 @@ class _Collector:
         self._uses: list[tuple[ast.Name, Scope]] = []
         self._nonlocals: dict[ast.AST, Scope] = {}
         self._plain_targets: set[ast.AST] = set()
-        self._nodes: dict[type[ast.AST], list[tuple[Any, Scope]]] = {cls: [] for cls in NOTED}
+        self._nodes: dict[type[ast.AST], list[tuple[Any, Scope]]] = defaultdict(list)
         self._pending: list[tuple[Scope, list[Any]]] = [(self._module, list(tree.body))]
-        self._classes: set[type] = set()
         self._wildcard = False
         self._tolerated: set[ast.AST] = set()
         """Names read where a ``NameError`` is caught."""
@@ -111,8 +110,7 @@ class _Collector:
     def _walk(self) -> None:
         """Visit every node once, scope by scope. Most nodes belong to the scope of what they are part of."""
         pending = self._pending
-        handlers, fields, noted, uses = _HANDLERS, FIELDS, self._nodes, self._uses
-        seen = self._classes.add
+        handlers, fields, nodes, uses = _HANDLERS, FIELDS, self._nodes, self._uses
         while pending:
             scope, stack = pending.pop()
             while stack:
@@ -125,10 +123,7 @@ class _Collector:
                     continue
                 if cls is ast.Constant:
                     continue
-                seen(cls)
-                found = noted.get(cls)
-                if found is not None:
-                    found.append((node, scope))
+                nodes[cls].append((node, scope))
                 handler = handlers.get(cls)
                 if handler is not None:
                     for part, owner in handler(self, node, scope):
@@ -148,9 +143,6 @@ class _Collector:
     def resolution(self) -> Resolution:
         """Visit all nodes, and return what has been collected."""
         self._walk()
-        for noted in self._nodes.values():
-            if len(noted) > 1:
-                noted.sort(key=lambda item: position(item[0]))
         bound = {(event.scope, event.name) for event in self._events}
         reserved: list[tuple[str, ast.AST]] = []
         for event in self._events:
@@ -171,12 +163,12 @@ class _Collector:
             self._scopes,
             self._nonlocals,
             self._nodes,
-            frozenset(self._classes),
             self._tolerated,
             reserved,
             self._wildcard,
         )
-        return replace(resolution, wildcard=True) if resolution.rebinding else resolution
+        resolution.wildcard = self._wildcard or resolution.rebinding
+        return resolution
 
     def _bind(self, event: _Event, bound: set[tuple[Scope, str]]) -> None:
         """Bind a name in the scope that its declarations name."""

@@ -6,6 +6,7 @@ A scope is built once by `scenic.compiler.resolver` and only read afterwards. No
 import ast
 import builtins
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import field
 from enum import StrEnum
 from functools import cached_property
@@ -153,16 +154,15 @@ REFLECTION: Final = REBINDING | {"dir", "eval", "locals"}
 """Builtins with which programs may read names in ways that the text does not show."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Resolution:
     """Every scope, binding and reference of a module.
 
     ``module`` is the scope of the whole module. ``references`` are the meanings of names, in no particular order; names
     bound by other nodes than ``ast.Name`` (functions, parameters, imports, captures) are found through `Binding.sites`.
     ``scopes`` gives the scope that a node opens, ``nonlocals`` the scope in which a ``nonlocal`` statement stands.
-    ``noted`` are the nodes of the classes that the checks look for, each with its scope, in the order of the text;
-    ``classes`` the classes of all nodes but names, constants and parts of definitions. ``tolerated`` are the names read
-    where a missing name is provided for, ``reserved`` the places that bind a name which must not be bound.
+    ``by_class`` are all nodes but names and constants by their classes, each with its scope, in no particular order.
+    ``tolerated`` are the names read where a missing name is provided for, ``reserved`` the places that bind a name which must not be bound.
     ``wildcard`` tells whether names may exist that the text does not show.
     """
 
@@ -170,8 +170,7 @@ class Resolution:
     references: Mapping[ast.AST, Reference]
     scopes: Mapping[ast.AST, Scope]
     nonlocals: Mapping[ast.AST, Scope]
-    noted: Mapping[type[ast.AST], Sequence[tuple[Any, Scope]]]
-    classes: frozenset[type]
+    by_class: Mapping[type[ast.AST], Sequence[tuple[Any, Scope]]]
     tolerated: Collection[ast.AST]
     reserved: Sequence[tuple[str, ast.AST]]
     wildcard: bool
@@ -196,20 +195,34 @@ class Resolution:
         """Return whether the program may bind names in ways that the text does not show."""
         return not self._reflecting.isdisjoint(REBINDING)
 
+    def with_findings(self, diagnostics: tuple[Diagnostic, ...] = (), *, wildcard: bool) -> "Resolution":
+        """The same names, with what was found out about them."""
+        new = copy(self)
+        new.diagnostics, new.wildcard = diagnostics, wildcard
+        return new
+
     # All names
 
     def nodes(self, cls: type[ast.AST]) -> Sequence[tuple[Any, Scope]]:
-        """The nodes of one of the classes that the checks look for, each with the scope in which it stands."""
-        return self.noted.get(cls, ())
+        """The nodes of a class in the order of the text, each with the scope in which it stands; none of names and constants."""
+        nodes = self._nodes_in_order.get(cls)
+        if nodes is None:
+            nodes = sorted(self.by_class.get(cls, ()), key=lambda item: position(item[0]))
+            self._nodes_in_order[cls] = nodes
+        return nodes
 
     def nodes_in(self, scope: Scope, cls: type[ast.AST]) -> Sequence[Any]:
-        """The nodes of one of these classes that stand directly in a scope."""
+        """The nodes of a class that stand directly in a scope."""
         by_scope = self._nodes_by_scope.get(cls)
         if by_scope is None:
             by_scope = self._nodes_by_scope[cls] = {}
             for node, where in self.nodes(cls):
                 by_scope.setdefault(where, []).append(node)
         return by_scope.get(scope, ())
+
+    @cached_property
+    def _nodes_in_order(self) -> dict[type[ast.AST], list[tuple[Any, Scope]]]:
+        return {}
 
     @cached_property
     def _nodes_by_scope(self) -> dict[type[ast.AST], dict[Scope, list[Any]]]:

@@ -1,8 +1,8 @@
 """The checks of a program that need neither its running nor its modules: one module per kind of rule.
 
 `check` finds what no program may contain; it is part of every compilation. `lint` finds what is legal, or fails only
-when it is reached, and is hardly meant. The resolver notes the nodes that the rules look for while it walks the tree, so
-that no rule has to walk it again.
+when it is reached, and is hardly meant. The resolver sorts all nodes by their classes, so that no rule has to walk the
+tree again.
 """
 
 import ast
@@ -10,7 +10,6 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from typing import Final
 
-from scenic.compiler import tree as scenic
 from scenic.compiler.checks import (
     angles,
     arguments,
@@ -40,7 +39,7 @@ from scenic.compiler.checks.context import Context, NodeRule, ProgramRule
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.garbage import no_garbage_collection
 
-__all__ = ["NOTED", "Context", "check", "lint"]
+__all__ = ["Context", "check", "lint"]
 
 _NODE_RULES: Final[tuple[tuple[type[ast.AST], NodeRule], ...]] = tuple(
     rule
@@ -98,34 +97,6 @@ _LINTS: Final[tuple[ProgramRule, ...]] = (
 
 MOST_OF_ONE_CODE: Final = 200
 """Largest number of findings of one kind that are reported."""
-
-NOTED: Final = frozenset(
-    {
-        ast.AnnAssign,
-        ast.Assign,
-        ast.AsyncFunctionDef,
-        ast.Attribute,
-        ast.For,
-        ast.FunctionDef,
-        ast.Import,
-        ast.ImportFrom,
-        ast.Return,
-        ast.Subscript,
-        ast.Try,
-        ast.TryStar,
-        ast.UnaryOp,
-        scenic.BehaviorDef,
-        scenic.Model,
-        scenic.MonitorDef,
-        scenic.Param,
-        scenic.Record,
-        scenic.ScenarioDef,
-        scenic.TerminateWhen,
-        scenic.TryInterrupt,
-        *(cls for cls, _ in _NODE_RULES),
-    }.union(declarations.NOTED, meant_specifiers.NOTED, names.NOTED, placement.NOTED, support.NOTED)
-)
-"""The classes of nodes that rules look for, wherever in the tree they stand."""
 
 
 def check(context: Context, go_on: Callable[[], None] = lambda: None) -> tuple[Diagnostic, ...]:

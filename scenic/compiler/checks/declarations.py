@@ -2,7 +2,7 @@
 
 import ast
 from collections.abc import Iterator
-from typing import Any, Final
+from typing import Any
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context
@@ -13,18 +13,7 @@ from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.properties import PROPERTY_ATTRIBUTES
 from scenic.language.spelling import nearest_property
 
-__all__ = ["NOTED", "check_declarations"]
-
-NOTED: Final = (
-    ast.ClassDef,
-    scenic.BehaviorDef,
-    scenic.MonitorDef,
-    scenic.New,
-    scenic.Param,
-    scenic.PropertyDef,
-    scenic.Require,
-)
-"""The nodes that declare something."""
+__all__ = ["check_declarations"]
 
 
 def check_declarations(context: Context) -> Iterator[Diagnostic]:

@@ -10,9 +10,8 @@ from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
 from scenic.language.spans import Span
 
-__all__ = ["NOTED", "check_meant_specifiers"]
+__all__ = ["check_meant_specifiers"]
 
-NOTED: Final = frozenset({ast.Assign, ast.Expr, scenic.Operation, scenic.SpecifierPhrase})
 
 _DIRECTIONS: Final = frozenset({"is ahead of", "is behind", "is left of", "is right of"})
 

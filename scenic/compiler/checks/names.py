@@ -26,9 +26,8 @@ from scenic.language.names import CONVERSIONS, IMPORTABLE, NAMES, TRACKED, NameK
 from scenic.language.properties import CLASSES
 from scenic.language.spelling import distance, nearest
 
-__all__ = ["NOTED", "check_classes", "check_names", "check_reserved"]
+__all__ = ["check_classes", "check_names", "check_reserved"]
 
-NOTED: Final = (scenic.ErrorStatement, scenic.New)
 
 MOST_SUGGESTIONS: Final = 100
 """Names for which a similar one is looked for: a file full of undefined names must not take long."""

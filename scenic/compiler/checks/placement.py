@@ -12,12 +12,12 @@ from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import TRACKED
 from scenic.language.statements import STATEMENTS, Place
 
-__all__ = ["NOTED", "check_placement"]
+__all__ = ["check_placement"]
 
 _ASKED: Final = (scenic.Record, scenic.Require, scenic.Simulator, scenic.TerminateWhen)
 """Statements whose expressions become functions of their own."""
 
-NOTED: Final = (ast.Await, ast.Yield, ast.YieldFrom)
+_EXPRESSIONS: Final = (ast.Await, ast.Yield, ast.YieldFrom)
 """The expressions that cannot stand everywhere."""
 
 
@@ -49,7 +49,7 @@ def check_placement(context: Context) -> Iterator[tuple[ast.AST, Diagnostic | No
 
 def _misplaced_expressions(context: Context) -> Iterator[tuple[ast.AST, Diagnostic]]:
     later = _evaluated_later(context)
-    for cls in NOTED:
+    for cls in _EXPRESSIONS:
         for node, scope in context.nodes(cls):
             if node in later:
                 message = "`await` cannot be used in what simulations ask for later, outside of the function"

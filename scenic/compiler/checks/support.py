@@ -18,12 +18,12 @@ from scenic.language.properties import CLASSES
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS
 
-__all__ = ["NOTED", "check_support", "check_supported_names"]
+__all__ = ["check_support", "check_supported_names"]
 
 _STATEMENTS: Final = tuple(
     getattr(scenic, statement.node) for statement in STATEMENTS.values() if not statement.available
 )
-NOTED: Final = (scenic.Operation, scenic.SpecifierPhrase, scenic.Temporal, *_STATEMENTS)
+_FEATURES: Final = (scenic.Operation, scenic.SpecifierPhrase, scenic.Temporal, *_STATEMENTS)
 """The nodes that a feature can belong to, beside names."""
 
 _INSTEAD: Final = (
@@ -50,7 +50,7 @@ def check_support(context: Context, misplaced: Container[ast.AST]) -> Iterator[D
     What only simulations run is refused when one comes to it; so may be what stands in a block whose beginning is wrong.
     """
     gaps = [node for node, _ in context.nodes(scenic.ErrorStatement)]
-    for cls in NOTED:
+    for cls in _FEATURES:
         if cls not in _CHECKED:
             continue
         for node, scope in context.nodes(cls):
