@@ -8,16 +8,18 @@ of its scene's files.
 import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import groupby
+from itertools import chain, groupby
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
 from scenic.batch.manifest import DatasetError, Manifest, Part
+from scenic.batch.source_files import texts_of
 from scenic.dataclass import dataclass
 from scenic.formats.coco import INDEX, Photographer, index_of
 from scenic.formats.files import Waiting, write, writing
+from scenic.formats.instances import Surfaces
 from scenic.formats.mesh_files import digest_of
 from scenic.formats.shards import END, member, members
 from scenic.runtime.scenes.scenario import Scenario
@@ -40,6 +42,8 @@ IMAGE_FORMS: Final = ("images", "tar")
 class ImageRows:
     """Turns scenes into rows: for each scene two lengths, the members of a tar file, and its part of the index as JSON.
 
+    Every camera gives the scene one image of the index; all images of a scene are one row.
+
     Args:
         scenario: the program.
         form: of `IMAGE_FORMS`.
@@ -49,14 +53,19 @@ class ImageRows:
 
     def __init__(self, scenario: Scenario, form: str, settings: Mapping[str, Any]) -> None:
         size = settings["size"]
-        self._photographer = Photographer(
-            settings["camera"],
-            None if size is None else (size[0], size[1]),
-            classes=classes_of(scenario),
-            # Readers of shards take what stands behind the first dot for the kind of content.
-            joint="." if form == "tar" else "-",
-            previewed=settings["overlay"],
-        )
+        surfaces, classes = Surfaces(), classes_of(scenario)
+        self._photographers = [
+            Photographer(
+                camera,
+                None if size is None else (size[0], size[1]),
+                classes=classes,
+                # Readers of shards take what stands behind the first dot for the kind of content.
+                joint="." if form == "tar" else "-",
+                previewed=settings["overlay"],
+                surfaces=surfaces,
+            )
+            for camera in settings["cameras"]
+        ]
         self._most = len(scenario.objects)
 
     def rows(self, scenes: Sequence[Scene]) -> bytes:
@@ -64,29 +73,39 @@ class ImageRows:
         return b"".join(self._row(scene) for scene in scenes)
 
     def _row(self, scene: Scene) -> bytes:
-        shot = self._photographer.shoot(scene)
-        content = b"".join(member(name, data) for name, data in shot.files.items())
-        number = scene.k + 1
-        image = {"id": number, **shot.image, "files": list(shot.files), "sha256": _digest(content)}
-        annotations = [
-            {"id": scene.k * self._most + item["object"] + 1, "image_id": number, **item}
-            for item in shot.annotations
-        ]
-        record = json.dumps([image, annotations], allow_nan=False).encode()
+        contents: list[bytes] = []
+        images: list[dict[str, Any]] = []
+        annotations: list[dict[str, Any]] = []
+        for place, photographer in enumerate(self._photographers):
+            number = scene.k * len(self._photographers) + place
+            shot = photographer.shoot(scene)
+            contents.append(b"".join(member(name, data) for name, data in shot.files.items()))
+            images.append(
+                {"id": number + 1, **shot.image, "files": list(shot.files), "sha256": _digest(contents[-1])}
+            )
+            annotations += [
+                {"id": number * self._most + item["object"] + 1, "image_id": number + 1, **item}
+                for item in shot.annotations
+            ]
+        content, record = b"".join(contents), json.dumps([images, annotations], allow_nan=False).encode()
         return np.array([len(content), len(record)], dtype=np.int64).tobytes() + content + record
 
 
 def classes_of(scenario: Scenario) -> list[str]:
-    """The names of the classes of a program's objects, in order."""
-    return list(dict.fromkeys(type(thing).__name__ for thing in scenario.objects))
+    """The categories that a program's objects may have, in order: those that they name, else the names of their classes."""
+    found: dict[str, None] = {}
+    for thing in scenario.objects:
+        categories = texts_of(thing.__dict__.get("category"))
+        found |= dict.fromkeys(categories or [type(thing).__name__])
+    return list(found)
 
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """A row taken apart: the members of its scene, its image in the index and the annotations."""
+    """A row taken apart: the members of its scene, its images in the index and the annotations."""
 
     content: bytes
-    image: dict[str, Any]
+    images: list[dict[str, Any]]
     annotations: list[dict[str, Any]]
 
 
@@ -107,7 +126,7 @@ class ImageSink:
     def __init__(self, path: Path, scenario: Scenario, manifest: Manifest) -> None:
         assert manifest.images is not None
         self._path = path
-        self._camera = manifest.images["camera"]
+        self._cameras = manifest.images["cameras"]
         self._categories = {name: number for number, name in enumerate(classes_of(scenario), 1)}
         self._shard = Waiting(path) if manifest.form == "tar" else None
         self._images: list[dict[str, Any]] = []
@@ -121,12 +140,12 @@ class ImageSink:
             else:
                 for name, content in members(row.content):
                     write(self._path.parent / name, content)
-            self._images.append(row.image)
+            self._images += row.images
             self._annotations += row.annotations
 
     def finish(self) -> None:
         """Write the index, and the shard."""
-        index = index_of(self._camera, self._categories, self._images, self._annotations)
+        index = index_of(self._cameras, self._categories, self._images, self._annotations)
         write(self._path.with_suffix(".json"), index)
         if self._shard is not None:
             self._shard.write(END)
@@ -140,26 +159,29 @@ class ImageSink:
 
 
 def image_rows(source: Path | bytes, form: str) -> Iterator[dict[str, Any]]:
-    """The scenes of a part, or of encoded rows: ``k``, ``image`` and ``annotations`` of the index, and ``content``."""
+    """The scenes of a part, or of encoded rows: ``k``, ``images`` and ``annotations`` of the index, and ``content``."""
     if isinstance(source, bytes):
         for row in _rows_of(memoryview(source)):
-            yield _plain(row.image, row.annotations, row.content)
+            yield _plain(row.images, row.annotations, row.content)
         return
     index = _index(source.with_suffix(".json"))
     archive = dict(members(source.read_bytes())) if form == "tar" else {}
     found = {
         number: list(items) for number, items in groupby(index["annotations"], lambda item: item["image_id"])
     }
-    for image in index["images"]:
-        content = b""
-        for name in image["files"]:
+    for _, group in groupby(index["images"], lambda image: image["k"]):
+        images, content = list(group), b""
+        for name in chain.from_iterable(image["files"] for image in images):
             data = archive.get(name) if form == "tar" else _read(source.parent / name)
             content += b"" if data is None else member(name, data)
-        yield _plain(image, found.get(image["id"], []), content)
+        annotations = chain.from_iterable(found.get(image["id"], []) for image in images)
+        yield _plain(images, list(annotations), content)
 
 
-def _plain(image: dict[str, Any], annotations: list[dict[str, Any]], content: bytes) -> dict[str, Any]:
-    return {"k": image["k"], "image": image, "annotations": annotations, "content": content}
+def _plain(
+    images: list[dict[str, Any]], annotations: list[dict[str, Any]], content: bytes
+) -> dict[str, Any]:
+    return {"k": images[0]["k"], "images": images, "annotations": annotations, "content": content}
 
 
 def _read(path: Path) -> bytes | None:
@@ -187,12 +209,13 @@ def damaged_files(folder: Path, part: Part, form: str) -> Iterator[tuple[str, st
         elif digest_of(index) != part.index:
             yield index.name, "the content has changed since it was written"
         return
-    for row in image_rows(folder / part.file, form):
-        names = row["image"]["files"]
+    for image in _index(folder / part.file)["images"]:
+        names = image["files"]
         missing = [name for name in names if not (folder / name).is_file()]
         for name in missing:
             yield name, "the file is missing"
-        if not missing and _digest(row["content"]) != row["image"]["sha256"]:
+        content = b"".join(member(name, _read(folder / name) or b"") for name in names)
+        if not missing and _digest(content) != image["sha256"]:
             yield (
                 names[0],
                 "the content of this file, or of another of its scene, has changed since it was written",
@@ -224,4 +247,4 @@ def join_indices(folder: Path, manifest: Manifest) -> None:
     categories = {item["name"]: item["id"] for item in indices[0]["categories"]}
     images = [image for index in indices for image in index["images"]]
     annotations = [item for index in indices for item in index["annotations"]]
-    write(folder / INDEX, index_of(manifest.images["camera"], categories, images, annotations))
+    write(folder / INDEX, index_of(manifest.images["cameras"], categories, images, annotations))

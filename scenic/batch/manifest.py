@@ -17,7 +17,7 @@ from scenic.runtime.scenes.scenario import Scenario
 __all__ = ["FORMAT", "NAME", "VERSION", "DatasetError", "Manifest", "Part"]
 
 FORMAT: Final = "scenic-dataset"
-VERSION: Final = 1
+VERSION: Final = 2
 NAME: Final = "manifest.json"
 """Name of the manifest in the folder of its data set."""
 
@@ -78,7 +78,7 @@ class Manifest:
         points: ``sobol`` where scenes are rows of Sobol's sequence, ``approximate N`` where N were made together, of nearly the program's law.
         max_attempts: candidates tried for one scene, at most.
         properties: which properties of objects are told, ``all`` or ``changed``.
-        images: of labelled images, the ``camera``, their ``size`` (its own if ``None``), and whether there is an ``overlay``.
+        images: of labelled images, the ``cameras``, their ``size`` (each its own if ``None``), and whether there is an ``overlay``.
         meshes: digests of the mesh files that the program names.
         textures: digests of the image files that objects may have as textures.
         versions: versions of Python and of libraries that may change a scene.
@@ -190,6 +190,8 @@ class Manifest:
                 raise ValueError("it is not the manifest of a data set")
             if content.pop("version") > VERSION:
                 raise ValueError("a later version of scenic wrote it")
+            if content.get("images") and "camera" in content["images"]:  # of version 1
+                content["images"] = {"cameras": [content["images"].pop("camera")], **content["images"]}
             parts = [Part(**{**part, "missing": tuple(part["missing"])}) for part in content.pop("parts")]
             return cls(**content, parts=tuple(parts))
         except FileNotFoundError:

@@ -11,7 +11,7 @@ from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.values.choices import options_of
 from scenic.runtime.values.nodes import as_node
 
-__all__ = ["check_textures", "mesh_digests", "texture_digests", "warn_of_textures"]
+__all__ = ["check_textures", "mesh_digests", "texts_of", "texture_digests", "warn_of_textures"]
 
 
 def texture_digests(scenario: Scenario) -> dict[str, str]:
@@ -60,6 +60,19 @@ def _texture_errors(scenario: Scenario) -> Iterator[TextureError]:
 
 def _image_names(value: Any) -> Iterator[str]:
     """The image files that a texture may name, as far as the program says them."""
+    return (name for item in _constants(value) if (name := image_name(item)) is not None)
+
+
+def texts_of(value: Any) -> list[str]:
+    """The texts that a random value may be, as far as the program says them; texts in tuples and lists count, too."""
+    texts: list[str] = []
+    for item in _constants(value):
+        texts += [part for part in (item if isinstance(item, tuple | list) else [item]) if isinstance(part, str)]
+    return texts
+
+
+def _constants(value: Any) -> Iterator[Any]:
+    """The constants that a value is computed from."""
     found, left = set(), [as_node(value)]
     while left:
         node = left.pop()
@@ -67,8 +80,8 @@ def _image_names(value: Any) -> Iterator[str]:
             continue
         found.add(node)
         left += reversed(node.operands)
-        if node.is_constant and (name := image_name(node.value)) is not None:
-            yield name
+        if node.is_constant:
+            yield node.value
 
 
 def _folder(scenario: Scenario) -> Path:

@@ -127,8 +127,11 @@ __all__ = ["sample"]
 )
 @click.option(
     "--camera",
+    "cameras",
     metavar="NAME",
-    help="Make a data set of labelled images, as the sensor of this name sees them, or the object of a variable.",
+    multiple=True,
+    help="Make a data set of labelled images, as the sensor of this name sees them, or the object of a variable; "
+    "several cameras share one data set.",
 )
 @click.option(
     "--overlay", is_flag=True, help="With --camera: make images with the labels drawn into them, too."
@@ -184,7 +187,7 @@ def sample(
     minimized: str | None,
     view: str | None,
     png: str | None,
-    camera: str | None,
+    cameras: tuple[str, ...],
     overlay: bool,
     image_size: tuple[int, int] | None,
     outlook: Mapping[str, float],
@@ -202,7 +205,7 @@ def sample(
     """
     path = Path(file)
     if profile and (
-        resume or jobs > 1 or any(item is not None for item in (output, view, png, camera, dask))
+        resume or jobs > 1 or any(item is not None for item in (output, view, png, dask)) or cameras
     ):
         raise click.UsageError(
             "--profile makes no files: it goes without -o, -j, --dask, --resume and images"
@@ -218,7 +221,7 @@ def sample(
     dataset: Path | None = None
     table: Path | None = None
     # All of them are checked before anything is sampled.
-    if camera is not None:
+    if cameras:
         if output is None:
             raise click.UsageError("--camera needs a folder for its images: -o FOLDER")
         dataset = Path(output)
@@ -257,14 +260,14 @@ def sample(
         raise click.UsageError("--show-params goes without -j, --dask, --profile, data sets and Parquet")
     if form is not None and dataset is None:
         raise click.UsageError("--format is for data sets: -o FOLDER/")
-    if form is not None and (camera is None) != (form in ("parquet", "jsonl")):
+    if form is not None and (not cameras) != (form in ("parquet", "jsonl")):
         raise click.UsageError("--format images and tar go with --camera, parquet and jsonl without it")
-    if overlay and camera is None:
+    if overlay and not cameras:
         raise click.UsageError("--overlay draws into the images of a camera: --camera NAME")
     if form is None:
-        form = "parquet" if camera is None else "images"
+        form = "images" if cameras else "parquet"
     if part_size is None:
-        part_size = 65536 if camera is None else 512
+        part_size = 512 if cameras else 65536
     if minimized is not None and sampler is None:
         raise click.UsageError("--minimize needs a sampler that learns: --sampler cma")
     if sampler is not None and (
@@ -301,7 +304,7 @@ def sample(
     if any("texture" in thing.__dict__ for thing in loaded.objects):
         from scenic.batch.source_files import check_textures, warn_of_textures
 
-        (warn_of_textures if camera is None and png is None else check_textures)(loaded)
+        (check_textures if cameras or png is not None else warn_of_textures)(loaded)
     if profile:
         return _profiled(loaded, first, count, seed or 0, sobol, max_attempts, deadline)
     done = 0
@@ -358,9 +361,13 @@ def sample(
                 points=points,
                 max_attempts=max_attempts,
                 properties=properties,
-                images=None
-                if camera is None
-                else {"camera": camera, "size": image_size and list(image_size), "overlay": overlay},
+                images={
+                    "cameras": list(dict.fromkeys(cameras)),
+                    "size": image_size and list(image_size),
+                    "overlay": overlay,
+                }
+                if cameras
+                else None,
                 command=shlex.join(["scenic", *sys.argv[1:]]),
             )
             if dataset is not None:

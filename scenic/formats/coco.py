@@ -55,6 +55,7 @@ class Photographer:
         classes: those of the objects, in order; classes that are not among them are added when they are met.
         joint: what stands between the name of a scene and that of an output.
         previewed: whether to draw the labels into an image of their own, too.
+        surfaces: meshes that other cameras have met.
 
     Attributes:
         categories: the numbers of the classes that have been told or seen, from 1.
@@ -69,6 +70,7 @@ class Photographer:
         classes: Iterable[str] = (),
         joint: str = "-",
         previewed: bool = False,
+        surfaces: Surfaces | None = None,
     ) -> None:
         self._camera = camera
         self._size = size
@@ -76,7 +78,7 @@ class Photographer:
         self.categories = {name: number for number, name in enumerate(self._classes, 1)}
         self._joint = joint
         self._previewed = previewed
-        self._surfaces = Surfaces()
+        self._surfaces = Surfaces() if surfaces is None else surfaces
 
     def shoot(self, scene: Scene) -> Shot:
         """The images and labels of a scene."""
@@ -85,7 +87,7 @@ class Photographer:
         found = observe(scene, point, gallery=gallery, painted=self._previewed)
         self._classes = gallery.classes
         for label in found.labels:
-            self.categories.setdefault(label.instance.class_name, len(self.categories) + 1)
+            self.categories.setdefault(label.instance.category, len(self.categories) + 1)
         stem = f"{self._camera}-{scene.k:06d}"
         names = {output: f"{stem}{self._joint}{output}.png" for output in point.outputs}
         files = {names[output]: self._picture(found, output) for output in point.outputs}
@@ -103,6 +105,7 @@ class Photographer:
             "height": height,
             "seed": str(scene.seed),
             "k": scene.k,
+            "camera": self._camera,
         }
         return Shot(files, image, list(self._annotations(found)))
 
@@ -119,7 +122,7 @@ class Photographer:
                 numbers = np.zeros(int(found.objects.max(initial=0)) + 2, np.uint16)
                 for label in found.labels:
                     if label.pixels:
-                        numbers[label.index + 1] = self.categories[label.instance.class_name]
+                        numbers[label.index + 1] = self.categories[label.instance.category]
                 return encoded(numbers[found.objects + 1])
 
     def _annotations(self, found: Observation) -> Iterable[dict[str, Any]]:
@@ -128,7 +131,7 @@ class Photographer:
             if label.box is not None:
                 mask = found.mask(label)
                 yield {
-                    "category_id": self.categories[label.instance.class_name],
+                    "category_id": self.categories[label.instance.category],
                     "bbox": label.box.as_list(),
                     "area": label.pixels,
                     "segmentation": {"size": [height, width], "counts": run_lengths(mask)},
@@ -140,14 +143,14 @@ class Photographer:
 
 
 def index_of(
-    camera: str,
+    cameras: Sequence[str],
     categories: Mapping[str, int],
     images: Sequence[Mapping[str, Any]],
     annotations: Sequence[Mapping[str, Any]],
 ) -> bytes:
     """The index of images and their annotations, as JSON."""
     index = {
-        "info": {"description": f"scenes seen by {camera}", "version": "1"},
+        "info": {"description": f"scenes seen by {', '.join(cameras)}", "version": "1"},
         "images": images,
         "categories": [{"id": number, "name": name} for name, number in categories.items()],
         "annotations": annotations,
@@ -179,7 +182,7 @@ class LabelledImages:
     def finish(self) -> None:
         """Write the index."""
         categories = self._photographer.categories
-        write(self._folder / INDEX, index_of(self._camera, categories, self._images, self._annotations))
+        write(self._folder / INDEX, index_of((self._camera,), categories, self._images, self._annotations))
 
 
 def millimetres(depth: npt.NDArray[np.float32]) -> npt.NDArray[np.uint16]:

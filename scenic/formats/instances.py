@@ -86,6 +86,12 @@ class Instance:
     """Folder where paths of images start."""
 
     @property
+    def category(self) -> str:
+        """The class of the object in labels: its property ``category`` where that is text, else the name of its class."""
+        value = self.thing.properties.get("category")
+        return value if isinstance(value, str) and value else self.class_name
+
+    @property
     def label(self) -> str:
         """The variable's name where it is known, else the class's."""
         return self.name or ("ego" if self.is_ego else self.class_name)

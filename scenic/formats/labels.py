@@ -284,6 +284,7 @@ def _entry(label: Label) -> dict[str, Any]:
     return {
         "index": label.index,
         "class": item.class_name,
+        **({} if item.category == item.class_name else {"category": item.category}),
         "name": item.name,
         "position": list(item.position),
         "quaternion": list(item.quaternion),

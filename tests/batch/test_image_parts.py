@@ -43,7 +43,7 @@ def scenario() -> scenic.Scenario:
 
 
 def manifest(scenario: scenic.Scenario, form: str, camera: str = "front", **settings: Any) -> Manifest:
-    images = {"camera": camera, "size": None, "overlay": form == "images"}
+    images = {"cameras": camera.split(), "size": None, "overlay": form == "images"}
     chosen = {"seed": 3, "count": 7, "part_size": 3, **settings}
     return Manifest.of(scenario, form=form, images=images, **chosen)
 
@@ -145,7 +145,44 @@ def test_other_scenes_than_the_programs_are_noticed(made: Path, scenario: scenic
     )
     with pytest.raises(DatasetError, match="of another program"):
         list(verify(made, twin))
-    assert other.images == {"camera": "front", "size": None, "overlay": other.form == "images"}
+    assert other.images == {"cameras": ["front"], "size": None, "overlay": other.form == "images"}
+
+
+@pytest.mark.parametrize("form", ["images", "tar"])
+def test_several_cameras_are_one_data_set(form: str, scenario: scenic.Scenario, tmp_path: Path) -> None:
+    make_dataset(scenario, tmp_path / "both", manifest(scenario, form, "front kinds"))
+    shots: dict[int, dict[str, Any]] = {}
+    for index in indices(tmp_path / "both"):
+        shots |= {image["id"]: image for image in index["images"]}
+        assert all(item["image_id"] in shots for item in index["annotations"])
+    assert [(shot["k"], shot["camera"]) for shot in shots.values()] == [
+        (k, camera) for k in range(7) for camera in ("front", "kinds")
+    ]
+    assert not list(verify(tmp_path / "both", scenario, share=1))
+    # Each camera has the images that it has alone.
+    for camera in ("front", "kinds"):
+        make_dataset(scenario, tmp_path / camera, manifest(scenario, form, camera))
+        alone = [image for index in indices(tmp_path / camera) for image in index["images"]]
+        mine = [shot for shot in shots.values() if shot["camera"] == camera]
+        assert [shot["sha256"] for shot in mine] == [image["sha256"] for image in alone]
+
+
+def test_an_object_may_name_its_category(tmp_path: Path) -> None:
+    scenario = scenic.scenarioFromString(
+        """
+from scenic import SSSensor
+kind = Uniform(("mug", CylinderShape()), ("bowl", ConeShape()))
+ego = new Object with sensors {"front": SSSensor(width=40, height=30)}
+new Object at (0, 5), with shape kind[1], with category kind[0]
+new Object at (0, 8), with category "wall", with width 9, with height 9
+"""
+    )
+    make_dataset(scenario, tmp_path, manifest(scenario, "images", count=12))
+    joined = json.loads((tmp_path / "annotations.json").read_bytes())
+    assert [item["name"] for item in joined["categories"]] == ["Object", "mug", "bowl", "wall"]
+    # The numbers of a scene's objects in order: a mug or a bowl, then the wall.
+    assert {item["category_id"] for item in joined["annotations"] if item["object"] == 1} == {2, 3}
+    assert {item["category_id"] for item in joined["annotations"] if item["object"] == 2} == {4}
 
 
 def indices(folder: Path) -> Iterator[dict[str, Any]]:

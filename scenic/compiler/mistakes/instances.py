@@ -7,6 +7,7 @@ from scenic.compiler.generated import SPECIFIER_KINDS
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
 from scenic.compiler.tokens import DEDENT, NUMBER
+from scenic.language.names import NAMES, NameKind
 from scenic.language.specifiers import SPECIFIERS
 
 __all__ = [
@@ -230,6 +231,14 @@ def call_of_class(at: Situation) -> Problem | None:
     if at.found != "(" or at.word(at.token - 2) != "new":
         return None
     name = at.before
+    declared = NAMES.get(name)
+    if declared is not None and declared.kind is NameKind.DISTRIBUTION:
+        return at.problem(
+            "SC135",
+            at.here(),
+            "the class of an object cannot be drawn at random",
+            f"draw what differs: `with shape {name}(...)`, `with category {name}(...)`",
+        )
     if at.word(at.token + 1) == ")":
         fix = ("remove the parentheses", [Change(at.token, at.token + 2, ())])
         return at.problem("SC135", at.here(), "`new` takes no parentheses", f"write `new {name}`", fix=fix)
