@@ -379,10 +379,20 @@ def _bundle(scene: Scene) -> Mapping[str, str]:
     return scene_bundle(scene)
 
 
-def _export(scene: Scene, path: Path) -> None:
-    from scenic.formats.webots import write_world
+def _export(scene: Scene, path: Path) -> bool:
+    """Write a scene for another program by the ending of the file's name; returns whether that is such an ending."""
+    suffix = path.suffix.lower()
+    if suffix == ".wbt":
+        from scenic.formats.webots import write_world
 
-    write_world(scene, path)
+        write_world(scene, path)
+        return True
+    from scenic.formats.robotics.scene_files import ENDINGS, write_scene
+
+    if suffix in ENDINGS:
+        write_scene(scene, path)
+        return True
+    return False
 
 
 def show_page(scene: Any) -> Path:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from scenic.batch.engines import Engine
 from scenic.batch.image_parts import ImageRows, ImageSink, join_indices
 from scenic.batch.manifest import NAME, DatasetError, Manifest, Part
+from scenic.batch.scene_file_parts import FORMS, SceneFileRows, SceneFileSink
 from scenic.batch.scenes import LONGEST, Job, Made, encoded_here, in_processes, method_of
 from scenic.dataclass import dataclass
 from scenic.formats.files import Waiting, discard_unfinished, make_folder, refusing, writing
@@ -71,7 +72,7 @@ class Encoder:
     """Encodes blocks of scenes for a part: numbers and attempts, then the rows.
 
     Args:
-        form: ``parquet`` or ``jsonl``, or of `IMAGE_FORMS`.
+        form: ``parquet`` or ``jsonl``, or of `IMAGE_FORMS` or `FORMS`.
         changed: whether JSON Lines tell only the properties that the program gives.
         points: see `Manifest`.
         images: see `Manifest`.
@@ -105,7 +106,7 @@ class Encoder:
     @property
     def most(self) -> int:
         """Number of scenes that are encoded together, at most."""
-        return LONGEST if self._images is None else _IMAGES
+        return LONGEST if self._images is None and self._form not in FORMS else _IMAGES
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_writer": None}  # belongs to one process
@@ -121,6 +122,10 @@ class Encoder:
         if self._images is not None:
             if self._writer is None:
                 self._writer = ImageRows(scenario, self._form, self._images)
+            return bytes(self._writer.rows(scenes))
+        if self._form in FORMS:
+            if self._writer is None:
+                self._writer = SceneFileRows(scenario, self._form)
             return bytes(self._writer.rows(scenes))
         if self._form == "jsonl":
             if self._writer is None:
@@ -416,6 +421,8 @@ class _Sink(Protocol):
 def _sink(path: Path, scenario: Scenario, manifest: Manifest) -> _Sink:
     if manifest.images is not None:
         return ImageSink(path, scenario, manifest)
+    if manifest.form in FORMS:
+        return SceneFileSink(path, scenario, manifest)
     return _Lines(path) if manifest.form == "jsonl" else _Table(path, scenario)
 
 

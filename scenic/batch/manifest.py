@@ -73,7 +73,7 @@ class Manifest:
         seed: the seed of all scenes.
         first: the number of the first scene.
         count: how many scenes were wanted.
-        form: format of the parts, ``parquet`` or ``jsonl``; ``images`` or ``tar`` for labelled images.
+        form: format of the parts, ``parquet`` or ``jsonl``; ``images`` or ``tar`` for labelled images; ``usd``, ``mjcf`` or ``sdf`` for files of scenes.
         part_size: scenes of a part.
         points: ``sobol`` where scenes are rows of Sobol's sequence, ``approximate N`` where N were made together, of nearly the program's law.
         max_attempts: candidates tried for one scene, at most.
@@ -149,8 +149,9 @@ class Manifest:
         return self.file_name((first - self.first) // self.part_size)
 
     def file_name(self, number: int) -> str:
-        """The name of a part; that of images in the folder is the index of its scenes."""
-        return f"part-{number:05d}.{'json' if self.form == 'images' else self.form}"
+        """The name of a part; that of images and files in the folder is the index of its scenes."""
+        is_index = self.form not in ("parquet", "jsonl", "tar")
+        return f"part-{number:05d}.{'json' if is_index else self.form}"
 
     def difference(self, other: "Manifest") -> str | None:
         """The first setting in which data sets differ that cannot be continued by each other; their counts may differ."""

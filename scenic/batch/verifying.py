@@ -12,6 +12,7 @@ from typing import Any
 from scenic.batch.datasets import Encoder
 from scenic.batch.image_parts import IMAGE_FORMS, copy_images, damaged_files, image_rows, join_indices
 from scenic.batch.manifest import DatasetError, Manifest, Part
+from scenic.batch.scene_file_parts import FORMS, copy_scene_files, damaged_scene_files, scene_file_rows
 from scenic.batch.scenes import Job, method_of, results_of
 from scenic.batch.source_files import mesh_digests, texture_digests
 from scenic.dataclass import dataclass
@@ -76,8 +77,13 @@ def verify(
         if digest_of(path) != part.sha256:
             yield Damage(part.file, "the content has changed since it was written")
             continue
-        if manifest.images is not None:
-            damages = [Damage(*item) for item in damaged_files(folder, part, manifest.form)]
+        if manifest.images is not None or manifest.form in FORMS:
+            found_damages = (
+                damaged_scene_files(folder, part)
+                if manifest.form in FORMS
+                else damaged_files(folder, part, manifest.form)
+            )
+            damages = [Damage(*item) for item in found_damages]
             yield from damages
             if damages:
                 continue
@@ -119,6 +125,9 @@ def part_rows(path: Path, form: str) -> Iterator[dict[str, Any]]:
     if form in IMAGE_FORMS:
         yield from image_rows(path, form)
         return
+    if form in FORMS:
+        yield from scene_file_rows(path)
+        return
     if form == "jsonl":
         with path.open("rb") as stream:
             for line in stream:
@@ -133,6 +142,8 @@ def part_rows(path: Path, form: str) -> Iterator[dict[str, Any]]:
 def _rows(encoded: bytes, form: str) -> list[dict[str, Any]]:
     if form in IMAGE_FORMS:
         return list(image_rows(encoded, form))
+    if form in FORMS:
+        return list(scene_file_rows(encoded))
     if form == "jsonl":
         return [json.loads(line) for line in encoded.splitlines()]
     arrow, _ = parquet_support()
@@ -173,6 +184,8 @@ def merge(folders: Sequence[Path], target: Path) -> Manifest:
         write(target / name, content)
         if head.images is not None:
             copy_images(path.parent, part, head.form, target / name)
+        elif head.form in FORMS:
+            copy_scene_files(path.parent, part, target / name)
         parts.append(replace(part, file=name))
     first, last = (parts[0].first, parts[-1].last) if parts else (head.first, head.first)
     merged = replace(

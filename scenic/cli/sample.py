@@ -92,14 +92,14 @@ __all__ = ["sample"]
     "-o",
     "--output",
     metavar="OUT",
-    help="JSON Lines to this file, columns if OUT ends in .parquet, a 3D file for each scene if it ends in .glb, .obj or .wbt, a data "
+    help="JSON Lines to this file, columns if OUT ends in .parquet, a file for each scene if it ends in .glb, .obj, .wbt, .usda, .usdc, .usdz, .xml (MJCF) or .sdf, a data "
     "set of many files if it ends in / or is a folder; - is standard output, which is the default without --view and --png.",
 )
 @click.option(
     "--format",
     "form",
-    type=OneOf(["parquet", "jsonl", "images", "tar"]),
-    help="Format of the files of a data set: parquet or jsonl; with --camera images, or tar for shards.  [default: the first]",
+    type=OneOf(["parquet", "jsonl", "images", "tar", "usd", "mjcf", "sdf"]),
+    help="Format of the files of a data set: parquet or jsonl; usd, mjcf or sdf for a file of each scene with shared meshes; with --camera images, or tar for shards.  [default: the first]",
 )
 @click.option(
     "--part-size",
@@ -260,8 +260,10 @@ def sample(
         raise click.UsageError("--show-params goes without -j, --dask, --profile, data sets and Parquet")
     if form is not None and dataset is None:
         raise click.UsageError("--format is for data sets: -o FOLDER/")
-    if form is not None and (not cameras) != (form in ("parquet", "jsonl")):
-        raise click.UsageError("--format images and tar go with --camera, parquet and jsonl without it")
+    if form is not None and (not cameras) != (form not in ("images", "tar")):
+        raise click.UsageError("--format images and tar go with --camera, the others without it")
+    if form is not None and dataset is not None and not cameras:
+        sinks.check_files(form)
     if overlay and not cameras:
         raise click.UsageError("--overlay draws into the images of a camera: --camera NAME")
     if form is None:
@@ -304,7 +306,7 @@ def sample(
     if any("texture" in thing.__dict__ for thing in loaded.objects):
         from scenic.batch.source_files import check_textures, warn_of_textures
 
-        (check_textures if cameras or png is not None else warn_of_textures)(loaded)
+        (check_textures if cameras or png is not None or form in ("usd", "mjcf", "sdf") else warn_of_textures)(loaded)
     if profile:
         return _profiled(loaded, first, count, seed or 0, sobol, max_attempts, deadline)
     done = 0

@@ -25,8 +25,11 @@ _OTHER_FORMATS = {
     ".csv": "scenes are written as JSON Lines: a name that ends in .jsonl",
     ".json": "scenes are written as JSON Lines: a name that ends in .jsonl",
     ".gltf": "write the binary form of it: a name that ends in .glb",
-    ".stl": "3D files are written as .glb, .obj or .wbt",
-    ".ply": "3D files are written as .glb, .obj or .wbt",
+    ".stl": "3D files are written as .glb, .obj, .usda or .wbt",
+    ".ply": "3D files are written as .glb, .obj, .usda or .wbt",
+    ".usd": "give the ending of text, binary or a package: .usda, .usdc or .usdz",
+    ".urdf": "a world of several objects is written as .sdf, with a URDF of each object beside it",
+    ".mjcf": "MJCF is written to a name that ends in .xml",
 }
 
 
@@ -78,7 +81,7 @@ def check_lines(path: Path) -> None:
 
 
 def scene_file(path: Path, count: int, first: int = 0) -> Sink:
-    """A ``.glb``, ``.obj`` or ``.wbt`` file for each scene, by the name's ending; raises ``OutputError`` at once if that cannot be.
+    """A file of a 3D program or simulator for each scene, by the name's ending; raises ``OutputError`` at once if that cannot be.
 
     Args:
         path: the file of one scene; those of several have their numbers in their names.
@@ -87,8 +90,19 @@ def scene_file(path: Path, count: int, first: int = 0) -> Sink:
 
     """
     check_writable(path)
+    if path.suffix.lower() in _ROBOTICS:
+        from scenic.formats.robotics.scene_files import ENDINGS, check_form
+
+        check_form(ENDINGS[path.suffix.lower()])
     _check_numbered(path, count, first)
     return _FILES[path.suffix.lower()](path, count)
+
+
+def check_files(form: str) -> None:
+    """Raises ``MissingLibraryError`` if files of a form of data sets need a library that is not installed."""
+    from scenic.formats.robotics.scene_files import check_form
+
+    check_form(form)
 
 
 def check_page(path: Path, option: str = "--view") -> None:
@@ -191,7 +205,17 @@ def _worlds(path: Path, count: int) -> Iterator[Take]:
     yield take
 
 
-_FILES = {".glb": _glb_files, ".obj": _obj_files, ".wbt": _worlds}
+@contextmanager
+def _robot_files(path: Path, count: int) -> Iterator[Take]:
+    from scenic.formats.robotics.scene_files import write_scene
+
+    yield lambda scene: write_scene(scene, numbered(path, scene.k, count))
+
+
+_ROBOTICS = (".usda", ".usdc", ".usdz", ".xml", ".sdf")
+"""Endings of files for robot simulators."""
+
+_FILES = {".glb": _glb_files, ".obj": _obj_files, ".wbt": _worlds, **dict.fromkeys(_ROBOTICS, _robot_files)}
 """Sinks of 3D files by their endings."""
 
 

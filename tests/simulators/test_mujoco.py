@@ -861,7 +861,7 @@ def test_quadrotors_fly_alike_whatever_their_mass(mass: float) -> None:
 
 
 def test_parts_that_are_flat_have_no_volume() -> None:
-    from scenic.simulators.mujoco.convex import _volume
+    from scenic.runtime.geometry.meshes.convex_parts import _volume
 
     box = np.array(list(product((0.0, 1.0), (0.0, 2.0), (0.0, 3.0))))
     assert _volume(box) == pytest.approx(6)

@@ -14,7 +14,7 @@ from scenic.dataclass import dataclass
 from scenic.language.errors import SimulationCreationError
 from scenic.simulators.cameras import carried
 from scenic.simulators.commands import model_of
-from scenic.simulators.mujoco.convex import convex_parts
+from scenic.runtime.geometry.meshes.convex_parts import convex_parts
 from scenic.simulators.mujoco.library import library
 
 __all__ = ["MODELS", "Builder", "Part"]

@@ -47,7 +47,9 @@ def convex_parts(mesh: Any) -> tuple[npt.NDArray[np.float64], ...]:
         return {"vertices": np.concatenate(parts), "ends": np.cumsum([len(part) for part in parts])}
 
     arrays = kept("convex parts 1", mesh.digest, compute)
-    parts = np.split(arrays["vertices"], arrays["ends"][:-1])
+    # The hulls may reach out of the solid a little, but never below what it stands on.
+    vertices = np.clip(arrays["vertices"], mesh.vertices.min(axis=0), mesh.vertices.max(axis=0))
+    parts = np.split(vertices, arrays["ends"][:-1])
     return tuple(part for part in parts if _volume(part) > _FLAT)
 
 

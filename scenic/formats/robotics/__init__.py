@@ -1,0 +1,1 @@
+"""Scenes as files of robot simulators: OpenUSD, MJCF, SDFormat with URDF."""
