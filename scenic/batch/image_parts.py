@@ -178,9 +178,7 @@ def image_rows(source: Path | bytes, form: str) -> Iterator[dict[str, Any]]:
         yield _plain(images, list(annotations), content)
 
 
-def _plain(
-    images: list[dict[str, Any]], annotations: list[dict[str, Any]], content: bytes
-) -> dict[str, Any]:
+def _plain(images: list[dict[str, Any]], annotations: list[dict[str, Any]], content: bytes) -> dict[str, Any]:
     return {"k": images[0]["k"], "images": images, "annotations": annotations, "content": content}
 
 

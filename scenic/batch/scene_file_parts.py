@@ -19,7 +19,14 @@ from scenic.formats.shards import member, members
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
 
-__all__ = ["FORMS", "SceneFileRows", "SceneFileSink", "copy_scene_files", "damaged_scene_files", "scene_file_rows"]
+__all__ = [
+    "FORMS",
+    "SceneFileRows",
+    "SceneFileSink",
+    "copy_scene_files",
+    "damaged_scene_files",
+    "scene_file_rows",
+]
 
 
 class SceneFileRows:

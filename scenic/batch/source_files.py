@@ -67,7 +67,9 @@ def texts_of(value: Any) -> list[str]:
     """The texts that a random value may be, as far as the program says them; texts in tuples and lists count, too."""
     texts: list[str] = []
     for item in _constants(value):
-        texts += [part for part in (item if isinstance(item, tuple | list) else [item]) if isinstance(part, str)]
+        texts += [
+            part for part in (item if isinstance(item, tuple | list) else [item]) if isinstance(part, str)
+        ]
     return texts
 
 

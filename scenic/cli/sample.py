@@ -306,7 +306,11 @@ def sample(
     if any("texture" in thing.__dict__ for thing in loaded.objects):
         from scenic.batch.source_files import check_textures, warn_of_textures
 
-        (check_textures if cameras or png is not None or form in ("usd", "mjcf", "sdf") else warn_of_textures)(loaded)
+        (
+            check_textures
+            if cameras or png is not None or form in ("usd", "mjcf", "sdf")
+            else warn_of_textures
+        )(loaded)
     if profile:
         return _profiled(loaded, first, count, seed or 0, sobol, max_attempts, deadline)
     done = 0

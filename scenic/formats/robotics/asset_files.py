@@ -72,7 +72,9 @@ def hull(points: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], npt.
     faces = np.searchsorted(used, found.simplices)
     corners = vertices[faces]
     outside = np.einsum(
-        "fx,fx->f", np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), found.equations[:, :3]
+        "fx,fx->f",
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
+        found.equations[:, :3],
     )
     faces[outside < 0] = faces[outside < 0][:, ::-1]
     return vertices, faces

@@ -182,7 +182,9 @@ class _Writer:
     def _mesh(self, solid: Solid) -> str:
         """The name of the asset of a solid's mesh at its size."""
         path, content = mesh_file(solid)
-        return self._declare(path, solid.size, content, solid.mesh if solid.texture is None else None, "exact")
+        return self._declare(
+            path, solid.size, content, solid.mesh if solid.texture is None else None, "exact"
+        )
 
     def _pieces(self, solid: Solid) -> list[str]:
         """The names of the assets of the convex parts of a solid's mesh; none if its hull is as good."""

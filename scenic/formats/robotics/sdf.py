@@ -91,7 +91,9 @@ class _Writer:
         )
         ambient = min(1.0, 0.4 * scenery.skylight)
         view = ET.SubElement(self._world, "scene")
-        _texts(view, ambient=numbers((ambient, ambient, ambient, 1)), background=numbers((*scenery.zenith, 1)))
+        _texts(
+            view, ambient=numbers((ambient, ambient, ambient, 1)), background=numbers((*scenery.zenith, 1))
+        )
 
     def _ground(self, solids: tuple[Solid, ...]) -> None:
         lowest = min(0.0, *(bottom(solid) for solid in solids)) if solids else 0.0
@@ -153,7 +155,9 @@ class _Writer:
         back = Rotation.from_quat(solid.quaternion).inv()
         place = back.apply(camera.camera.eye - np.array(solid.position))
         # Cameras of SDFormat look along +X, ours along +Y.
-        turn = (back * Rotation.from_quat(camera.quaternion) * Rotation.from_euler("Z", math.pi / 2)).as_quat()
+        turn = (
+            back * Rotation.from_quat(camera.quaternion) * Rotation.from_euler("Z", math.pi / 2)
+        ).as_quat()
         kind = "depth_camera" if camera.outputs == ("depth",) else "camera"
         sensor = ET.SubElement(link, "sensor", name=camera.name, type=kind)
         pose = ET.SubElement(sensor, "pose", rotation_format="quat_xyzw")

@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from scenic.formats.colors import linear
+from scenic.formats.imaging import MissingLibraryError
 from scenic.formats.instances import surface_of
 from scenic.formats.poses import Four
 from scenic.formats.robotics.asset_files import FOLDER, image_file, mesh_name, texture_coordinates
@@ -18,7 +19,6 @@ from scenic.formats.robotics.solids import Solid, identifiers, solids_of
 from scenic.formats.scenery import scenery_of
 from scenic.formats.scenes import Scene
 from scenic.formats.sensors import Viewpoint
-from scenic.formats.imaging import MissingLibraryError
 from scenic.language.extras import installation
 
 __all__ = ["require_usd", "usd", "usd_file"]
@@ -102,7 +102,9 @@ class _Writer:
     def files(self, name: str) -> dict[str, bytes]:
         solids = solids_of(self._scene)
         self._surroundings(solids)
-        taken = iter(identifiers(iter(["Looks", "Sun", "Sky", "PhysicsScene", "Ground", *(s.name for s in solids)])))
+        taken = iter(
+            identifiers(iter(["Looks", "Sun", "Sky", "PhysicsScene", "Ground", *(s.name for s in solids)]))
+        )
         names = list(taken)[5:]
         for solid, label in zip(solids, names, strict=True):
             self._solid(solid, f"/World/{label}")
@@ -285,7 +287,9 @@ class _Writer:
                 texture.CreateInput(axis, Sdf.ValueTypeNames.Token).Set("repeat")
             texture.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(found)
             diffuse.ConnectToSource(texture.CreateOutput("rgb", Sdf.ValueTypeNames.Float3))
-        material.CreateSurfaceOutput().ConnectToSource(shader.CreateOutput("surface", Sdf.ValueTypeNames.Token))
+        material.CreateSurfaceOutput().ConnectToSource(
+            shader.CreateOutput("surface", Sdf.ValueTypeNames.Token)
+        )
         return material
 
     def _friction(self, geometry: Any, solid: Solid) -> None:
@@ -438,4 +442,3 @@ def _encoded(layer: Any, name: str) -> bytes:
         path = Path(folder, "layer.usdc")
         layer.Export(str(path))
         return path.read_bytes()
-

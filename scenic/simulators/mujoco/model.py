@@ -12,9 +12,9 @@ import numpy as np
 
 from scenic.dataclass import dataclass
 from scenic.language.errors import SimulationCreationError
+from scenic.runtime.geometry.meshes.convex_parts import convex_parts
 from scenic.simulators.cameras import carried
 from scenic.simulators.commands import model_of
-from scenic.runtime.geometry.meshes.convex_parts import convex_parts
 from scenic.simulators.mujoco.library import library
 
 __all__ = ["MODELS", "Builder", "Part"]
