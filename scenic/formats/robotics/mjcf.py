@@ -140,20 +140,20 @@ class _Writer:
             "cylinder": {"type": "cylinder", "size": numbers((width / 2, height / 2))},
         }
         if solid.form in forms:
-            ET.SubElement(body, "geom", name=solid.name, **forms[solid.form], **surface, **weight, **looks)
+            ET.SubElement(
+                body, "geom", {"name": solid.name, **forms[solid.form], **surface, **weight, **looks}
+            )
             return
         whole = {"type": "mesh", "mesh": self._mesh(solid), **weight, **looks}
         pieces = self._pieces(solid) if solid.collides else ()
         if not pieces:
-            ET.SubElement(body, "geom", name=solid.name, **whole, **surface)
+            ET.SubElement(body, "geom", {"name": solid.name, **whole, **surface})
             return
         # The whole is seen and has the inertia; its pieces touch others.
-        ET.SubElement(body, "geom", name=solid.name, **whole, contype="0", conaffinity="0")
+        ET.SubElement(body, "geom", {"name": solid.name, **whole, "contype": "0", "conaffinity": "0"})
         for number, piece in enumerate(pieces):
-            ET.SubElement(
-                body, "geom", name=f"{solid.name} piece {number}", type="mesh", mesh=piece, mass="0",
-                group=_NOT_DRAWN, **surface,
-            )  # fmt: skip
+            form = {"name": f"{solid.name} piece {number}", "type": "mesh", "mesh": piece, "mass": "0"}
+            ET.SubElement(body, "geom", {**form, "group": _NOT_DRAWN, **surface})
 
     def _surface(self, solid: Solid) -> dict[str, str]:
         found: dict[str, str] = {} if solid.is_static else {"priority": "1"}

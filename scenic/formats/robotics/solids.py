@@ -35,7 +35,7 @@ _ROUND: Final = 16
 class SolidError(Located):
     """An object that physics cannot have."""
 
-    code = "SC616"
+    code = "SC504"
 
 
 @dataclass(frozen=True, slots=True)

@@ -53,7 +53,7 @@ class Family:
     """The common ground of all scenes of a scenario.
 
     ``populations`` makes their objects, ``names`` are the variables that hold these, by the identities of the program's.
-    ``keep`` gives a scene as data, ``view`` shows it, ``export`` writes it for another program.
+    ``keep`` gives a scene as data, ``view`` shows it, ``export`` writes it for another program, if the file's ending says so.
     """
 
     program: Program
@@ -66,7 +66,7 @@ class Family:
     scenario: Any
     view: Callable[["Scene"], Any] | None
     bundle: Callable[["Scene"], Mapping[str, str]] | None
-    export: Callable[["Scene", Path], None] | None
+    export: Callable[["Scene", Path], bool] | None
     regions: Mapping[str, Region]
 
 
@@ -282,10 +282,10 @@ class Scene:
     def save(self, path: str | Path) -> None:
         """Write the scene to a file, which `Scenario.replay` reads; the file is complete or absent.
 
-        If its name ends in ``.wbt``, the file is a world of Webots instead, with its meshes in a folder beside it.
+        If its name ends in ``.usda``, ``.usdc``, ``.usdz`` (OpenUSD), ``.xml`` (MJCF), ``.sdf`` (SDFormat) or ``.wbt`` (Webots), the
+        file is a scene of another program instead, which `replay` does not read.
         """
-        if Path(path).suffix == ".wbt" and self._family.export is not None:
-            self._family.export(self, Path(path))
+        if self._family.export is not None and self._family.export(self, Path(path)):
             return
         content = self._family.keep(self)
         with whole(Path(path)) as stream:

@@ -19,7 +19,7 @@ class Services:
     """Shows a scene (`Scene.show`)."""
     bundle: Callable[[Scene], Mapping[str, str]] | None = None
     """A scene by type of media, for notebooks."""
-    export: Callable[[Scene, Path], None] | None = None
+    export: Callable[[Scene, Path], bool] | None = None
     """Writes a scene as a world of Webots (`Scene.save` with the ending ``.wbt``)."""
     recipe: tuple[Any, ...] | None = None
     """Compiles the program once more, as ``__reduce__`` returns it."""

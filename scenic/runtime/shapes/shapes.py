@@ -64,10 +64,13 @@ class Shape:
 
     Attributes:
         mesh: the unit mesh: centred on its bounding box, which is the unit cube.
-        dimensions: the default (width, length, height) in metres of objects of this shape.
+        dimensions: the default (width, length, height) in metres of objects of this shape, without a random scale.
         source: where the mesh comes from.
 
     """
+
+    _factor: Any = None
+    """A random factor of the dimensions."""
 
     def __init__(self, mesh: Mesh, dimensions: Triple, source: ShapeSource) -> None:
         self.mesh: Final = mesh
@@ -75,19 +78,30 @@ class Shape:
         self.source: Final = source
 
     @property
-    def width(self) -> float:
-        """Default extent along X."""
-        return self.dimensions[0]
+    def width(self) -> Any:
+        """Default extent along X; random if the scale is."""
+        return self._extent(0)
 
     @property
-    def length(self) -> float:
-        """Default extent along Y."""
-        return self.dimensions[1]
+    def length(self) -> Any:
+        """Default extent along Y; random if the scale is."""
+        return self._extent(1)
 
     @property
-    def height(self) -> float:
-        """Default extent along Z."""
-        return self.dimensions[2]
+    def height(self) -> Any:
+        """Default extent along Z; random if the scale is."""
+        return self._extent(2)
+
+    def _extent(self, axis: int) -> Any:
+        size = self.dimensions[axis]
+        return size if self._factor is None else size * self._factor
+
+    def _scale_by(self, scale: Any) -> Any:
+        """Keep a random scale as the factor of the dimensions; returns the scale that is left."""
+        if isinstance(scale, RandomBase):
+            self._factor = scale
+            return 1
+        return scale
 
     @property
     def isConvex(self) -> bool:
@@ -119,6 +133,7 @@ class PrimitiveShape(Shape):
     ) -> None:
         name = type(self).__name__
         rotation = _rotation(initial_rotation, name)
+        scale = self._scale_by(scale)
         super().__init__(
             _primitive(self.make, rotation, **parameters),
             _scaled(_triple(dimensions, "dimensions", name), scale, name),
@@ -204,6 +219,7 @@ class MeshShape(Shape):
 
     def _finish(self, unit: Mesh, extents: Triple, dimensions: Any, scale: Any, source: ShapeSource) -> None:
         size = extents if dimensions is None else _triple(dimensions, "dimensions", "MeshShape")
+        scale = self._scale_by(scale)
         super().__init__(unit, _scaled(size, scale, "MeshShape"), source)
 
     @classmethod

@@ -297,3 +297,17 @@ def test_whether_shapes_are_convex_and_hold_their_middles():
         (shapes.MeshShape(trimesh.creation.box((2, 2, 2)), initial_rotation=(0.3, 0, 0)), True, True),
     ):
         assert (shape.isConvex, shape.containsCenter) == (convex, holds)
+
+
+def test_a_random_scale_is_one_factor_of_all_dimensions() -> None:
+    scenario = scenic.scenarioFromString(
+        "shape = Uniform(BoxShape((1, 2, 3), scale=Range(1, 2)), ConeShape((4, 8, 12), scale=Range(1, 1.5)))\n"
+        "ego = new Object with shape shape\n"
+    )
+    factors = []
+    for scene in scenario.sample(40, seed=1):
+        thing = scene.egoObject
+        factors.append(thing.width)
+        assert (thing.length, thing.height) == pytest.approx((2 * thing.width, 3 * thing.width))
+    assert 1 <= min(factors) < 2 < 4 <= max(factors) <= 6
+    assert len(set(factors)) == 40

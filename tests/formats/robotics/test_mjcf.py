@@ -1,0 +1,67 @@
+"""MJCF, read by MuJoCo."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from scenic.formats.robotics.mjcf import mjcf
+from scenic.formats.robotics.solids import solids_of
+from scenic.simulators.mujoco import MujocoSimulator
+from tests.formats.robotics.example import scenes
+
+mujoco = pytest.importorskip("mujoco")
+
+
+def written(folder: Path, scene: object, *, inline: bool) -> Path:
+    for name, content in mjcf(scene, "scene.xml", inline=inline).items():  # type: ignore[arg-type]
+        path = folder / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(content)
+    return folder / "scene.xml"
+
+
+@pytest.mark.parametrize("inline", [True, False])
+def test_poses_and_masses_come_back(inline: bool, tmp_path: Path) -> None:
+    for scene in scenes():
+        model = mujoco.MjModel.from_xml_path(str(written(tmp_path, scene, inline=inline)))
+        data = mujoco.MjData(model)
+        mujoco.mj_forward(model, data)
+        for solid in solids_of(scene):
+            x, y, z, w = solid.quaternion
+            body = data.body(solid.name)
+            assert np.abs(body.xpos - solid.position).max() < 1e-12
+            assert abs(abs(body.xquat @ np.array([w, x, y, z])) - 1) < 1e-12
+            if not solid.is_static:
+                assert model.body(solid.name).mass[0] == pytest.approx(solid.inertia.mass, rel=1e-9)
+        assert data.ncon == 0 or data.contact.dist.min() > -1e-4
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+        assert np.abs(data.qpos - model.qpos0).max() < 1e-12
+        camera = data.camera("ego eye")
+        assert np.abs(camera.xpos - data.body("ego").xpos).max() < 0.1
+
+
+def test_the_model_is_that_of_the_simulator(tmp_path: Path) -> None:
+    scene = scenes(1)[0]
+    model = mujoco.MjModel.from_xml_path(str(written(tmp_path, scene, inline=True)))
+    other = MujocoSimulator().simulate(scene, maxSteps=1).model
+    assert model.ngeom == other.ngeom
+    assert model.nq == other.nq
+    mine = {model.body(k).name: k for k in range(model.nbody)}
+    for solid, number in zip(solids_of(scene), range(1, other.nbody), strict=True):
+        body = mine[solid.name]
+        assert model.body_pos[body] == pytest.approx(other.body_pos[number], abs=1e-9)
+        # The mesh of a cone is exact there, too; spheres and cylinders have the mass of the round form there.
+        if solid.form in ("box", "mesh", "cone") and not solid.is_static:
+            assert model.body_mass[body] == pytest.approx(other.body_mass[number], rel=1e-5)
+            assert model.body_inertia[body] == pytest.approx(other.body_inertia[number], rel=1e-4)
+    for name in ("timestep", "integrator", "cone", "impratio"):
+        assert getattr(model.opt, name) == getattr(other.opt, name)
+
+
+def test_steps_give_no_warning(tmp_path: Path) -> None:
+    model = mujoco.MjModel.from_xml_path(str(written(tmp_path, scenes(1)[0], inline=False)))
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, 1000)
+    assert not any(warning.number for warning in data.warning)
+    assert np.isfinite(data.qpos).all()
