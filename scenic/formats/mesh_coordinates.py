@@ -104,7 +104,7 @@ def _read(path: str, _stamp: int, _length: int) -> tuple[_Array, _Array] | None:
 
     try:
         scene: Any = trimesh.load_scene(path, process=False)
-    except Exception:  # noqa: BLE001 - our own readers have read it; trimesh raises whatever comes up in its parsers
+    except Exception:  # noqa: BLE001 - the mesh has been read, but trimesh raises whatever comes up in its parsers
         return None
     places, coordinates = [], []
     for name in scene.graph.nodes_geometry:

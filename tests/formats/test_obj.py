@@ -7,7 +7,6 @@ import pytest
 import trimesh
 
 from scenic.formats.obj import obj
-from scenic.runtime.geometry.meshes.reading.obj import read_obj
 from tests.formats.stand_ins import BALL, Chair, Object, Scene, Turn
 
 
@@ -28,11 +27,10 @@ def test_another_program_finds_the_same_geometry() -> None:
     np.testing.assert_allclose(found, expected, atol=1e-6)
 
 
-def test_our_reader_finds_closed_bodies_with_normals_outwards() -> None:
+def test_readers_find_closed_bodies_with_normals_outwards() -> None:
     chair = Chair(orientation=Turn.by(0.5, 0.4, 0.3), width=2, length=3, height=0.5)
     content, _ = obj(Scene([chair]), "x.mtl")
-    vertices, faces = read_obj(content)
-    mesh = trimesh.Trimesh(vertices, faces)
+    mesh = trimesh.load_mesh(io.BytesIO(content), file_type="obj", process=False)
     mesh.merge_vertices()
     assert mesh.is_watertight
     assert mesh.volume == pytest.approx(3, rel=1e-6)

@@ -1,7 +1,7 @@
-"""Every kind of region gives what was recorded, whatever it is asked: by the engine, by analysis and by programs."""
+"""Every kind of region gives what was recorded, whatever programs ask it."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -11,10 +11,9 @@ import scenic.core.vectors
 import shapely
 import trimesh
 
-from scenic.graph.bounds import Bounds
 from scenic.runtime.geometry.contact.scalar_bodies import placed as placed_at
 from scenic.runtime.geometry.meshes import primitives
-from scenic.runtime.regions import choice, composite, knowledge
+from scenic.runtime.regions import choice, composite
 from scenic.runtime.regions import view_regions as views
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Workspace, everywhere, nowhere
@@ -22,7 +21,7 @@ from scenic.runtime.values.values import Orientation, Vector
 from tests.recorded import FOLDER, hold
 from tests.runtime import matrices
 from tests.runtime.geometry.samples import table
-from tests.runtime.matrices import attempt, numbers, over_lanes, varied
+from tests.runtime.matrices import attempt, numbers
 from tests.runtime.programs import scene, thing
 
 TILT = Orientation.fromEuler(0.7, 0.4, -0.3)
@@ -67,57 +66,6 @@ def made(source: str) -> Region:
     region = eval(source, dict(NAMES))
     assert isinstance(region, Region)
     return region
-
-
-def engine(source: str) -> str:
-    """What the engine asks: with the parameters as they are, and with others in each lane."""
-    region = made(source)
-    columns = region.fixed_columns("a test")
-    lines = [*over_lanes(region, columns, 3), *facts(region, columns)]
-    if columns:
-        lines += ["and with parameters of each lane"]
-        lines += over_lanes(region, varied(columns, np.random.default_rng(4)), 5)
-    return "\n".join(lines)
-
-
-def facts(region: Region, columns: list[Any]) -> Iterator[str]:
-    """What analysis asks: bounds and inverse readings over boxes, of fixed parameters and of parameters in boxes."""
-    rng = np.random.default_rng(6)
-    boxes = 6
-    lower, upper = (np.clip(end[:1], -6, 6) for end in region.box(*columns))
-    middle = (lower + upper) / 2 + rng.normal(size=(boxes, 3)) * (upper - lower + 0.5) * np.linspace(
-        0.1, 1, boxes
-    )[:, None]
-    half = rng.uniform(0.01, 0.3, (boxes, 3)) * np.array([1, 2, 0.5])
-    point = Bounds(middle - half, middle + half)
-    turn = Bounds.exactly((TILT.x, TILT.y, TILT.z, TILT.w))
-    size = Bounds(np.full((boxes, 3), 0.1), rng.uniform(0.2, 0.7, (boxes, 3)))
-    true = Bounds(np.ones(boxes), np.ones(boxes))
-    near = Bounds(np.zeros(boxes), np.linspace(0, 2, boxes))
-    fixed = [_bounds(column, 0.0) for column in columns]
-    loose = [_bounds(column, 0.05) for column in columns]
-    other = varied(columns, rng, boxes)
-    each = [_bounds(column, 0.0) for column in other]
-    kinds = (("fixed", fixed), ("loose", loose), ("of each box", each))
-    for name, parameters in kinds if columns else kinds[:1]:
-        yield f"extent, {name}: {attempt(lambda p=parameters: region.extent(*p))}"
-        yield f"container extent, {name}: {attempt(lambda p=parameters: region.container_extent(*p))}"
-        asked = (region, point, *parameters)
-        yield f"holds point, {name}: {attempt(lambda a=asked: knowledge.point_bounds(*a))}"
-        yield f"point held, {name}: {attempt(lambda a=asked: knowledge.point_inverse(a[0], true, *a[1:])[0])}"
-        yield f"distance, {name}: {attempt(lambda a=asked: knowledge.distance_bounds(*a))}"
-        yield f"point near, {name}: {attempt(lambda a=asked: knowledge.distance_inverse(a[0], near, *a[1:])[0])}"
-        for mesh in (None, table()):
-            held = (knowledge.Containment(region, mesh), point, turn, size, None, *parameters)
-            yield f"holds body, {name}: {attempt(lambda a=held: knowledge.containment_bounds(*a))}"
-            yield f"body held, {name}: {attempt(lambda a=held: knowledge.containment_inverse(a[0], true, *a[1:])[0])}"
-
-
-def _bounds(column: Any, margin: float) -> Bounds | None:
-    values = np.asarray(column)
-    if values.dtype.kind != "f":
-        return None
-    return Bounds(values - margin, values + 2 * margin)
 
 
 Frame = Callable[[float, float, float], Vector]
@@ -233,6 +181,8 @@ def _argument(value: Any) -> str:
 _UNASKED = {
     "algebra", "at_once", "body", "cells_within", "fixed_columns", "kdTree", "kindred", "scenic_kind", "sample", "single",
     "uniformPointInner", "uniform_placement", "parameters", "random_parts", "sampled", "name", "source", "pieces", "outline",
+    "tolerance", "parameter_names", "may_find_none", "is_random", "has_closed_form", "draws", "is_alike", "dimension", "has_orientation",
+    "part_of", "voxel_points", "footprint", "members", "chains",
 }  # fmt: skip
 """What is asked otherwise, or says nothing."""
 
@@ -280,7 +230,7 @@ def told(answers: Iterable[bool | None]) -> str:
     return "".join({True: "X", False: "o", None: "?"}[answer] for answer in answers)
 
 
-@pytest.mark.parametrize("form", ["engine", "members", "pairs", "at_once"])
+@pytest.mark.parametrize("form", ["members", "pairs", "at_once"])
 def test_regions(form: str, request: pytest.FixtureRequest) -> None:
-    answer = {"engine": engine, "members": members, "pairs": pairs, "at_once": at_once}[form]
+    answer = {"members": members, "pairs": pairs, "at_once": at_once}[form]
     hold(FOLDER / f"regions_{form}.txt", answer, request)

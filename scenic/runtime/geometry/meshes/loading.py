@@ -1,23 +1,28 @@
-"""Reading mesh files: the common formats by our own readers, all others by trimesh."""
+"""Reading mesh files with trimesh.
 
+The store keeps the finished meshes by the content of their files, so that only the first use of a file imports trimesh.
+"""
+
+import hashlib
 import io
 import math
 import numbers
 import warnings
 import zlib
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
+from importlib.metadata import version
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
+from urllib.parse import unquote
 
 import numpy as np
 
 from scenic.language.errors import MeshError, ScenicTypeError, ScenicValueError
-from scenic.language.garbage import no_garbage_collection
 from scenic.runtime.geometry.meshes.mesh import Mesh
-from scenic.runtime.geometry.meshes.reading.soup import NotCoveredError, Soup
 from scenic.runtime.geometry.meshes.solids import proper_volume
 from scenic.runtime.geometry.meshes.topology import merge_vertices
+from scenic.runtime.geometry.store import Arrays, kept
 
 MOST_TRIANGLES: Final = 4_000_000
 """Triangles up to which a mesh is taken: indices and tables for one as large take some gigabytes."""
@@ -28,6 +33,15 @@ _MOST_BYTES: Final = 1 << 30
 _NO_MESHES: Final = frozenset({"bz2", "tar.bz2", "tar.gz", "zip", "dxf", "xyz"})
 """Archives, drawings and point clouds among the formats of trimesh."""
 
+
+_COMMON: Final = frozenset({"obj", "stl", "ply", "glb", "gltf", "off"})
+"""Formats that need not be looked up, which would import trimesh."""
+
+_WITH_NEIGHBOURS: Final = frozenset({"gltf", "dae", "zae", "xaml", "3dxml"})
+"""Formats whose files refer to others, so that one file does not decide the mesh: these are read each time."""
+
+_KIND: Final = "mesh 1"
+"""The name of finished meshes in the store; a new number whenever `proper_volume` or `merge_vertices` changes."""
 
 METRES: Final[Mapping[str, float]] = MappingProxyType(
     {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "in": 0.0254, "ft": 0.3048}
@@ -77,7 +91,26 @@ def load_mesh(path: str | Path, *, unify: bool = True, volume: bool = True) -> M
     """
     file = Path(path)
     name = f"the mesh `{path}`"
-    vertices, faces = _read(file, name)
+    data, file_type = _read(file, name)
+
+    def finished() -> Arrays:
+        mesh = _finished(_loaded(data, file_type, file, name), name, unify=unify, volume=volume)
+        return {"vertices": mesh.vertices, "faces": mesh.faces}
+
+    if file_type in _WITH_NEIGHBOURS:
+        arrays = finished()
+    else:
+        # Who reads and who repairs the mesh decides its content, too.
+        libraries = [f"{library} {version(library)}" for library in ("trimesh", "manifold3d")]
+        choices = f"{file_type} {unify} {volume} {libraries}\0".encode()
+        arrays = kept(_KIND, hashlib.sha256(choices + data).digest(), finished)
+    return Mesh(arrays["vertices"], arrays["faces"])
+
+
+def _finished(loaded: Any, name: str, *, unify: bool, volume: bool) -> Mesh:
+    """The mesh of what trimesh has read, checked and repaired."""
+    vertices = np.asarray(loaded.vertices, dtype=np.float64)
+    faces = np.asarray(loaded.faces, dtype=np.intp)
     if not len(faces):
         raise MeshError(f"{name} holds no triangles")
     if len(faces) > MOST_TRIANGLES:
@@ -85,6 +118,10 @@ def load_mesh(path: str | Path, *, unify: bool = True, volume: bool = True) -> M
             f"{name} has {len(faces)} triangles, more than {MOST_TRIANGLES}",
             help="simplify it in a mesh editor; bodies rarely need more than some thousand triangles",
         )
+    if vertices.ndim != 2 or vertices.shape[1] != 3:
+        raise MeshError(f"{name} has a vertex without three coordinates")
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise MeshError(f"{name} has a face with a vertex outside 1 to {len(vertices)}")
     if not np.isfinite(vertices).all():
         raise MeshError(f"{name} has a coordinate that is not finite")
     if volume:
@@ -95,13 +132,10 @@ def load_mesh(path: str | Path, *, unify: bool = True, volume: bool = True) -> M
     return Mesh(vertices, faces)
 
 
-def _read(file: Path, name: str) -> Soup:
-    from scenic.runtime.geometry.meshes.reading.formats import PACKINGS, READERS  # few programs read meshes
-
+def _read(file: Path, name: str) -> tuple[bytes, str]:
+    """The unpacked content of a file, and its format."""
     suffixes = [suffix.lower() for suffix in file.suffixes[-2:]]
-    unpack = PACKINGS.get(suffixes[-1]) if suffixes else None
-    if unpack is not None:
-        suffixes = suffixes[:-1]
+    packing = suffixes.pop() if suffixes and suffixes[-1] in (".bz2", ".gz") else None
     file_type = suffixes[-1][1:] if suffixes else ""
     try:
         data = _limited(file.open("rb"), name)
@@ -111,24 +145,25 @@ def _read(file: Path, name: str) -> Soup:
         ) from None
     except OSError as error:
         raise MeshError(f"{name} cannot be read: {error.strerror or error}") from None
-    if file_type not in READERS:
-        _check_format(file_type, READERS.keys(), name)
-    if unpack is not None:
+    if file_type not in _COMMON:
+        _check_format(file_type, name)
+    if packing is not None:
         try:
-            data = _limited(unpack(io.BytesIO(data)), name)
+            data = _limited(_unpacked(data, packing), name)
         except (OSError, EOFError, zlib.error) as error:
             raise MeshError(f"{name} cannot be unpacked: {error}") from None
-    if file_type in READERS:
-        try:
-            with no_garbage_collection():  # text is split into lists by the ten thousand
-                return READERS[file_type](data, lambda beside: (file.parent / beside).read_bytes())
-        except NotCoveredError:
-            pass
-        except OSError as error:
-            raise MeshError(f"{name} names a file that cannot be read: {error}") from None
-        except (ValueError, OverflowError, RecursionError) as error:
-            raise MeshError(f"{name} cannot be read as {file_type}: {error}") from None
-    return _loaded(data, file_type, file, name, packed=unpack is not None)
+    return data, file_type
+
+
+def _unpacked(data: bytes, packing: str) -> Any:
+    """A stream of the content of a packed file."""
+    if packing == ".gz":
+        import gzip  # few programs read packed meshes
+
+        return gzip.GzipFile(fileobj=io.BytesIO(data))
+    import bz2
+
+    return bz2.BZ2File(io.BytesIO(data))
 
 
 def _limited(stream: Any, name: str) -> bytes:
@@ -142,10 +177,10 @@ def _limited(stream: Any, name: str) -> bytes:
     return data
 
 
-def _check_format(file_type: str, read_here: Collection[str], name: str) -> None:
+def _check_format(file_type: str, name: str) -> None:
     import trimesh
 
-    formats = (set(trimesh.available_formats()) | set(read_here)) - _NO_MESHES
+    formats = set(trimesh.available_formats()) - _NO_MESHES
     if file_type not in formats:
         raise MeshError(
             f"{name} is of an unknown format{f' `.{file_type}`' if file_type else ''}",
@@ -153,7 +188,7 @@ def _check_format(file_type: str, read_here: Collection[str], name: str) -> None
         )
 
 
-def _loaded(data: bytes, file_type: str, file: Path, name: str, *, packed: bool) -> Soup:
+def _loaded(data: bytes, file_type: str, file: Path, name: str) -> Any:
     """Read a mesh file with trimesh."""
     import logging  # takes a fortieth of a start, and few files are read by that library
 
@@ -163,18 +198,20 @@ def _loaded(data: bytes, file_type: str, file: Path, name: str, *, packed: bool)
     disabled = logger.disabled
     logger.disabled = True  # what goes wrong is said by the error below
     try:
+        if file_type == "obj" and b"-" in data:
+            data = _absolute(data)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            # Formats that refer to neighbouring files find them beside an unpacked file.
-            resolver = None if packed else trimesh.resolvers.FilePathResolver(str(file))
             scene = trimesh.load_scene(
                 io.BytesIO(data),
                 file_type=file_type,
-                resolver=resolver,
+                resolver=_beside(file, name),
                 process=False,
                 skip_materials=True,
             )
             loaded = scene.to_mesh()
+    except MeshError:
+        raise
     except Exception as error:  # noqa: BLE001  # readers raise whatever their format's parser raises
         reason = str(error).strip() or type(error).__name__
         raise MeshError(f"{name} cannot be read as {file_type}: {reason}") from None
@@ -182,4 +219,38 @@ def _loaded(data: bytes, file_type: str, file: Path, name: str, *, packed: bool)
         logger.disabled = disabled
     if not isinstance(loaded, trimesh.Trimesh):
         raise MeshError(f"{name} holds no triangles")
-    return Soup(np.asarray(loaded.vertices, dtype=np.float64), np.asarray(loaded.faces, dtype=np.intp))
+    return loaded
+
+
+def _beside(file: Path, mesh: str) -> Any:
+    """The resolver of files that a mesh file refers to: they lie beside it, packed or not, and their names are parts of URLs."""
+    from trimesh.resolvers import FilePathResolver
+
+    class Beside(FilePathResolver):
+        def get(self, name: str) -> Any:
+            try:
+                return super().get(unquote(name))
+            except (OSError, ValueError) as error:
+                raise MeshError(f"{mesh} names a file that cannot be read: {error}") from None
+
+    return Beside(str(file))
+
+
+def _absolute(data: bytes) -> bytes:
+    """An OBJ text whose faces have positive vertex numbers alone.
+
+    Negative numbers count back from the vertices before the face; trimesh counts them back from the end of the file.
+    """
+    vertices = 0
+    lines = data.splitlines()
+    for index, line in enumerate(lines):
+        if line.startswith((b"v ", b"v\t")):
+            vertices += 1
+        elif line.startswith(b"f") and b"-" in line:
+            corners = [int(corner.partition(b"/")[0]) for corner in line.split()[1:]]
+            if 0 in corners:
+                raise ValueError("a face has the vertex number 0")
+            lines[index] = b"f " + b" ".join(
+                b"%d" % (corner + vertices + 1 if corner < 0 else corner) for corner in corners
+            )
+    return b"\n".join(lines)
