@@ -1,12 +1,11 @@
 """Behaviors of cars and pedestrians (section 5.5 of the driving specification)."""
 
 from scenic.domains.driving.actions import *
-from scenic.domains.driving.following import Driver
-from scenic.domains.driving.lines import FollowedLine, concatenateCenterlines
-from scenic.domains.driving.roads import ManeuverType
-from scenic.domains.driving.maneuvering import (
-    closest_vehicle, intersection_ahead, nearest_end, next_maneuver, sidewalk_under,
-)
+from scenic.domains.driving.car_following import Gap
+from scenic.domains.driving.lane_driving import LaneChanger, LaneDriver, RouteDriver
+from scenic.domains.driving.lines import concatenateCenterlines
+from scenic.domains.driving.maneuvering import nearest_end, sidewalk_under
+from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import Route, Trajectory
 from scenic.domains.driving.walking import arrived, heading_to, places_of, walking_step
 from scenic.domains.driving.watching import InsideWatch, Nearness
@@ -74,116 +73,106 @@ behavior Walk(path, speed=Range(0.9, 1.8)):
     take SetWalkingSpeedAction(0)
 
 
-behavior FollowLaneBehavior(target_speed=10, laneToFollow=None, is_oppositeTraffic=False):
+behavior FollowLaneBehavior(
+    target_speed=10, laneToFollow=None, is_oppositeTraffic=False, follow_gap=None, comfort=None
+):
     """Follow a lane, and at intersections go on: straight ahead if that is possible, else any way.
+
+    Bends slow the car before they begin. At the end of the network it stops, and the behavior ends.
 
     Arguments:
         target_speed: m/s.
         laneToFollow: the lane; the own one by default.
         is_oppositeTraffic: whether to drive against the direction of the lane.
+        follow_gap: seconds that the car keeps behind others; by default it has no regard of them.
+        comfort: limits of accelerations, a `Comfort`.
     """
-    lane = self.lane if laneToFollow is None else laneToFollow
-    line = FollowedLine(lane)
-    ahead = Nearness(intersection_ahead(lane))
-    inside = InsideWatch(self)
-    entering = False
-    original_speed = target_speed
-    turning = False
-    driver = Driver(self)
-    driver.keep_lane()
-    while True:
-        if not entering and ahead.closer_than(10, self.position):
-            maneuvers = next_maneuver(lane)
-            if not maneuvers:
-                take SetBrakeAction(1.0)
-                return
-            chosen = Uniform(*maneuvers)
-            if chosen.connectingLane is None:
-                line = FollowedLine(lane, chosen.endLane)
-            else:
-                line = FollowedLine(lane, chosen.connectingLane, chosen.endLane)
-            lane = chosen.endLane
-            ahead = Nearness(intersection_ahead(lane))
-            reached = Nearness(lane)
-            entering = True
-            if chosen.type is not ManeuverType.STRAIGHT:
-                target_speed = 5
-                turning = True
-        if entering and reached.closer_than(1e-9, self.position):
-            entering = False
-            target_speed = original_speed
-            if turning:
-                driver.keep_lane()
-                turning = False
-        if turning and inside():
-            driver.turn()
-            while inside():
-                take driver.follow(line, target_speed)
-            driver.keep_lane()
-        take driver.follow(line, target_speed, oncoming=is_oppositeTraffic)
+    driver = LaneDriver(self, target_speed, laneToFollow, comfort, None if follow_gap is None else Gap(follow_gap))
+    while not driver.is_over():
+        while driver.must_choose():
+            driver.choose(Uniform(*driver.choices))
+        take driver.action()
+    take SetThrottleAction(0), SetBrakeAction(1.0)
 
 
-behavior FollowTrajectoryBehavior(target_speed=10, trajectory=None, turn_speed=None):
-    """Follow lanes one after the other, slower in intersections.
+behavior FollowTrajectoryBehavior(target_speed=10, trajectory=None, turn_speed=None, follow_gap=None, comfort=None):
+    """Follow lanes one after the other, slower in turns.
 
     Arguments:
         target_speed: m/s.
         trajectory: the lanes, or a `Trajectory`, whose speeds come before those given here.
-        turn_speed: m/s within intersections; half the target speed by default.
+        turn_speed: m/s in turns within intersections; half the target speed by default.
+        follow_gap: seconds that the car keeps behind others; by default it has no regard of them.
+        comfort: limits of accelerations, a `Comfort`.
     """
     route = Route(trajectory)
     turn = target_speed / 2 if turn_speed is None else turn_speed
     end = Nearness(route.end)
-    inside = InsideWatch(self)
-    driver = Driver(self)
-    driver.keep_lane()
+    driver = RouteDriver(self, route, target_speed, turn, comfort, None if follow_gap is None else Gap(follow_gap))
     while not end.closer_than(5, self.position):
-        if inside():
-            driver.turn()
-            while inside():
-                take driver.follow(route.line, route.speed(turn))
-            driver.keep_lane()
-        take driver.follow(route.line, route.speed(target_speed))
+        take driver.action()
 
 
 behavior TurnBehavior(trajectory, target_speed=6):
     """Follow a line, or lanes, as long as the whole car is in an intersection."""
-    line = Route(trajectory if isinstance(trajectory, (list, tuple, Trajectory)) else [trajectory]).line
+    route = Route(trajectory if isinstance(trajectory, (list, tuple, Trajectory)) else [trajectory])
     inside = InsideWatch(self)
-    driver = Driver(self)
-    driver.turn()
+    driver = RouteDriver(self, route, target_speed)
     while inside():
-        take driver.follow(line, target_speed)
+        take driver.action()
 
 
-behavior LaneChangeBehavior(laneSectionToSwitch, is_oppositeTraffic=False, target_speed=10):
+behavior LaneChangeBehavior(
+    laneSectionToSwitch, is_oppositeTraffic=False, target_speed=10, duration=4, follow_gap=None, comfort=None
+):
     """Change to the lane of a lane section.
 
     Arguments:
         laneSectionToSwitch: the section of the lane to change to.
         is_oppositeTraffic: whether that lane is one of oncoming traffic.
         target_speed: m/s.
+        duration: seconds that the change takes; longer where comfort asks for it.
+        follow_gap: seconds that the car keeps behind others; by default it has no regard of them.
+        comfort: limits of accelerations, a `Comfort`.
     """
-    lane = laneSectionToSwitch.lane
-    line = FollowedLine(lane)
-    ahead = Nearness(intersection_ahead(lane))
-    appended = False
-    driver = Driver(self)
-    driver.change_lane()
-    while abs(line.signed_distance(self.position)) >= 0.1:
-        if not appended and ahead.closer_than(3, self.position):
-            maneuvers = next_maneuver(lane)
-            if maneuvers:
-                chosen = Uniform(*maneuvers)
-                ways = [way for way in (lane, chosen.connectingLane, chosen.endLane) if way is not None]
-                line = FollowedLine(*ways)
-            appended = True
-        take driver.follow(line, target_speed, oncoming=is_oppositeTraffic)
+    driver = LaneChanger(
+        self, laneSectionToSwitch, target_speed, oncoming=is_oppositeTraffic, duration=duration, comfort=comfort,
+        gap=None if follow_gap is None else Gap(follow_gap),
+    )
+    while not driver.has_arrived() and not driver.is_over():
+        while driver.must_choose():
+            driver.choose(Uniform(*driver.choices))
+        take driver.action()
+
+
+behavior FollowVehicleBehavior(other, time_headway=1.5, target_speed=25, comfort=None):
+    """Follow the lane behind another vehicle, by the intelligent driver model.
+
+    Arguments:
+        other: the vehicle.
+        time_headway: seconds between it and the car.
+        target_speed: m/s while it is far ahead.
+        comfort: limits of accelerations, a `Comfort`.
+    """
+    driver = LaneDriver(self, target_speed, None, comfort, Gap(time_headway))
+    driver.follow_only(other)
+    while not driver.is_over():
+        while driver.must_choose():
+            driver.choose(Uniform(*driver.choices))
+        take driver.action()
+    take SetThrottleAction(0), SetBrakeAction(1.0)
 
 
 behavior DriveAvoidingCollisions(target_speed=25, avoidance_threshold=10):
-    """Follow the lane, and brake while another vehicle is near."""
-    try:
-        do FollowLaneBehavior(target_speed=target_speed)
-    interrupt when closest_vehicle(self) <= avoidance_threshold:
-        take SetThrottleAction(0), SetBrakeAction(1)
+    """Follow the lane, and keep behind vehicles that are ahead on the way.
+
+    Arguments:
+        target_speed: m/s.
+        avoidance_threshold: metres between the centres of the car and the one ahead, at rest.
+    """
+    driver = LaneDriver(self, target_speed, None, None, Gap(1.5, avoidance_threshold, True))
+    while not driver.is_over():
+        while driver.must_choose():
+            driver.choose(Uniform(*driver.choices))
+        take driver.action()
+    take SetThrottleAction(0), SetBrakeAction(1.0)

@@ -1,10 +1,15 @@
-"""The driver of a car: controllers that follow a line, and the steering applied so far."""
+"""The driver of a car: keeps it on a path, at the speeds of a profile, behind the car ahead."""
 
+import math
 from copy import deepcopy
 from typing import Any, Final
 
 from scenic.domains.driving.actions import RegulatedControlAction, SetSteerAction
-from scenic.domains.driving.lines import FollowedLine
+from scenic.domains.driving.car_following import Gap, Leader, following_acceleration, leader_on
+from scenic.domains.driving.paths import Path
+from scenic.domains.driving.planning import speeds_of
+from scenic.domains.driving.speed_profiles import Comfort
+from scenic.domains.driving.watching import InsideWatch
 from scenic.runtime.program.builtins import running_simulation
 
 __all__ = ["Driver"]
@@ -12,75 +17,301 @@ __all__ = ["Driver"]
 
 _GRIP: Final = 6.0
 """The lateral acceleration (m/s^2) that drivers do not exceed: about what tyres hold on a wet road."""
+_COMFORTABLE: Final = 3.3
+"""The lateral acceleration (m/s^2) up to which a planned path is corrected."""
+_LATERAL_JERK: Final = 6.5
+"""Change of the lateral acceleration (m/s^3) by steering."""
+_TURNING: Final = 0.35
+"""Change of curvature (1/m in a second) by steering, at any speed."""
+_DAMPING: Final = 0.8
+_SETTLING: Final = 1.5
+"""Gain (1/s) of the error of speed."""
+_HARD: Final = 3.5
+"""Deceleration (m/s^2) from which a driver brakes without regard for comfort."""
+_LOOKS: Final = 0.3
+"""Seconds between two looks for who is ahead."""
 
 
 class Driver:
-    """Decides throttle, brake and steering of a car, step by step.
+    """Decides throttle, brake and steering of a car on a path, step by step.
 
-    The controllers are those of the simulation, or those that the car has as properties. What the car has steered last is
-    carried over from the behavior before, so that steering never jumps.
+    Curvature of the path is steered in advance; distance from the path and error of heading are corrected over a look-ahead of
+    max(3 m, 0.8 s v), as by pure pursuit (R. C. Coulter, Implementation of the Pure Pursuit Path Tracking Algorithm, 1992), of
+    which this is the linear form about the path, with more damping. The vehicle's own model turns curvature into steering.
+
+    A car with controllers as properties is driven by them, and so is a car in a simulation that overrides
+    `getLaneFollowingControllers` and its kin.
 
     Args:
         agent: the car.
+        comfort: limits of accelerations.
+        gap: the distance kept behind others; ``None`` for no regard of them.
 
     """
 
-    def __init__(self, agent: Any) -> None:
+    def __init__(self, agent: Any, comfort: Comfort | None = None, gap: Gap | None = None) -> None:
         self._agent = agent
-        self._past = _applied(agent)
+        self._simulation = running_simulation()
+        self.comfort = Comfort() if comfort is None else comfort
+        self._gap = gap
+        self._leader: Leader | None = None
+        self._only: Any = None
+        self._look = 0.0
+        steering, self._acceleration = _applied(agent)
+        self._past = steering
+        self._curvature = self._simulation.curvature_of(agent, steering)
         self._longitudinal: Any = None
         self._lateral: Any = None
+        self._inside: InsideWatch | None = None
+        self._is_turning = False
+        self._kind = "keep"
+        self._path: Path = Path()
+        self._index = 0
+        self._begin = 0
+        self._speeds: list[float] = []
+        self._accelerations: list[float] = []
+        self._time = self._simulation.currentTime
 
-    def keep_lane(self) -> None:
-        """Take fresh controllers for following a lane."""
-        self._take(*running_simulation().getLaneFollowingControllers(self._agent))
+    def follow_only(self, other: Any) -> None:
+        """Keep the gap to one car alone."""
+        self._only = other
 
-    def turn(self) -> None:
-        """Take fresh controllers for turns in intersections."""
-        self._take(*running_simulation().getTurningControllers(self._agent))
+    # What is followed
 
-    def change_lane(self) -> None:
-        """Take fresh controllers for changing lanes."""
-        self._take(*running_simulation().getLaneChangingControllers(self._agent))
+    def set_path(
+        self,
+        path: Path,
+        target: float,
+        *,
+        limits: Any = None,
+        stops: float | None = None,
+    ) -> None:
+        """Follow a path from the place of it that is nearest to the car.
 
-    def _take(self, longitudinal: Any, lateral: Any) -> None:
-        own = (
-            getattr(self._agent, "longitudinalController", None),
-            getattr(self._agent, "lateralController", None),
+        Args:
+            path: the path.
+            target: the speed to reach, m/s.
+            limits: further largest speeds ``(n,)`` at the points of the path.
+            stops: metres before the end of the path at which the car stops, if it does.
+
+        """
+        if path is not self._path:
+            x, y = self._place()
+            self._index, _, _ = path.locate(x, y, path.nearest(x, y))
+        self._path, self._begin = path, self._index
+        self._speeds, self._accelerations = speeds_of(
+            path, self._index, target, self._agent.speed, self.comfort, limits=limits, stops=stops
         )
+        self._look = 0.0
+
+    @property
+    def along(self) -> float:
+        """Metres along the path to the car, at its last step."""
+        return self._path.along[self._index]
+
+    @property
+    def index(self) -> int:
+        """The index of the point of the path behind the car, at its last step."""
+        return self._index
+
+    @property
+    def has_paused(self) -> bool:
+        """Return whether something else has driven the car since the last step, such as an interrupt."""
+        return bool(self._simulation.currentTime - self._time > 1)
+
+    def resume(self) -> None:
+        """Go on from the steering and the acceleration that the car has now."""
+        steering, self._acceleration = _applied(self._agent)
+        self._past = steering
+        self._curvature = self._simulation.curvature_of(self._agent, steering)
+        self._time = self._simulation.currentTime
+
+    # Controllers that programs ask for
+
+    def drive_by(self, kind: str) -> None:
+        """Take controllers of a kind, ``"keep"`` or ``"change"``, if the car is driven by controllers; those for turns in turns."""
+        self._kind = kind
+        if any(map(self._simulation.has_own_controllers, _CONTROLLERS.values())):
+            self._inside = InsideWatch(self._agent)
+        self._take_controllers(kind)
+
+    def _take_controllers(self, kind: str) -> None:
+        simulation, agent = self._simulation, self._agent
+        own = (
+            getattr(agent, "longitudinalController", None),
+            getattr(agent, "lateralController", None),
+        )
+        name = _CONTROLLERS[kind]
+        longitudinal = lateral = None
+        if simulation.has_own_controllers(name):
+            longitudinal, lateral = getattr(simulation, name)(agent)
         # A controller has a state of its own: each behavior and each simulation begins with that of the property.
         self._longitudinal = longitudinal if own[0] is None else deepcopy(own[0])
         self._lateral = lateral if own[1] is None else deepcopy(own[1])
 
-    def follow(self, line: FollowedLine, speed: float, *, oncoming: bool = False) -> RegulatedControlAction:
-        """The action of one step.
+    # Steps
 
-        Args:
-            line: what to follow.
-            speed: the speed to reach, m/s.
-            oncoming: drive against the direction of the line.
+    def _place(self) -> tuple[float, float]:
+        """The point of the car that is kept on the path: about which it turns."""
+        x, y, *_ = self._agent.position
+        back = self._simulation.pivot_of(self._agent)
+        if back:
+            heading = self._agent.heading
+            x, y = x + back * math.sin(heading), y - back * math.cos(heading)
+        return x, y
 
-        """
-        agent = self._agent
-        steers = getattr(self._lateral, "curvature", None)
-        if steers is None:
-            away = line.signed_distance(agent.position)
-            steering = self._lateral.run_step(-away if oncoming else away)
+    def action(self) -> RegulatedControlAction:
+        """The action of one step."""
+        self._time = self._simulation.currentTime
+        x, y = self._place()
+        path = self._path
+        self._index, share, offset = path.locate(x, y, self._index)
+        if self._inside is not None and self._inside() != self._is_turning:
+            self._is_turning = not self._is_turning
+            self._take_controllers("turn" if self._is_turning else self._kind)
+        pedal = self._pedal(share)
+        steering = self._steering(share, offset)
+        if self._lateral is None:
+            action = RegulatedControlAction(pedal, steering, steering, 1.0, 1.0, 1.0)
         else:
-            steering = running_simulation().steering_for(agent, steers(agent, line, oncoming=oncoming))
-        # Sharper curves than the tyres hold would only make a fast car swing about the line.
-        sharpest = _GRIP / max(agent.speed, 1.0) ** 2
-        most = abs(running_simulation().steering_for(agent, sharpest))
-        steering = min(max(steering, -most), most)
-        throttle = self._longitudinal.run_step(speed - agent.speed)
-        action = RegulatedControlAction(throttle, steering, self._past)
+            action = RegulatedControlAction(pedal, steering, self._past)
         self._past = action.steer
         return action
 
+    def _pedal(self, share: float) -> float:
+        agent = self._agent
+        speed = agent.speed
+        place = self._index - self._begin
+        speeds, accelerations = self._speeds, self._accelerations
+        if place < 0:
+            place, share = 0, 0.0
+        if place + 1 < len(speeds):
+            wanted = speeds[place] + share * (speeds[place + 1] - speeds[place])
+            along = accelerations[place] + share * (accelerations[place + 1] - accelerations[place])
+        else:
+            wanted, along = speeds[-1], 0.0
+        if self._longitudinal is not None:
+            return float(self._longitudinal.run_step(wanted - speed))
+        acceleration = along + _SETTLING * (wanted - speed)
+        if self._gap is not None:
+            acceleration = min(acceleration, self._behind(speed, share))
+        comfort, timestep = self.comfort, self._simulation.timestep
+        if acceleration > -_HARD:
+            # Jolts are limited; the profile keeps to that, so that this is for what no profile foresees.
+            change = 1.5 * comfort.jerk * timestep
+            acceleration = min(max(acceleration, self._acceleration - change), self._acceleration + change)
+        acceleration = min(acceleration, 1.2 * comfort.acceleration)
+        if wanted < 0.02 and speed < 0.3:
+            acceleration = min(acceleration, -1.0)
+        self._acceleration = max(acceleration, -speed / timestep)
+        return float(self._simulation.pedal_for(agent, acceleration))
 
-def _applied(agent: Any) -> float:
-    """The steering that an agent has been given in the last step; 0 if none."""
+    def _behind(self, speed: float, share: float) -> float:
+        """The acceleration that keeps the gap to the car ahead; infinite if there is none."""
+        simulation, agent, path = self._simulation, self._agent, self._path
+        now = simulation.currentTime * simulation.timestep
+        if now >= self._look:
+            self._look = now + _LOOKS
+            others = simulation.objects if self._only is None else (self._only,)
+            self._leader = leader_on(path, self._index, agent, others)
+        leader = self._leader
+        if leader is None:
+            return math.inf
+        index = path.index_at(leader.along, self._index)
+        a, b, *_ = leader.item.position
+        index, part, _ = path.locate(a, b, index)
+        lengths = path.along
+        own = lengths[self._index] + share * (lengths[self._index + 1] - lengths[self._index])
+        other = lengths[index] + part * (lengths[index + 1] - lengths[index])
+        distance = other - own - leader.reach - agent.length / 2
+        gap = self._gap
+        assert gap is not None
+        if gap.is_of_centres:
+            gap = Gap(gap.headway, max(2.0, gap.standing - leader.reach - agent.length / 2))
+        return following_acceleration(
+            speed,
+            distance,
+            leader.speed_along(path.headings[index]),
+            gap,
+            self.comfort.acceleration,
+            self.comfort.deceleration,
+        )
+
+    def _steering(self, share: float, offset: float) -> float:
+        agent, simulation, path = self._agent, self._simulation, self._path
+        speed = agent.speed
+        if self._lateral is not None:
+            return self._controlled(speed, offset)
+        index, timestep = self._index, simulation.timestep
+        way = speed * timestep
+        lengths, curvatures, headings = path.along, path.curvatures, path.headings
+        place = lengths[index] + share * (lengths[index + 1] - lengths[index])
+        # What is steered now acts after `lead` of a step, and for a whole one.
+        lead = simulation.steering_lead
+        here = curvatures[index] + share * (curvatures[index + 1] - curvatures[index])
+        ahead = place + (lead + 0.5) * way
+        after = path.index_at(ahead, index)
+        part = (ahead - lengths[after]) / (lengths[after + 1] - lengths[after])
+        curve = curvatures[after] + min(part, 1.0) * (curvatures[after + 1] - curvatures[after])
+        along = headings[index] + share * (headings[index + 1] - headings[index]) + here * lead * way
+        turned = (agent.heading - along + math.pi) % (2 * math.pi) - math.pi
+        rate = 1.41421356 / max(3.0, 0.8 * speed)
+        back = rate * rate * offset + 2 * _DAMPING * rate * math.sin(turned)
+        square = max(speed, 1.0) ** 2
+        most = max(abs(curve), _COMFORTABLE / square)
+        curvature = min(max(curve - back, -most), most)
+        change = max(_LATERAL_JERK / square, _TURNING) * timestep
+        curvature = min(max(curvature, self._curvature - change), self._curvature + change)
+        self._curvature = curvature
+        return float(simulation.steering_for(agent, curvature))
+
+    def _controlled(self, speed: float, offset: float) -> float:
+        agent, simulation = self._agent, self._simulation
+        steers = getattr(self._lateral, "curvature", None)
+        if steers is None:
+            steering = self._lateral.run_step(offset)
+        else:
+            steering = simulation.steering_for(agent, steers(agent, _Line(self._path, self._index)))
+        # Sharper curves than the tyres hold would only make a fast car swing about the line.
+        most = abs(simulation.steering_for(agent, _GRIP / max(speed, 1.0) ** 2))
+        return float(min(max(steering, -most), most))
+
+
+_CONTROLLERS: Final = {
+    "keep": "getLaneFollowingControllers",
+    "turn": "getTurningControllers",
+    "change": "getLaneChangingControllers",
+}
+
+
+class _Line:
+    """A path as the line that controllers look at."""
+
+    def __init__(self, path: Path, index: int) -> None:
+        self._path, self._index = path, index
+        self._along = 0.0
+
+    def signed_distance(self, point: Any) -> float:
+        """Metres from the path to a point, positive to the left."""
+        x, y, *_ = point
+        path = self._path
+        index, share, offset = path.locate(x, y, self._index)
+        self._along = path.along[index] + share * (path.along[index + 1] - path.along[index])
+        return offset
+
+    def ahead(self, distance: float) -> tuple[float, float]:
+        """The place metres beyond the one that was looked at last."""
+        return self._path.place(self._along + distance, self._index)
+
+
+def _applied(agent: Any) -> tuple[float, float]:
+    """Steering of an agent in the last step, and its acceleration (m/s^2) as far as actions tell; 0 if none."""
     for action in reversed(agent.lastActions):
-        if isinstance(action, RegulatedControlAction | SetSteerAction):
-            return action.steer
-    return 0.0
+        if isinstance(action, RegulatedControlAction):
+            simulation = running_simulation()
+            pedal = action.throttle or -action.brake
+            standing = pedal < 0 and agent.speed < 0.05
+            return action.steer, 0.0 if standing else simulation.acceleration_of(agent, pedal)
+        if isinstance(action, SetSteerAction):
+            return action.steer, 0.0
+    return 0.0, 0.0

@@ -24,6 +24,7 @@ from scenic.domains.driving.joined_surfaces import JoinedSurface
 from scenic.domains.driving.levels import Levels
 from scenic.domains.driving.lines import joined_ground
 from scenic.domains.driving.lookups import Finder, RoadDirection
+from scenic.domains.driving.paths import PathPieces
 from scenic.domains.driving.random_elements import NestedFinder, element_at
 from scenic.domains.driving.surfaces import GroundedLine
 from scenic.language.diagnostics import Diagnostic
@@ -207,6 +208,20 @@ class RoadNetwork(Frozen):
         """The number of a road in `levels`."""
         return self._elevation.numbers[uid or ""]
 
+    # Paths
+
+    def path_pieces(self, *, backward: bool = False) -> PathPieces:
+        """The pieces of paths that cars share; ``backward`` for those against the direction of lanes."""
+        return self._backward_pieces if backward else self._forward_pieces
+
+    @cached_property
+    def _forward_pieces(self) -> PathPieces:
+        return PathPieces()
+
+    @cached_property
+    def _backward_pieces(self) -> PathPieces:
+        return PathPieces(backward=True)
+
     # What is where
 
     def vector(self, point: Any) -> Any:
@@ -240,6 +255,10 @@ class RoadNetwork(Frozen):
         if finder is None:
             finder = self._finders[key] = Finder(elements, self.tolerance, self._levels_in_space)
         return finder
+
+    def intersections_holding(self, places: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return for each place ``(n, 2)`` whether an intersection holds it."""
+        return self._finder(self.intersections).holding(places) < len(self.intersections)
 
     def elementAt(self, point: Any, reject: Any = False) -> Any:
         """The intersection, road, shoulder or sidewalk at a point, the first of these."""

@@ -1,16 +1,19 @@
 """Ways for cars: lanes one after the other, or points with speeds."""
 
-from bisect import bisect_right
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from scenic.domains.driving.elements import Lane, LinearElement
-from scenic.domains.driving.lines import FollowedLine
 from scenic.domains.driving.maneuvering import intersection_ahead
 from scenic.runtime.regions.lines import PolylineRegion
 from scenic.runtime.values.values import Vector
 
 __all__ = ["Route", "Trajectory"]
+
+Floats = NDArray[np.float64]
 
 
 class Trajectory:
@@ -57,7 +60,7 @@ class Route:
         trajectory: lanes, or polylines, one after the other; or a `Trajectory`.
 
     Attributes:
-        line: what to follow.
+        lines: what to follow, ``(n, 2)`` each, one after the other.
         end: the intersection after the last lane, else the last point.
 
     Raises:
@@ -76,20 +79,29 @@ class Route:
             raise TypeError(
                 "FollowTrajectoryBehavior needs a trajectory: a list of lanes that is not empty, or a Trajectory"
             )
-        self.line = FollowedLine(*parts)
+        self.lines = [_vertices(part) for part in parts]
         last = parts[-1]
         self.end: Any = intersection_ahead(last) if isinstance(last, Lane) else Vector(*_end_of(last))
 
-    def speed(self, default: float) -> float:
-        """The speed (m/s) where the line has been looked at last; ``default`` on trajectories without speeds."""
-        speeds = self._speeds
-        if speeds is None:
-            return default
-        lengths = self.line.lengths
-        along = self.line.progress
-        index = min(max(bisect_right(lengths, along) - 1, 0), len(lengths) - 2)
-        share = (along - lengths[index]) / (lengths[index + 1] - lengths[index])
-        return speeds[index] + (speeds[index + 1] - speeds[index]) * min(max(share, 0.0), 1.0)
+    @property
+    def speeds(self) -> tuple[float, ...] | None:
+        """The speeds (m/s) at the points of a trajectory that has some."""
+        return self._speeds
+
+    def speeds_at(self, points: Floats) -> Floats:
+        """The speeds ``(n,)`` in m/s at places ``(n, 2)`` along the trajectory, linear between its points."""
+        import shapely
+
+        line = shapely.LineString(np.concatenate(self.lines))
+        vertices = np.concatenate(self.lines)
+        lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(vertices, axis=0).T))])
+        return np.interp(shapely.line_locate_point(line, shapely.points(points)), lengths, self._speeds or ())
+
+
+def _vertices(part: Any) -> Floats:
+    if isinstance(part, LinearElement):
+        return part.line
+    return np.array([point[:2] for point in part.points])
 
 
 def _is_way(part: Any) -> bool:

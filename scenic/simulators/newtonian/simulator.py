@@ -6,9 +6,8 @@ velocity. Objects pass through each other.
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
-from scenic.domains.driving.controllers import PIDLateralController, PIDLongitudinalController
 from scenic.domains.driving.simulators import DrivingSimulation, DrivingSimulator
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.values.values import Orientation, Vector, operate
@@ -51,6 +50,13 @@ class State:
 
 class NewtonianSimulation(DrivingSimulation):
     """One run; see `NewtonianSimulator`."""
+
+    steering_lead = 0.5
+    _car_gains: ClassVar[dict[str, tuple[float, float, float]]] = {
+        "keep": (0.2, 0.2, 0.02),
+        "turn": (0.4, 0.3, 0.1),
+        "change": (0.2, 0.2, 0.02),
+    }
 
     def __init__(self, scene: Scene, *, timestep: float | None = None, **options: Any) -> None:
         self._states: dict[int, State] = {}
@@ -156,21 +162,21 @@ class NewtonianSimulation(DrivingSimulation):
         sine = min(1.0, max(-1.0, curvature * agent.length))
         return -math.asin(sine) / (math.pi / 2)
 
-    def getLaneFollowingControllers(
-        self, agent: Any
-    ) -> tuple[PIDLongitudinalController, PIDLateralController]:
-        """Controllers tuned for the cars of this simulator."""
-        return self._controllers(agent, (0.2, 0.2, 0.02), (0.2, 0.1, 0))
+    def curvature_of(self, agent: Any, steering: float) -> float:
+        """The curvature that a car of this simulator drives by a position of the steering wheel."""
+        return -math.sin(steering * math.pi / 2) / float(agent.length)
 
-    def getTurningControllers(self, agent: Any) -> tuple[PIDLongitudinalController, PIDLateralController]:
-        """Controllers tuned for the cars of this simulator."""
-        return self._controllers(agent, (0.4, 0.3, 0.1), (0.4, 0.1, 0))
+    def pivot_of(self, agent: Any) -> float:
+        """Cars of this simulator turn about their middle."""
+        return 0.0
 
-    def getLaneChangingControllers(
-        self, agent: Any
-    ) -> tuple[PIDLongitudinalController, PIDLateralController]:
-        """Controllers tuned for the cars of this simulator."""
-        return self._controllers(agent, (0.2, 0.2, 0.02), (0.1, 0.3, 0))
+    def pedal_for(self, agent: Any, acceleration: float) -> float:
+        """The throttle or brake by which a car of this simulator reaches an acceleration."""
+        return min(1.0, max(-1.0, acceleration / (_ACCELERATION if acceleration > 0 else _BRAKING)))
+
+    def acceleration_of(self, agent: Any, pedal: float) -> float:
+        """The acceleration of a car of this simulator by a throttle or brake."""
+        return pedal * (_ACCELERATION if pedal > 0 else _BRAKING)
 
 
 class NewtonianSimulator(DrivingSimulator):

@@ -1,0 +1,290 @@
+"""What behaviors do with plans: follow lanes, trajectories, and paths to other lanes."""
+
+import math
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.domains.driving.actions import RegulatedControlAction
+from scenic.domains.driving.car_following import Gap
+from scenic.domains.driving.elements import Lane, LaneSection
+from scenic.domains.driving.following import Driver
+from scenic.domains.driving.paths import Path
+from scenic.domains.driving.planning import Plan, join, path_of_lines
+from scenic.domains.driving.speed_profiles import Comfort
+from scenic.domains.driving.trajectories import Route
+from scenic.language.errors import InvalidScenarioError
+from scenic.runtime.program.builtins import running_simulation
+
+__all__ = ["LaneChanger", "LaneDriver", "RouteDriver", "lane_under"]
+
+_BUFFER: Final = 1.0
+"""Metres between the front of a car that stops at the end of the network and the end."""
+_LOST: Final = 1.5
+"""Metres from the path from which a car that has been driven by something else takes its present lane."""
+_TURN: Final = math.radians(20)
+"""Change of heading in an intersection from which it is a turn."""
+
+
+def lane_under(agent: Any) -> Lane:
+    """The lane of a car: in an intersection, of those under it the one that leads in its direction best.
+
+    Raises:
+        RejectionException: there is none.
+
+    """
+    intersection = agent.roadNetwork.intersectionAt(agent.position)
+    if intersection is not None:
+        lanes = [item.connectingLane for item in intersection.maneuversAt(agent.position)]
+        if lanes:
+            best: Lane = min(lanes, key=lambda lane: abs(_turned(agent, lane)))
+            return best
+    lane: Lane = agent.lane
+    return lane
+
+
+def _turned(agent: Any, lane: Lane) -> float:
+    """The angle from the direction of a lane to the heading of a car at its place, -pi to pi."""
+    x, y, *_ = agent.position
+    along = float(lane.along(np.array([[x, y]]))[0])
+    angle: float = (agent.heading - along + math.pi) % (2 * math.pi) - math.pi
+    return angle
+
+
+class LaneDriver(Driver):
+    """Follows a lane, and goes on by the maneuvers that are chosen.
+
+    Args:
+        agent: the car.
+        target: speed to reach, m/s.
+        lane: the lane; the one under the car by default.
+        comfort: limits of accelerations.
+        gap: kept behind others.
+
+    """
+
+    def __init__(
+        self,
+        agent: Any,
+        target: float,
+        lane: Lane | None = None,
+        comfort: Comfort | None = None,
+        gap: Gap | None = None,
+    ) -> None:
+        super().__init__(agent, comfort, gap)
+        self._target = target
+        self._lane = lane
+        self._plan: Plan
+        self._due = 0.0
+        self.joining = 0.0
+        self._begin_plan(lane_under(agent) if lane is None else lane)
+        self.drive_by("keep")
+
+    def _begin_plan(self, lane: Lane, duration: float = 0.0) -> None:
+        agent = self._agent
+        # A car that faces against a lane drives against it.
+        self._backward = abs(_turned(agent, lane)) > math.pi / 2
+        self._plan = Plan(agent.roadNetwork, lane, backward=self._backward)
+        self._path = Path()
+        self._cover(duration)
+
+    def _cover(self, duration: float = 0.0) -> None:
+        """Choose where there is one way only, until more of the path is needed; then plan speeds."""
+        plan = self._plan
+        if self._path is not plan.path and plan.path.length > 0:
+            self.joining = join(
+                plan.path, self._place(), self._agent.heading, self._pace(duration), duration
+            )
+        stops = None
+        if plan.is_complete:
+            stops = self._agent.length / 2 + _BUFFER + self._simulation.pivot_of(self._agent)
+        if plan.path.length > 0:
+            self.set_path(plan.path, self._target, limits=self._limits(), stops=stops)
+        speed = max(self._agent.speed, min(self._target, 40.0))
+        self._due = plan.path.length - plan.reserve(speed, self.comfort.deceleration)
+
+    def _pace(self, duration: float) -> float:
+        """The mean speed of the car over the next seconds, if the speed to reach is reached, m/s."""
+        speed, comfort = self._agent.speed, self.comfort
+        change = self._target - speed
+        most = (comfort.acceleration if change > 0 else comfort.deceleration) * max(duration, 1.0) / 2
+        return float(speed + min(max(change, -most), most))
+
+    def _limits(self) -> Any:
+        """Further largest speeds at the points of the path, m/s; ``None`` for none."""
+        return None
+
+    def must_choose(self) -> bool:
+        """Return whether a choice among `choices` is due now."""
+        if self.has_paused:
+            self._take_up()
+        plan = self._plan
+        while not plan.is_complete and (
+            not self._path.along or self._path.along[self._index] > self._due or plan.path.length == 0
+        ):
+            if not self._backward:
+                return True
+            plan.choose(plan.choices[0])
+            self._cover()
+        return False
+
+    @property
+    def choices(self) -> tuple[Any, ...]:
+        """The ways to go on."""
+        return self._plan.choices
+
+    def choose(self, choice: Any) -> None:
+        """Go on by one of the `choices`."""
+        self._plan.choose(choice)
+        self._cover()
+
+    def _take_up(self) -> None:
+        """Go on after an interrupt: from where the car is now, in its present lane."""
+        self.resume()
+        x, y = self._place()
+        index, _, offset = self._path.locate(x, y, self._path.nearest(x, y))
+        lane = self._lane
+        if abs(offset) > _LOST:
+            under = self._agent.roadNetwork.laneAt(self._agent.position)
+            if under is not None and lane is None:
+                self._begin_plan(under)
+                return
+        join(self._path, (x, y), self._agent.heading, self._agent.speed)
+        self._index = index
+        path, self._path = self._path, Path()
+        self._plan.path = path
+        self._path = path
+        self._cover()
+
+    def is_over(self) -> bool:
+        """Return whether the car stands at the end of the network."""
+        if not self._plan.is_complete or self._agent.speed > 0.05:
+            return False
+        left = self._path.length - self._path.along[self._index]
+        return bool(left < self._agent.length / 2 + 2 * _BUFFER + self._simulation.pivot_of(self._agent))
+
+    def set_target(self, target: float) -> None:
+        """Change the speed to reach."""
+        if target != self._target:
+            self._target = target
+            self._cover()
+
+
+class LaneChanger(LaneDriver):
+    """Changes to a lane, and follows it.
+
+    Args:
+        agent: the car.
+        section: the section of the lane.
+        target: speed to reach, m/s.
+        oncoming: the lane may be one of oncoming traffic.
+        duration: seconds that the change takes at least.
+        comfort: limits of accelerations.
+        gap: kept behind others.
+
+    Raises:
+        InvalidScenarioError: the lane leads in the other direction, and ``oncoming`` is false.
+
+    """
+
+    def __init__(
+        self,
+        agent: Any,
+        section: LaneSection | Lane,
+        target: float,
+        *,
+        oncoming: bool,
+        duration: float,
+        comfort: Comfort | None = None,
+        gap: Gap | None = None,
+    ) -> None:
+        lane = section.lane if isinstance(section, LaneSection) else section
+        if not oncoming and abs(_turned(agent, lane)) > math.pi / 2:
+            raise InvalidScenarioError(
+                f"{lane.uid} leads in the other direction than the car that is to change to it",
+                help="to drive against the traffic, say `is_oppositeTraffic=True`; to turn round, use `UTurnBehavior`",
+            )
+        self._duration = duration
+        self._end = math.inf
+        super().__init__(agent, target, lane, comfort, gap)
+        self.drive_by("change")
+
+    def _begin_plan(self, lane: Lane, duration: float = 0.0) -> None:
+        super()._begin_plan(lane, self._duration)
+
+    def _cover(self, duration: float = 0.0) -> None:
+        fresh = self._path is not self._plan.path
+        super()._cover(duration)
+        if fresh and self._path.along:
+            self._end = self._path.along[self._index] + self.joining
+
+    def has_arrived(self) -> bool:
+        """Return whether the car is in the lane, and in its direction."""
+        return bool(self._path.along[self._index] >= self._end)
+
+
+class RouteDriver(Driver):
+    """Follows a trajectory.
+
+    Args:
+        agent: the car.
+        route: the trajectory.
+        target: speed to reach, m/s; trajectories with speeds of their own have these instead.
+        turn: largest speed in turns, m/s; ``None`` for what comfort allows.
+        comfort: limits of accelerations.
+        gap: kept behind others.
+
+    """
+
+    def __init__(
+        self,
+        agent: Any,
+        route: Route,
+        target: float,
+        turn: float | None = None,
+        comfort: Comfort | None = None,
+        gap: Gap | None = None,
+    ) -> None:
+        super().__init__(agent, comfort, gap)
+        self._route = route
+        self._target, self._turn = target, turn
+        self._start()
+        self.drive_by("keep")
+
+    def _start(self) -> None:
+        path = path_of_lines(self._route.lines)
+        join(path, self._place(), self._agent.heading, self._agent.speed)
+        limits, target = self._limits(path), self._target
+        if self._route.speeds is not None:
+            target = math.inf
+        self.set_path(path, target, limits=limits)
+
+    def _limits(self, path: Path) -> Any:
+        limits = np.full(len(path.along), math.inf)
+        if self._route.speeds is not None:
+            limits = self._route.speeds_at(path.points())
+        elif self._turn is not None:
+            for begin, end in turns_of(self._agent.roadNetwork, path):
+                limits[begin:end] = self._turn
+        return limits
+
+    def action(self) -> RegulatedControlAction:
+        """The action of one step."""
+        if self.has_paused:
+            self.resume()
+            self._start()
+        return super().action()
+
+
+def turns_of(network: Any, path: Path) -> list[tuple[int, int]]:
+    """The stretches of a path, from and to an index, on which it turns within an intersection."""
+    if not network.intersections:
+        return []
+    points = path.points()
+    inside = network.intersections_holding(points)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], inside.astype(int), [0]])))
+    found = []
+    for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        if abs(path.headings[end - 1] - path.headings[begin]) >= _TURN:
+            found.append((begin, end))
+    return found

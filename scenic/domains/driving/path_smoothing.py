@@ -1,0 +1,147 @@
+"""Smooth curves near polylines: bounded curvature that changes slowly, within a tube around the line.
+
+A curve minimises the sum of its squared third differences (the change of its curvature) and of its weighted squared distances
+from the line: a Whittaker smoother of third order (P. H. C. Eilers, A Perfect Smoother, Analytical Chemistry 75, 2003), whose
+weights grow where the curve leaves the tube, and shrink where it is bent more than a car can drive.
+"""
+
+import math
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["SPACING", "curvatures_of", "headings_of", "resampled", "smoothed"]
+
+Floats = NDArray[np.float64]
+
+SPACING: Final = 0.5
+"""Metres between the points of a curve."""
+_REACH: Final = 12.0
+"""Length in metres over which a straight line is smoothed at most."""
+_SHORTEST: Final = 0.9
+"""Length in metres over which the tightest bend is smoothed at least."""
+_TUBES: Final = (0.03, 0.12)
+"""Metres that the curve may leave a straight line, and a bend."""
+_STRAIGHT: Final = 1 / 400
+"""Curvature (1/m) of a line below which it counts as straight."""
+_TIGHTEST: Final = 0.195
+"""Curvature (1/m) that a curve may have: a little less than the sharpest one that a car drives."""
+_PINNED: Final = 1e12
+"""Weight of points through which a curve must go."""
+_ROUNDS: Final = 12
+"""Times that weights are corrected."""
+
+
+def resampled(points: Floats, spacing: float = SPACING) -> Floats:
+    """Points ``(m, 2)`` on a polyline ``(n, 2)`` at equal distances of about ``spacing`` metres, without steps backwards."""
+    points = _without_folds(points)
+    lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    count = max(2, round(lengths[-1] / spacing) + 1)
+    along = np.linspace(0.0, lengths[-1], count)
+    return np.column_stack([np.interp(along, lengths, points[:, 0]), np.interp(along, lengths, points[:, 1])])
+
+
+def _without_folds(points: Floats) -> Floats:
+    """The polyline without points nearer than 5 cm to the one before, and without points at which it turns by over 100 degrees.
+
+    Connecting lanes of some maps run past their end and come back.
+    """
+    kept: list[tuple[float, float]] = []
+    for x, y in points.tolist():
+        while len(kept) > 1 and _turns_back(*kept[-2], *kept[-1], x, y):
+            kept.pop()
+        if not kept or math.hypot(x - kept[-1][0], y - kept[-1][1]) >= 0.05:
+            kept.append((x, y))
+    return np.array(kept) if len(kept) > 1 else points[[0, -1]]
+
+
+def _turns_back(x0: float, y0: float, x1: float, y1: float, x2: float, y2: float) -> bool:
+    """Return whether the way through three points turns by more than 100 degrees at the second one."""
+    a, b, c, d = x1 - x0, y1 - y0, x2 - x1, y2 - y1
+    return a * c + b * d < -0.17 * math.hypot(a, b) * math.hypot(c, d)
+
+
+def headings_of(points: Floats) -> Floats:
+    """Headings ``(n - 1,)`` of the steps between points ``(n, 2)``: radians, anticlockwise from north, without jumps."""
+    steps = np.diff(points, axis=0)
+    headings: Floats = np.unwrap(np.arctan2(-steps[:, 0], steps[:, 1]))
+    return headings
+
+
+def curvatures_of(points: Floats) -> Floats:
+    """Curvatures ``(n,)`` (1/m, positive to the left) at points ``(n, 2)``; those of the ends are the ones beside them."""
+    if len(points) < 3:
+        return np.zeros(len(points))
+    steps = np.hypot(*np.diff(points, axis=0).T)
+    inner = np.diff(headings_of(points)) / np.maximum((steps[:-1] + steps[1:]) / 2, 1e-6)
+    return np.concatenate([inner[:1], inner, inner[-1:]])
+
+
+def smoothed(points: Floats, first: Floats | None = None, last: Floats | None = None) -> Floats:
+    """A smooth curve ``(n, 2)`` near points ``(n, 2)`` at equal distances of about half a metre.
+
+    Args:
+        points: on a polyline, see `resampled`.
+        first: points ``(k, 2)`` through which the curve begins, in place of the first ones.
+        last: points ``(k, 2)`` through which it ends.
+
+    """
+    count = len(points)
+    if count < 8:
+        return points
+    bends = _bends(points)
+    tubes = np.where(bends < _STRAIGHT, *_TUBES)
+    reach = np.clip(np.sqrt(24 * tubes / np.maximum(bends, 1e-4)) / 4, _SHORTEST, _REACH)
+    weights = (_REACH / reach) ** 6
+    allowed = np.ones(count)
+    goal = points.copy()
+    pinned = np.zeros(count)
+    if first is not None:
+        goal[: len(first)], pinned[: len(first)] = first, _PINNED
+    if last is not None:
+        goal[-len(last) :], pinned[-len(last) :] = last, _PINNED
+    curve = goal
+    for _ in range(_ROUNDS):
+        curve = _solved(goal, np.maximum(weights * allowed, pinned))
+        away = np.hypot(*(curve - goal).T)
+        sharp = np.abs(curvatures_of(curve)) > _TIGHTEST
+        if sharp.any():
+            near = np.convolve(sharp, np.ones(13), "same")[:count] > 0
+            allowed[near] /= 4
+        wide = (away > tubes) & (allowed == 1)
+        if not wide.any() and not sharp.any():
+            break
+        weights[wide] *= np.minimum(away[wide] / tubes[wide], 4) ** 3
+    return curve
+
+
+def _bends(points: Floats) -> Floats:
+    """Curvatures ``(n,)`` of a polyline without sign, averaged over three metres on either side, the largest within two metres."""
+    headings = headings_of(points)
+    half = 6
+    padded = np.pad(headings, half, mode="edge")
+    change = np.abs(padded[2 * half :] - padded[: -2 * half]) / (2 * half * SPACING)
+    change = np.concatenate([change, change[-1:]])
+    around = np.stack([np.roll(change, shift) for shift in range(-4, 5)])
+    around[:4, -4:] = change[-4:]
+    around[5:, :4] = change[:4]
+    bends: Floats = around.max(axis=0)
+    return bends
+
+
+def _solved(points: Floats, weights: Floats) -> Floats:
+    """The minimiser of the weighted squares of distances from points and of third differences."""
+    from scipy.linalg import solveh_banded
+
+    count = len(points)
+    scale = (_REACH / SPACING) ** 6
+    bands = np.zeros((4, count))
+    for offset in range(4):
+        coefficients = (1.0, -3.0, 3.0, -1.0)
+        for place in range(4 - offset):
+            product = coefficients[place] * coefficients[place + offset] * scale
+            bands[offset, place : count - 3 + place] += product
+    bands[0] += weights
+    solution: Floats = solveh_banded(bands, weights[:, None] * points, lower=True, check_finite=False)
+    return solution

@@ -1,0 +1,127 @@
+"""Speeds along a path: as fast as bends allow, with braking that ends before them, and without jolts.
+
+Two passes limit the squared speed by constant acceleration and deceleration (forward and backward along the path). The result is
+averaged over a moving window of time, so that acceleration changes at a bounded rate.
+"""
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.dataclass import dataclass
+
+__all__ = ["Comfort", "speeds_along", "speeds_in_bends"]
+
+Floats = NDArray[np.float64]
+
+_EMERGENCY: Final = 6.0
+"""Deceleration (m/s^2) of a car that is too fast for what lies ahead."""
+_CLASSES: Final = (3.0, 6.0, 12.0, 24.0, 60.0)
+"""Classes of speeds (m/s) by their upper bounds."""
+_CREEP: Final = 0.05
+"""Speed (m/s) below which a car counts as standing."""
+_LATERAL_JERK: Final = 3.5
+"""Change of the lateral acceleration (m/s^3) in bends that tighten."""
+
+
+@dataclass(frozen=True, slots=True)
+class Comfort:
+    """Limits that a driver keeps to.
+
+    Attributes:
+        lateral: acceleration to the side, m/s^2.
+        acceleration: m/s^2.
+        deceleration: m/s^2.
+        jerk: change of the acceleration, m/s^3.
+
+    """
+
+    lateral: float = 3.0
+    acceleration: float = 2.0
+    deceleration: float = 2.5
+    jerk: float = 4.0
+
+
+def speeds_in_bends(along: Floats, curvatures: Floats, comfort: Comfort) -> Floats:
+    """The largest speeds ``(n,)`` in m/s at points along a path with curvatures ``(n,)`` in 1/m.
+
+    Args:
+        along: metres along the path ``(n,)``.
+        curvatures: at the points.
+        comfort: of which the lateral acceleration counts.
+
+    """
+    bent = np.sqrt(comfort.lateral / np.maximum(np.abs(curvatures), 1e-6))
+    if len(along) < 3:
+        return bent
+    change = np.abs(np.gradient(curvatures, along))
+    tightening = np.cbrt(_LATERAL_JERK / np.maximum(change, 1e-7))
+    return np.minimum(bent, tightening)
+
+
+def speeds_along(
+    along: Floats, limits: Floats, speed: float, comfort: Comfort, *, stops: bool = False
+) -> tuple[Floats, Floats]:
+    """Speeds and accelerations ``(n,)`` at points along a path.
+
+    Args:
+        along: metres along the path ``(n,)``; the car is at the first point.
+        limits: largest speeds ``(n,)``.
+        speed: of the car, m/s.
+        comfort: limits of acceleration, deceleration and jerk.
+        stops: the car stands at the last point.
+
+    """
+    window = (comfort.acceleration + comfort.deceleration) / comfort.jerk
+    squares = _eroded(along, limits, window / 2) ** 2
+    if stops:
+        squares[-1] = 0.0
+    down, up = 2 * comfort.deceleration * along, 2 * comfort.acceleration * along
+    # v(s)^2 <= v(t)^2 + 2 b (t - s) for every t ahead, and likewise for acceleration from every place behind.
+    squares = np.minimum.accumulate((squares + down)[::-1])[::-1] - down
+    hardest = speed * speed - 2 * _EMERGENCY * (along - along[0])
+    squares[0] = speed * speed
+    squares = np.minimum.accumulate(squares - up) + up
+    squares = np.maximum(squares, np.maximum(hardest, 0.0))
+    return _averaged(along, np.sqrt(np.maximum(squares, 0.0)), window, stops=stops)
+
+
+def _eroded(along: Floats, limits: Floats, time: float) -> Floats:
+    """The least of the limits that a car meets within some time before and after each point: about, by classes of speed."""
+    from scipy.ndimage import minimum_filter1d
+
+    spacing = max((along[-1] - along[0]) / max(len(along) - 1, 1), 1e-3)
+    lowest = limits.copy()
+    slowest, most = float(limits.min()), float(limits.max())
+    low = 0.0
+    for high in _CLASSES:
+        if slowest < high and most >= low:
+            some = np.where((limits >= low) & (limits < high), limits, np.inf)
+            size = 2 * round(min(high, most) * time / spacing) + 1
+            lowest = np.minimum(lowest, minimum_filter1d(some, size, mode="nearest"))
+        low = high
+    return lowest
+
+
+def _averaged(along: Floats, speeds: Floats, window: float, *, stops: bool) -> tuple[Floats, Floats]:
+    """The motion averaged over a window of time, as speeds and accelerations at the points."""
+    means = np.maximum((speeds[1:] + speeds[:-1]) / 2, _CREEP / 2)
+    times = np.concatenate([[0.0], np.cumsum(np.diff(along) / means)])
+    step = 0.05
+    half = round(window / 2 / step)
+    count = max(2, int(times[-1] / step) + 1)
+    moments = np.arange(count) * step
+    places = np.interp(moments, times, along)
+    # Before, the car has gone at its speed; after, it goes on at the last one.
+    ahead = 0.0 if stops else speeds[-1]
+    before = places[0] - speeds[0] * step * np.arange(half, 0, -1)
+    after = places[-1] + ahead * step * np.arange(1, half + 1)
+    whole = np.concatenate([before, places, after])
+    sums = np.concatenate([[0.0], np.cumsum(whole)])
+    width = 2 * half + 1
+    mean = (sums[width:] - sums[:-width]) / width
+    speed = np.gradient(mean, step)
+    acceleration = np.gradient(speed, step)
+    mean = np.maximum.accumulate(mean)
+    return np.interp(along, mean, speed), np.interp(along, mean, acceleration)
