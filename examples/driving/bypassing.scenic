@@ -12,7 +12,7 @@ for lane in network.lanes:
 behavior Bypass(section):
     try:
         do FollowLaneBehavior(target_speed=12)
-    interrupt when withinDistanceToObjsInLane(self, 30) and self._lane is section.lane:
+    interrupt when withinDistanceToObjsInLane(self, 42) and self._lane is section.lane:
         do LaneChangeBehavior(section.fasterLane, target_speed=12)
         do FollowLaneBehavior(target_speed=12, laneToFollow=section.fasterLane.lane) for 5 seconds
         do LaneChangeBehavior(section, target_speed=12)

@@ -9,7 +9,7 @@ import pytest
 import shapely
 
 import scenic
-from scenic.domains.driving.lines import FollowedLine
+from scenic.domains.driving.planning import Plan
 from scenic.domains.driving.roads import Network, VehicleType
 from tests.maps import RoadText, cross, lane, lanes, line, map_text, piece, straight
 
@@ -119,14 +119,14 @@ def test_a_lane_change_goes_on_into_the_intersection_once(
 ) -> None:
     """D133."""
     (tmp_path / "map.xodr").write_text(cross(arm=60, half=15))
-    lines: list[int] = []
-    original = FollowedLine.__init__
+    chosen: list[str] = []
+    original = Plan.choose
 
-    def noting(self: FollowedLine, *parts: Any) -> None:
-        lines.append(len(parts))
-        original(self, *parts)
+    def noting(self: Plan, choice: Any) -> None:
+        chosen.append(choice.startLane.uid)
+        original(self, choice)
 
-    monkeypatch.setattr(FollowedLine, "__init__", noting)
+    monkeypatch.setattr(Plan, "choose", noting)
     text = (
         "param map = localPath('map.xodr')\nmodel scenic.simulators.newtonian.driving_model\n"
         "own = network.laneAt((-40, -1.75))\n"
@@ -137,4 +137,4 @@ def test_a_lane_change_goes_on_into_the_intersection_once(
     done = scenario.getSimulator().simulate(scenario.sample(1, seed=1)[0], maxSteps=60)
     places = [state[0].x for state in done.trajectory]
     assert sum(-18 < x < -15 for x in places) > 3, "several steps are near the intersection"
-    assert lines == [1, 3]
+    assert chosen == ["road3_lane1"]

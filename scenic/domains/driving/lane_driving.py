@@ -14,7 +14,6 @@ from scenic.domains.driving.planning import Plan, join, path_of_lines
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import Route
 from scenic.language.errors import InvalidScenarioError
-from scenic.runtime.program.builtins import running_simulation
 
 __all__ = ["LaneChanger", "LaneDriver", "RouteDriver", "lane_under"]
 
@@ -92,9 +91,7 @@ class LaneDriver(Driver):
         """Choose where there is one way only, until more of the path is needed; then plan speeds."""
         plan = self._plan
         if self._path is not plan.path and plan.path.length > 0:
-            self.joining = join(
-                plan.path, self._place(), self._agent.heading, self._pace(duration), duration
-            )
+            self.joining = join(plan.path, self._place(), self._agent.heading, self._pace(duration), duration)
         stops = None
         if plan.is_complete:
             stops = self._agent.length / 2 + _BUFFER + self._simulation.pivot_of(self._agent)

@@ -9,6 +9,7 @@ from scenic.domains.driving.roads import (
     Intersection, Lane, LaneGroup, LaneSection, ManeuverType, Network, NetworkElement, PedestrianCrossing, Road,
     RoadSection, Shoulder, Sidewalk,
 )
+from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.sensors import RGBSensor, SSSensor
 from scenic.domains.driving.setting import is2DMode, nearer, network_of_program, standing
 from scenic.domains.driving.workspace import DrivingWorkspace

@@ -58,7 +58,9 @@ def _length(line: Floats) -> float:
     return float(np.hypot(*np.diff(line, axis=0).T).sum())
 
 
-def piece_along(points: Floats, lanes: Sequence[tuple[int, Any]] = (), *, cut: tuple[int, int] = (0, 0)) -> Piece:
+def piece_along(
+    points: Floats, lanes: Sequence[tuple[int, Any]] = (), *, cut: tuple[int, int] = (0, 0)
+) -> Piece:
     """The piece along points of a smooth curve.
 
     Args:
@@ -159,7 +161,8 @@ class PathPieces:
         shares = np.concatenate([[0.0], np.cumsum(sizes)]) / max(float(sizes.sum()), 1e-9)
         offset = len(begin)
         marks += [
-            (offset + round(share * len(middle_part)), lane) for share, lane in zip(shares, inner, strict=False)
+            (offset + round(share * len(middle_part)), lane)
+            for share, lane in zip(shares, inner, strict=False)
         ]
         if closes:
             marks.append((len(points) - len(after), lanes[-1]))

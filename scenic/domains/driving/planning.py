@@ -139,7 +139,7 @@ def join(path: Path, place: Any, heading: float, speed: float, duration: float =
         distance *= 1.3
     distance = min(distance, max(left, 1.0))
     count = int(np.searchsorted(along, start + distance, side="right"))
-    share_done = (along[: count] - start) / distance
+    share_done = (along[:count] - start) / distance
     begin = max(0, index - 1)
     offsets = _offset(share_done[begin:], offset, slope * distance)
     path.shifted(begin, offsets)
@@ -161,7 +161,14 @@ def _second_derivative(t: Floats, offset: float, slope: float) -> Floats:
 
 
 def speeds_of(
-    path: Path, begin: int, target: float, speed: float, comfort: Comfort, *, limits: Floats | None, stops: float | None
+    path: Path,
+    begin: int,
+    target: float,
+    speed: float,
+    comfort: Comfort,
+    *,
+    limits: Floats | None,
+    stops: float | None,
 ) -> tuple[list[float], list[float]]:
     """Speeds and accelerations at the points of a path from an index on.
 
@@ -183,8 +190,6 @@ def speeds_of(
     count = len(along)
     if stops is not None:
         count = max(2, int(np.searchsorted(along, along[-1] - stops, side="right")))
-    speeds, accelerations = speeds_along(
-        along[:count], top[:count], speed, comfort, stops=stops is not None
-    )
+    speeds, accelerations = speeds_along(along[:count], top[:count], speed, comfort, stops=stops is not None)
     rest = [0.0] * (len(along) - count)
     return speeds.tolist() + rest, accelerations.tolist() + rest

@@ -95,7 +95,10 @@ class Route:
         line = shapely.LineString(np.concatenate(self.lines))
         vertices = np.concatenate(self.lines)
         lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(vertices, axis=0).T))])
-        return np.interp(shapely.line_locate_point(line, shapely.points(points)), lengths, self._speeds or ())
+        speeds: Floats = np.interp(
+            shapely.line_locate_point(line, shapely.points(points)), lengths, self._speeds or ()
+        )
+        return speeds
 
 
 def _vertices(part: Any) -> Floats:

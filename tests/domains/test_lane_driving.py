@@ -1,0 +1,137 @@
+"""The motion of cars that follow lanes, change lanes and follow each other: comfortable, and on the road."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import scenic
+from benchmarks.motion import Course
+from scenic.language.errors import InvalidScenarioError
+from tests.maps import cross, straight
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = tmp_path_factory.mktemp("motion")
+    (made / "cross.xodr").write_text(cross(arm=100, half=15))
+    (made / "straight.xodr").write_text(straight(400))
+    return made
+
+
+def simulated(folder: Path, text: str, map: str = "straight", steps: int = 150, step: float = 0.1) -> Any:
+    program = f"param map = localPath('{map}.xodr')\nmodel scenic.simulators.newtonian.driving_model\n{text}"
+    scenario = scenic.scenarioFromString(program, filename=str(folder / "main.scenic"), mode2D=True)
+    scene = scenario.sample(1, seed=1)[0]
+    done = scenario.getSimulator().simulate(scene, maxSteps=steps, timestep=step)
+    assert done is not None
+    return done
+
+
+def course(done: Any, number: int = 0) -> Course:
+    places = np.array([tuple(state.positions[number])[:2] for state in done.trajectory])
+    headings = np.array([state.orientations[number].yaw for state in done.trajectory])
+    return Course(places, headings, done.timestep)
+
+
+def speeds(motion: Course) -> Any:
+    return np.hypot(*motion.velocities.T)
+
+
+@pytest.mark.parametrize("step", [0.02, 0.1])
+def test_turns_are_braked_for_before_they_begin(folder: Path, step: float) -> None:
+    text = """
+start = network.laneAt((-60, -1.75))
+m = [m for m in start.maneuvers if m.type is ManeuverType.RIGHT_TURN][0]
+ego = new Car at (-110, -1.75), facing -90 deg, with speed 12,
+    with behavior FollowTrajectoryBehavior(12, [m.startLane, m.connectingLane, m.endLane], turn_speed=20)
+"""
+    motion = course(simulated(folder, text, "cross", steps=round(16 / step), step=step))
+    side, along = motion.accelerations
+    assert np.abs(side).max() == pytest.approx(3.0, abs=0.1)
+    assert motion.jerk.max() < 8
+    inside = np.abs(motion.places[1:-1]).max(axis=1) < 14
+    assert along[inside].min() > -1.0
+    assert along.min() == pytest.approx(-2.5, abs=0.3)
+
+
+def test_a_car_stops_at_the_end_of_the_network_and_its_behavior_ends(folder: Path) -> None:
+    text = (
+        "ego = new Car at (300, -1.75), facing -90 deg, with speed 10, with behavior FollowLaneBehavior(15)\n"
+    )
+    done = simulated(folder, text, steps=200)
+    motion = course(done)
+    assert motion.places[-1, 0] + 2.25 == pytest.approx(399, abs=0.5)
+    assert speeds(motion)[-1] == 0
+    assert motion.jerk.max() < 8
+    assert done.result.actions[-1].get(done.objects[0], ()) == ()
+
+
+def test_a_lane_change_takes_its_time_and_ends_on_the_centerline(folder: Path) -> None:
+    text = """
+section = network.laneSectionAt((300, 1.75))
+behavior Change():
+    do LaneChangeBehavior(section, is_oppositeTraffic=True, target_speed=15, duration=5)
+    terminate
+ego = new Car at (50, -1.75), facing -90 deg, with speed 15, with behavior Change
+"""
+    done = simulated(folder, text)
+    motion = course(done)
+    assert 5.0 <= done.currentTime * 0.1 <= 5.5
+    assert motion.places[-1, 1] == pytest.approx(1.75, abs=0.05)
+    assert abs(motion.headings[-1] - motion.headings[0]) < 0.01
+    # The peak of the acceleration of least jerk over d metres is 5.77 d / T^2.
+    assert np.abs(motion.accelerations[0]).max() == pytest.approx(5.77 * 3.5 / 25, rel=0.1)
+
+
+def test_a_change_to_a_lane_of_the_other_direction_is_an_error(folder: Path) -> None:
+    text = """
+section = network.laneSectionAt((300, 1.75))
+ego = new Car at (50, -1.75), facing -90 deg, with behavior LaneChangeBehavior(section)
+"""
+    with pytest.raises(InvalidScenarioError, match="other direction"):
+        simulated(folder, text)
+
+
+@pytest.mark.parametrize(
+    "behavior", ["FollowVehicleBehavior(ego, 1.5, 15)", "FollowLaneBehavior(15, follow_gap=1.5)"]
+)
+def test_a_car_keeps_its_gap_to_a_slower_one(folder: Path, behavior: str) -> None:
+    text = f"""
+ego = new Car at (100, -1.75), facing -90 deg, with speed 6, with behavior FollowLaneBehavior(6)
+new Car at (50, -1.75), facing -90 deg, with speed 15, with behavior {behavior}
+new Car at (120, 1.75), facing 90 deg, with behavior FollowLaneBehavior(8)
+"""
+    done = simulated(folder, text, steps=350)
+    lead, follower = course(done, 0), course(done, 1)
+    gaps = lead.places[:, 0] - follower.places[:, 0] - 4.5
+    assert gaps.min() > 4
+    # At equal speed the model keeps s0 + v T.
+    assert gaps[-1] == pytest.approx(2 + 6 * 1.5, rel=0.1)
+
+
+def test_cars_beside_behind_and_oncoming_do_not_stop_anybody(folder: Path) -> None:
+    text = """
+ego = new Car at (100, -1.75), facing -90 deg, with behavior DriveAvoidingCollisions(10)
+new Car at (101, 1.75), facing 90 deg
+new Car at (130, 1.75), facing 90 deg, with behavior FollowLaneBehavior(8)
+new Car at (92, -1.75), facing -90 deg
+"""
+    assert speeds(course(simulated(folder, text, steps=80)))[-1] == pytest.approx(10, abs=0.1)
+
+
+def test_a_resumed_behavior_goes_on_from_where_the_car_is(folder: Path) -> None:
+    text = """
+section = network.laneSectionAt((300, 1.75))
+behavior Swerve():
+    try:
+        do FollowLaneBehavior(12)
+    interrupt when 100 < self.position.x < 101:
+        do LaneChangeBehavior(section, is_oppositeTraffic=True, target_speed=12) for 2 seconds
+ego = new Car at (60, -1.75), facing -90 deg, with speed 12, with behavior Swerve
+"""
+    motion = course(simulated(folder, text, steps=150))
+    assert np.abs(motion.accelerations[0]).max() < 3.5
+    assert motion.places[:, 1].max() > -1
+    assert abs(abs(motion.places[-1, 1]) - 1.75) < 0.05
