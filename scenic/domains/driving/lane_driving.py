@@ -1,4 +1,4 @@
-"""What behaviors do with plans: follow lanes, trajectories, and paths to other lanes."""
+"""Drivers that follow lanes and trajectories, and change lanes."""
 
 import math
 from typing import Any, Final
