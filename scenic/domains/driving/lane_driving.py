@@ -75,6 +75,7 @@ class LaneDriver(Driver):
         self._lane = lane
         self._plan: Plan
         self._due = 0.0
+        self._joining_time = 0.0
         self.joining = 0.0
         self._begin_plan(lane_under(agent) if lane is None else lane)
         self.drive_by("keep")
@@ -85,13 +86,18 @@ class LaneDriver(Driver):
         self._backward = abs(_turned(agent, lane)) > math.pi / 2
         self._plan = Plan(agent.roadNetwork, lane, backward=self._backward)
         self._path = Path()
-        self._cover(duration)
+        self._joining_time = duration
+        self._cover()
 
-    def _cover(self, duration: float = 0.0) -> None:
-        """Choose where there is one way only, until more of the path is needed; then plan speeds."""
+    def _cover(self) -> None:
+        """Take over what the plan has of the path, if it reaches the car, and plan speeds on it."""
         plan = self._plan
+        if not self._path.along and not plan.is_complete and not self._is_covered(plan.path):
+            return
         if self._path is not plan.path and plan.path.length > 0:
-            self.joining = join(plan.path, self._place(), self._agent.heading, self._pace(duration), duration)
+            self.joining = join(
+                plan.path, self._place(), self._agent.heading, self._pace(), self._joining_time
+            )
         stops = None
         if plan.is_complete:
             stops = self._agent.length / 2 + _BUFFER + self._simulation.pivot_of(self._agent)
@@ -100,11 +106,21 @@ class LaneDriver(Driver):
         speed = max(self._agent.speed, min(self._target, 40.0))
         self._due = plan.path.length - plan.reserve(speed, self.comfort.deceleration)
 
-    def _pace(self, duration: float) -> float:
+    def _is_covered(self, path: Path) -> bool:
+        """Return whether a path does not end behind the car."""
+        if path.length == 0:
+            return False
+        x, y = self._place()
+        index, share, _ = path.locate(x, y, path.nearest(x, y))
+        return index < len(path.along) - 2 or share < 1.0
+
+    def _pace(self) -> float:
         """The mean speed of the car over the next seconds, if the speed to reach is reached, m/s."""
         speed, comfort = self._agent.speed, self.comfort
         change = self._target - speed
-        most = (comfort.acceleration if change > 0 else comfort.deceleration) * max(duration, 1.0) / 2
+        most = (
+            (comfort.acceleration if change > 0 else comfort.deceleration) * max(self._joining_time, 1.0) / 2
+        )
         return float(speed + min(max(change, -most), most))
 
     def _limits(self) -> Any:
@@ -116,9 +132,7 @@ class LaneDriver(Driver):
         if self.has_paused:
             self._take_up()
         plan = self._plan
-        while not plan.is_complete and (
-            not self._path.along or self._path.along[self._index] > self._due or plan.path.length == 0
-        ):
+        while not plan.is_complete and (not self._path.along or self._path.along[self._index] > self._due):
             if not self._backward:
                 return True
             plan.choose(plan.choices[0])
@@ -209,15 +223,15 @@ class LaneChanger(LaneDriver):
     def _begin_plan(self, lane: Lane, duration: float = 0.0) -> None:
         super()._begin_plan(lane, self._duration)
 
-    def _cover(self, duration: float = 0.0) -> None:
-        fresh = self._path is not self._plan.path
-        super()._cover(duration)
+    def _cover(self) -> None:
+        fresh = not self._path.along
+        super()._cover()
         if fresh and self._path.along:
             self._end = self._path.along[self._index] + self.joining
 
     def has_arrived(self) -> bool:
         """Return whether the car is in the lane, and in its direction."""
-        return bool(self._path.along[self._index] >= self._end)
+        return bool(self._path.along and self._path.along[self._index] >= self._end)
 
 
 class RouteDriver(Driver):
