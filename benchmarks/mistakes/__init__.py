@@ -15,11 +15,11 @@ from scenic.language.diagnostics import Diagnostic
 from scenic.project.index import Project
 from scenic.project.surroundings import surroundings_in
 
-__all__ = ["Mistake", "Outcome", "examine", "mistakes"]
+__all__ = ["MAP", "Mistake", "Outcome", "examine", "mistakes"]
 
 _HERE: Final = Path(__file__).parent
 _MARK: Final = "  #! "
-_MAP: Final = _HERE.parents[1] / "examples" / "driving" / "crossing.xodr"
+MAP: Final = _HERE.parents[1] / "examples" / "driving" / "crossing.xodr"
 
 _BESIDE: Final = {
     "helpers.scenic": """
@@ -91,7 +91,7 @@ def examine(wanted: Sequence[Mistake]) -> Iterator[Outcome]:
         folder = Path(name)
         for file, content in _BESIDE.items():
             (folder / file).write_text(content, encoding="utf-8")
-        (folder / "town.xodr").write_bytes(_MAP.read_bytes())
+        (folder / "town.xodr").write_bytes(MAP.read_bytes())
         surroundings_of = surroundings_in(Project([str(folder)]))
         for mistake in wanted:
             filename = str(folder / "program.scenic")

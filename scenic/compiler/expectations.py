@@ -5,7 +5,14 @@ from typing import Final
 
 from scenic.compiler.actions import Problem
 from scenic.compiler.generated import HARD_KEYWORDS, INFIX_KINDS, OPERATORS, SOFT_KEYWORDS
-from scenic.compiler.mistakes import Situation, Trials, explain, header_without_colon, unfinished_header
+from scenic.compiler.mistakes import (
+    Situation,
+    Trials,
+    explain,
+    header_without_colon,
+    instead_of_failure,
+    unfinished_header,
+)
 from scenic.compiler.phrases import TEMPORAL_FORMS
 from scenic.compiler.precedence import Fixity
 from scenic.compiler.tokens import (
@@ -101,6 +108,19 @@ class Expectations:
         missing = at.before and (at.at_end() or found in _SEPARATORS) and not wanted.startswith("an operator")
         where = f" after `{at.before}`" if missing else ""
         return Problem("SC110", at.here(), f"expected {wanted}{where}, but found {found}")
+
+    def failed(self, start: int, failure: Problem) -> Problem:
+        """The mistake of a statement from ``start`` on whose parts are right, but for ``failure``."""
+        if failure.code != "SC123":
+            return failure
+        first, end = self._trials.line(start)
+        texts = self._tokens.texts
+        signs = [index for index in range(first + 1, end) if texts[index] == "="]
+        for sign in signs:
+            known = instead_of_failure(Situation(self._tokens, self._trials, start, sign, frozenset()))
+            if known is not None:
+                return known
+        return failure
 
     def unfinished_header(self, first: int) -> Problem | None:
         """The mistake of a line before an indented one, if it is the beginning of a header."""

@@ -1,10 +1,11 @@
 """Messages of the lexer about text that it cannot read."""
 
+import re
 from collections.abc import Iterator
 from typing import Final
 
 from scenic.compiler import lexemes
-from scenic.language.diagnostics import Diagnostic, Label
+from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
 from scenic.language.spans import Span
 
 CLOSER_OF: Final = {"(": ")", "[": "]", "{": "}"}
@@ -124,8 +125,54 @@ def bad_number(whole: str, number: str, span: Span) -> Diagnostic:
     elif kind != "decimal":
         advice = f"write one or more {kind} digits after `{whole[:2]}`"
     else:
-        advice = "put a space or an operator between the number and what follows"
+        return _with_unit(whole, message, span) or Diagnostic(
+            "SC104", message, span, help="put a space or an operator between the number and what follows"
+        )
     return Diagnostic("SC104", message, span, help=advice)
+
+
+_NUMBER: Final = re.compile(r"(\d+(?:\.\d*)?)(°|[^\W\d_]+)")
+_METRES: Final = {"m": 1.0, "km": 1000.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048}
+_WORDS_AFTER: Final = {
+    **dict.fromkeys(("°", "deg", "degree", "degrees"), "deg"),
+    **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), "seconds"),
+    **dict.fromkeys(("step", "steps"), "steps"),
+}
+
+
+def _with_unit(whole: str, message: str, span: Span) -> Diagnostic | None:
+    """``90°``, ``5s``, ``3m``: a number with a unit."""
+    found = _NUMBER.fullmatch(whole)
+    if found is None:
+        return None
+    number, unit = found.groups()
+    word = _WORDS_AFTER.get(unit.lower())
+    if word is not None:
+        fix = Fix(f"Write `{number} {word}`", (Edit(span, f"{number} {word}"),), certain=word == "deg")
+        kind = "an angle" if word == "deg" else "a duration"
+        return Diagnostic("SC104", message, span, help=f"write {kind} as `{number} {word}`", fix=fix)
+    if unit == "rad":
+        return Diagnostic(
+            "SC104", message, span, help=f"angles are in radians: write `{number}`, or `30 deg` for degrees"
+        )
+    if unit in _METRES:
+        metres = f"{float(number) * _METRES[unit]:g}"
+        fix = Fix(f"Write `{metres}`", (Edit(span, metres),), certain=False)
+        return Diagnostic(
+            "SC104",
+            message,
+            span,
+            help=f"numbers have no units: lengths are in metres, write `{metres}`",
+            fix=fix,
+        )
+    if unit in ("kmh", "kph", "mph", "mps", "ms"):
+        return Diagnostic(
+            "SC104",
+            message,
+            span,
+            help="numbers have no units: speeds are in metres per second, durations in seconds",
+        )
+    return None
 
 
 def invalid_character(character: str, span: Span) -> Diagnostic:

@@ -379,7 +379,7 @@ class Recovery:
         ):
             self._note(farthest)
         elif failure is not None:
-            self._add(failure, farthest)
+            self._add(self.expectations.failed(start, failure), farthest)
         else:
             self._add(self.expectations.problem(start, farthest, expected), farthest)
 

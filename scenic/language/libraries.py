@@ -2,7 +2,7 @@
 
 from typing import Final
 
-__all__ = ["FAMILIES", "LIBRARIES", "how_to_get"]
+__all__ = ["DRIVING_CLASSES", "DRIVING_NAMES", "FAMILIES", "LIBRARIES", "NEEDS_MAP", "how_to_get"]
 
 FAMILIES: Final = frozenset(
     {"scenic.contracts", "scenic.core", "scenic.formats", "scenic.gym", "scenic.syntax"}
@@ -63,6 +63,46 @@ LIBRARIES: Final = frozenset(
     }
 )
 """The modules that worlds are commonly taken from."""
+
+
+DRIVING_CLASSES: Final = frozenset({"Car", "DrivingObject", "NPCCar", "Pedestrian", "Vehicle"})
+"""The classes of objects of the driving domain."""
+
+DRIVING_NAMES: Final = DRIVING_CLASSES | {
+    "DriveAvoidingCollisions",
+    "FollowLaneBehavior",
+    "FollowTrajectoryBehavior",
+    "LaneChangeBehavior",
+    "ManeuverType",
+    "SetBrakeAction",
+    "SetSteerAction",
+    "SetThrottleAction",
+    "TurnBehavior",
+    "WalkForwardBehavior",
+    "curb",
+    "intersection",
+    "network",
+    "road",
+    "roadDirection",
+    "roadOrShoulder",
+    "sidewalk",
+    "withinDistanceToAnyCars",
+    "withinDistanceToAnyObjs",
+    "withinDistanceToObjsInLane",
+}
+"""Names of the driving domain that programs use most."""
+
+NEEDS_MAP: Final = frozenset(
+    {
+        "scenic.domains.driving.model",
+        "scenic.simulators.carla.model",
+        "scenic.simulators.lgsvl.model",
+        "scenic.simulators.metadrive.model",
+        "scenic.simulators.newtonian.driving_model",
+        "scenic.simulators.sumo.model",
+    }
+)
+"""World models that read the parameter `map` while they are loaded."""
 
 
 def how_to_get(model: str) -> str:

@@ -1,8 +1,18 @@
 """Distances of names, for "did you mean" and for warnings about misspelt properties."""
 
+import re
 from collections.abc import Iterable
+from typing import Final
 
-__all__ = ["distance", "is_slip", "nearest", "nearest_attribute", "nearest_option", "nearest_property"]
+__all__ = [
+    "distance",
+    "is_slip",
+    "nearest",
+    "nearest_attribute",
+    "nearest_option",
+    "nearest_property",
+    "related",
+]
 
 
 def distance(first: str, second: str, *, limit: int) -> int:
@@ -57,17 +67,49 @@ def nearest(name: str, candidates: Iterable[str], *, limit: int | None = None) -
 
     Close means at most ``limit`` edits away; without a limit, a third of the name's length. So names of one or two
     letters are close to nothing but themselves in other letter case.
-    Among equally close ones the first in alphabetical order is taken, so that messages do not vary.
+    Among equally close ones those that begin in the same letter case come first, then alphabetical order decides, so that
+    messages do not vary.
     """
     reach = len(name) // 3 if limit is None else limit
     found = None
-    for candidate in sorted(candidates):
+    for candidate in sorted(candidates, key=lambda each: (each[:1].isupper() != name[:1].isupper(), each)):
         edits = distance(name.lower(), candidate.lower(), limit=reach)
         if edits <= reach and candidate != name:
             found, reach = candidate, edits - 1
             if reach < 0:
                 break
     return found
+
+
+_WORD: Final = re.compile(r"[A-Z]?[a-z0-9]+|[A-Z]+(?![a-z])")
+
+
+def related(name: str, candidates: Iterable[str]) -> str | None:
+    """The only candidate that has all words of ``name``, or whose words ``name`` all has: ``leftLane`` for ``laneToLeft``.
+
+    Words are those of names written in capitals or with underscores. ``None`` if several candidates are equally near.
+    """
+    words = _words(name)
+    best: list[str] = []
+    fewest = (_MOST_OTHER_WORDS + 1, False)
+    for candidate in candidates:
+        others = _words(candidate)
+        if candidate == name or not words or not others or not (words <= others or others <= words):
+            continue
+        # A longer name is meant more often than a shorter one.
+        distance_in_words = (len(words ^ others), not words <= others)
+        if distance_in_words < fewest:
+            best, fewest = [candidate], distance_in_words
+        elif distance_in_words == fewest:
+            best.append(candidate)
+    return best[0] if len(best) == 1 else None
+
+
+_MOST_OTHER_WORDS: Final = 2
+
+
+def _words(name: str) -> frozenset[str]:
+    return frozenset(word.lower().removesuffix("s") for word in _WORD.findall(name))
 
 
 def nearest_option(name: str, options: Iterable[str]) -> str | None:

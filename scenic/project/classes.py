@@ -9,7 +9,7 @@ from typing import Any, Final
 from scenic import language
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Binding, BindingKind, Scope, ScopeKind
-from scenic.compiler.traversal import walk
+from scenic.compiler.traversal import position, walk
 from scenic.dataclass import dataclass
 from scenic.language.properties import CLASSES, BuiltinProperty, attributes_of, properties_of
 from scenic.project.index import Exported, Project
@@ -115,11 +115,16 @@ def _examined(project: Project, symbol: Symbol, depth: int) -> Class | None:
         return None
     if symbol.is_builtin:
         return _built_in(symbol)
-    node, module = symbol.node, symbol.module
+    node: Any = symbol.node
+    module = symbol.module
     if not isinstance(node, ast.ClassDef) or module is None:
         return None
     bases: list[Symbol] = []
-    complete = symbol.binding is not None and _are_alike(symbol.binding.sites)
+    sites = () if symbol.binding is None else sorted(symbol.binding.sites, key=position)
+    if len(sites) > 1 and all(_refines(site, sites[0]) for site in sites[1:]):
+        node, complete = sites[0], True
+    else:
+        complete = symbol.binding is not None and _are_alike(sites)
     complete = complete and not node.keywords and not node.decorator_list
     is_scenic = False
     members: dict[str, Member] = {}
@@ -128,6 +133,9 @@ def _examined(project: Project, symbol: Symbol, depth: int) -> Class | None:
         inherited.append(_built_in(Symbol("Object", SymbolKind.CLASS)))
     for base in node.bases:
         meant = _meaning(project, module, base, depth + 1)
+        if meant is not None and meant.node is node:
+            # `class Car(Car)` extends the class that a star import or the model brings.
+            meant = _replaced(project, module, symbol.name)
         if meant is None and isinstance(base, ast.Name) and base.id in ("object", "Exception", "ABC"):
             continue
         known = None if meant is None else _class(project, meant, depth + 1)
@@ -152,6 +160,18 @@ def _are_alike(sites: Sequence[ast.AST]) -> bool:
         return True
     found = {_outline(site) for site in sites}
     return len(found) == 1 and None not in found
+
+
+def _refines(site: ast.AST, first: ast.AST) -> bool:
+    """Return whether a class extends the class of the same name, and only changes defaults of its properties."""
+    if not (isinstance(first, ast.ClassDef) and isinstance(site, ast.ClassDef)):
+        return False
+    match site.bases:
+        case [ast.Name(id=name)] if name == site.name == first.name:
+            outline = _outline(site)
+            own = {item.name for item in first.body if isinstance(item, scenic.PropertyDef)}
+            return outline is not None and own.issuperset(outline[1])
+    return False
 
 
 def _outline(site: ast.AST) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
@@ -311,6 +331,18 @@ def _of_name(project: Project, module: Module, node: ast.Name) -> Symbol | None:
     if brought is not None and not (brought.module is module and brought.binding is not None):
         return symbol_of_exported(project, brought)
     return builtin_symbol(node.id) if module.is_scenic else None
+
+
+def _replaced(project: Project, module: Module, name: str) -> Symbol | None:
+    """The meaning of a name before the module itself binds it: the one that its last star import or model brings."""
+    for statement in reversed(module.tree.body):
+        if isinstance(statement, scenic.Model) or (
+            isinstance(statement, ast.ImportFrom) and any(alias.name == "*" for alias in statement.names)
+        ):
+            brought = project.exports_of(project.found_by(statement, module.filename)).names.get(name)
+            if brought is not None:
+                return symbol_of_exported(project, brought)
+    return None
 
 
 def module_behind(project: Project, module: Module, node: ast.expr) -> Found | None:

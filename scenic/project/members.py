@@ -19,7 +19,7 @@ from scenic.language.names import NAMES, NameKind
 from scenic.language.properties import attributes_of, properties_of
 from scenic.language.source import Source
 from scenic.language.spans import Span
-from scenic.language.spelling import nearest
+from scenic.language.spelling import nearest, related
 from scenic.project.classes import (
     LIBRARY,
     class_of,
@@ -181,5 +181,6 @@ def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, s
     cls = class_of_symbol(project, symbol)
     if cls is None or cls.member(node.attr) is not None or cls.member("__getattr__") is not None:
         return None
-    meant = nearest(node.attr, {each.name for each in cls.members if not each.name.startswith("_")})
+    names = {each.name for each in cls.members if not each.name.startswith("_")}
+    meant = nearest(node.attr, names) or related(node.attr, names)
     return None if meant is None else (symbol.name, meant)

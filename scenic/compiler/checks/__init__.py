@@ -29,6 +29,7 @@ from scenic.compiler.checks import (
     order,
     overriding,
     placement,
+    python_habits,
     randomness,
     specifiers,
     support,
@@ -53,6 +54,7 @@ _NODE_RULES: Final[tuple[tuple[type[ast.AST], NodeRule], ...]] = tuple(
         making,
         operands,
         overriding,
+        python_habits,
         randomness,
         specifiers,
         values,
@@ -92,6 +94,7 @@ _LINTS: Final[tuple[ProgramRule, ...]] = (
     guards.check_guards,
     instances.check_instances,
     order.check_order,
+    python_habits.check_maps,
     uses.check_uses,
 )
 

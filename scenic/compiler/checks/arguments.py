@@ -10,9 +10,10 @@ from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.provided import PROVIDED_PARAMETERS
 from scenic.compiler.scopes import Scope, ScopeKind
 from scenic.compiler.surroundings import Foreign
-from scenic.language.diagnostics import Diagnostic, Label
+from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
 from scenic.language.names import NAMES
-from scenic.language.spelling import nearest
+from scenic.language.spans import Span
+from scenic.language.spelling import nearest, related
 
 __all__ = ["RULES", "kind_of", "required_parameters"]
 
@@ -133,6 +134,9 @@ def _arguments(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Di
     if not spread and args.vararg is None and len(node.args) > len(positional):
         count = len(positional)
         given = len(node.args)
+        if count == 1 and positional[0].arg in _VECTORS and given in (2, 3) and not node.keywords:
+            yield _one_vector(node, title, positional[0].arg, callee, context)
+            return
         yield context.error(
             "SC211",
             f"{title} takes {_count(count)}, and {given} {'is' if given == 1 else 'are'} given",
@@ -159,7 +163,8 @@ def _arguments(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Di
         elif keyword.arg not in by_name and args.kwarg is None:
             wrong = True
             place = word_span(context.source, keyword, keyword.arg)
-            suggestion = nearest(keyword.arg, by_name - filled - {other.arg for other in node.keywords})
+            free = by_name - filled - {other.arg for other in node.keywords}
+            suggestion = nearest(keyword.arg, free) or related(keyword.arg, free)
             yield context.error(
                 "SC211",
                 f"{title} has no parameter `{keyword.arg}`",
@@ -168,6 +173,8 @@ def _arguments(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Di
                 labels=callee.labels(context),
                 fix=context.renaming(place, keyword.arg, suggestion) if suggestion else None,
             )
+    if isinstance(callee.definition, scenic.BehaviorDef) and not spread:
+        yield from _unlike_default(node, callee, context)
     if wrong or spread or spread_names:
         return
     given_names = filled | {keyword.arg for keyword in node.keywords if keyword.arg in by_name}
@@ -179,6 +186,74 @@ def _arguments(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Di
             node,
             f"give {'it' if len(missing) == 1 else 'them'}: {callee.signature}",
             labels=callee.labels(context),
+        )
+
+
+_VECTORS: Final = frozenset(
+    {"direction", "location", "offset", "place", "point", "pos", "position", "target", "vector", "velocity"}
+)
+"""Names of parameters that take a vector."""
+
+
+def _one_vector(node: ast.Call, title: str, parameter: str, callee: _Callee, context: Context) -> Diagnostic:
+    """SC211: ``SetPositionAction(1, 2)``."""
+    first, last = context.source.span(node.args[0]), context.source.span(node.args[-1])
+    texts = [context.text(each) for each in node.args]
+    vector = f"({', '.join(text for text in texts if text)})"
+    fix = None
+    if all(texts) and first.line == last.end_line:
+        place = Span(first.line, first.column, last.end_line, last.end_column)
+        fix = Fix("Make a vector", (Edit(place, vector),))
+    return context.error(
+        "SC211",
+        f"{title} takes one vector as `{parameter}`, and {len(node.args)} arguments are given",
+        node.args[1],
+        f"put the coordinates in parentheses: `{callee.name}({vector})`",
+        labels=callee.labels(context),
+        fix=fix,
+    )
+
+
+_NOT_NUMBERS: Final = frozenset(
+    {"dictionary", "list", "nothing", "region", "set", "text", "tuple", "workspace"}
+)
+
+
+def _unlike_default(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Diagnostic]:
+    """SC404: ``FollowLaneBehavior(target_speed="fast")``: text for a parameter whose default is a number."""
+    args = callee.args
+    positional = [*args.posonlyargs, *args.args]
+    defaults = dict(
+        zip(
+            [each.arg for each in positional[len(positional) - len(args.defaults) :]],
+            args.defaults,
+            strict=True,
+        )
+    )
+    given = dict(zip([each.arg for each in positional], node.args, strict=False))
+    given.update((each.arg, each.value) for each in node.keywords if each.arg is not None)
+    for name, value in given.items():
+        default = defaults.get(name)
+        number = default.value if isinstance(default, ast.Constant) else None
+        if isinstance(number, bool) or not isinstance(number, int | float):
+            continue
+        kind = context.kind_of(value)
+        if (
+            kind is None
+            or kind.name not in _NOT_NUMBERS
+            or (kind.name == "nothing" and callee.foreign is None)
+        ):
+            continue
+        text = context.text(value) or ""
+        plain = text.strip("\"'")
+        is_number = kind.name == "text" and plain.replace(".", "", 1).isdigit()
+        say = context.warning if callee.foreign is None else context.error
+        yield say(
+            "SC404",
+            f"{callee.title} needs a number as `{name}`, not {kind.phrase}",
+            value,
+            f"write `{plain}` without quotes" if is_number else f"give a number; the default is {number}",
+            fix=context.replacement("Remove the quotes", value, plain) if is_number else None,
         )
 
 

@@ -6,6 +6,7 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.continuations import continuation_after
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
 from scenic.language.spans import Span
@@ -13,6 +14,7 @@ from scenic.language.spans import Span
 __all__ = ["check_meant_specifiers"]
 
 
+_PLACES: Final = frozenset({"at", "in", "on"})
 _DIRECTIONS: Final = frozenset({"is ahead of", "is behind", "is left of", "is right of"})
 
 
@@ -40,6 +42,10 @@ def _dangling_comma(value: ast.expr, targets: Sequence[ast.expr], context: Conte
     if comma < 0:
         return
     place = Span(end.end_line, comma, end.end_line, comma + 1)
+    if (line := continuation_after(context.source, end.end_line)) is not None:
+        if not any(node.lineno == line for node, _ in context.nodes(scenic.ErrorStatement)):
+            yield _not_indented(line, context)
+        return
     # Nobody wants such a tuple, but the ego alone must not be one.
     say = context.error if any(context.provided(each) == "ego" for each in targets) else context.warning
     yield say(
@@ -48,6 +54,19 @@ def _dangling_comma(value: ast.expr, targets: Sequence[ast.expr], context: Conte
         place,
         "remove the comma, or write more specifiers after it",
         fix=Fix("Remove the comma", (Edit(place, ""),)),
+    )
+
+
+def _not_indented(line: int, context: Context) -> Diagnostic:
+    """SC102: ``facing (3, 4)`` on a line of its own, which reads as a statement."""
+    text = context.source.line(line)
+    column = len(text) - len(text.lstrip())
+    return context.error(
+        "SC102",
+        "this line goes on with specifiers of the line before, and is not indented",
+        Span(line, column, line, len(text.rstrip())),
+        "indent it by four spaces",
+        fix=Fix("Indent the line", (Edit(Span(line, column, line, column), "    "),)),
     )
 
 
@@ -73,6 +92,8 @@ def _missing_new(node: scenic.Operation, context: Context) -> Iterator[Diagnosti
 def _missing_comma(node: scenic.SpecifierPhrase, context: Context) -> Iterator[Diagnostic]:
     """``new Chair at x left of table``: no specifier takes the answer of such a question but ``with``."""
     operand = node.operands[-1] if node.operands else None
+    if node.specifier in _PLACES and operand is not None:
+        yield from _second_place(node, operand, context)
     if not isinstance(operand, scenic.Operation) or operand.operator not in _DIRECTIONS:
         return
     left = operand.operands[0]
@@ -93,4 +114,30 @@ def _missing_comma(node: scenic.SpecifierPhrase, context: Context) -> Iterator[D
         Span(end.end_line, column, end.end_line, column + len(word)),
         f"write `{context.text(left) or '...'}, {words} ...`",
         fix=Fix("Insert a comma", (Edit(gap, ","),)),
+    )
+
+
+def _second_place(node: scenic.SpecifierPhrase, operand: ast.expr, context: Context) -> Iterator[Diagnostic]:
+    """SC301: ``new Object at (0, 0) at (1, 1)``, ``new Object at x in y``, which read as operators."""
+    match operand:
+        case scenic.Operation(operator="at", operands=[ast.expr() as left, _]):
+            word = "at"
+        case ast.Compare(left=left, ops=[ast.In()]):
+            word = "in"
+        case _:
+            return
+    start, end = context.source.span(operand), context.source.span(left)
+    kind = context.kind_of(left)
+    if kind is None or kind.name in ("vector field", "function"):
+        return
+    if context.source.line(start.line)[: start.column].rstrip().endswith("("):
+        return
+    column = context.source.line(end.end_line).find(word, end.end_column)
+    if column < 0:
+        return
+    yield context.error(
+        "SC301",
+        f"`{node.specifier}` and `{word}` both give the position of this object, and no comma stands between them",
+        Span(end.end_line, column, end.end_line, column + len(word)),
+        "keep one of both",
     )

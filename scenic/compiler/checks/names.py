@@ -3,12 +3,13 @@
 import ast
 import builtins
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.arguments import kind_of
 from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.foreign_names import keyword_meant, known_elsewhere
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.unfinished import (
     alone_names,
@@ -22,9 +23,10 @@ from scenic.compiler.checks.unfinished import (
 from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Reference, ScopeKind
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Label
+from scenic.language.libraries import DRIVING_CLASSES, LIBRARIES
 from scenic.language.names import CONVERSIONS, IMPORTABLE, NAMES, TRACKED, NameKind
 from scenic.language.properties import CLASSES
-from scenic.language.spelling import distance, nearest
+from scenic.language.spelling import distance, nearest, related
 
 __all__ = ["check_classes", "check_names", "check_reserved"]
 
@@ -70,6 +72,10 @@ def check_names(context: Context) -> Iterator[Diagnostic]:
     importing = half_typed = False
     suggestions: dict[str, str | None] = {}
     missing = [reference for name in context.unresolved for reference in resolution.uses[name]]
+    if missing and (model := _imported_model(context)) is not None:
+        # Its names are those that are missing.
+        yield model
+        return
     for reference in sorted(missing, key=lambda each: position(each.node)):
         node = reference.node
         name = node.id
@@ -131,10 +137,15 @@ def check_names(context: Context) -> Iterator[Diagnostic]:
             own = resolution.names_in_reach(reference.scope).union(context.brought)
             suggestions[name] = (
                 begun_word(context, node)
-                or nearest(name, own | {word for word in PROVIDED if word[0] != "_"})
+                or _similar(name, own, {word for word in PROVIDED if word[0] != "_"})
                 or _only_one(each for each in own.union(TRACKED) if len(name) > 1 and each.startswith(name))
             )
         suggestion = suggestions.get(name)
+        if suggestion is None or suggestion in PROVIDED:
+            elsewhere_known = _known_elsewhere(context, node)
+            if elsewhere_known is not None:
+                yield elsewhere_known
+                continue
         if half_typed and suggestion is None and node not in alone:
             # No slip of another name: what is being typed may bind it.
             continue
@@ -154,6 +165,56 @@ def check_names(context: Context) -> Iterator[Diagnostic]:
             if suggestion
             else None,
         )
+
+
+def _imported_model(context: Context) -> Diagnostic | None:
+    """SC202: ``import scenic.domains.driving.model``, which brings no names but `scenic`."""
+    for statement, _ in context.nodes(ast.Import):
+        for alias in statement.names:
+            if alias.name in LIBRARIES and alias.name.endswith("model") and alias.asname is None:
+                alone = len(statement.names) == 1
+                return context.error(
+                    "SC202",
+                    f"`import` brings only the name `{alias.name.split('.')[0]}`, not the names of the world model",
+                    statement,
+                    f"write `model {alias.name}`",
+                    fix=context.replacement("Write `model`", statement, f"model {alias.name}")
+                    if alone
+                    else None,
+                )
+    return None
+
+
+def _similar(name: str, own: Collection[str], provided: Collection[str]) -> str | None:
+    """The name that is probably meant: the nearest, or the one with the same words if none is very near."""
+    pool = {*own, *provided}
+    found = nearest(name, pool)
+    if found is not None and found in _BUILTINS and name[:1].isupper() and name.lower() != found.lower():
+        found = nearest(name, {each for each in pool if each[:1].isupper()})
+    if found is not None and distance(name.lower(), found.lower(), limit=1) <= 1:
+        return found
+    return (related(name, pool) if len(name) >= _SHORTEST_OF_WORDS else None) or found
+
+
+_SHORTEST_OF_WORDS: Final = 6
+"""Shorter names are not compared word by word."""
+
+
+def _known_elsewhere(context: Context, node: ast.Name) -> Diagnostic | None:
+    """SC118, SC202: a name that is a misspelt keyword, or has a meaning in another language or library."""
+    keyword = keyword_meant(node, context)
+    if keyword is not None:
+        return context.error(
+            "SC118",
+            f"unknown keyword `{node.id}`",
+            node,
+            f"did you mean `{keyword}`?",
+            fix=context.renaming(node, node.id, keyword),
+        )
+    meant = known_elsewhere(node, context)
+    if meant is None:
+        return None
+    return context.error("SC202", f"the name `{node.id}` is not defined", node, meant.help, fix=meant.fix)
 
 
 def _only_one(candidates: Iterable[str]) -> str | None:
@@ -332,6 +393,11 @@ def _unknown_class(context: Context, reference: Reference, suggestion: str | Non
         "SC203",
         f"there is no class `{name}`",
         reference.node,
-        f"did you mean `{suggestion}`?" if suggestion else f"define `class {name}:`, or import it",
+        f"did you mean `{suggestion}`?"
+        if suggestion
+        else "it comes with a world model: begin the program with `param map = localPath('town.xodr')` and "
+        "`model scenic.domains.driving.model`, or define it"
+        if name in DRIVING_CLASSES
+        else f"define `class {name}:`, or import it",
         fix=context.renaming(reference.node, name, suggestion) if suggestion else None,
     )

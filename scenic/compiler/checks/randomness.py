@@ -2,7 +2,7 @@
 
 import ast
 from collections.abc import Iterator
-from typing import Final
+from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import where_of
@@ -106,7 +106,18 @@ def _decides(node: ast.If | ast.While | ast.IfExp, scope: Scope, context: Contex
 
 def _iterates(node: ast.For, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """SC403: ``for i in range(x)`` with a random ``x``."""
-    counted = node.iter
+    yield from _counts(node, node.iter, scope, context)
+
+
+def _comprehends(node: Any, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC403: ``[new Object for i in range(x)]`` with a random ``x``."""
+    for generator in node.generators:
+        yield from _counts(node, generator.iter, scope, context)
+
+
+def _counts(
+    node: ast.expr | ast.stmt, counted: ast.expr, scope: Scope, context: Context
+) -> Iterator[Diagnostic]:
     is_range = isinstance(counted, ast.Call) and context.provided(counted.func) == "range"
     values = counted.args if isinstance(counted, ast.Call) and is_range else [counted]
     if not (any(is_random(each, context) for each in values) and _is_asked_now(node, scope, context)):
@@ -122,6 +133,40 @@ def _iterates(node: ast.For, scope: Scope, context: Context) -> Iterator[Diagnos
             else "loop over all that it can be, or make each part random by itself"
         ),
     )
+
+
+def _is_passed(node: ast.Call, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC403: ``f(Range(0, 9))``, where the function ``f`` of the program decides by its parameter."""
+    function = context.definition(node.func)
+    if not isinstance(function, ast.FunctionDef) or any(isinstance(each, ast.Starred) for each in node.args):
+        return
+    parameters = [*function.args.posonlyargs, *function.args.args]
+    given = dict(zip([each.arg for each in parameters], node.args, strict=False))
+    given.update((each.arg, each.value) for each in node.keywords if each.arg is not None)
+    random = {name for name, value in given.items() if is_random(value, context)}
+    if not random or not _is_asked_now(node, scope, context):
+        return
+    for part in walk(function):
+        if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store):
+            random.discard(part.id)
+    for part in walk(function):
+        if not isinstance(part, ast.If | ast.While | ast.IfExp) or not isinstance(part.test, ast.Compare):
+            continue
+        sides = [part.test.left, *part.test.comparators]
+        name = next((side.id for side in sides if isinstance(side, ast.Name) and side.id in random), None)
+        if name is None or any(
+            isinstance(op, ast.Is | ast.IsNot | ast.In | ast.NotIn) for op in part.test.ops
+        ):
+            continue
+        yield context.error(
+            "SC403",
+            f"`{function.name}` compares its parameter `{name}`, whose value is random here",
+            given[name],
+            "its value is known only in a sampled scene: put `@distributionFunction` before the definition (from "
+            "`scenic.core.distributions`), which calls the function on each sample",
+            labels=(context.label(part.test, "it is compared here"),),
+        )
+        return
 
 
 def _truth(node: ast.BoolOp | ast.UnaryOp, scope: Scope, context: Context) -> Iterator[Diagnostic]:
@@ -180,6 +225,7 @@ def _indexes(node: ast.Subscript, scope: Scope, context: Context) -> Iterator[Di
 
 def _calls(node: ast.Call, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """SC403: ``math.sqrt(x)`` with a random ``x``."""
+    yield from _is_passed(node, scope, context)
     match node.func:
         case ast.Attribute(value=ast.Name(id="math") as module) if _is_module(module, "math", context):
             pass
@@ -252,9 +298,13 @@ RULES: Final[dict[type[ast.AST], NodeRule]] = {
     ast.Assign: _unpacks,
     ast.BoolOp: _truth,
     ast.Call: _calls,
+    ast.DictComp: _comprehends,
     ast.For: _iterates,
+    ast.GeneratorExp: _comprehends,
     ast.If: _decides,
     ast.IfExp: _decides,
+    ast.ListComp: _comprehends,
+    ast.SetComp: _comprehends,
     ast.Subscript: _indexes,
     ast.UnaryOp: _truth,
     ast.While: _decides,

@@ -10,13 +10,13 @@ from scenic.compiler.checks.wanted import may_be_meant, wrong_kinds
 from scenic.compiler.kinds import Kind
 from scenic.compiler.scopes import Scope, ScopeKind
 from scenic.compiler.traversal import walk
-from scenic.language.diagnostics import Diagnostic
+from scenic.language.diagnostics import Diagnostic, Edit, Fix
 from scenic.language.members import MEMBERS, members_of
 from scenic.language.operators import OPERATORS
 from scenic.language.properties import attributes_of, properties_of
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS
-from scenic.language.spelling import distance, nearest
+from scenic.language.spelling import distance, nearest, related
 from scenic.language.types import INSTANCES
 
 __all__ = ["RULES"]
@@ -52,12 +52,63 @@ def _specifiers(node: scenic.New | scenic.Override, scope: Scope, context: Conte
 
 
 def _operation(node: scenic.Operation, scope: Scope, context: Context) -> Iterator[Diagnostic]:
-    """``distance to 3``."""
+    """``distance to 3``, ``position @ 3``."""
+    if node.operator == "@" and not may_be_meant(node, scope, context):
+        yield from _coordinates(node, context)
     if node.operator in OPERATORS and node.operator != "@" and not may_be_meant(node, scope, context):
         operator = OPERATORS[node.operator]
         for operand, value in zip(operator.operands, node.operands, strict=False):
             if not _is_none(value):  # Mostly as if it were left out.
                 yield from wrong_kinds(operator.label(operand), operand.types, value, context)
+
+
+_BETWEEN_TWO: Final = frozenset({"altitude", "angle", "distance", "minimum distance"})
+"""Operators between two things, of which one may be left out."""
+
+
+def _conjunction(node: ast.BoolOp, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC114: ``distance from a and b``."""
+    match node:
+        case ast.BoolOp(op=ast.And(), values=[scenic.Operation(operator=name, operands=operands), other]):
+            pass
+        case _:
+            return
+    kind = context.kind_of(other)
+    if name not in _BETWEEN_TWO or len(operands) != 2 or None not in operands:
+        return
+    if kind is None or not (kind.name in INSTANCES or kind.name == "vector"):
+        return
+    first, second = ("from", "to") if operands[1] is None else ("to", "from")
+    operand = operands[0] or operands[1]
+    if operand is None:
+        return
+    left, right = context.source.span(operand), context.source.span(other)
+    between = Span(left.end_line, left.end_column, right.line, right.column)
+    yield context.error(
+        "SC114",
+        f"`{name} {first} ... and ...` has no second end: `and` joins conditions",
+        between if left.end_line == right.line else node,
+        f"write `{name} {first} {context.text(operand) or '...'} {second} {context.text(other) or '...'}`",
+        fix=Fix(f"Write `{second}`", (Edit(between, f" {second} "),)),
+    )
+
+
+def _coordinates(node: scenic.Operation, context: Context) -> Iterator[Diagnostic]:
+    """SC404: ``place @ 3``, where ``place`` is a vector already."""
+    for operand in node.operands:
+        kind = context.kind_of(operand)
+        if operand is not None and kind is not None and kind.name in _NO_COORDINATES:
+            yield context.error(
+                "SC404",
+                f"`@` makes a vector of two numbers, and this is {kind.phrase}",
+                operand,
+                "write `x @ y` with numbers; a vector is used as it is, or moved by `offset by`",
+            )
+
+
+_NO_COORDINATES: Final = frozenset(
+    {"dictionary", "list", "object", "oriented point", "point", "region", "text", "tuple", "vector"}
+)
 
 
 def _is_none(value: ast.expr | None) -> bool:
@@ -320,6 +371,8 @@ def _attribute(node: ast.Attribute, scope: Scope, context: Context) -> Iterator[
         if not known or name in known:
             return
     meant = nearest(name, known)
+    if meant is None and kind.name in INSTANCES:
+        meant = related(name, {each for each in known if not each.startswith("_")})
     if meant is None and kind.name not in _COMPLETE:
         return  # Python code may give it to some of them.
     place = _end(node, context)
@@ -414,6 +467,7 @@ RULES: Final[dict[type[ast.AST], NodeRule]] = {
     ast.Assign: _assign,
     ast.Attribute: _attribute,
     ast.BinOp: _arithmetic,
+    ast.BoolOp: _conjunction,
     ast.ClassDef: _class,
     ast.Compare: _compare,
     ast.For: _loop,

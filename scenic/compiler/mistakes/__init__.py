@@ -8,12 +8,29 @@ from collections.abc import Callable
 from typing import Final
 
 from scenic.compiler.actions import Problem
-from scenic.compiler.mistakes import blocks, elsewhere, instances, operators, python, statements, words
+from scenic.compiler.mistakes import (
+    blocks,
+    dialects,
+    elsewhere,
+    instances,
+    operators,
+    python,
+    statements,
+    words,
+)
 from scenic.compiler.mistakes.blocks import header_without_colon, unfinished_header
 from scenic.compiler.mistakes.situation import Situation
 from scenic.compiler.mistakes.trial import Trials
 
-__all__ = ["RULES", "Situation", "Trials", "explain", "header_without_colon", "unfinished_header"]
+__all__ = [
+    "RULES",
+    "Situation",
+    "Trials",
+    "explain",
+    "header_without_colon",
+    "instead_of_failure",
+    "unfinished_header",
+]
 
 Rule = Callable[[Situation], Problem | None]
 
@@ -23,6 +40,11 @@ RULES: Final[tuple[Rule, ...]] = (
     elsewhere.comment,
     elsewhere.else_if,
     elsewhere.unit,
+    dialects.braces,
+    dialects.continuation,
+    dialects.duration_of_action,
+    dialects.bound_of_condition,
+    dialects.number_between,
     blocks.clause_without_beginning,
     statements.parts_of_scenario,
     statements.definition_without_name,
@@ -58,7 +80,9 @@ RULES: Final[tuple[Rule, ...]] = (
     instances.comma_after_class,
     python.trailing_comma,
     instances.another_place,
+    dialects.side_of_object,
     words.misspelt,
+    dialects.setting_of_property,
     statements.target_first,
     words.order_of_corners,
     operators.loose_prefix_operator,
@@ -102,6 +126,11 @@ RULES: Final[tuple[Rule, ...]] = (
     operators.loose_operand,
     statements.statement_in_expression,
 )
+
+
+def instead_of_failure(at: Situation) -> Problem | None:
+    """The message of a rule that knows better than the parser why a statement is no assignment, ``None`` if none does."""
+    return dialects.setting_of_property(at)
 
 
 def explain(at: Situation) -> Problem | None:

@@ -259,6 +259,8 @@ class Situation:
         if first < end:
             if self.adjacent(first - 1) and (text.isalnum() or text == "=") and first > self.first:
                 text = f" {text}"
+            if self.adjacent(end - 1) and text[-1].isalnum() and self.word(end)[:1].isalnum():
+                text += " "
             return self.place(first, end), text
         if text in _TIGHT and text != "(":
             return self.gap(change.first), text

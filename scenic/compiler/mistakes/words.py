@@ -13,6 +13,7 @@ from scenic.compiler.tokens import NAME
 from scenic.language.spelling import distance
 
 __all__ = [
+    "SYNONYMS",
     "between",
     "kind_of_heading",
     "missing_operand",
@@ -61,10 +62,10 @@ def _near(word: str) -> Iterator[str]:
 
 def _synonyms(word: str) -> Iterator[str]:
     """Yield the synonyms of a keyword in other languages and in common speech."""
-    yield from _SYNONYMS.get(word.lower(), ())
+    yield from SYNONYMS.get(word.lower(), ())
 
 
-_SYNONYMS: Final = {
+SYNONYMS: Final = {
     "behaviour": ("behavior",),
     "elseif": ("elif",),
     "elsif": ("elif",),
@@ -84,6 +85,14 @@ _SYNONYMS: Final = {
     "requires": ("require",),
     "infront": ("ahead",),
     "looking": ("facing",),
+    "oriented": ("facing",),
+    "pointing": ("facing",),
+    "rotated": ("facing",),
+    "nw": ("new",),
+    **dict.fromkeys(("add", "create", "instantiate", "make", "place", "put", "spawn"), ("new",)),
+    **dict.fromkeys(("constrain", "constraint", "demand", "enforce", "ensure", "must"), ("require",)),
+    **dict.fromkeys(("execute", "perform", "run"), ("do", "take")),
+    **dict.fromkeys(("pause", "sleep"), ("wait",)),
 }
 
 
@@ -93,7 +102,7 @@ def misspelt(at: Situation) -> Problem | None:
         # What is a keyword already is not a misspelt one, unless it is one of those nobody would suspect.
         if not at.is_name(index) or at.word(index - 1) == ".":
             continue
-        if at.tokens.kinds[index] != NAME and at.word(index) not in _SYNONYMS:
+        if at.tokens.kinds[index] != NAME and at.word(index) not in SYNONYMS:
             continue
         for keyword in (*_synonyms(at.word(index)), *_near(at.word(index))):
             change = Change(index, index + 1, (keyword,))

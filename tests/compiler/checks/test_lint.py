@@ -112,7 +112,7 @@ def test_repairs_repair(case: Path) -> None:
             "chair == new Object\nnew Object left of chiar\nego = new Object\n",
             [("SC202", 1, 0), ("SC202", 2, 19)],
         ),
-        ("monitor M():\n    wiat\nego = new Object\n", [("SC202", 2, 4)]),
+        ("monitor M():\n    wiat\nego = new Object\n", [("SC118", 2, 4)]),
         ("x = Uniform(1, 2)\nwhile x: pass\nego = new Object\n", [("SC403", 2, 6)]),
         ("try:\n    if Range(0, 1) > 0: pass\nexcept Exception:\n    y = 1\nego = new Object\n", []),
         ("try:\n    y = 1\nfinally:\n    z = not Range(0, 1)\nego = new Object\n", [("SC403", 4, 12)]),

@@ -1,0 +1,151 @@
+"""Undefined names that have a meaning elsewhere: in other languages, in world models, or as a misspelt keyword."""
+
+import ast
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
+from typing import Final, NamedTuple
+
+from scenic.compiler.checks.context import Context
+from scenic.compiler.generated import HARD_KEYWORDS, SOFT_KEYWORDS
+from scenic.compiler.mistakes.words import SYNONYMS
+from scenic.compiler.parser import parse
+from scenic.language.diagnostics import Fix
+from scenic.language.libraries import DRIVING_CLASSES, DRIVING_NAMES
+from scenic.language.spelling import distance
+
+__all__ = ["Meant", "keyword_meant", "known_elsewhere"]
+
+
+class Meant(NamedTuple):
+    """The advice on an undefined name, and the repair if there is one."""
+
+    help: str
+    fix: Fix | None = None
+
+
+_CONSTANTS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        **dict.fromkeys(("NULL", "Null", "nil", "null", "nullptr", "undefined"), "None"),
+        "this": "self",
+    }
+)
+_FUNCTIONS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        **dict.fromkeys(("Gauss", "Gaussian", "NormalDistribution", "gauss", "gaussian", "normal"), "Normal"),
+        **dict.fromkeys(("IntRange", "RandomInt", "Randint", "rand_int", "randint", "randrange"), "DiscreteRange"),
+        **dict.fromkeys(("RandomFloat", "UniformRange", "rand", "random_float", "uniform_float"), "Range"),
+        **dict.fromkeys(("Vec2", "Vec3", "Vector2", "Vector2D", "Vector3", "Vector3D", "vec2", "vec3"), "Vector"),
+        **dict.fromkeys(("Circle", "Disc", "Disk"), "CircularRegion"),
+        **dict.fromkeys(("Rect", "Rectangle"), "RectangularRegion"),
+        "Polygon": "PolygonalRegion",
+        "Polyline": "PolylineRegion",
+    }
+)  # fmt: skip
+"""Functions of other libraries, with those of the language that take the same arguments."""
+_CHOICES: Final = frozenset(
+    (
+        "Categorical",
+        "Choice",
+        "OneOf",
+        "RandomChoice",
+        "choice",
+        "choose",
+        "one_of",
+        "oneof",
+        "pick",
+        "random_choice",
+        "select",
+        "uniform",
+    )
+)
+"""Words for a random choice among options."""
+_MODULES: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "np": "import numpy as np",
+        **{
+            name: f"import {name}"
+            for name in ("itertools", "json", "math", "numpy", "os", "pathlib", "random", "sys", "time")
+        },
+    }
+)
+_KEYWORDS: Final = tuple(
+    word for table in (HARD_KEYWORDS, SOFT_KEYWORDS) for word in table if len(word) > 2 and word.islower()
+)
+_LONGEST: Final = 300
+"""Lines with more characters are not tried with a keyword."""
+
+
+def known_elsewhere(node: ast.Name, context: Context) -> Meant | None:
+    """The meaning of an undefined name in other languages, in Python's library or in world models."""
+    name = node.id
+    if name in DRIVING_NAMES:
+        what = f"new {name}" if _is_alone(node, context) and name in DRIVING_CLASSES else name
+        return Meant(
+            f"`{what}` comes with a world model: begin the program with `param map = localPath('town.xodr')` and "
+            "`model scenic.domains.driving.model`, or define it"
+        )
+    if name in _MODULES:
+        return Meant(f"import it: `{_MODULES[name]}`")
+    if name in _CONSTANTS:
+        return _replaced(node, _CONSTANTS[name], context, certain=name != "undefined")
+    call = next((each for each in context.nodes_around(node, ast.Call) if each.func is node), None)
+    if call is None:
+        return None
+    if name in _CHOICES:
+        return _choice(node, call, context)
+    return _replaced(node, _FUNCTIONS[name], context) if name in _FUNCTIONS else None
+
+
+def _is_alone(node: ast.Name, context: Context) -> bool:
+    return any(each.value is node for each in context.nodes_around(node, ast.Assign))
+
+
+def _replaced(node: ast.Name, meant: str, context: Context, *, certain: bool = True) -> Meant:
+    fix = context.renaming(node, node.id, meant, certain=certain)
+    return Meant(f"write `{meant}`", fix)
+
+
+def _choice(node: ast.Name, call: ast.Call, context: Context) -> Meant:
+    match call.args:
+        case [ast.Constant(value=int() | float()), ast.Constant(value=int() | float())] if (
+            "uniform" in node.id
+        ):
+            return _replaced(node, "Range", context)
+        case [ast.List() | ast.Tuple() as options] if not call.keywords:
+            text = context.text(options) or "[options]"
+            shown = f"Uniform({text[1:-1].strip().rstrip(',')})"
+            return Meant(
+                f"write `{shown if len(shown) < 60 else 'Uniform(*options)'}`",
+                context.replacement(f"Write `{shown}`", call, shown),
+            )
+    return Meant(
+        "write `Uniform(a, b)` for a choice among options, `Range(low, high)` for a number between two"
+    )
+
+
+def keyword_meant(node: ast.Name, context: Context) -> str | None:
+    """The keyword that makes sense of the line of an undefined name: ``requre (x) > 0``, ``facing twoard (3, 4)``."""
+    span = context.source.span(node)
+    line = context.source.line(span.line)
+    if len(line) > _LONGEST or span.line != span.end_line:
+        return None
+    rest = line[span.end_column :].lstrip()
+    if rest[:1] in ("=", ".", ",", ")", "]", "}") and rest[:2] != "==":
+        return None
+    for keyword in _near(node.id):
+        text = (line[: span.column] + keyword + line[span.end_column :]).strip()
+        if text.endswith(":"):
+            text += " pass"
+        parsed = parse(text + "\n")
+        if not parsed.diagnostics and not any(
+            isinstance(each, ast.Name) and each.id == keyword for each in ast.walk(parsed.tree)
+        ):
+            return keyword
+    return None
+
+
+def _near(name: str) -> Iterator[str]:
+    yield from SYNONYMS.get(name.lower(), ())
+    reach = max(1, len(name) // 3) if len(name) > 2 else 0
+    near = ((distance(name.lower(), keyword, limit=reach), keyword) for keyword in _KEYWORDS)
+    yield from (keyword for edits, keyword in sorted(near) if edits <= reach and keyword != name)

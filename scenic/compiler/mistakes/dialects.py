@@ -1,0 +1,185 @@
+"""Forms that other notations have and Scenic has not, as people and language models write them from memory."""
+
+from typing import Final
+
+from scenic.compiler.actions import Problem
+from scenic.compiler.generated import SPECIFIER_KINDS
+from scenic.compiler.mistakes.situation import Situation
+from scenic.compiler.mistakes.trial import Change
+from scenic.compiler.tokens import NEWLINE, NUMBER
+
+__all__ = [
+    "bound_of_condition",
+    "braces",
+    "continuation",
+    "duration_of_action",
+    "number_between",
+    "setting_of_property",
+    "side_of_object",
+]
+
+_INDENTATION: Final = "    "
+_OWN_SPECIFIERS: Final = {
+    "heading": "facing",
+    "orientation": "facing",
+    "rotation": "facing",
+    "position": "at",
+    "location": "at",
+    "pos": "at",
+}
+"""Properties, and words for them, that have a specifier of their own."""
+
+
+def continuation(at: Situation) -> Problem | None:
+    """``new Object at x,`` and on the next line, without indentation, ``with width 2``."""
+    kinds, previous = at.tokens.kinds, at.first - 2
+    if previous < 1 or kinds[at.first] not in SPECIFIER_KINDS or kinds[at.first - 1] != NEWLINE:
+        return None
+    if at.tokens.texts[previous] != ",":
+        return None
+    start, end = at.trials.line(previous)
+    maker = any(at.tokens.texts[index] in ("new", "override") for index in range(start, end))
+    if not (maker or kinds[start] in SPECIFIER_KINDS) or not at.repairs(context="specifiers"):
+        return None
+    line, column = at.place(at.first)[:2]
+    return Problem(
+        "SC102",
+        at.place(at.first, at.end),
+        "this line goes on with specifiers of the line before, and is not indented",
+        "indent it by four spaces",
+        fix=("Indent the line", (((line, column, line, column), _INDENTATION),)),
+    )
+
+
+def setting_of_property(at: Situation) -> Problem | None:
+    """``new Object at x, width 2``, ``heading 30 deg``, ``width=2``, ``speed: 3``."""
+    sign = at.found in ("=", ":")
+    first = at.token - 1
+    if not at.is_name(first) or at.tokens.kinds[first] in SPECIFIER_KINDS:
+        return None
+    makes = [index for index in range(at.first, first) if at.word(index) in ("new", "override")]
+    begins = at.word(first - 1) == "," or at.word(first - 2) == "new" or first == at.first
+    if not begins or not (makes or at.context() == "specifiers"):
+        return None
+    name = at.word(first)
+    specifier = _OWN_SPECIFIERS.get(name)
+    change = Change(first, at.token + sign, ("with", name) if specifier is None else (specifier,))
+    if not at.repairs(change):
+        return None
+    meant = f"with {name} ..." if specifier is None else f"{specifier} ..."
+    reason = f"a property is set by `with`: `{name}` is no specifier"
+    if specifier is not None:
+        reason = f"there is no specifier `{name}`"
+    title = "insert `with`" if specifier is None else f"write `{specifier}`"
+    return at.problem("SC114", at.place(first), reason, f"write `{meant}`", fix=(title, [change]))
+
+
+_SIDES: Final = {"front": ("ahead", "of"), "back": ("behind",), "rear": ("behind",)}
+
+
+def side_of_object(at: Situation) -> Problem | None:
+    """``new Object in front of ego by 3``."""
+    for first in range(at.token, at.first, -1):
+        side = _SIDES.get(at.word(first))
+        if side is None or at.word(first - 1) not in ("in", "at", "on") or at.word(first + 1) != "of":
+            continue
+        change = Change(first - 1, first + 2, side)
+        if not at.repairs(change):
+            return None
+        written, meant = at.words(first - 1, first + 2), " ".join(side)
+        return at.problem(
+            "SC114",
+            at.place(first - 1, first + 2),
+            f"there is no specifier `{written}` with a distance",
+            f"write `{meant}`",
+            fix=(f"replace it by `{meant}`", [change]),
+        )
+    return None
+
+
+def number_between(at: Situation) -> Problem | None:
+    """``(between 0 and 5, 0)``, ``random 0 to 5``."""
+    first = at.token - 1
+    if at.word(first) not in ("between", "random") or at.tokens.kinds[at.token] != NUMBER:
+        return None
+    low, joint = at.token, at.token + 1
+    if at.word(joint) not in ("and", "to") or at.tokens.kinds[joint + 1] != NUMBER:
+        return None
+    low_text, high_text = at.word(low), at.word(joint + 1)
+    change = Change(first, joint + 2, ("Range", "(", low_text, ",", high_text, ")"))
+    place = at.place(first, joint + 2)
+    meant = f"Range({low_text}, {high_text})"
+    return Problem(
+        "SC129",
+        place,
+        "a random number between two bounds is a distribution, with parentheses",
+        f"write `{meant}`",
+        fix=(f"Write `{meant}`", ((place, meant),)) if at.repairs(change) else None,
+    )
+
+
+def duration_of_action(at: Situation) -> Problem | None:
+    """``take X for 3 seconds``, ``take X until c``."""
+    if at.word(at.first) != "take" or at.found not in ("for", "until", "while"):
+        return None
+    action = at.words(at.first + 1, at.token)
+    if len(action) > 40:
+        action = "..."
+    return at.problem(
+        "SC117",
+        at.here(),
+        f"`take` acts in one step of the simulation, and has no duration: no `{at.found}` can follow",
+        f"take it again in each step: put `while True: take {action}` into a behavior `B`, and run it with "
+        f"`do B() {'for 3 seconds' if at.found == 'for' else 'until condition'}`",
+    )
+
+
+def bound_of_condition(at: Situation) -> Problem | None:
+    """``require always c for 5 seconds``, ``require eventually within 5 seconds c``."""
+    first = at.word(at.first)
+    temporal = any(
+        at.word(index) in ("always", "eventually", "until", "next") for index in range(at.first + 1, at.token)
+    )
+    if first != "require" or not temporal:
+        return None
+    word = at.found if at.found in ("for", "within", "after", "during", "in") else at.before
+    if word not in ("for", "within", "after", "during", "in", "[", "until"):
+        return None
+    if not any(at.word(index) in ("seconds", "steps", "s", "]", "sec") for index in range(at.token, at.end)):
+        return None
+    place = at.token if word == at.found else at.token - 1
+    return at.problem(
+        "SC117",
+        at.place(place),
+        "temporal operators have no time bound: a condition is watched as long as the simulation lasts",
+        "leave the bound out, and bound the simulation: `terminate after 5 seconds`; for a bound of this condition "
+        "alone write a monitor that counts steps",
+    )
+
+
+_HEADERS: Final = frozenset(
+    ["behavior", "class", "compose", "def", "elif", "else", "for", "if", "monitor", "scenario", "setup", "try", "while"]
+)  # fmt: skip
+
+
+def braces(at: Situation) -> Problem | None:
+    """``behavior Go() {``."""
+    if at.found != "{" or at.word(at.first) not in _HEADERS:
+        return None
+    closer = at.end - 1
+    alone = (
+        at.word(closer) == "}"
+        and at.tokens.lines[closer] > at.tokens.end_lines[closer - 1]
+        and at.tokens.lines[at.token] < at.tokens.lines[at.token + 1]
+    )
+    opening = (*at.gap(at.token)[:2], *at.place(at.token)[2:])
+    end = at.gap(closer)[:2]
+    return Problem(
+        "SC129",
+        at.place(at.token),
+        "a block begins with `:` and is indented; braces make dictionaries and sets",
+        "write `:` for `{`, and leave `}` out",
+        fix=("Write `:`, and remove the braces", ((opening, ":"), ((*end, *at.place(closer)[2:]), "")))
+        if alone
+        else None,
+    )
