@@ -30,7 +30,7 @@ from scenic.language.spans import Span
 from scenic.language.spelling import nearest
 from scenic.runtime.description.definitions import ModularScenario
 from scenic.runtime.description.mutation import apply_noise
-from scenic.runtime.description.outcome import Module, Program
+from scenic.runtime.description.outcome import Module, Program, Requirement
 from scenic.runtime.ground.context import Context, current
 from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.program.prelude import Loader
@@ -45,6 +45,8 @@ from scenic.runtime.scenes.saving import program_digest
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.scenes.services import Services
+from scenic.runtime.values.generic import call_later
+from scenic.runtime.values.nodes import as_node
 from scenic.runtime.values.values import is_random
 
 if TYPE_CHECKING:
@@ -65,6 +67,8 @@ def load(
     mode2D: bool = False,
     prune: bool = True,
     extra_params: bool = False,
+    settle: float | None = None,
+    settle_tolerance: float = 0.01,
 ) -> Scenario:
     """The scenario of a file.
 
@@ -76,6 +80,8 @@ def load(
         mode2D: compile in the 2D compatibility mode.
         prune: narrow the distributions to the values that the requirements allow. The distribution of the scenes is the same.
         extra_params: accept values of parameters that the program does not have, and add them to its scenes.
+        settle: seconds of a simulation in MuJoCo in which no object of a scene may move, nor turn by more than 5 degrees.
+        settle_tolerance: the distance that is not yet moving, metres.
 
     Raises:
         ScenicSyntaxError: if the program cannot be compiled.
@@ -85,7 +91,15 @@ def load(
     """
     file = Path(path)
     source = Source(sys.stdin.read(), "<stdin>") if str(path) == "-" else read_source(file)
-    options = _Options(dict(params or {}), model, scenario, mode2D, prune, strict_params=not extra_params)
+    options = _Options(
+        dict(params or {}),
+        model,
+        scenario,
+        mode2D,
+        prune,
+        strict_params=not extra_params,
+        settle=None if settle is None else (settle, settle_tolerance),
+    )
     return _scenario(source.text, source.filename, options)
 
 
@@ -201,6 +215,8 @@ class _Options:
     prune: bool = True
     strict_params: bool = False
     """True if a parameter that the program does not use is an error."""
+    settle: tuple[float, float] | None = None
+    """Seconds of a simulation in which no object moves, and the distance that is not yet moving, metres."""
 
     def digest(self, text: str) -> str:
         """The digest of a program, whatever its comments and blanks, and of all options that change its scenes."""
@@ -211,6 +227,7 @@ class _Options:
                 "model": self.model,
                 "scenario": self.scenario,
                 "2d": self.mode_2d,
+                **({} if self.settle is None else {"settle": list(self.settle)}),
             },
         )
 
@@ -229,10 +246,14 @@ class _Options:
             given["mode2D"] = True
         if not self.prune:
             given["prune"] = False
+        if self.settle is not None:
+            given["settle"], given["settle_tolerance"] = self.settle
         return given
 
     def __reduce__(self) -> tuple[Any, ...]:
-        values = (dict(self.params), self.model, self.scenario, self.mode_2d, self.prune, self.strict_params)
+        values = (
+            dict(self.params), self.model, self.scenario, self.mode_2d, self.prune, self.strict_params, self.settle,
+        )  # fmt: skip
         return _Options, values
 
 
@@ -317,11 +338,23 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
             program.module = vars(module)
             program.variables = _names(module, state.ego)
             _settle_parameters(program, strict=options.strict_params)
+            if options.settle is not None:
+                _require_rest(program, *options.settle)
             workspace = state.workspace or Workspace(everywhere)
             outlined = outline(program, state.ego, workspace, mode_2d=options.mode_2d)
     finally:
         current.reset(token)
     return _Ran(program, outlined, state.ego, workspace, program.variables, _regions(module))
+
+
+def _require_rest(program: Program, seconds: float, tolerance: float) -> None:
+    """Add the requirement that no object of a scene moves in a simulation."""
+    from scenic.simulators.mujoco.settling import Settling
+
+    program.settling = Settling(seconds, tolerance)
+    stays = call_later(program.settling, tuple(program.objects))
+    label = f"nothing moves by more than {tolerance:g} m in {seconds:g} s (--settle)"
+    program.requirements.append(Requirement(as_node(stays), 1.0, label))
 
 
 def _sampler(outlined: Outline, *, prune: bool) -> Sampler:

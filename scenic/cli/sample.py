@@ -75,6 +75,21 @@ __all__ = ["sample"]
 @program_options
 @extra_params_option
 @click.option(
+    "--settle",
+    metavar="T",
+    type=float,
+    callback=seconds,
+    help="Reject scenes in which an object moves within this number of seconds of physics (MuJoCo).",
+)
+@click.option(
+    "--settle-tolerance",
+    metavar="M",
+    type=click.FloatRange(min=0, min_open=True),
+    default=0.01,
+    show_default=True,
+    help="With --settle: the distance in metres that is not yet moving; turning by 5 degrees is.",
+)
+@click.option(
     "--no-prune",
     is_flag=True,
     help="Do not narrow the distributions first. The distribution of the scenes is the same.",
@@ -176,6 +191,8 @@ def sample(
     model: str | None,
     mode_2d: bool,
     extra_params: bool,
+    settle: float | None,
+    settle_tolerance: float,
     no_prune: bool,
     max_attempts: int | None,
     time_limit: float | None,
@@ -302,6 +319,8 @@ def sample(
             mode2D=mode_2d,
             prune=not no_prune,
             extra_params=extra_params,
+            settle=settle,
+            settle_tolerance=settle_tolerance,
         )
     if any("texture" in thing.__dict__ for thing in loaded.objects):
         from scenic.batch.source_files import check_textures, warn_of_textures
@@ -405,6 +424,8 @@ def sample(
                 advance(1, result.attempts)
     if shown is not None:
         shown.finish()
+    if settle is not None and loaded.program.settling.tally.scenes:
+        sys.stderr.write(f"settling: {loaded.program.settling.tally}\n")
     if loaded.approximation is not None:
         sys.stderr.write(f"{loaded.approximation}\n")
     if missing:

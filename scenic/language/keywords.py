@@ -134,6 +134,7 @@ SOFT_KEYWORDS: Final[Mapping[str, str]] = MappingProxyType(
         "case": "One pattern of `match`.",
         "choose": "`do choose`: runs one of several behaviors, drawn at random.",
         "compose": "The part of a scenario that runs other scenarios during a simulation.",
+        "resting": "Specifier `resting on target`: lets the object lie or stand on a surface as things that were thrown do.",
         "contained": "Specifier `contained in region`: the whole object lies in the region.",
         "deg": "Operator `angle deg`: an angle in degrees, converted to radians.",
         "directly": "Part of `facing directly toward`: yaw and pitch, not yaw alone.",

@@ -158,6 +158,24 @@ _ALL = (
         functions=(Function("On(thing)"),),
     ),
     SpecifierDeclaration(
+        "resting on",
+        (Operand("target", (REGION, OBJECT, VECTOR)),),
+        (
+            Specified("position", 1),
+            Specified("pitch", 1),
+            Specified("roll", 1),
+            Specified("yaw", 3),
+            Specified("parentOrientation", 2, _PREFERRED),
+        ),
+        ("shape", "width", "length", "height", "contactTolerance", "onDirection"),
+        "position",
+        ("resting on target",),
+        "Lets the object lie or stand on a surface, in one of the stable poses of its shape, each as likely as a throw ends in it, "
+        "and with a uniformly random yaw. The place is that of `on`.",
+        modifies=("position",),
+        functions=(Function("RestingOn(thing)"),),
+    ),
+    SpecifierDeclaration(
         "offset by",
         (Operand("offset", (VECTOR,)),),
         (Specified("position", 1), Specified("parentOrientation", 3)),

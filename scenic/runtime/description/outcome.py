@@ -76,6 +76,8 @@ class Program:
     """Global names as they are when the program has run, for the functions and methods in its scenes."""
     scopes: list[dict[str, Any]] = field(default_factory=list)
     """The global names of its modules."""
+    settling: Any = None
+    """The condition that nothing moves, with its tally, of a program that is loaded with it."""
     _originals: Originals | None = None
 
     @property

@@ -298,6 +298,8 @@ def _claim_or_modify(
                     span=specifier.span,
                 )
             modifiers[name] = specifier
+        elif priority == present.priorities[name] == 1:
+            _claim(claims, name, specifier, priority)
 
 
 def _default_specifier(name: str, entry: Property) -> Specifier:

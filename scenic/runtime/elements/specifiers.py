@@ -6,6 +6,7 @@ a function from the partially built instance to values. Priorities, needs and th
 which of the offered values are taken.
 """
 
+import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
@@ -28,6 +29,7 @@ from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.spaces import Everywhere, Workspace
 from scenic.runtime.regions.view_regions import place_in_plane, place_near
 from scenic.runtime.regions.visibility_nodes import Sighting
+from scenic.runtime.shapes.resting import resting_pose
 from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.lazy import Lazy, defer, reads_of, resolve
 from scenic.runtime.values.values import (
@@ -43,6 +45,7 @@ from scenic.runtime.values.values import (
     to_orientation,
     to_scalar,
     to_vector,
+    uniform,
     vector,
     wrong_type,
 )
@@ -203,21 +206,45 @@ def in_(region: Region, *, name: str = "in") -> Specifier:
 
 def on(target: Any) -> Specifier:
     """Section 6.3: the base point touches the target, with a gap of half the contact tolerance."""
+
+    def base(instance: Any) -> tuple[Any, Mapping[str, Any]]:
+        gap = vector(0, 0, operate("divide", instance.contactTolerance, 2))
+        return operate("subtract", gap, to_vector(instance.baseOffset)), {}
+
+    return _standing("on", target, base)
+
+
+def resting_on(target: Any) -> Specifier:
+    """A stable pose of the shape touches the target, with a gap of half the contact tolerance."""
+
+    def base(instance: Any) -> tuple[Any, Mapping[str, Any]]:
+        pose = resting_pose(instance.shape, instance.width, instance.length, instance.height)
+        pitch, roll, lift = pose.x, pose.y, pose.z
+        turned = {"pitch": pitch, "roll": roll, "yaw": operate("multiply", uniform(), 2 * math.pi)}
+        return vector(0, 0, operate("add", operate("divide", instance.contactTolerance, 2), lift)), turned
+
+    return _standing("resting on", target, base)
+
+
+def _standing(name: str, target: Any, base: Callable[[Any], tuple[Any, Mapping[str, Any]]]) -> Specifier:
+    """A specifier that puts an object on a surface.
+
+    ``base`` gives the place of the object's middle above the surface, in the frame of its parent, and further properties.
+    """
     surface = target.onSurface if is_kind(target, Object) else target
     region = as_region(surface)
     if region is None and (is_open(surface) or _may_be_surface(surface)):
         region = DrawnRegion.made(_surface, surface)
     if region is None:
         if not (is_vector(surface) or isinstance(surface, Random) or hasattr(surface, "toVector")):
-            raise wrong_type((REGION, OBJECT, VECTOR), surface, "`on`")
-        place = to_vector(surface, "`on`")
+            raise wrong_type((REGION, OBJECT, VECTOR), surface, f"`{name}`")
+        place = to_vector(surface, f"`{name}`")
 
     def rest(instance: Any, anchor: Any, orientation: Any) -> Mapping[str, Any]:
-        gap = vector(0, 0, operate("divide", instance.contactTolerance, 2))
-        offset = operate("subtract", gap, to_vector(instance.baseOffset))
+        offset, properties = base(instance)
         if orientation is not None:
             offset = operate("rotate", orientation, offset)
-        return {"position": operate("add", anchor, offset), "parentOrientation": orientation}
+        return {"position": operate("add", anchor, offset), "parentOrientation": orientation, **properties}
 
     def evaluate(instance: Any) -> Mapping[str, Any]:
         if region is None:
@@ -227,14 +254,14 @@ def on(target: Any) -> Specifier:
     def modify(instance: Any) -> Mapping[str, Any]:
         if region is None:
             raise ScenicTypeError(
-                "`on` a vector cannot be combined with a specifier that sets the position",
+                f"`{name}` a vector cannot be combined with a specifier that sets the position",
                 span=here(),
-                help="use `at`, or `on` a region or object",
+                help=f"use `at`, or `{name}` a region or object",
             )
         return rest(instance, *region.project(instance.position, instance.onDirection))
 
     is_oriented = region is not None and region.has_orientation
-    return _specifier("on", evaluate, modify=modify, conditional=is_oriented)
+    return _specifier(name, evaluate, modify=modify, conditional=is_oriented)
 
 
 def _may_be_surface(value: Any) -> bool:
@@ -428,6 +455,7 @@ BUILDERS: Mapping[str, Callable[..., Specifier]] = MappingProxyType(
         "in": in_,
         "contained in": partial(in_, name="contained in"),
         "on": on,
+        "resting on": resting_on,
         "offset by": offset_by,
         "offset along": offset_along,
         "beyond": beyond,

@@ -1,0 +1,58 @@
+"""How far things on a table move in three seconds of physics: with `on` and with `resting on`.
+
+SCENIC_TEST_MESHES=FOLDER python -m benchmarks.settling [SCENES]
+"""
+
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+
+import scenic
+from scenic.runtime.shapes.shapes import BoxShape, ConeShape, CylinderShape, MeshShape
+from scenic.simulators.mujoco import MujocoSimulator
+
+PROGRAM = """
+model scenic.simulators.mujoco.model
+table = new Fixture at (0, 0, 0.35), with width 3, with length 3, with height 0.7
+for shape in param_shapes:
+    new Body {} table, with shape shape
+"""
+MESHES = ("chair", "couch", "webots_rock_small")
+
+
+def shapes() -> list[object]:
+    folder = os.environ.get("SCENIC_TEST_MESHES")
+    found = [CylinderShape((0.08, 0.08, 0.12)), ConeShape((0.1, 0.1, 0.15)), BoxShape((0.1, 0.2, 0.05))]
+    if folder is not None:
+        for name in MESHES:
+            shape = MeshShape.fromFile(Path(folder, f"{name}.obj.bz2"))
+            factor = 0.3 / max(shape.dimensions)
+            found.append(MeshShape(shape.mesh, [factor * size for size in shape.dimensions]))
+    return found
+
+
+def moved(scene: scenic.Scene, seconds: float) -> list[float]:
+    """How far each object of a scene moves, metres."""
+    run = MujocoSimulator(timestep=0.25).simulate(scene, maxSteps=int(seconds / 0.25))
+    first, last = run.trajectory[0], run.trajectory[-1]
+    return [float(np.linalg.norm(np.subtract(tuple(a), tuple(b)))) for a, b in zip(first, last, strict=True)][
+        1:
+    ]
+
+
+def main(count: int) -> None:
+    for way in ("on", "resting on"):
+        text = PROGRAM.format(way).replace("param_shapes", "globalParameters.shapes")
+        scenario = scenic.scenarioFromString(text, params={"shapes": shapes()})
+        distances = np.array([moved(scene, 3.0) for scene in scenario.sample(count, seed=1)])
+        share = (distances < 0.01).mean()
+        print(
+            f"{way}: {share:.1%} of {distances.size} objects move less than 1 cm; by shape",
+            (distances < 0.01).mean(axis=0),
+        )
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 20)
