@@ -45,7 +45,7 @@ def test_scenes_in_which_something_moves_are_rejected(program: Path) -> None:
 def test_scenes_do_not_depend_on_processes(program: Path) -> None:
     scenario = scenic.load(program, settle=0.2)
     alone = [scene.egoObject.position for scene in scenario.sample(4, seed=3)]
-    beside = [scene.egoObject.position for scene in scenario.sample(4, seed=3, jobs=2)]
+    beside = [scene.egoObject.position for scene in scenario.sample(4, seed=3, processes=2)]
     assert alone == beside
 
 
