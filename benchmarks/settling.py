@@ -1,4 +1,4 @@
-"""How far things on a table move in three seconds of physics: with `on` and with `resting on`.
+"""Distances that things on a table move in three seconds of physics: with `on` and with `resting on`.
 
 SCENIC_TEST_MESHES=FOLDER python -m benchmarks.settling [SCENES]
 """
@@ -34,7 +34,7 @@ def shapes() -> list[object]:
 
 
 def moved(scene: scenic.Scene, seconds: float) -> list[float]:
-    """How far each object of a scene moves, metres."""
+    """Distances that the objects of a scene move, metres."""
     run = MujocoSimulator(timestep=0.25).simulate(scene, maxSteps=int(seconds / 0.25))
     first, last = run.trajectory[0], run.trajectory[-1]
     return [float(np.linalg.norm(np.subtract(tuple(a), tuple(b)))) for a, b in zip(first, last, strict=True)][
