@@ -79,7 +79,7 @@ def placed(text: str, filename: str) -> Iterator[None]:
             error,
             filename,
             "the program rejected itself while it ran: every scene would be rejected",
-            "raise `RejectionException` only in what is evaluated on samples",
+            f"{error}" if str(error) else "raise `RejectionException` only in what is evaluated on samples",
         ) from error
     except Located as error:
         if error.span is None or error.filename is None:

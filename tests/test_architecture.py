@@ -25,7 +25,8 @@ LAYERS = {
     "falsification": {"batch", "simulators", "formats", "runtime", "graph", "language"},
     "configuration": {"language"},
     "project": {"language", "compiler", "configuration", "formats"},  # of formats, the reader of maps alone
-    "ide": {"compiler", "language", "project"},
+    "migration": {"compiler", "language", "project", "formats"},  # of formats, the writing of files alone
+    "ide": {"compiler", "language", "project", "migration"},
     "lsp": {"ide", "language", "configuration", "project"},
     "playground": {"ide"},
     "templates": set(),
@@ -44,6 +45,7 @@ LAYERS = {
         "compiler",
         "configuration",
         "project",
+        "migration",
         "ide",
         "lsp",
         "playground",
@@ -78,6 +80,7 @@ LIBRARIES = {
     "configuration": set(),
     "graph": {"numpy", "scipy"},
     "project": set(),
+    "migration": set(),
     "ide": {"pygments"},
     "lsp": {"pygls", "lsprotocol", "cattrs", "websockets"},
     "playground": {"websockets"},

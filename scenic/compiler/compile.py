@@ -11,6 +11,7 @@ from typing import Final
 from scenic.compiler.checks import lint
 from scenic.compiler.complaints import suspects
 from scenic.compiler.lowering import lower
+from scenic.compiler.old_dialect import as_old_dialect
 from scenic.compiler.parser import DEEPEST, ParseResult, ordinary_recursion, parse, recursion_limit
 from scenic.compiler.resolver import resolve_within
 from scenic.compiler.scopes import Resolution
@@ -121,7 +122,7 @@ def _checked(
             hints = lint(context, go_on) if thorough else ()
     except RecursionError:
         return (*found, _too_deep(source)), None
-    found = list(dict.fromkeys([*found, *resolution.diagnostics, *hints]))
+    found = as_old_dialect(list(dict.fromkeys([*found, *resolution.diagnostics, *hints])), source)
     return tuple(found), None if _has_errors(found) else resolution
 
 

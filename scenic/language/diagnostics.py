@@ -124,6 +124,7 @@ CODES: Final = MappingProxyType(
         "SC133": "missing parentheses of a definition",
         "SC134": "clause without its beginning",
         "SC135": "object made like a call",
+        "SC136": "program of Scenic 2",
         # Names and placement.
         "SC200": "reserved name",
         "SC201": "statement in the wrong place",

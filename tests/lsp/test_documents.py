@@ -456,3 +456,20 @@ def test_imports_are_put_in_order(client: Client, tmp_path: Path, text: str, exp
     client.open(uri, text)
     found = actions(client, uri, 0, "source.organizeImports")
     assert [edited(text, each) for each in found] == ([] if expected is None else [expected])
+
+
+def test_a_program_of_scenic_2_can_be_converted(client: Client) -> None:
+    client.start(FULL)
+    client.open("untitled:a", "ego = Object at 1 @ 2\nObject offset by 3 @ 4\n")
+    place = {"line": 1, "character": 0}
+    params = {
+        "textDocument": {"uri": "untitled:a"},
+        "range": {"start": place, "end": place},
+        "context": {"diagnostics": [], "only": ["quickfix"]},
+    }
+    (action,) = client.request("textDocument/codeAction", params)
+    assert action["title"] == "Convert this program to Scenic 3"
+    (change,) = action["edit"]["documentChanges"]
+    assert applied("ego = Object at 1 @ 2\nObject offset by 3 @ 4\n", change["edits"]) == (
+        "ego = new Object at 1 @ 2\nnew Object at ego offset by 3 @ 4\n"
+    )

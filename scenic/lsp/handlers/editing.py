@@ -11,6 +11,7 @@ from scenic.ide.dedenting import dedented
 from scenic.ide.diagnostics import found_in
 from scenic.ide.formatting import formatting
 from scenic.ide.importing import can_organize, missing_imports, organize_imports
+from scenic.ide.migrating import is_old, migrated
 from scenic.ide.refactoring import Refactoring, extract_variable, inline_variable
 from scenic.ide.repairs import can_repair_all, ignoring, repair_all, repairs, touch
 from scenic.language.diagnostics import Diagnostic, Edit
@@ -44,6 +45,8 @@ def _actions(session: Session, params: types.CodeActionParams) -> list[types.Cod
         for item, edit in ignoring(document.snapshot, found, span):
             title = f"Silence {item.code} on this line"
             actions.append(_action(session, document, title, _QUICK_FIX, [edit], item))
+        if is_old(found):
+            actions += _of_document(session, document, _QUICK_FIX, "Convert this program to Scenic 3")
     if _wanted(_EXTRACT, only):
         actions += _refactoring(session, document, _EXTRACT, extract_variable(document.snapshot, span))
     if _wanted(_INLINE, only):
@@ -101,6 +104,8 @@ def _edit_of_document(session: Session, document: Document, kind: str) -> Edit |
         if kind == ORGANIZE:
             found = found_in(snapshot, rules, project, stamp=session.generation)
             return organize_imports(snapshot, found)
+        if kind == _QUICK_FIX:
+            return migrated(snapshot, project)
         return repair_all(snapshot.text, filename=snapshot.filename, rules=rules, project=project)
 
     return snapshot.derived(kind, make, stamp=(session.generation, rules))

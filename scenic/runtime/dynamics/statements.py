@@ -79,6 +79,8 @@ def begin(owner: Running, target: Any) -> Running:
     in_compose = owner.composes
     if isinstance(target, type) and issubclass(target, Invocable):
         hint = f"write `do {target.__name__}()`"
+    elif isinstance(target, tuple | list):
+        hint = "write the targets one after the other, `do A(), B()`"
     else:
         hint = None
     if in_compose and isinstance(target, ModularScenario):

@@ -10,8 +10,6 @@ from typing import Any, Final
 from scenic.runtime.python.opaque import call_later
 from scenic.runtime.values.values import is_random, options_of, per_option
 
-__all__ = ["CATALOGUE", "Size", "dimension", "ids"]
-
 Size = tuple[float, float, float]
 
 CATALOGUE: Final = MappingProxyType(
@@ -140,6 +138,19 @@ CATALOGUE: Final = MappingProxyType(
 )
 """Blueprints by category."""
 
+_JOINED: Final = frozenset({"creased_box", "iron_plate", "plant_pot", "traffic_warning"})
+"""Categories whose established names are not capitalised within."""
+
+
+def _established(category: str) -> str:
+    first, *rest = category.split("_")
+    return first + "".join(rest if category in _JOINED else map(str.capitalize, rest)) + "Models"
+
+
+_LISTS: Final = MappingProxyType({_established(category): category for category in CATALOGUE})
+
+__all__ = ["CATALOGUE", "Size", "dimension", "ids", *_LISTS]
+
 _SIZES: Final = MappingProxyType({name: size for kind in CATALOGUE.values() for name, size in kind.items()})
 
 
@@ -159,3 +170,10 @@ def dimension(blueprint: Any, axis: int, default: Any) -> Any:
         return call_later(dimension, blueprint, axis, default)
     size = _SIZES.get(blueprint)
     return default if size is None else size[axis]
+
+
+def __getattr__(name: str) -> tuple[str, ...]:
+    """The established lists: ``carModels`` are the ids of the category ``car``, ``busStopModels`` those of ``bus_stop``."""
+    if name in _LISTS:
+        return ids(_LISTS[name])
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -10,6 +10,7 @@ from typing import Any, Final
 
 from scenic.domains.driving.simulators import DrivingSimulation, DrivingSimulator
 from scenic.language.errors import SimulationCreationError, UnsupportedError
+from scenic.language.spelling import nearest
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.values.values import Vector
 
@@ -166,7 +167,14 @@ class CarlaSimulation(DrivingSimulation):
         library = self._world.get_blueprint_library()
         found = library.filter(obj.blueprint)
         if not len(found):
-            raise SimulationCreationError(f"this CARLA has no blueprint {obj.blueprint!r}")
+            versions = (
+                f"server {self._client.get_server_version()}, client {self._client.get_client_version()}"
+            )
+            near = nearest(obj.blueprint, (each.id for each in library))
+            raise SimulationCreationError(
+                f"this CARLA ({versions}) has no blueprint {obj.blueprint!r}",
+                help="give another one, `with blueprint ...`" if near is None else f"did you mean {near!r}?",
+            )
         blueprint = found[0]
         if obj.rolename is not None and blueprint.has_attribute("role_name"):
             blueprint.set_attribute("role_name", obj.rolename)
@@ -177,7 +185,11 @@ class CarlaSimulation(DrivingSimulation):
         transform = self._carla.Transform(self._location(obj), self._rotation(obj.heading))
         actor = self._world.try_spawn_actor(blueprint, transform)
         if actor is None:
-            raise SimulationCreationError(f"CARLA cannot spawn {obj!r}", help="something may be in its place")
+            place = ", ".join(f"{part:.2f}" for part in obj.position)
+            raise SimulationCreationError(
+                f"CARLA cannot spawn {obj!r}, the blueprint {obj.blueprint!r}, at ({place})",
+                help="something may be in its place",
+            )
         actor.set_simulate_physics(obj.physics)
         self._actors[id(obj)] = actor
         obj.__dict__["carlaActor"] = actor

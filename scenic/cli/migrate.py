@@ -1,0 +1,199 @@
+"""``scenic migrate``: programs of Scenic 2 become programs of Scenic 3."""
+
+import difflib
+import json
+import os
+import sys
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import Any, Final
+
+import click
+
+from scenic.cli.discovery import STANDARD_INPUT, discover
+from scenic.cli.output import FINDINGS, exit_code, show_diagnostics
+from scenic.configuration.project import Configurations
+from scenic.language.diagnostics import Diagnostic
+from scenic.migration.embedded import SUFFIXES
+from scenic.migration.files import File, convert_files, convert_text, lines_of, write_file
+from scenic.migration.rules import RULES
+
+__all__ = ["migrate"]
+
+_VERSION: Final = 1
+"""Of the report in JSON."""
+
+
+@click.command()
+@click.argument("paths", nargs=-1, metavar="[PATH]...", type=click.Path())
+@click.option("--write", "writing", is_flag=True, help="Write the converted programs into their files.")
+@click.option("--diff", is_flag=True, help="Show the changes as a patch.")
+@click.option("--check", is_flag=True, help="Change nothing; exit with 1 if a file would change.")
+@click.option(
+    "--strings", is_flag=True, help="Convert programs in strings of Python, JSON and Markdown, too."
+)
+@click.option("--2d", "flat", is_flag=True, help="Rely on the 2D mode: pin no meaning that it keeps.")
+@click.option("--json", "as_json", is_flag=True, help="Write the report as JSON.")
+def migrate(
+    paths: tuple[str, ...],
+    writing: bool,
+    diff: bool,
+    check: bool,
+    strings: bool,
+    flat: bool,
+    as_json: bool,
+) -> int:
+    """Convert programs of Scenic 2 to Scenic 3, and report what a person must decide.
+
+    Each PATH is a file, a folder that is searched for *.scenic and *.sc, or - for standard input, whose converted text
+    is written to standard output. No program is run: maps and simulators are not needed. Without --write no
+    file is changed. Programs that cannot be read after the rewrites are left as they are.
+
+    Exit codes: 0 success, 1 a file would change (with --check), or could not be converted, 2 wrong usage, or a file that
+    cannot be read or written.
+    """
+    if writing and (diff or check):
+        raise click.UsageError("--write goes neither with --diff nor with --check.")
+    if as_json and diff:
+        raise click.UsageError("--json and --diff exclude each other.")
+    found = discover(paths, Configurations())
+    problems = list(found.problems)
+    names = [name for name in found.files if name != STANDARD_INPUT]
+    if strings:
+        names += [name for name in _beside(paths) if name not in names]
+    files: list[File] = []
+    if STANDARD_INPUT in found.files:
+        text = sys.stdin.buffer.read().decode("utf-8", "surrogateescape")
+        file = convert_text(text, "<stdin>", flat=flat)
+        files.append(file)
+        if not (check or diff or as_json):
+            sys.stdout.buffer.write(file.after.encode("utf-8", "surrogateescape"))
+    files += convert_files(names, _roots(paths), flat=flat)
+    problems += [file.problem for file in files if file.problem is not None]
+    if diff:
+        for file in files:
+            sys.stdout.write(_patch(file))
+    written = 0
+    if writing:
+        for file in files:
+            if file.changes and file.problem is None and file.name != "<stdin>":
+                refusal = write_file(file)
+                written += refusal is None
+                problems += [] if refusal is None else [refusal]
+    if as_json:
+        json.dump(_report(files, problems), sys.stdout, indent=2)
+        sys.stdout.write("\n")
+    else:
+        sys.stderr.write("".join(_decisions(files)))
+        show_diagnostics(problems)
+        sys.stderr.write("".join(_summary(files, written if writing else None)))
+    changes = any(file.changes for file in files)
+    return exit_code(problems) or (FINDINGS if changes and check else 0)
+
+
+def _roots(paths: Sequence[str]) -> list[str]:
+    """The folders in which modules and maps are looked for."""
+    return [
+        path if os.path.isdir(path) else os.path.dirname(path) or os.curdir for path in paths or (os.curdir,)
+    ]
+
+
+def _beside(paths: Sequence[str]) -> Iterator[str]:
+    """The Python, JSON and Markdown files of the folders that are named."""
+    for path in paths or (os.curdir,):
+        if not os.path.isdir(path):
+            continue
+        for folder, folders, names in os.walk(path):
+            folders[:] = sorted(
+                each
+                for each in folders
+                if not each.startswith(".")
+                and each not in ("__pycache__", "node_modules", "site-packages")
+                and not os.path.exists(os.path.join(folder, each, "pyvenv.cfg"))
+            )
+            for name in sorted(names):
+                if name.endswith(SUFFIXES):
+                    yield name if folder == os.curdir else os.path.join(folder, name)
+
+
+def _patch(file: File) -> str:
+    before, after = lines_of(file)
+    lines = difflib.unified_diff(before, after, file.name, file.name)
+    return "".join(
+        line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines
+    )
+
+
+def _decisions(files: Sequence[File]) -> Iterator[str]:
+    """The decisions that are left to a person, by rule."""
+    for rule in RULES.values():
+        places = [
+            (file, note)
+            for file in files
+            for note in file.notes
+            if note.rule == rule.name and not note.rewritten
+        ]
+        if not places:
+            continue
+        yield f"decide: {rule.title} [{rule.name}]\n"
+        said = None
+        for file, note in places:
+            if (note.message, note.help) != said:
+                said = (note.message, note.help)
+                yield f"  {note.message};\n  {note.help}\n"
+            yield f"    {file.name}:{note.line}\n"
+        yield "\n"
+
+
+def _summary(files: Sequence[File], written: int | None) -> Iterator[str]:
+    counts = Counter(note.rule for file in files for note in file.notes if note.rewritten)
+    width = len(str(max(counts.values(), default=0)))
+    for rule in RULES.values():
+        if counts[rule.name]:
+            yield f"{counts[rule.name]:>{width}}  {rule.title} [{rule.name}]\n"
+    decisions = sum(not note.rewritten for file in files for note in file.notes)
+    changed = sum(file.changes for file in files)
+    total = f"{len(files)} file{'' if len(files) == 1 else 's'}"
+    what = (
+        f"{changed} of {total} would be converted (--write does it)"
+        if written is None
+        else (f"{written} of {total} converted")
+    )
+    rest = f"; {decisions} place{'' if decisions == 1 else 's'} to decide" if decisions else ""
+    yield f"{what}{rest}\n"
+
+
+def _report(files: Sequence[File], problems: Sequence[Diagnostic]) -> dict[str, Any]:
+    """The report as plain data."""
+    counts = Counter(note.rule for file in files for note in file.notes if note.rewritten)
+    return {
+        "version": _VERSION,
+        "files": [
+            {
+                "file": file.name,
+                "changes": file.changes,
+                "rewrites": [{"rule": note.rule, "line": note.line} for note in file.notes if note.rewritten],
+                "decisions": [
+                    {"rule": note.rule, "line": note.line, "message": note.message, "help": note.help}
+                    for note in file.notes
+                    if not note.rewritten
+                ],
+            }
+            for file in files
+        ],
+        "problems": [
+            {
+                "file": problem.filename,
+                "line": None if problem.span is None else problem.span.line,
+                "code": problem.code,
+                "message": problem.message,
+                "help": problem.help,
+            }
+            for problem in problems
+        ],
+        "rules": {
+            rule.name: {"title": rule.title, "rewrites": counts[rule.name]}
+            for rule in RULES.values()
+            if counts[rule.name]
+        },
+    }

@@ -1,0 +1,174 @@
+"""Reports about driving: walkers, actions of cars, maps, what spawns."""
+
+import sys
+from types import ModuleType, SimpleNamespace
+from typing import Any
+
+import pytest
+
+from scenic.language.errors import InvalidScenarioError, SimulationCreationError
+from tests.maps import straight
+from tests.reports.programs import Programs, programs, values  # noqa: F401 - a fixture
+
+
+def test_walkers_walk(programs: Programs) -> None:  # noqa: F811
+    """1.5 m/s towards -x for 2 s are 3 m."""
+    result = programs.simulated(
+        "behavior Walk():\n    take SetWalkingDirectionAction(self.heading), SetWalkingSpeedAction(1.5)\n"
+        "    while True:\n        wait\n"
+        "ego = new Car\nwalker = new Pedestrian at (50, -4.5), facing 90 deg, with behavior Walk()\n"
+        "record walker.position as place\n",
+        20,
+        map="street",
+    )
+    places = values(result, "place")
+    assert tuple(places[-1] - places[0]) == pytest.approx((-3, 0, 0))
+
+
+def test_the_library_lets_walkers_walk(programs: Programs) -> None:  # noqa: F811
+    result = programs.simulated(
+        "ego = new Car\nwalker = new Pedestrian at (50, -4.5), facing 90 deg, with behavior WalkForwardBehavior()\n"
+        "record walker.position as place\n",
+        20,
+        map="street",
+    )
+    places = values(result, "place")
+    assert abs(places[-1].x - places[0].x) > 1
+
+
+def speeds(programs: Programs, actions: str) -> list[float]:  # noqa: F811
+    """The speed along the heading at each of 21 states, from 5 m/s."""
+    result = programs.simulated(
+        f"behavior Act():\n    while True:\n        take {actions}\n"
+        "ego = new Car at (50, -1.75), facing -90 deg, with speed 5, with behavior Act()\nrecord ego.velocity.x as v\n",
+        20,
+        map="street",
+    )
+    return values(result, "v")
+
+
+def test_speed_actions(programs: Programs) -> None:  # noqa: F811
+    assert speeds(programs, "SetSpeedAction(7)")[-1] == pytest.approx(7)
+
+
+def test_reverse_is_backwards(programs: Programs) -> None:  # noqa: F811
+    forwards = speeds(programs, "[SetThrottleAction(1)]")
+    backwards = speeds(programs, "[SetReverseAction(True), SetThrottleAction(1)]")
+    assert forwards[-1] > 5
+    assert backwards[-1] < 0
+    assert forwards[-1] - 5 == pytest.approx(5 - backwards[-1], rel=0.01)
+
+
+def test_the_hand_brake_stops(programs: Programs) -> None:  # noqa: F811
+    assert speeds(programs, "[SetThrottleAction(1), SetHandBrakeAction(True)]")[-1] == pytest.approx(0)
+
+
+def test_missing_opposite_lanes_give_a_reason(programs: Programs) -> None:  # noqa: F811
+    with pytest.raises(InvalidScenarioError) as caught:
+        programs.compiled("ego = new Car on network.lanes[0].group.opposite\n", map="one_way")
+    assert caught.value.lineno == 3
+    assert "has no opposite group" in str(caught.value.help)
+
+
+def test_networks_depend_on_the_options_of_the_map(programs: Programs) -> None:  # noqa: F811
+    text = (
+        "param map = localPath('street.xodr'), map_options = {{'tolerance': {}}}\n"
+        "model scenic.domains.driving.model\nego = new Object\nparam tolerance = network.tolerance\n"
+    )
+    found = [programs.compiled(text.format(t)).generate()[0].params["tolerance"] for t in (0.05, 0.5, 0.05)]
+    assert found == [0.05, 0.5, 0.05]
+
+
+def test_header_offsets_do_not_move_roads(programs: Programs) -> None:  # noqa: F811
+    """Coordinates are those of the file; the offset is applied where they leave."""
+    text = straight(300).replace(
+        '<header revMajor="1" revMinor="4"/>',
+        '<header revMajor="1" revMinor="4"><offset x="100" y="50" z="0" hdg="0"/></header>',
+    )
+    (programs.folder / "moved.xodr").write_text(text)
+    starts = [
+        programs.compiled("ego = new Car\nparam start = network.roads[0].centerline.points[0]\n", map=name)
+        .generate()[0]
+        .params["start"]
+        for name in ("street", "moved")
+    ]
+    assert starts[0] == starts[1]
+
+
+class _Carla:
+    """A server that has one blueprint, and no room."""
+
+    def get_server_version(self) -> str:
+        return "0.9.15"
+
+    def get_client_version(self) -> str:
+        return "0.9.14"
+
+    def set_timeout(self, _: float) -> None:
+        """Wait so long for answers."""
+
+    def get_available_maps(self) -> list[str]:
+        return ["street"]
+
+    def load_world(self, _: str) -> "_Carla":
+        return self
+
+    def get_trafficmanager(self, _: int) -> Any:
+        return SimpleNamespace(set_synchronous_mode=lambda _: None)
+
+    def get_settings(self) -> Any:
+        return SimpleNamespace()
+
+    def apply_settings(self, _: Any) -> None:
+        """Take settings."""
+
+    def set_weather(self, _: Any) -> None:
+        """Let it rain."""
+
+    def get_actors(self) -> Any:
+        return SimpleNamespace(filter=lambda _: [])
+
+    def get_blueprint_library(self) -> Any:
+        blueprint = SimpleNamespace(id="vehicle.audi.tt", has_attribute=lambda _: False)
+        library = [blueprint]
+        return type(
+            "Library",
+            (list,),
+            {"filter": lambda _, name: [each for each in library if each.id == name]},
+        )(library)
+
+    def try_spawn_actor(self, *_: Any) -> None:
+        """Find something in the place."""
+
+
+@pytest.mark.parametrize(
+    ("blueprint", "message"),
+    [
+        (
+            "vehicle.audi.ttt",
+            r"this CARLA \(server 0.9.15, client 0.9.14\) has no blueprint 'vehicle.audi.ttt'",
+        ),
+        (
+            "vehicle.audi.tt",
+            r"CARLA cannot spawn <unnamed Car>, the blueprint 'vehicle.audi.tt', at \(50.00, -1.75, 0.00\)",
+        ),
+    ],
+)
+def test_what_cannot_be_spawned_is_named(
+    programs: Programs,  # noqa: F811
+    monkeypatch: pytest.MonkeyPatch,
+    blueprint: str,
+    message: str,
+) -> None:
+    fake: Any = ModuleType("carla")
+    fake.Client = lambda *_: _Carla()
+    fake.Location = fake.Rotation = lambda **values: SimpleNamespace(**values)
+    fake.Transform = fake.WeatherParameters = lambda *_, **__: None
+    monkeypatch.setitem(sys.modules, "carla", fake)
+    scenario = programs.compiled(
+        f"param weather = {{'precipitation': 1}}\nego = new Car at (50, -1.75), facing -90 deg, with blueprint '{blueprint}'\n",
+        map="street",
+        model="scenic.simulators.carla.model",
+    )
+    with pytest.raises(SimulationCreationError, match=message):
+        scenario.getSimulator().simulate(scenario.sample(1, seed=1)[0], maxSteps=1)
