@@ -113,6 +113,14 @@ def contract(
     return Pruning(_product(boxes, pavings), ())
 
 
+def surviving(graph: Graph, condition: Fact, boxes: Boxes) -> Mask:
+    """The boxes ``(m,)`` in which a condition may hold, as far as bounds show."""
+    _, alive = _Network(graph, [condition])._narrow(boxes)
+    mask = np.zeros(len(boxes), dtype=np.bool_)
+    mask[alive] = True
+    return mask
+
+
 def _pave(
     graph: Graph, conditions: Sequence[Fact], hull: Boxes, met: Mapping[Node, Mask]
 ) -> list[Boxes] | None:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.graph.domain import Domain
-from scenic.graph.draws import Source, box_addresses
+from scenic.graph.draws import Source
 from scenic.graph.kinds import Codec, Column, Kind, boxed
 from scenic.graph.node import Graph, Node
 from scenic.graph.operation import FAULT, OK, Call, Status
@@ -292,9 +292,9 @@ class Batch:
         return _Group(numbers[np.newaxis], status, self._generation)
 
     def _boxes_of(self, domain: Domain) -> NDArray[np.intp]:
-        """The number of the box, for each factor of the domain, that each lane is drawn from: ``(parts, n)``."""
+        """The numbers of the boxes and cells that each lane is drawn from (`Domain.choose`)."""
         if self._boxes is None:
-            self._boxes = domain.choose(self._source.uniforms(box_addresses(len(domain.parts))))
+            self._boxes = domain.choose(self._source.uniforms(np.concatenate(domain.addresses())))
         return self._boxes
 
     def _evaluate(self, step: Step) -> _Group:

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
+from scenic.graph.draws import Words, box_addresses
+from scenic.graph.finite import Finite
 
 Floats = NDArray[np.float64]
 
@@ -26,13 +28,18 @@ class Domain:
 
     ``factors`` are further unions, each of which narrows axes that no other does: the domain is what lies in all of them. So
     what is asked of a hundred things, each by itself, takes a hundred small unions rather than one that nobody could write down.
+
+    ``finite`` are sets of further axes, of discrete values, whose cells are chosen together.
     """
 
     lower: Floats
     upper: Floats
     factors: tuple["Domain", ...] = ()
+    finite: tuple[Finite, ...] = ()
     _narrowed: NDArray[np.bool_] = field(init=False, repr=False)
     """A mask of the axes that each part narrows, ``(parts, dimension)``."""
+    _cells: dict[int, tuple[int, Floats, Floats]] = field(init=False, repr=False)
+    """Of the axes of finite parts: the row of what `choose` returns that has their cells, and the ends of these."""
 
     def __post_init__(self) -> None:
         if self.lower.ndim != 2 or self.lower.shape != self.upper.shape or len(self.lower) == 0:
@@ -40,9 +47,17 @@ class Domain:
         if not ((self.lower >= 0) & (self.lower < self.upper) & (self.upper <= 1)).all():
             raise ValueError("a box of the cube must have volume and lie within it")
         narrowed = np.stack([((part.lower > 0) | (part.upper < 1)).any(axis=0) for part in self.parts])
-        if (narrowed.sum(axis=0) > 1).any():
+        times = narrowed.sum(axis=0)
+        for one in self.finite:
+            times[one.axes] += 1
+        if (times > 1).any():
             raise ValueError("two factors narrow one axis")
         object.__setattr__(self, "_narrowed", narrowed)
+        cells: dict[int, tuple[int, Floats, Floats]] = {}
+        for one in self.finite:
+            for axis, lower, upper in zip(one.axes.tolist(), one.lower, one.upper, strict=True):
+                cells[axis] = len(self.parts) + len(cells), lower, upper
+        object.__setattr__(self, "_cells", cells)
 
     @classmethod
     def whole(cls, dimension: int) -> Self:
@@ -67,7 +82,7 @@ class Domain:
     @property
     def is_whole(self) -> bool:
         """Return whether nothing of the cube is left out."""
-        return all(
+        return not self.finite and all(
             len(part.lower) == 1 and bool((part.lower == 0).all() and (part.upper == 1).all())
             for part in self.parts
         )
@@ -75,7 +90,8 @@ class Domain:
     @property
     def volume(self) -> float:
         """Share of the cube that is left."""
-        return math.prod(float(np.exp(part._logarithms()).sum()) for part in self.parts)
+        boxes = math.prod(float(np.exp(part._logarithms()).sum()) for part in self.parts)
+        return boxes * math.prod(one.share for one in self.finite)
 
     def _logarithms(self) -> Floats:
         """Logarithm of each box's volume; of many axes the volume itself may be too small for a float."""
@@ -88,13 +104,23 @@ class Domain:
         for part in self.parts:
             lower = np.maximum(lower, part.lower.min(axis=0, keepdims=True))
             upper = np.minimum(upper, part.upper.max(axis=0, keepdims=True))
+        for one in self.finite:
+            lower[0, one.axes], upper[0, one.axes] = one.ends
         return lower, upper
 
     def joined_axes(self) -> list[NDArray[np.intp]]:
-        """Of each part the axes that its boxes do not all narrow alike: these are drawn together."""
-        return [
+        """The axes that are drawn together: of each part those that its boxes do not all narrow alike, then those of each finite part."""
+        boxes = [
             np.flatnonzero(((part.lower != part.lower[0]) | (part.upper != part.upper[0])).any(axis=0))
             for part in self.parts
+        ]
+        return boxes + [one.axes for one in self.finite]
+
+    def addresses(self) -> list[Words]:
+        """The addresses of the numbers by which axes that are drawn together are chosen, in the order of `joined_axes`."""
+        boxes = box_addresses(len(self.parts))
+        return [boxes[place : place + 1] for place in range(len(boxes))] + [
+            one.addresses for one in self.finite
         ]
 
     def freed(self, axes: NDArray[np.bool_]) -> "Domain":
@@ -102,18 +128,48 @@ class Domain:
 
         def part(one: "Domain") -> tuple[Floats, Floats]:
             lower, upper = one.lower, one.upper
-            if ((lower[:, axes] > 0) | (upper[:, axes] < 1)).any():
+            alike = (lower[:, axes] == lower[0, axes]).all() and (upper[:, axes] == upper[0, axes]).all()
+            if alike:
+                lower, upper = np.where(axes, 0.0, lower), np.where(axes, 1.0, upper)
+            else:
                 # Boxes that differ in these axes may overlap without them: what remains is the box about them all.
                 lower, upper = lower.min(axis=0, keepdims=True), upper.max(axis=0, keepdims=True)
                 lower[:, axes], upper[:, axes] = 0, 1
             return lower, upper
 
         first, *others = (part(one) for one in self.parts)
-        return Domain(*first, tuple(Domain(*corners) for corners in others))
+        kept = tuple(one for one in self.finite if not axes[one.axes].any())
+        return Domain(*first, tuple(Domain(*corners) for corners in others), kept)
+
+    def with_finite(self, finite: tuple[Finite, ...]) -> "Domain":
+        """The domain in which the axes of finite parts are chosen by these."""
+        axes = np.zeros(self.dimension, dtype=np.bool_)
+        for one in finite:
+            axes[one.axes] = True
+        freed = self.freed(axes) if axes.any() else self
+        return Domain(freed.lower, freed.upper, freed.factors, (*freed.finite, *finite))
 
     def choose(self, draws: Floats) -> NDArray[np.intp]:
-        """Boxes chosen by uniform numbers ``(parts, n)`` of the open unit interval, each by its volume; ``(parts, n)``."""
-        return np.stack([part._choose(numbers) for part, numbers in zip(self.parts, draws, strict=True)])
+        """Boxes and cells chosen by uniform numbers of the open unit interval, ``(m, n)``.
+
+        Args:
+            draws: those of all `addresses`, one after the other.
+
+        Returns:
+            For each part the number of a box, then for each axis of the finite parts the number of a cell.
+
+        """
+        count = len(self.parts)
+        chosen = np.stack(
+            [part._choose(numbers) for part, numbers in zip(self.parts, draws[:count], strict=True)]
+        )
+        if not self.finite:
+            return chosen
+        rows, start = [chosen], count
+        for one in self.finite:
+            rows.append(one.law.choose(draws[start : start + len(one.addresses)]))
+            start += len(one.addresses)
+        return np.concatenate(rows)
 
     def _choose(self, draws: Floats) -> NDArray[np.intp]:
         if self.boxes == 1:
@@ -124,14 +180,21 @@ class Domain:
         """Map uniform numbers of some axes, ``(axes, n)``, into the boxes ``chosen`` for the lanes, ``(parts, n)``.
 
         With all axes these are uniform points of the domain. Each number depends on its axis and its lane alone.
+        ``chosen`` is what `choose` returns.
         """
         if not self.factors:
-            return self._place(numbers, axes, chosen[0])
-        points = numbers.copy()
-        for part, narrowed, boxes in zip(self.parts, self._narrowed, chosen, strict=True):
-            mine = np.flatnonzero(narrowed[axes])
-            if len(mine):
-                points[mine] = part._place(numbers[mine], axes[mine], boxes)
+            points = self._place(numbers, axes, chosen[0])
+        else:
+            points = numbers.copy()
+            for part, narrowed, boxes in zip(self.parts, self._narrowed, chosen, strict=False):
+                mine = np.flatnonzero(narrowed[axes])
+                if len(mine):
+                    points[mine] = part._place(numbers[mine], axes[mine], boxes)
+        if self._cells:
+            for row, axis in enumerate(axes.tolist()):
+                if axis in self._cells:
+                    place, lower, upper = self._cells[axis]
+                    points[row] = _between(numbers[row], lower[chosen[place]], upper[chosen[place]])
         return points
 
     def _place(self, numbers: Floats, axes: NDArray[np.intp], chosen: NDArray[np.intp]) -> Floats:
@@ -146,9 +209,14 @@ class Domain:
 
     def place_each(self, numbers: Floats, axes: NDArray[np.intp], chosen: NDArray[np.intp]) -> Floats:
         """The same for numbers ``(n,)`` of one axis in each lane, ``(n,)``."""
-        for part, boxes in zip(self.parts, chosen, strict=True):
-            numbers = _between(numbers, part.lower[boxes, axes], part.upper[boxes, axes])
-        return numbers
+        points = numbers
+        for part, boxes in zip(self.parts, chosen, strict=False):
+            points = _between(points, part.lower[boxes, axes], part.upper[boxes, axes])
+        for axis, (row, lower, upper) in self._cells.items():
+            mine = np.flatnonzero(axes == axis)
+            cells = chosen[row][mine]
+            points[mine] = _between(numbers[mine], lower[cells], upper[cells])
+        return points
 
     def _shares(self) -> Floats:
         logarithms = self._logarithms()
@@ -163,6 +231,8 @@ class Domain:
             for lower, upper in zip(part.lower, part.upper, strict=True):
                 inside |= ((points >= lower) & (points <= upper)).all(axis=1)
             everywhere &= inside
+        for one in self.finite:
+            everywhere &= one.contains(points)
         return everywhere
 
     def to_data(self) -> dict[str, Any]:

@@ -1,0 +1,250 @@
+"""The choice of an exact way to draw from the components of a finite problem.
+
+Ways are tried from the strongest on: elimination where the structure is narrow, a list where solutions are few, values that
+differ. Where none takes all constraints, the strongest ones that one can take are met by the draw, and the others are left to
+chance: what is drawn follows the law given the former, so that rejection by the latter gives the law given all.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.analysis.finite.differing import Differing, differing
+from scenic.analysis.finite.elimination import eliminate, ordered
+from scenic.analysis.finite.listing import solutions
+from scenic.analysis.finite.network import Constraint, Problem, components, consistent, merged
+from scenic.analysis.finite.tables import Mask, Table
+from scenic.dataclass import dataclass
+from scenic.graph.bounds import Floats
+from scenic.graph.finite import Law, Listed, Sequential
+
+__all__ = ["Component", "Drawn", "solve"]
+
+GAIN: Final = 0.8
+"""A component is drawn if at most this share of all combinations is left."""
+
+MOST_TRIED: Final = 256
+"""Constraints of a component, at most, of which the strongest are chosen."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Drawn:
+    """Variables that are drawn together.
+
+    Attributes:
+        variables: the numbers of the draws.
+        values: of each the values that are left.
+        law: chooses among these.
+        passed: the inner variables for which the law takes numbers, in order, after those of the draws.
+        numbers: for each number that the law takes, the variable that it belongs to.
+        share: the share of the prior weight that is left.
+        way: how they are drawn, in words.
+
+    """
+
+    variables: tuple[int, ...]
+    values: tuple[NDArray[np.intp], ...]
+    law: Law
+    numbers: tuple[int, ...]
+    share: float
+    way: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Component:
+    """A component of a problem: what was found out about it.
+
+    Attributes:
+        variables: the numbers of its draws.
+        domains: of each the values that may occur, as a mask.
+        constraints: its constraints.
+        drawn: how its draws are made; empty where that gains nothing, or nothing is allowed.
+        met: the constraints that the draws meet always.
+        solutions: the number of combinations, if they are listed.
+        share: the share of the prior weight that is left: 0 if it has no solution.
+
+    """
+
+    variables: tuple[int, ...]
+    domains: Mapping[int, Mask]
+    constraints: tuple[Constraint, ...]
+    drawn: tuple[Drawn, ...]
+    met: tuple[Constraint, ...]
+    share: float
+    solutions: int | None = None
+
+
+def solve(problem: Problem) -> list[Component]:
+    """The components of a problem, each with a way to draw it."""
+    return [_solved(problem, group) for group in components(problem.constraints)]
+
+
+class _Reduced:
+    """A component whose variables have the values that are left only."""
+
+    def __init__(self, problem: Problem, constraints: Sequence[Constraint], domains: dict[int, Mask]) -> None:
+        self.values = {variable: np.flatnonzero(mask) for variable, mask in domains.items()}
+        self.sizes = {variable: len(values) for variable, values in self.values.items()}
+        self.weights = {variable: problem.weights[variable][values] for variable, values in self.values.items()}
+        self.draws = sorted(variable for variable in domains if variable < problem.draws)
+        self.constraints = constraints
+
+    def tables(self, constraints: Sequence[Constraint]) -> list[Table]:
+        """The tables of some constraints over the values that are left."""
+        found = []
+        for table in dict.fromkeys(table for constraint in constraints for table in constraint.tables):
+            places = np.ix_(*(self.values[variable] for variable in table.scope))
+            found.append(Table(table.scope, table.allowed[places]))
+        return merged(found)
+
+
+def _solved(problem: Problem, constraints: Sequence[Constraint]) -> Component:
+    scope = sorted({variable for constraint in constraints for variable in constraint.scope})
+    domains: dict[int, Mask] = {variable: problem.weights[variable] > 0 for variable in scope}
+    draws = tuple(variable for variable in scope if variable < problem.draws)
+    every = tuple(constraints)
+    tables = merged(table for constraint in constraints for table in constraint.tables)
+    if not consistent(tables, domains):
+        return Component(draws, domains, every, (), every, 0.0)
+    reduced = _Reduced(problem, every, domains)
+    struck = float(np.prod([reduced.weights[variable].sum() for variable in draws]))
+    best: tuple[tuple[Drawn, ...], tuple[Constraint, ...]] | None = None
+    eliminated = _eliminated(reduced, every)
+    if eliminated is not None:
+        best = (eliminated,), every
+        count = None
+    else:
+        listed = _listed(reduced, every)
+        count = None
+        if listed is not None:
+            best = listed, every
+            count = len(listed[0].law.rows) if isinstance(listed[0].law, Listed) else None
+    if best is None:
+        best = _strongest(reduced)
+    share = float(np.prod([drawn.share for drawn in best[0]])) if best[0] else struck
+    if share <= 0:
+        return Component(draws, domains, every, (), every, 0.0)
+    kept = best[0] if share <= GAIN else ()
+    return Component(draws, domains, every, kept, best[1] if kept else (), share, count)
+
+
+def _eliminated(reduced: _Reduced, constraints: Sequence[Constraint]) -> Drawn | None:
+    """The way by elimination, if tables remain small."""
+    tables = reduced.tables(constraints)
+    scopes = [frozenset(table.scope) for table in tables]
+    named = frozenset().union(*scopes) if scopes else frozenset[int]()
+    draws = [variable for variable in reduced.draws if any(variable in item.scope for item in constraints)]
+    scopes += [frozenset((variable,)) for variable in draws if variable not in named]
+    order = ordered(scopes, reduced.sizes)
+    if order is None:
+        return None
+    found = eliminate(tables, reduced.weights, order)
+    law = Sequential(found.steps, tuple(draws))
+    numbers = tuple(step.variable for step in found.steps)
+    return Drawn(
+        tuple(draws),
+        tuple(reduced.values[variable] for variable in draws),
+        law,
+        numbers,
+        found.weight,
+        "by elimination",
+    )
+
+
+def _listed(reduced: _Reduced, constraints: Sequence[Constraint]) -> tuple[Drawn, ...] | None:
+    """The way by a list of all solutions, if these are few."""
+    tables = reduced.tables(constraints)
+    coupled = frozenset[int]().union(*(table.scope for table in tables))
+    draws = [variable for variable in reduced.draws if variable in coupled]
+    rows = solutions(tables, {variable: reduced.sizes[variable] for variable in sorted(coupled)}, draws)
+    if rows is None:
+        return None
+    logarithms = np.zeros(len(rows))
+    for place, variable in enumerate(draws):
+        logarithms += np.log(reduced.weights[variable])[rows[:, place]]
+    order = np.lexsort(rows.T[::-1])
+    cumulative = np.cumsum(np.exp(logarithms[order]))
+    share = float(cumulative[-1]) if len(rows) else 0.0
+    drawn = Drawn(
+        tuple(draws),
+        tuple(reduced.values[variable] for variable in draws),
+        Listed(rows[order], cumulative / (share or 1.0)),
+        (draws[0],),
+        share,
+        "from a list",
+    )
+    return drawn, *(_alone(reduced, variable) for variable in reduced.draws if variable not in coupled)
+
+
+def _alone(reduced: _Reduced, variable: int) -> Drawn:
+    """A variable of which values were struck out, by itself."""
+    weights = reduced.weights[variable]
+    step = eliminate([], {variable: weights}, [variable])
+    return Drawn(
+        (variable,),
+        (reduced.values[variable],),
+        Sequential(step.steps, (variable,)),
+        (variable,),
+        float(weights.sum()),
+        "values struck out",
+    )
+
+
+def _strongest(reduced: _Reduced) -> tuple[tuple[Drawn, ...], tuple[Constraint, ...]]:
+    """Ways that meet the strongest constraints: by elimination alone, or after values that differ."""
+    ways = [_relaxed(reduced, reduced.constraints, frozenset())]
+    tables = reduced.tables(reduced.constraints)
+    found = differing([table for table in tables if set(table.scope) <= set(reduced.draws)], reduced.weights)
+    if found is not None:
+        differ = _differ(reduced, found)
+        met = [
+            constraint
+            for constraint in reduced.constraints
+            if all(frozenset(table.scope) in found.scopes or len(table.scope) == 1 for table in constraint.tables)
+            and constraint.scope <= set(found.variables)
+        ]
+        others, more = _relaxed(reduced, reduced.constraints, frozenset(found.variables))
+        ways.append(((differ, *others), (*met, *more)))
+    return min(ways, key=lambda way: float(np.prod([drawn.share for drawn in way[0]])))
+
+
+def _differ(reduced: _Reduced, found: Differing) -> Drawn:
+    return Drawn(
+        found.variables,
+        tuple(reduced.values[variable] for variable in found.variables),
+        found.law,
+        found.variables,
+        found.weight,
+        "each value at most once",
+    )
+
+
+def _relaxed(
+    reduced: _Reduced, constraints: Sequence[Constraint], without: frozenset[int]
+) -> tuple[tuple[Drawn, ...], tuple[Constraint, ...]]:
+    """The way by elimination that takes as many constraints as possible, the strongest first, none about some variables."""
+    free = [constraint for constraint in constraints if not constraint.scope & without]
+    free.sort(key=_strength)
+    taken: list[Constraint] = []
+    for constraint in free[:MOST_TRIED]:
+        tables = reduced.tables([*taken, constraint])
+        if ordered([frozenset(table.scope) for table in tables], reduced.sizes) is not None:
+            taken.append(constraint)
+    found = []
+    for group in components(taken):
+        drawn = _eliminated(reduced, group)
+        if drawn is not None:
+            found.append(drawn)
+    covered = {variable for drawn in found for variable in drawn.variables} | without
+    # What was struck out of the values of the others is met, too.
+    found += [_alone(reduced, variable) for variable in reduced.draws if variable not in covered]
+    return tuple(found), tuple(taken)
+
+
+def _strength(constraint: Constraint) -> float:
+    """The share of combinations that a constraint allows, roughly: small for a strong one."""
+    return float(constraint.tables[-1].allowed.mean())
+
+
