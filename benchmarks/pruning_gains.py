@@ -16,7 +16,7 @@ import scenic
 from scenic.analysis.smt import Encoding
 from scenic.graph.bounding import over
 from scenic.graph.node import Graph
-from scenic.pipeline import conditions
+from scenic.narrowing import conditions
 from scenic.runtime.scenes.scenario import Scenario
 
 HERE = Path(__file__).parent / "pruning"

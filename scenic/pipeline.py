@@ -2,23 +2,19 @@
 
 import inspect
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import field, replace
 from functools import cache, partial
 from pathlib import Path
 from types import CodeType, FrameType, ModuleType, TracebackType
 from typing import TYPE_CHECKING, Any, Final
 
-from scenic.analysis.contraction import Mask, Pruning, contract, independent
-from scenic.analysis.facts import Fact
-from scenic.analysis.screening import seldom_met
 from scenic.compiler import loader
 from scenic.compiler.compile import compile_text
 from scenic.compiler.parser import bare_text
 from scenic.compiler.tracebacks import SOURCE_NAME, Locator
 from scenic.dataclass import dataclass
 from scenic.failures import placed
-from scenic.graph.node import Node
 from scenic.language.errors import (
     InvalidScenarioError,
     ScenarioChoiceError,
@@ -28,6 +24,7 @@ from scenic.language.garbage import promote_young
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest
+from scenic.narrowing import prepared_sampler
 from scenic.runtime.description.definitions import ModularScenario
 from scenic.runtime.description.mutation import apply_noise
 from scenic.runtime.description.outcome import Module, Program, Requirement
@@ -38,9 +35,7 @@ from scenic.runtime.python.importing import beside
 from scenic.runtime.python.random_state import preserved, seed_globals
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Everywhere, Nowhere, Workspace, everywhere
-from scenic.runtime.regions.unturned import unturned
 from scenic.runtime.sampling.planning import Outline, outline
-from scenic.runtime.scenes.sampler import Sampler
 from scenic.runtime.scenes.saving import program_digest
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
@@ -177,17 +172,6 @@ def analyze(
     return assess(program, candidates=CANDIDATES if candidates is None else candidates)
 
 
-def conditions(outlined: Outline) -> list[Fact]:
-    """The hard requirements of an outline as analysis reads them: the program's, then containment and visibility."""
-    return [
-        *(
-            Fact(item.condition, item.label, item.span, False, item.filename)
-            for item in outlined.requirements
-        ),
-        *(Fact(item.node, item.label, item.span, True, item.filename) for item in outlined.built_in),
-    ]
-
-
 # From text to scenario
 
 
@@ -281,7 +265,7 @@ def _scenario(text: str, filename: str, options: _Options) -> Scenario:
         workspace=ran.workspace,
         names=ran.names,
         regions=ran.regions,
-        sampler=_sampler(ran.outline, prune=options.prune),
+        sampler=prepared_sampler(ran.outline, prune=options.prune),
         digest=cache(partial(options.digest, text)),
         services=Services(
             show_page,
@@ -355,37 +339,6 @@ def _require_rest(program: Program, seconds: float, tolerance: float) -> None:
     stays = call_later(program.settling, tuple(program.objects))
     label = f"nothing moves by more than {tolerance:g} m in {seconds:g} s (--settle)"
     program.requirements.append(Requirement(as_node(stays), 1.0, label))
-
-
-def _sampler(outlined: Outline, *, prune: bool) -> Sampler:
-    """A sampler that is ready; with ``prune``, of the part of the cube that the requirements allow."""
-    sampler = Sampler(outlined)
-    sampler.prepare()
-    if not prune:
-        return sampler
-    pruning = _narrowed(outlined, sampler.met())
-    if pruning.domain.is_whole and not pruning.impossible:
-        return sampler
-    labels = tuple(dict.fromkeys(item.label for item in pruning.impossible))
-    sampler = Sampler(outlined, pruning.domain, impossible=labels)
-    sampler.prepare()
-    return sampler
-
-
-def _narrowed(outlined: Outline, met: Mapping[Node, Mask]) -> Pruning:
-    """The part of the cube that the requirements allow which candidates seldom meet, and those that cannot hold."""
-    facts = [fact for group in seldom_met(independent(conditions(outlined)), met) for fact in group]
-    framed = _in_own_frames(facts)
-    masks = {
-        there.node: met[here.node] for here, there in zip(facts, framed, strict=True) if here.node in met
-    }
-    return contract(outlined.graph, framed, masks)
-
-
-def _in_own_frames(facts: Sequence[Fact]) -> list[Fact]:
-    """The facts, those about turned rectangles said in the frames of these, where bounds show more."""
-    seen = ((fact, unturned(fact.node)) for fact in facts)
-    return [fact if node is None else replace(fact, node=node) for fact, node in seen]
 
 
 def _sample(scenario: Scenario, n: int, **options: Any) -> Iterator[Scene]:
@@ -536,7 +489,6 @@ def _regions(module: ModuleType) -> dict[str, Region]:
 
 
 __all__ = [
-    "conditions",
     "load",
     "scenarioFromFile",
     "scenarioFromString",

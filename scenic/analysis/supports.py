@@ -94,7 +94,7 @@ def places_of(position: Node, graph: Graph, domain: Domain) -> tuple[Floats, Flo
     used = {axis for axis in graph.axes if axis in Graph([position]).index}
     numbers = np.array(sorted(graph.axes[axis] for axis in used), dtype=np.intp)
     lower, upper = domain.hull
-    for part, joined in zip(domain.parts, domain.joined_axes(), strict=True):
+    for part, joined in zip(domain.parts, domain.joined_axes(), strict=False):
         if len(np.intersect1d(joined, numbers)) and len(lower) == 1:
             lower, upper = np.repeat(lower, part.boxes, axis=0), np.repeat(upper, part.boxes, axis=0)
             lower[:, joined], upper[:, joined] = part.lower[:, joined], part.upper[:, joined]
@@ -124,9 +124,10 @@ def _options_left(choice: Node, graph: Graph, domain: Domain) -> tuple[int, ...]
     """The options that some box of each part of a domain holds."""
     axis = graph.axes[choice.operands[0]]
     left: set[int] | None = None
-    for part in domain.parts:
-        lower, upper = np.zeros((part.boxes, graph.dimension)), np.ones((part.boxes, graph.dimension))
-        lower[:, axis], upper[:, axis] = part.lower[:, axis], part.upper[:, axis]
+    ranges = [(part.lower[:, axis], part.upper[:, axis]) for part in domain.parts]
+    for first, last in [*ranges, *_cells_left(domain, axis)]:
+        lower, upper = np.zeros((len(first), graph.dimension)), np.ones((len(first), graph.dimension))
+        lower[:, axis], upper[:, axis] = first, last
         bounds = over([choice], graph.axes, lower, upper)[choice]
         if bounds is None:
             continue
@@ -134,6 +135,15 @@ def _options_left(choice: Node, graph: Graph, domain: Domain) -> tuple[int, ...]
         mine = {option for low, high in ends for option in range(low, high + 1)}
         left = mine if left is None else left & mine
     return tuple(sorted(left or ()))
+
+
+def _cells_left(domain: Domain, axis: int) -> list[tuple[Floats, Floats]]:
+    """The ends of the cells of an axis that a finite part of a domain leaves, if one chooses them."""
+    return [
+        (one.lower[place], one.upper[place])
+        for one in domain.finite
+        for place in np.flatnonzero(one.axes == axis).tolist()
+    ]
 
 
 def _shown(value: Any) -> str:
@@ -156,4 +166,6 @@ def _left(domain: Domain, axis: int) -> float:
         reached = np.maximum.accumulate(np.concatenate([[0.0], upper[:-1]]))
         covered = np.maximum(upper - np.maximum(lower, reached), 0).sum()
         share = min(share, float(covered))
+    for lower, upper in _cells_left(domain, axis):
+        share = min(share, float((upper - lower).sum()))
     return share

@@ -9,7 +9,8 @@ from scenic.failures import diagnose
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.errors import ScenicSyntaxError
 from scenic.language.extras import installation
-from scenic.pipeline import conditions, load
+from scenic.narrowing import conditions
+from scenic.pipeline import load
 
 __all__ = ["deep_check"]
 

@@ -149,7 +149,7 @@ def _search(cumulative: Floats, row: Cells, numbers: Floats) -> Cells:
         return np.zeros(len(row), dtype=np.intp)
     if len(cumulative) == 1:
         found = np.searchsorted(cumulative[0], numbers, side="right")
-        return np.minimum(found, count - 1)
+        return np.asarray(np.minimum(found, count - 1))
     low, high = np.zeros(len(row), dtype=np.intp), np.full(len(row), count - 1, dtype=np.intp)
     while (low < high).any():
         middle = (low + high) // 2

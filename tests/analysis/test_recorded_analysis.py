@@ -5,7 +5,7 @@ import pytest
 
 import scenic
 from scenic.analysis.report import prove
-from scenic.pipeline import conditions
+from scenic.narrowing import conditions
 from tests.recorded import FOLDER, hold, said, shown
 
 

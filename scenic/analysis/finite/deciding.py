@@ -217,7 +217,6 @@ class _Builder:
             return
         self.constraints.append(Constraint(tuple(tables), piece.number))
 
-
     def add_possible(self, piece: _Piece) -> None:
         """Add what is possible of a piece that reads other draws, too."""
         self.undecided.add(piece.number)

@@ -85,7 +85,9 @@ def eliminate(tables: Sequence[Table], weights: Mapping[int, Floats], order: Seq
 
     """
     place = {variable: number for number, variable in enumerate(order)}
-    buckets: dict[int, list[tuple[tuple[int, ...], NDArray[np.float64]]]] = {variable: [] for variable in order}
+    buckets: dict[int, list[tuple[tuple[int, ...], NDArray[np.float64]]]] = {
+        variable: [] for variable in order
+    }
     for table in tables:
         if table.scope:
             buckets[min(table.scope, key=place.__getitem__)].append(
@@ -98,7 +100,9 @@ def eliminate(tables: Sequence[Table], weights: Mapping[int, Floats], order: Seq
     for variable in order:
         factors = buckets.pop(variable)
         given = tuple(
-            sorted({other for scope, _ in factors for other in scope if other != variable}, key=place.__getitem__)
+            sorted(
+                {other for scope, _ in factors for other in scope if other != variable}, key=place.__getitem__
+            )
         )
         scope = (*given, variable)
         sizes = tuple(len(weights[other]) for other in given)

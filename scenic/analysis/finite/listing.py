@@ -64,18 +64,20 @@ def _order(tables: Sequence[Table], sizes: Mapping[int, int]) -> list[int]:
             for variable in scope:
                 if variable in left:
                     unknown = len(scope - known) - 1
-                    strength[variable] += selectivity if unknown == 0 else selectivity * 0.1 * (len(scope) > unknown + 1)
+                    strength[variable] += (
+                        selectivity if unknown == 0 else selectivity * 0.1 * (len(scope) > unknown + 1)
+                    )
                     degree[variable] += selectivity
-        best = min(left, key=lambda one: (strength[one] + np.log(sizes[one]) * (1 if known else 0), degree[one], one))
+        best = min(
+            left, key=lambda one: (strength[one] + np.log(sizes[one]) * (1 if known else 0), degree[one], one)
+        )
         order.append(best)
         known.add(best)
         del left[best]
     return order
 
 
-def _speaking(
-    tables: Sequence[Table], variable: int, known: frozenset[int]
-) -> list[tuple[list[int], Mask]]:
+def _speaking(tables: Sequence[Table], variable: int, known: frozenset[int]) -> list[tuple[list[int], Mask]]:
     """What tables say about a variable, given known ones: of each table the known variables, and the entries by them and the variable."""
     found = []
     for table in tables:
@@ -85,11 +87,9 @@ def _speaking(
         if not given and len(table.scope) > 1 and table.allowed.size > _LARGEST_PROJECTION:
             continue
         others = tuple(
-            place
-            for place, other in enumerate(table.scope)
-            if other != variable and other not in known
+            place for place, other in enumerate(table.scope) if other != variable and other not in known
         )
-        entries = table.allowed.any(axis=others) if others else table.allowed
+        entries = np.asarray(table.allowed.any(axis=others) if others else table.allowed)
         scope = [other for other in table.scope if other == variable or other in known]
         entries = np.moveaxis(entries, scope.index(variable), -1)
         if not entries.all():

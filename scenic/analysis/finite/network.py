@@ -4,7 +4,6 @@ from collections.abc import Iterable, Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from scenic.analysis.finite.tables import Mask, Table
 from scenic.dataclass import dataclass
@@ -53,7 +52,7 @@ class Problem:
     constraints: tuple[Constraint, ...]
 
 
-def aligned(table: Table, scope: Sequence[int]) -> NDArray[np.generic]:
+def aligned(table: Table, scope: Sequence[int]) -> Mask:
     """The entries of a table with dimensions for another, wider scope: of length 1 where it says nothing."""
     order = sorted(range(len(table.scope)), key=lambda place: scope.index(table.scope[place]))
     entries = table.allowed.transpose(order)

@@ -17,7 +17,6 @@ from scenic.analysis.finite.listing import solutions
 from scenic.analysis.finite.network import Constraint, Problem, components, consistent, merged
 from scenic.analysis.finite.tables import Mask, Table
 from scenic.dataclass import dataclass
-from scenic.graph.bounds import Floats
 from scenic.graph.finite import Law, Listed, Sequential
 
 __all__ = ["Component", "Drawn", "solve"]
@@ -87,7 +86,9 @@ class _Reduced:
     def __init__(self, problem: Problem, constraints: Sequence[Constraint], domains: dict[int, Mask]) -> None:
         self.values = {variable: np.flatnonzero(mask) for variable, mask in domains.items()}
         self.sizes = {variable: len(values) for variable, values in self.values.items()}
-        self.weights = {variable: problem.weights[variable][values] for variable, values in self.values.items()}
+        self.weights = {
+            variable: problem.weights[variable][values] for variable, values in self.values.items()
+        }
         self.draws = sorted(variable for variable in domains if variable < problem.draws)
         self.constraints = constraints
 
@@ -202,7 +203,9 @@ def _strongest(reduced: _Reduced) -> tuple[tuple[Drawn, ...], tuple[Constraint, 
         met = [
             constraint
             for constraint in reduced.constraints
-            if all(frozenset(table.scope) in found.scopes or len(table.scope) == 1 for table in constraint.tables)
+            if all(
+                frozenset(table.scope) in found.scopes or len(table.scope) == 1 for table in constraint.tables
+            )
             and constraint.scope <= set(found.variables)
         ]
         others, more = _relaxed(reduced, reduced.constraints, frozenset(found.variables))
@@ -246,5 +249,3 @@ def _relaxed(
 def _strength(constraint: Constraint) -> float:
     """The share of combinations that a constraint allows, roughly: small for a strong one."""
     return float(constraint.tables[-1].allowed.mean())
-
-

@@ -144,7 +144,7 @@ class _Sampler:
         self._max_attempts = max_attempts
         plan = engine.plan
         self._soft = [check for check in plan.checks if check.probability < 1]
-        self._reads = Reads(plan.graph, plan.domain.joined_axes())
+        self._reads = Reads(plan.graph, plan.domain)
         self._plans: dict[frozenset[int], _Blocks] = {}
         self._objects = _Objects(checks)
 

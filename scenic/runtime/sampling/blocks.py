@@ -3,11 +3,8 @@
 from collections.abc import Iterable, Sequence
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from scenic.dataclass import dataclass
-from scenic.graph.draws import box_addresses
+from scenic.graph.domain import Domain
 from scenic.graph.node import Graph, Node
 from scenic.runtime.sampling.checks import Check, CollisionCheck
 
@@ -19,19 +16,20 @@ class Reads:
 
     Args:
         graph: the graph.
-        joined: of each part of the domain the axes that are drawn together.
+        domain: the part of the cube that is drawn from.
 
     """
 
-    def __init__(self, graph: Graph, joined: Sequence[NDArray[np.intp]]) -> None:
+    def __init__(self, graph: Graph, domain: Domain) -> None:
         self.numbers: Final = [graph.address(node) for node in graph.axes]
         self.words: Final = [
             graph.address(node) for node in graph.nodes if node.is_drawn and not node.is_axis
         ]
         self.boxes: Final = [
             (place, frozenset(axes.tolist()))
-            for place, axes in zip(box_addresses(len(joined)).tolist(), joined, strict=True)
+            for places, axes in zip(domain.addresses(), domain.joined_axes(), strict=True)
             if len(axes)
+            for place in places.tolist()
         ]
         self._graph = graph
 

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from scenic.dataclass import dataclass
 from scenic.graph.bounding import over, overall
 from scenic.graph.bounds import Bounds
-from scenic.graph.draws import box_addresses
 from scenic.graph.node import Graph, Node
 from scenic.runtime.geometry.ragged import distinct
 from scenic.runtime.sampling.checks import Check, CollisionCheck, NodeCheck, ObjectNodes
@@ -128,10 +127,9 @@ def _split(plan: Plan) -> Components | None:
     for node, leader in joins.draws():
         if leader in numbers:
             owner[plan.graph.address(node)] = numbers[leader]
-    parts_of_domain = zip(box_addresses(len(plan.domain.parts)).tolist(), joins.factors, strict=True)
-    for place, factor in parts_of_domain:
+    for places_of_factor, factor in zip(plan.domain.addresses(), joins.factors, strict=True):
         if factor is not None and joins.leader(factor) in numbers:
-            owner[place] = numbers[joins.leader(factor)]
+            owner.update(dict.fromkeys(places_of_factor.tolist(), numbers[joins.leader(factor)]))
     return Components(plans, owner, (None,) * len(plans))
 
 

@@ -108,7 +108,7 @@ def divide(engine: Engine, plans: Sequence[Plan], *, always: bool = False) -> li
     engine.evaluate(
         batch, tuple(dict.fromkeys(node for plan in plans for check in plan.checks for node in check.nodes))
     )
-    reads = Reads(engine.plan.graph, engine.plan.domain.joined_axes())
+    reads = Reads(engine.plan.graph, engine.plan.domain)
     trees: list[Tree | None] = []
     leaf = 0
     for plan in plans:

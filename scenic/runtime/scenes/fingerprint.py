@@ -20,4 +20,6 @@ def fingerprint(graph: Graph, domain: Domain) -> str:
     for part in (domain, *domain.factors):
         digest.update(part.lower.tobytes())
         digest.update(part.upper.tobytes())
+    for one in domain.finite:
+        digest.update(one.digest())
     return digest.hexdigest()

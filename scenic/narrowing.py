@@ -1,0 +1,79 @@
+"""From an outline to a sampler of the part of the cube that the requirements allow: finite values first, then intervals."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.analysis.contraction import Pruning, contract, independent
+from scenic.analysis.facts import Fact
+from scenic.analysis.finite.deciding import Decision, decide
+from scenic.analysis.screening import seldom_met
+from scenic.graph.node import Node
+from scenic.runtime.regions.unturned import unturned
+from scenic.runtime.sampling.checks import NodeCheck
+from scenic.runtime.sampling.planning import Outline
+from scenic.runtime.scenes.sampler import Sampler
+
+__all__ = ["conditions", "decision_of", "prepared_sampler"]
+
+
+def conditions(outlined: Outline) -> list[Fact]:
+    """The hard requirements of an outline as analysis reads them: the program's, then containment and visibility."""
+    return [
+        *(
+            Fact(item.condition, item.label, item.span, False, item.filename)
+            for item in outlined.requirements
+        ),
+        *(Fact(item.node, item.label, item.span, True, item.filename) for item in outlined.built_in),
+    ]
+
+
+def prepared_sampler(outlined: Outline, *, prune: bool) -> Sampler:
+    """A sampler that is ready; with ``prune``, of the part of the cube that the requirements allow."""
+    sampler = Sampler(outlined)
+    sampler.prepare()
+    if not prune:
+        return sampler
+    decision = decide(sampler.plan, sampler.engine.batch, sampler.engine.met)
+    if decision.impossible:
+        checks = [sampler.plan.checks[number] for number in decision.impossible]
+        return Sampler(outlined, impossible=tuple(dict.fromkeys(check.label for check in checks)))
+    pruning = _narrowed(outlined, sampler.met(), _settled(sampler, decision))
+    domain = pruning.domain.with_finite(decision.parts)
+    if domain.is_whole and not pruning.impossible:
+        return sampler
+    labels = tuple(dict.fromkeys(item.label for item in pruning.impossible))
+    sampler = Sampler(outlined, domain, impossible=labels)
+    sampler.prepare()
+    return sampler
+
+
+def decision_of(outlined: Outline) -> Decision:
+    """The finite part of an outline, whether or not it rejects candidates."""
+    sampler = Sampler(outlined)
+    return decide(sampler.plan, sampler.engine.batch, {}, always=True)
+
+
+def _settled(sampler: Sampler, decision: Decision) -> frozenset[Node]:
+    """The nodes of the conditions that always hold where draws are made as decided."""
+    checks = (sampler.plan.checks[number] for number in decision.settled)
+    return frozenset(check.node for check in checks if isinstance(check, NodeCheck))
+
+
+def _narrowed(outlined: Outline, met: Mapping[Node, NDArray[np.bool_]], settled: Collection[Node]) -> Pruning:
+    """The part of the cube that the requirements allow which candidates seldom meet, and those that cannot hold."""
+    open_facts = [fact for fact in conditions(outlined) if fact.node not in settled]
+    facts = [fact for group in seldom_met(independent(open_facts), met) for fact in group]
+    framed = _in_own_frames(facts)
+    masks = {
+        there.node: met[here.node] for here, there in zip(facts, framed, strict=True) if here.node in met
+    }
+    return contract(outlined.graph, framed, masks)
+
+
+def _in_own_frames(facts: Sequence[Fact]) -> list[Fact]:
+    """The facts, those about turned rectangles said in the frames of these, where bounds show more."""
+    seen = ((fact, unturned(fact.node)) for fact in facts)
+    return [fact if node is None else replace(fact, node=node) for fact, node in seen]
