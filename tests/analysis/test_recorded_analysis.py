@@ -21,7 +21,7 @@ def known(program: str, line: str) -> str:
     except Exception as error:  # noqa: BLE001 - what is said of it is the answer
         return said(error)
     domain = scenario.domain
-    lower, upper = domain.lower.min(axis=0), domain.upper.max(axis=0)
+    (lower,), (upper,) = domain.hull
     ends = [
         f"axis {axis} from {shown(float(lower[axis]))} to {shown(float(upper[axis]))}"
         for axis in np.flatnonzero((lower > 0) | (upper < 1)).tolist()

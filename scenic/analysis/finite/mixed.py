@@ -1,6 +1,6 @@
 """Tables of checks that read discrete and continuous values: the combinations of the discrete ones that bounds do not exclude."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -8,7 +8,7 @@ import numpy as np
 from scenic.analysis.boxes import Boxes
 from scenic.analysis.contraction import surviving
 from scenic.analysis.facts import Fact
-from scenic.analysis.finite.tables import Mask
+from scenic.analysis.finite.tables import Likeness, Mask
 from scenic.analysis.finite.variables import Variable
 from scenic.graph.bounding import over
 from scenic.graph.bounds import Bounds
@@ -40,6 +40,8 @@ class Possible:
         self._graph = graph
         self._variables = variables
         self._left = BUDGET
+        self._likeness = Likeness(variables)
+        self._known: dict[Hashable, Mask | None] = {}
 
     def table(self, check: Check) -> tuple[list[Variable], Mask] | None:
         """The finite axes that a check reads, and which combinations may pass it; ``None`` where that is not found out."""
@@ -48,16 +50,21 @@ class Possible:
         count = float(np.prod([variable.size for variable in scope], dtype=np.float64))
         if not scope or count > LARGEST or count * len(every) > self._left:
             return None
-        self._left -= int(count) * len(every)
+        key = type(check), self._likeness(check.nodes, every)
+        if key not in self._known:
+            self._left -= int(count) * len(every)
+            self._known[key] = self._made(check, scope)
+        possible = self._known[key]
+        return None if possible is None else (scope, possible)
+
+    def _made(self, check: Check, scope: Sequence[Variable]) -> Mask | None:
         sizes = tuple(variable.size for variable in scope)
         boxes = self._boxes(scope, sizes)
         if isinstance(check, NodeCheck):
-            possible = surviving(self._graph, Fact(check.node, check.label), boxes)
-        elif isinstance(check, CollisionCheck):
-            possible = ~self._collides(check.objects, boxes)
-        else:
-            return None
-        return scope, possible.reshape(sizes)
+            return surviving(self._graph, Fact(check.node, check.label), boxes).reshape(sizes)
+        if isinstance(check, CollisionCheck):
+            return np.asarray(~self._collides(check.objects, boxes)).reshape(sizes)
+        return None
 
     def _boxes(self, scope: Sequence[Variable], sizes: tuple[int, ...]) -> Boxes:
         """A box of the cube for each combination."""

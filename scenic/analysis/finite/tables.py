@@ -21,7 +21,7 @@ from scenic.runtime.python.opaque import OpaqueCode
 from scenic.runtime.python.samples import mention, reachable
 from scenic.runtime.sampling.checks import Verdict
 
-__all__ = ["LARGEST", "Mask", "Table", "Tabulator", "seeds_of_calls"]
+__all__ = ["LARGEST", "Likeness", "Mask", "Table", "Tabulator", "seeds_of_calls"]
 
 LARGEST: Final = 1 << 16
 """Combinations of a table that the engine evaluates, at most."""
@@ -68,7 +68,7 @@ class Tabulator:
         self._variables = variables
         self._batch = batch
         self._known: dict[Hashable, Mask | None] = {}
-        self._identities: dict[Hashable, int] = {}
+        self._likeness = Likeness(variables)
         self._left = BUDGET
 
     def below(self, nodes: Iterable[Node]) -> tuple[list[Variable], list[Node], tuple[Node, ...]]:
@@ -128,15 +128,28 @@ class Tabulator:
                 return None
         return result.reshape(sizes)
 
-    def _likeness(self, nodes: Sequence[Node], every: Sequence[Node]) -> Hashable:
-        """Equal for nodes that are made alike of axes that have the same cells."""
+
+class Likeness:
+    """Tells which nodes are made alike of axes that have the same cells.
+
+    Args:
+        variables: the finite axes.
+
+    """
+
+    def __init__(self, variables: Mapping[Node, Variable]) -> None:
+        self._variables = variables
+        self._identities: dict[Hashable, int] = {}
+
+    def __call__(self, nodes: Sequence[Node], every: Sequence[Node]) -> Hashable:
+        """Equal for alike nodes; ``every`` are all nodes below them."""
         places = {node: place for place, node in enumerate(every)}
         parts: list[Hashable] = []
         for node in every:
-            if node.is_axis:
+            if node in self._variables:
                 part: Hashable = self._variables[node].lower.tobytes()
             elif node.is_drawn:
-                part = None
+                part = node.kind
             elif node.is_constant:
                 part = node.payload.key
             else:
