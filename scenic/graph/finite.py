@@ -25,13 +25,13 @@ class Law(Protocol):
 
     @property
     def numbers(self) -> int:
-        """How many uniform numbers choose a combination."""
+        """The number of uniform numbers that choose a combination."""
 
     def choose(self, draws: Floats) -> Cells:
         """The combinations ``(variables, n)`` that uniform numbers ``(numbers, n)`` choose."""
 
     def arrays(self) -> Sequence[NDArray[np.generic]]:
-        """What the law is made of, for digests."""
+        """The arrays that the law is made of, for digests."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -33,7 +33,7 @@ MOST_PIECES: Final = 20_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Decision:
-    """What was decided about the finite part of a plan.
+    """The finite part of a plan, decided.
 
     Attributes:
         variables: the finite axes of the plan, in the order of their numbers as variables.
@@ -117,7 +117,7 @@ def _rejects(numbers: Sequence[int], met: Mapping[int, Mask]) -> bool:
 
 
 class _Finiteness:
-    """Which nodes depend on finite axes, and on no other draws.
+    """The nodes that depend on finite axes, and on no other draws.
 
     Args:
         graph: the graph.

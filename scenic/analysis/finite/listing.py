@@ -78,7 +78,7 @@ def _order(tables: Sequence[Table], sizes: Mapping[int, int]) -> list[int]:
 
 
 def _speaking(tables: Sequence[Table], variable: int, known: frozenset[int]) -> list[tuple[list[int], Mask]]:
-    """What tables say about a variable, given known ones: of each table the known variables, and the entries by them and the variable."""
+    """The tables about a variable, given known ones: of each table the known variables, and the entries by them and the variable."""
     found = []
     for table in tables:
         if variable not in table.scope:

@@ -17,7 +17,7 @@ ROUNDS: Final = 64
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Constraint:
-    """What one check demands: tables that hold together.
+    """The demand of one check: tables that hold together.
 
     Attributes:
         tables: the tables.
