@@ -6,6 +6,7 @@ check calls. Checks that differ only in the axes that they read have one table.
 
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from contextlib import suppress
+from types import BuiltinFunctionType, FunctionType
 from typing import Final
 
 import numpy as np
@@ -18,6 +19,7 @@ from scenic.graph.draws import Counter, Points, Source
 from scenic.graph.node import Graph, Node
 from scenic.language.errors import ScenicError
 from scenic.runtime.python.opaque import OpaqueCode
+from scenic.runtime.python.purity import global_names, is_pure
 from scenic.runtime.python.samples import mention, reachable
 from scenic.runtime.sampling.checks import Verdict
 
@@ -27,7 +29,10 @@ LARGEST: Final = 1 << 16
 """Combinations of a table that the engine evaluates, at most."""
 
 LARGEST_OF_CODE: Final = 1 << 13
-"""The same where evaluation calls Python code of the program."""
+"""The same where evaluation calls Python code of the program that depends on its arguments alone."""
+
+LARGEST_OF_OTHER_CODE: Final = 1 << 10
+"""The same for code of the program of which that is not known."""
 
 _SEEN: Final = ("print", "input", "open", "display")
 """Functions whose calls users see: code that names one is called for scenes only."""
@@ -99,7 +104,7 @@ class Tabulator:
         sizes = [variable.size for variable in scope]
         count = float(np.prod(sizes, dtype=np.float64))
         calls = [node.payload for node in every if isinstance(node.payload, OpaqueCode)]
-        if count > (LARGEST_OF_CODE if calls else LARGEST) or any(map(_is_seen, calls)):
+        if count > min(map(_most_calls, calls), default=LARGEST):
             return None
         key = (kind, self._likeness(nodes, every))
         if key not in self._known:
@@ -170,9 +175,17 @@ def seeds_of_calls(graph: Graph) -> frozenset[Node]:
     return frozenset(key for key, only in readers.items() if only)
 
 
-def _is_seen(call: OpaqueCode) -> bool:
+def _most_calls(call: OpaqueCode) -> int:
+    """The number of combinations, at most, for which code may be called."""
+    if not isinstance(call.function, FunctionType | BuiltinFunctionType | type):
+        return 0
     reads = [call.function, *call.args, *call.keywords.values()]
-    return mention(reachable(reads, call.names), *_SEEN)
+    reached = list(reachable(reads, call.names))
+    if mention(reached, *_SEEN):
+        return 0
+    functions = [value for value in reached if isinstance(value, FunctionType)]
+    is_known = all(is_pure(function, global_names(function)) for function in functions)
+    return LARGEST_OF_CODE if is_known else LARGEST_OF_OTHER_CODE
 
 
 def _payload_key(payload: object) -> Hashable:
