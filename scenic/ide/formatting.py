@@ -1,8 +1,8 @@
 """Writing a document in the usual style.
 
-What a statement looks like is the unparser's decision (`scenic.compiler.unparser`): its spacing, quotes and
-parentheses; numbers and parentheses that group stay as written (`as_written`). What a tree does not hold is kept as it stands: comments, blank lines (up to two), and the layout of
-statements that are written over several lines, which are only moved with their block. Lines are never split or joined.
+The tokens of a statement on one line get the blanks and quotes of the style (`spacing`), and lose parentheses without which the
+statement is read as before. Comments, blank lines (up to two), and the layout of statements that are written over several
+lines stay; the latter are only moved with their block. Statements that share a line are put on lines of their own.
 
 The result means the same and formats to itself; a text with mistakes is left alone. The style is described in
 ``docs/reference/format.md``.
@@ -10,22 +10,20 @@ The result means the same and formats to itself; a text with mistakes is left al
 
 import ast
 import difflib
-import re
-from bisect import bisect_left, bisect_right
+from bisect import bisect_right
 from collections import Counter, deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import field
 from typing import Any, Final
 
-from scenic.compiler import tree as scenic
 from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
-from scenic.compiler.parser import parse_lexed
+from scenic.compiler.parser import parse, parse_lexed
 from scenic.compiler.tokens import DEDENT, ENDMARKER, FSTRING_MIDDLE, INDENT, NEWLINE, STRING, Tokens
-from scenic.compiler.unparser import UnparseError, unparse
+from scenic.compiler.traversal import first_position, position
 from scenic.dataclass import dataclass
-from scenic.ide.as_written import Token, as_written
 from scenic.ide.snapshot import Snapshot
+from scenic.ide.spacing import Lexeme, lexemes, needless_pairs, spaced
 from scenic.language.diagnostics import Edit
 from scenic.language.spans import Span
 
@@ -39,14 +37,14 @@ _DEFINITIONS: Final = frozenset({"class", "def", "behavior", "monitor", "scenari
 class _Line:
     """One logical line: its first and last line (from 1), its depth, and its comments.
 
-    ``start`` is its first token.
+    ``begin`` is its first token, ``start`` the text of that.
     """
 
     first: int
     last: int
     depth: int
+    begin: int
     start: str = ""
-    has_inner_comment: bool = False
     trailing: str = ""
     above: list[tuple[int, int, str]] = field(default_factory=list)
     """Comments on lines of their own before it: line, column, text."""
@@ -182,127 +180,104 @@ def format_text(text: str) -> str | None:
 def _formatted(snapshot: Snapshot) -> str | None:
     if snapshot.parsed.diagnostics:
         return None
-    tree, tokens = snapshot.tree, snapshot.tokens
-    standing = _logical_lines(tokens)
-    layout = _Layout(tokens)
-    units = deque(sorted(_units(tree.body, 0), key=lambda unit: unit.place))
-    for line in standing:
-        own = []
-        while units and units[0].place[0] <= line.last:
-            own.append(units.popleft())
-        layout.add(line, own)
-    last = standing[-1].last if standing else 0
-    layout.comments([comment for comment in tokens.comments if comment[0] > last], 0)
-    result = layout.text()
-    return result if _same(tree, tokens, result) else None
+    lines = _logical_lines(snapshot.tokens)
+    parts = [_parts(snapshot, line) for line in lines]
+    dropped = _needless(snapshot, parts)
+    for kept in (frozenset(dropped), frozenset[int]()):
+        layout = _Layout(snapshot.tokens)
+        for line, of_line in zip(lines, parts, strict=True):
+            written = [spaced([each for each in part if each.token not in kept]) for part in of_line]
+            layout.add(line, written)
+        last = lines[-1].last if lines else 0
+        layout.comments([comment for comment in snapshot.tokens.comments if comment[0] > last], 0)
+        if _same(snapshot.tree, snapshot.tokens, layout.text()):
+            return layout.text()
+    return None
 
 
-@dataclass(frozen=True, slots=True)
-class _Unit:
-    """The text that the unparser writes for a statement, or for the header of a statement with blocks.
-
-    ``place`` is where it begins: line, and column in bytes. ``text`` is ``None`` for what is kept as it stands.
-    """
-
-    place: tuple[int, int]
-    depth: int
-    text: str | None
-
-
-def _units(statements: Sequence[Any], depth: int) -> Iterator[_Unit]:
-    """The statements of a block, and those in them; not in order."""
-    stack: list[tuple[Any, int]] = [(node, depth) for node in statements]
-    while stack:
-        node, depth = stack.pop()
-        for decorator in getattr(node, "decorator_list", ()):
-            yield _Unit(
-                (decorator.lineno, decorator.col_offset - 1),
-                depth,
-                _decorator(decorator),
-            )
-        yield _Unit((node.lineno, node.col_offset), depth, _text_of(node))
-        for handler in (*getattr(node, "handlers", ()), *getattr(node, "interrupts", ())):
-            starred = isinstance(node, ast.TryStar)
-            yield _Unit((handler.lineno, handler.col_offset), depth, _text_of_part(handler, starred=starred))
-            stack.extend((each, depth + 1) for each in handler.body)
-        for guard in getattr(node, "guards", ()):
-            yield _Unit((guard.lineno, guard.col_offset), depth + 1, _text_of(guard))
-        for case in getattr(node, "cases", ()):
-            # A case has no place of its own; it begins the line of its pattern.
-            yield _Unit((case.pattern.lineno, 0), depth + 1, _text_of_case(case))
-            stack.extend((each, depth + 2) for each in case.body)
-        for name in ("body", "orelse", "finalbody", "setup", "compose"):
-            stack.extend((each, depth + 1) for each in getattr(node, name, None) or ())
+def _parts(snapshot: Snapshot, line: _Line) -> list[list[Lexeme]]:
+    """The statements and headers on a logical line; none if it takes several lines, which stay as they are."""
+    if line.first != line.last:
+        return []
+    tokens, starts = snapshot.tokens, _starts_of_statements(snapshot)
+    begin, end = line.begin, bisect_right(tokens.lines, line.first)
+    cuts = [index for index in range(begin, end) if (tokens.lines[index], tokens.columns[index]) in starts]
+    if not cuts or cuts[0] > begin:
+        cuts.insert(0, begin)
+    parts = [lexemes(snapshot, *cut) for cut in zip(cuts, [*cuts[1:], end], strict=True)]
+    return [_without_last_marks(part) for part in parts]
 
 
-def _decorator(node: ast.expr) -> str | None:
-    return _first_line(lambda: f"@{unparse(node)}")
+def _without_last_marks(part: list[Lexeme]) -> list[Lexeme]:
+    """A statement without the semicolon after it, and without commas that mean nothing."""
+    while part and part[-1].text == ";":
+        part.pop()
+    kept: list[Lexeme] = []
+    commas = [0]
+    for lexeme in part:
+        if lexeme.text in ("(", "[", "{"):
+            commas.append(0)
+        elif lexeme.text == ",":
+            commas[-1] += 1
+        elif lexeme.text in (")", "]", "}") and commas.pop() > 1 and kept[-1].text == ",":
+            kept.pop()
+        kept.append(lexeme)
+    return kept
 
 
-_BLOCKS: Final[Mapping[str, Any]] = {
-    "body": [ast.Pass()],
-    "setup": [ast.Pass()],
-    "orelse": [],
-    "finalbody": [],
-    "decorator_list": [],
-    "guards": [],
-    "compose": None,
-    "docstring": None,
-}
+def _starts_of_statements(snapshot: Snapshot) -> Container[tuple[int, int]]:
+    return frozenset(
+        position(node)
+        for cls, nodes in snapshot.resolution.by_class.items()
+        if issubclass(cls, ast.stmt)
+        for node, _ in nodes
+    )
 
 
-def _text_of(node: Any) -> str | None:
-    """A statement as the unparser writes it; of one with blocks, its header."""
-    if isinstance(node, ast.Try | ast.TryStar | scenic.TryInterrupt):
-        return "try:"
-    if scenic.is_documentation(node):
-        return None
-    if isinstance(node, scenic.PropertyDef):
-        # Only in a class has a property a text.
-        owner = ast.ClassDef("C", [], [], [node], [])
-        return _only_line(lambda: unparse(owner).partition("\n")[2].strip())
-    if isinstance(node, scenic.Guard):
-        return _only_line(lambda: f"{node.kind}: {unparse(node.condition)}")
-    if isinstance(node, ast.Match):
-        return _first_line(lambda: f"match {unparse(node.subject)}:")
-    if any(field in node._fields for field in ("body", "setup")):
-        fields = {name: getattr(node, name, None) for name in node._fields}
-        fields.update((name, block) for name, block in _BLOCKS.items() if name in fields)
-        return _first_line(lambda: unparse(node.__class__(**fields)))
-    return _only_line(lambda: unparse(node))
+def _needless(snapshot: Snapshot, parts: Sequence[list[list[Lexeme]]]) -> set[int]:
+    """The tokens of parentheses without which the statements of the top level are read as before."""
+    pairs = [pair for of_line in parts for part in of_line for pair in needless_pairs(part)]
+    tokens, lines = snapshot.tokens, snapshot.source.lines
+    dropped: set[int] = set()
+    for first, last, statements in _groups(snapshot.tree):
+        near = [(one.token, other.token) for one, other in pairs if first <= tokens.lines[one.token] <= last]
+        if not near:
+            continue
+
+        def is_read_alike(without: Iterable[int]) -> bool:
+            rows = list(lines[first - 1 : last])  # noqa: B023 - called in the same round
+            for index in without:
+                row, column = tokens.lines[index] - first, tokens.columns[index]  # noqa: B023
+                content = rows[row].encode()
+                rows[row] = (content[:column] + b" " + content[column + 1 :]).decode()
+            parsed = parse("\n".join(rows) + "\n")
+            return not parsed.diagnostics and _equal(statements, parsed.tree.body)  # noqa: B023
+
+        without = {index for pair in near for index in pair}
+        if not is_read_alike(without):
+            without = set()
+            for pair in near:
+                if is_read_alike(without.union(pair)):
+                    without.update(pair)
+        dropped |= without
+    return dropped
 
 
-def _text_of_case(case: ast.match_case) -> str | None:
-    """The header of a case."""
-    alone = ast.match_case(case.pattern, case.guard, [ast.Pass()])
-    match = ast.Match(ast.Name("x", ast.Load()), [alone])
-    return _first_line(lambda: unparse(match).partition("\n")[2].strip())
-
-
-def _text_of_part(node: Any, *, starred: bool) -> str | None:
-    """The header of a handler."""
-    if isinstance(node, scenic.Interrupt):
-        return _first_line(lambda: f"interrupt when {unparse(node.condition)}:")
-    if node.type is None:
-        return "except:"
-    word = "except*" if starred else "except"
-    name = f" as {node.name}" if node.name else ""
-    return _first_line(lambda: f"{word} {unparse(node.type)}{name}:")
-
-
-def _first_line(write: Callable[[], str]) -> str | None:
-    try:
-        return write().partition("\n")[0]
-    except UnparseError:
-        return None
-
-
-def _only_line(write: Callable[[], str]) -> str | None:
-    try:
-        line, _, more = write().rstrip("\n").partition("\n")
-    except UnparseError:
-        return None
-    return None if more else line
+def _groups(tree: ast.Module) -> Iterator[tuple[int, int, list[ast.stmt]]]:
+    """The statements of the top level that share lines: their first and their last line."""
+    first = last = 0
+    group: list[ast.stmt] = []
+    for node in tree.body:
+        start = first_position(node)[0]
+        if group and start > last:
+            yield first, last, group
+            group = []
+        if not group:
+            first = start
+        group.append(node)
+        last = max(last, node.end_lineno or node.lineno)
+    if group:
+        yield first, last, group
 
 
 def _logical_lines(tokens: Tokens) -> list[_Line]:
@@ -314,7 +289,7 @@ def _logical_lines(tokens: Tokens) -> list[_Line]:
     # Specifiers that go on in an indented block belong to the line that they begin on.
     continued = False
     before = ""
-    for kind, text, at in zip(tokens.kinds, tokens.texts, tokens.lines, strict=True):
+    for index, (kind, text, at) in enumerate(zip(tokens.kinds, tokens.texts, tokens.lines, strict=True)):
         if continued:
             continued = kind != DEDENT
             ends = not continued
@@ -333,14 +308,12 @@ def _logical_lines(tokens: Tokens) -> list[_Line]:
                     line.above.append(comment)
                 elif comment[0] == line.last:
                     line.trailing = comment[2].rstrip()
-                else:
-                    line.has_inner_comment = True
             if ends:
                 found.append(line)
                 line = None
         elif kind not in (NEWLINE, INDENT, DEDENT, ENDMARKER):
             if line is None:
-                line = _Line(at, at, depth, text)
+                line = _Line(at, at, depth, index, text)
             before = text
     return found
 
@@ -358,20 +331,20 @@ class _Layout:
         self._end = 0
         self._previous: _Line | None = None
 
-    def add(self, line: _Line, units: Sequence[_Unit]) -> None:
-        """Write one logical line, with the comments above it; ``units`` begin on it."""
+    def add(self, line: _Line, parts: Sequence[str]) -> None:
+        """Write one logical line, with the comments above it: its parts, or without them the line as it stands."""
         depth = line.depth
         self._blank_lines(line, depth)
         self.comments(line.above, depth)
         self._gap(line.first, depth)
-        written = self._written(line, units)
-        if written is None:
+        if not parts:
             self._moved(line, depth)
-        else:
-            self._lines += written
-            if line.trailing:
-                self._lines[-1] += f"  {line.trailing}"
-        self._depth = depth + (units[-1].depth - units[0].depth if written and units else 0)
+        for place, part in enumerate(parts):
+            depth += place > 0 and parts[place - 1].endswith(":")
+            self._lines.append(_INDENTATION * depth + part)
+        if parts and line.trailing:
+            self._lines[-1] += f"  {line.trailing}"
+        self._depth = depth
         self._end = line.last
         self._previous = line
 
@@ -441,49 +414,11 @@ class _Layout:
             keep = number + 1 in self._fixed
             self._lines.append(" " * width + (text.lstrip() if keep else bare))
 
-    def _tokens_between(self, line: int, begin: int, end: int | None) -> list[Token]:
-        """The tokens of a line from one column on, maybe before another one."""
-        tokens = self._tokens
-        return [
-            Token(tokens.kinds[index], tokens.texts[index])
-            for index in range(bisect_left(tokens.lines, line), bisect_right(tokens.lines, line))
-            if tokens.columns[index] >= begin
-            and (end is None or tokens.columns[index] < end)
-            and tokens.kinds[index] not in (NEWLINE, INDENT, DEDENT, ENDMARKER)
-        ]
-
-    def _written(self, line: _Line, units: Sequence[_Unit]) -> list[str] | None:
-        """A line as the unparser writes it; ``None`` if it stays as it stands."""
-        if line.first != line.last:
-            return None
-        old = self._old[line.first - 1]
-        start = len(old) - len(old.lstrip())
-        found: list[str] = []
-        clause = _CLAUSE.match(old, start)
-        if not units or units[0].place[1] > start:
-            # A clause without a node of its own, maybe with its block on the same line.
-            if clause is None:
-                return None
-            found.append(f"{_INDENTATION * line.depth}{clause[1]}:")
-        base = units[0].depth - (line.depth + len(found)) if units else 0
-        places = [unit.place[1] for unit in units]
-        for unit, begin, end in zip(units, places, [*places, None][1:], strict=True):
-            if unit.text is None:
-                return None
-            text = as_written(self._tokens_between(line.first, begin, end), unit.text)
-            if not found and old.startswith("elif", start):
-                text = f"el{text}"
-            found.append(_INDENTATION * (unit.depth - base) + text)
-        return found
-
 
 def _width(line: str) -> int:
     """Return the indentation of a line, in columns."""
     expanded = line.expandtabs()
     return len(expanded) - len(expanded.lstrip())
-
-
-_CLAUSE: Final = re.compile(r"(else|finally|try|setup|compose)[ \t]*:")
 
 
 def _is_definition(line: _Line) -> bool:
@@ -508,7 +443,7 @@ def _same(tree: ast.Module, tokens: Tokens, result: str) -> bool:
     return before == after and _equal(tree, again.tree)
 
 
-def _equal(one: ast.AST, other: ast.AST) -> bool:
+def _equal(one: Any, other: Any) -> bool:
     """Return whether two trees say the same, wherever their nodes stand."""
     pairs: list[tuple[Any, Any]] = [(one, other)]
     while pairs:
