@@ -18,8 +18,7 @@ GENERATED: Final = ("parser", "recording")
 
 _GRAMMAR: Final = "grammar/scenic.gram"
 _LEXER: Final = "scenic/compiler/lexer.py"
-_EXPRESSIONS: Final = "scenic/compiler/unparser/expressions.py"
-_STATEMENTS: Final = "scenic/compiler/unparser/scenic_statements.py"
+_SPACING: Final = "scenic/ide/spacing.py"
 _LOWERING: Final = "scenic/compiler/lowering/program.py"
 _RESOLVER: Final = "scenic/compiler/resolver.py"
 _RECOVERY: Final = "scenic/compiler/recovery.py"
@@ -201,7 +200,7 @@ FAULTS: Final = (
             ),
         ),
     ),
-    # The table of precedence, which the unparser goes by.
+    # The table of precedence.
     Fault("wrong-table", "table", "`^` stands below `&` in the table of precedence", _SWAPPED, ("tables",)),
     # The lexer.
     Fault(
@@ -272,76 +271,28 @@ FAULTS: Final = (
             ),
         ),
     ),
-    # The unparser.
+    # The formatter.
     Fault(
-        "unhandled-node",
-        "unparser",
-        "monitors are not in the table of statements",
-        (_without(_STATEMENTS, "        tree.MonitorDef: ProgramWriter.monitor,\n"),),
+        "lost-conversion",
+        "formatter",
+        "`!r` in an f-string is not written",
+        (Change(_SPACING, 'return "\\n".join(lines)', 'return "\\n".join(lines).replace("!r", "")'),),
     ),
     Fault(
         "endless-loop",
-        "unparser",
-        "writing `mutate x` does not come to an end",
-        (
-            Change(
-                _STATEMENTS,
-                """return ", ".join([each.id for each in values])\n""",
-                """while values: part = values[0]\n""",
-            ),
-        ),
+        "formatter",
+        "writing brackets does not come to an end",
+        (Change(_SPACING, "            brackets.pop()\n", "            while brackets: pass\n"),),
     ),
     Fault(
-        "crash",
-        "unparser",
-        "writing a duration ends the interpreter",
+        "growing-text",
+        "formatter",
+        "each time a comment is a blank further away",
         (
             Change(
-                _STATEMENTS,
-                "                return self.duration(value)\n",
-                "                import os; os.abort()\n",
-            ),
-        ),
-    ),
-    Fault(
-        "lost-name",
-        "unparser",
-        "`as` after a requirement with a form is not written",
-        (
-            Change(
-                _STATEMENTS,
-                "return _as(value).lstrip()",
-                'return ""',
-            ),
-        ),
-    ),
-    Fault(
-        "lost-clause",
-        "unparser",
-        "`every` of `record` is not written",
-        (Change(_STATEMENTS, '(("after", node.after), ("every", node.every))', '(("after", node.after),)'),),
-    ),
-    Fault(
-        "lost-parentheses",
-        "unparser",
-        "right operands have no parentheses where left ones need none",
-        (
-            Change(
-                _EXPRESSIONS,
-                "texts = [WRITERS[right.__class__](self, right, plan.right, after, closer, plan.lead), plan.text]",
-                "texts = [WRITERS[right.__class__](self, right, plan.left, after, closer, plan.lead), plan.text]",
-            ),
-        ),
-    ),
-    Fault(
-        "lost-conversion",
-        "unparser",
-        "`!r` in an f-string is not written",
-        (
-            Change(
-                _EXPRESSIONS,
-                'conversion = f"!{chr(node.conversion)}" if node.conversion != -1 else ""',
-                'conversion = ""',
+                "scenic/ide/formatting.py",
+                'self._lines[-1] += f"  {line.trailing}"',
+                'self._lines[-1] += f"  {line.trailing}" + " " * len(line.trailing)',
             ),
         ),
     ),
@@ -426,8 +377,8 @@ FAULTS: Final = (
         (
             Change(
                 "scenic/compiler/scopes.py",
-                "reachable = transparent or scope.kind is not ScopeKind.CLASS",
-                "reachable = True",
+                "reachable = not is_global and (transparent or scope.kind is not ScopeKind.CLASS)",
+                "reachable = not is_global",
             ),
         ),
     ),

@@ -1,7 +1,6 @@
 """Conditions of `require` made from the grammar's temporal rules, and what must hold of each.
 
-A formula is written in several ways: as the grammar derives it, laid out at random and on one line; as the unparser writes
-its tree, with the fewest parentheses; with parentheses around the place of every operation in the tree; and as the table
+A formula is written in several ways: as the grammar derives it, laid out at random and on one line; with parentheses around the place of every operation in the tree; and as the table
 of precedence alone predicts (`fuzz.climbing`). All of them are one tree, with one verdict on any finite trace
 (`fuzz.traces`).
 
@@ -27,7 +26,6 @@ from fuzz.grammar import Program, derivations
 from fuzz.layout import lay_out
 from fuzz.properties.case import Case, Property, Violation, describe
 from fuzz.properties.differences import difference
-from fuzz.properties.operands import OF_FORMULAS as OF_EXCHANGED
 from fuzz.terminals import FIXED, Piece, Shape
 from fuzz.traces import Formula, State, atoms_of, conditional, formula_of, text_of, verdict
 from grammar.generator import read_grammar_text
@@ -38,7 +36,6 @@ from scenic.compiler.parser import parse
 from scenic.compiler.precedence import Ladder
 from scenic.compiler.resolver import resolve
 from scenic.compiler.tokens import NEWLINE
-from scenic.compiler.unparser import unparse
 from scenic.runtime.description.declarations import Kept, Required, required
 from scenic.runtime.temporal.monitors import Monitor
 
@@ -308,7 +305,6 @@ def readings(case: Case) -> tuple[Reading, ...]:
     if full is None:
         raise Violation("the table of precedence refuses it")
     written = {
-        "with the fewest parentheses": unparse(case.result.tree),
         "in full": written_in_full(plain, condition),
         "as the table predicts": f"require {full}",
     }
@@ -351,19 +347,6 @@ def all_texts_are_one_tree(case: Case) -> None:
         where = difference(first.condition, condition)
         if where is not None:
             raise Violation(f"another tree {name}: {where}\n{text}")
-
-
-def no_parentheses_are_needless(case: Case) -> None:
-    """Without any pair of the parentheses that the unparser wrote, the text is something else, or nothing."""
-    written = unparse(case.result.tree)
-    for opening, closing in _pairs(written):
-        if written[closing + 1 :].startswith(" implies ") and " implies " in written[opening:closing]:
-            # A prefix in there would take no second `implies`, which has two operands, but a reader cannot be asked to see it.
-            continue
-        shorter = f"{written[:opening]} {written[opening + 1 : closing]} {written[closing + 1 :]}"
-        result = parse(shorter)
-        if not result.diagnostics and difference(case.result.tree, result.tree) is None:
-            raise Violation(f"needless parentheses at {opening} and {closing}: {written}")
 
 
 def all_texts_have_one_verdict(case: Case) -> None:
@@ -457,16 +440,6 @@ def _is_propositional(condition: ast.expr) -> bool:
     return True
 
 
-def _pairs(text: str) -> Iterator[tuple[int, int]]:
-    """The places of parentheses that belong together."""
-    opened: list[int] = []
-    for index, character in enumerate(text):
-        if character == "(":
-            opened.append(index)
-        elif character == ")":
-            yield opened.pop(), index
-
-
 def _formula_of_climbed(climbed: Tree) -> Formula:
     """The formula of a tree of the climbing parser whose atoms are names."""
     if isinstance(climbed, str):
@@ -489,10 +462,8 @@ OF_FORMULAS: Final[tuple[Property, ...]] = (
             all_texts_are_one_tree,
             all_texts_have_one_verdict,
             the_table_alone_gives_the_verdict,
-            no_parentheses_are_needless,
             formulas_are_followed_as_meant,
         ),
     ),
-    *OF_EXCHANGED,
 )
 """Properties of every formula that the temporal rules derive."""

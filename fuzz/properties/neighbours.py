@@ -8,9 +8,9 @@ from typing import Any, Final
 
 from fuzz.properties.case import Case, Property, Violation, describe, is_syntax_error
 from fuzz.properties.differences import difference
+from fuzz.properties.formatting import on_lines
 from scenic.compiler import tree as scenic
 from scenic.compiler.parser import parse
-from scenic.compiler.unparser import unparse
 
 __all__ = ["OF_TEXTS"]
 
@@ -21,12 +21,15 @@ _WRONG: Final = ("x = = 1", "x = 1 +", "x y", "new", "require", "class", "take 1
 def mistakes_leave_the_rest_alone(case: Case) -> None:
     """With a wrong line put between its statements, a program has one mistake, and its statements are what they were.
 
-    The program is written anew for that, so that no line in brackets looks like a statement.
+    The program is written with each logical line on one line for that, so that no line in brackets looks like a statement.
     """
     if case.has_error:
         return
-    text = unparse(case.result.tree)
+    text = on_lines(case.source.text)
     tree = parse(text).tree
+    where = difference(case.result.tree, tree)
+    if where is not None:
+        raise Violation(f"another tree on one line each: {where}\n{text}")
     places = list(_places(tree))
     if not places:
         return

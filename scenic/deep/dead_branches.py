@@ -6,7 +6,6 @@ analysis decides whether the requirements leave scenes in which it holds, and sc
 
 import ast
 from collections.abc import Container, Iterator, Mapping, Sequence
-from copy import deepcopy
 from enum import StrEnum
 from pathlib import Path
 from types import CodeType
@@ -17,12 +16,12 @@ from scenic.analysis.facts import Fact
 from scenic.compiler import tree as scenic
 from scenic.compiler.compile import compile_text
 from scenic.compiler.parser import parse
-from scenic.compiler.traversal import parts
-from scenic.compiler.unparser import unparse
+from scenic.compiler.traversal import parts, position, walk
 from scenic.dataclass import dataclass
 from scenic.deep.constant_names import PARAMETERS, Code, Settled
 from scenic.graph.node import Graph, Node
 from scenic.language.diagnostics import Diagnostic, Severity
+from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.runtime.description.outcome import Program
 from scenic.runtime.ground.context import current
@@ -76,7 +75,8 @@ def prove_branches(
         facts: its requirements, which some scene meets as far as is known.
 
     """
-    tree = parse(text, filename=filename).tree
+    source = Source(text, filename)
+    tree = parse(source.text, filename=filename).tree
     settled = Settled(tree, program)
     found: list[_Branch] = []
     dead: set[_Path] = set()
@@ -86,7 +86,7 @@ def prove_branches(
             if not told[-1] or any(branch.path[:end] in dead for end in range(len(told))):
                 continue
             uses = max(map(len, told))
-            if all(_is_dead(branch, told, use, program, roots, facts) for use in range(uses)):
+            if all(_is_dead(branch, told, use, program, source, roots, facts) for use in range(uses)):
                 found.append(branch)
                 dead.add(branch.path)
     found.sort(key=lambda branch: (branch.test.lineno, branch.test.col_offset))
@@ -132,6 +132,7 @@ def _is_dead(
     told: Sequence[Sequence[Mapping[str, Any]]],
     use: int,
     program: Program,
+    source: Source,
     roots: Sequence[Node],
     facts: Sequence[Fact],
 ) -> bool:
@@ -140,14 +141,16 @@ def _is_dead(
     for (test, holds), readings in zip(branch.path, told, strict=True):
         if readings:  # conditions that may change say nothing
             values = readings[use if len(readings) > 1 else 0]
-            parts.append(Fact(_condition(test, holds, values, program), "branch", None, False, None))
+            parts.append(Fact(_condition(test, holds, values, program, source), "branch", None, False, None))
     graph = Graph([*roots, *(part.node for part in parts)])
     return bool(contract(graph, [*facts, *parts]).impossible)
 
 
-def _condition(test: ast.expr, holds: bool, values: Mapping[str, Any], program: Program) -> Node:
+def _condition(
+    test: ast.expr, holds: bool, values: Mapping[str, Any], program: Program, source: Source
+) -> Node:
     """The node of a condition over values of a program, or of its negation."""
-    written = f"({unparse(_Named(values).visit(deepcopy(test)))})"
+    written = f"({_over_parameters(test, values, source)})"
     compiled = compile_text(f"require {written if holds else f'not {written}'}\n", filename=_FILENAME)
     assert compiled.code is not None
     given = {_PREFIX + name: value for name, value in values.items()}
@@ -160,16 +163,19 @@ def _condition(test: ast.expr, holds: bool, values: Mapping[str, Any], program: 
     return beside.requirements[0].condition
 
 
-class _Named(ast.NodeTransformer):
-    """Puts global parameters in the place of names: a program of one requirement has no others."""
-
-    def __init__(self, names: Container[str]) -> None:
-        self._names = names
-
-    def visit_Name(self, node: ast.Name) -> ast.expr:
-        if node.id not in self._names:
-            return node
-        return ast.Attribute(ast.Name(PARAMETERS, ast.Load()), _PREFIX + node.id, ast.Load())
+def _over_parameters(test: ast.expr, names: Container[str], source: Source) -> str:
+    """The text of a condition with global parameters in the place of names: a program of one requirement has no others."""
+    whole = source.span(test)
+    lines = list(source.lines[whole.line - 1 : whole.end_line])
+    lines[-1] = lines[-1][: whole.end_column]
+    inner = [node for node in walk(test) if isinstance(node, ast.Name) and node.id in names]
+    for node in sorted(inner, key=position, reverse=True):
+        span = source.span(node)
+        line = lines[span.line - whole.line]
+        parameter = f"{PARAMETERS}.{_PREFIX}{node.id}"
+        lines[span.line - whole.line] = line[: span.column] + parameter + line[span.end_column :]
+    lines[0] = lines[0][whole.column :]
+    return "\n".join(lines)
 
 
 class _NoModules:

@@ -10,10 +10,12 @@ The result means the same and formats to itself; a text with mistakes is left al
 
 import ast
 import difflib
+import re
 from bisect import bisect_right
 from collections import Counter, deque
 from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import field
+from itertools import pairwise
 from typing import Any, Final
 
 from scenic.compiler.generated import WORDS
@@ -30,21 +32,22 @@ from scenic.language.spans import Span
 __all__ = ["format_text", "formatting"]
 
 _INDENTATION: Final = "    "
-_DEFINITIONS: Final = frozenset({"class", "def", "behavior", "monitor", "scenario", "@", "async"})
+_DEFINITION: Final = re.compile(r"@|(?:class|(?:async )?def|behavior|monitor|scenario) *\w")
 
 
 @dataclass(slots=True)
 class _Line:
     """One logical line: its first and last line (from 1), its depth, and its comments.
 
-    ``begin`` is its first token, ``start`` the text of that.
+    ``begin`` is its first token.
     """
 
     first: int
     last: int
     depth: int
     begin: int
-    start: str = ""
+    is_definition: bool = False
+    is_decorator: bool = False
     trailing: str = ""
     above: list[tuple[int, int, str]] = field(default_factory=list)
     """Comments on lines of their own before it: line, column, text."""
@@ -183,16 +186,14 @@ def _formatted(snapshot: Snapshot) -> str | None:
     lines = _logical_lines(snapshot.tokens)
     parts = [_parts(snapshot, line) for line in lines]
     dropped = _needless(snapshot, parts)
-    for kept in (frozenset(dropped), frozenset[int]()):
-        layout = _Layout(snapshot.tokens)
-        for line, of_line in zip(lines, parts, strict=True):
-            written = [spaced([each for each in part if each.token not in kept]) for part in of_line]
-            layout.add(line, written)
-        last = lines[-1].last if lines else 0
-        layout.comments([comment for comment in snapshot.tokens.comments if comment[0] > last], 0)
-        if _same(snapshot.tree, snapshot.tokens, layout.text()):
-            return layout.text()
-    return None
+    layout = _Layout(snapshot.tokens)
+    for line, of_line in zip(lines, parts, strict=True):
+        written = [spaced([each for each in part if each.token not in dropped]) for part in of_line]
+        layout.add(line, written)
+    last = lines[-1].last if lines else 0
+    layout.comments([comment for comment in snapshot.tokens.comments if comment[0] > last], 0)
+    result = layout.text()
+    return result if _same(snapshot.tree, snapshot.tokens, result) else None
 
 
 def _parts(snapshot: Snapshot, line: _Line) -> list[list[Lexeme]]:
@@ -205,24 +206,21 @@ def _parts(snapshot: Snapshot, line: _Line) -> list[list[Lexeme]]:
     if not cuts or cuts[0] > begin:
         cuts.insert(0, begin)
     parts = [lexemes(snapshot, *cut) for cut in zip(cuts, [*cuts[1:], end], strict=True)]
-    return [_without_last_marks(part) for part in parts]
+    if tokens.texts[begin] == "class" and any(each.text == ":" for part in parts[1:] for each in part):
+        return []  # An annotated variable would become a property.
+    return [part[:-1] if part[-1].text == ";" else part for part in parts]
 
 
-def _without_last_marks(part: list[Lexeme]) -> list[Lexeme]:
-    """A statement without the semicolon after it, and without commas that mean nothing."""
-    while part and part[-1].text == ";":
-        part.pop()
-    kept: list[Lexeme] = []
+def _needless_commas(part: Sequence[Lexeme]) -> Iterator[int]:
+    """The tokens of commas before a closing bracket that mean nothing, as those after single elements of tuples do."""
     commas = [0]
-    for lexeme in part:
-        if lexeme.text in ("(", "[", "{"):
+    for before, lexeme in pairwise(part):
+        if before.text in ("(", "[", "{"):
             commas.append(0)
-        elif lexeme.text == ",":
+        elif before.text == ",":
             commas[-1] += 1
-        elif lexeme.text in (")", "]", "}") and commas.pop() > 1 and kept[-1].text == ",":
-            kept.pop()
-        kept.append(lexeme)
-    return kept
+        if lexeme.text in (")", "]", "}") and commas.pop() > 1 and before.text == ",":
+            yield before.token
 
 
 def _starts_of_statements(snapshot: Snapshot) -> Container[tuple[int, int]]:
@@ -234,33 +232,37 @@ def _starts_of_statements(snapshot: Snapshot) -> Container[tuple[int, int]]:
     )
 
 
-def _needless(snapshot: Snapshot, parts: Sequence[list[list[Lexeme]]]) -> set[int]:
-    """The tokens of parentheses without which the statements of the top level are read as before."""
-    pairs = [pair for of_line in parts for part in of_line for pair in needless_pairs(part)]
-    tokens, lines = snapshot.tokens, snapshot.source.lines
+def _needless(snapshot: Snapshot, parts: Sequence[list[list[Lexeme]]]) -> frozenset[int]:
+    """The tokens of commas and parentheses without which the statements of the top level are read as before."""
+    candidates: list[tuple[int, ...]] = []
+    for part in (part for of_line in parts for part in of_line):
+        candidates += [(token,) for token in _needless_commas(part)]
+        candidates += [(opening.token, closing.token) for opening, closing in needless_pairs(part)]
+    lines = snapshot.tokens.lines
     dropped: set[int] = set()
     for first, last, statements in _groups(snapshot.tree):
-        near = [(one.token, other.token) for one, other in pairs if first <= tokens.lines[one.token] <= last]
-        if not near:
-            continue
-
-        def is_read_alike(without: Iterable[int]) -> bool:
-            rows = list(lines[first - 1 : last])  # noqa: B023 - called in the same round
-            for index in without:
-                row, column = tokens.lines[index] - first, tokens.columns[index]  # noqa: B023
-                content = rows[row].encode()
-                rows[row] = (content[:column] + b" " + content[column + 1 :]).decode()
-            parsed = parse("\n".join(rows) + "\n")
-            return not parsed.diagnostics and _equal(statements, parsed.tree.body)  # noqa: B023
-
-        without = {index for pair in near for index in pair}
-        if not is_read_alike(without):
+        near = [each for each in candidates if first <= lines[each[0]] <= last]
+        without = {token for each in near for token in each}
+        if near and not _is_read_alike(snapshot, first, last, statements, without):
             without = set()
-            for pair in near:
-                if is_read_alike(without.union(pair)):
-                    without.update(pair)
+            for each in near:
+                if _is_read_alike(snapshot, first, last, statements, without.union(each)):
+                    without.update(each)
         dropped |= without
-    return dropped
+    return frozenset(dropped)
+
+
+def _is_read_alike(
+    snapshot: Snapshot, first: int, last: int, statements: Sequence[ast.stmt], without: Iterable[int]
+) -> bool:
+    """Return whether the lines from ``first`` to ``last`` are still these statements without some marks."""
+    tokens = snapshot.tokens
+    rows = [line.encode() for line in snapshot.source.lines[first - 1 : last]]
+    for token in without:
+        row, column = tokens.lines[token] - first, tokens.columns[token]
+        rows[row] = rows[row][:column] + b" " + rows[row][column + 1 :]
+    parsed = parse("\n".join(row.decode() for row in rows) + "\n")
+    return not parsed.diagnostics and _equal(statements, parsed.tree.body)
 
 
 def _groups(tree: ast.Module) -> Iterator[tuple[int, int, list[ast.stmt]]]:
@@ -313,7 +315,9 @@ def _logical_lines(tokens: Tokens) -> list[_Line]:
                 line = None
         elif kind not in (NEWLINE, INDENT, DEDENT, ENDMARKER):
             if line is None:
-                line = _Line(at, at, depth, index, text)
+                words = " ".join(tokens.texts[index : index + 3])
+                is_definition = _DEFINITION.match(words) is not None
+                line = _Line(at, at, depth, index, is_definition, text == "@")
             before = text
     return found
 
@@ -366,7 +370,7 @@ class _Layout:
         if previous is None or depth > self._depth:
             return
         after = self._depth > depth and self._ended_definition(depth)
-        if not (_is_definition(line) or after) or previous.start == "@":
+        if not (line.is_definition or after) or previous.is_decorator:
             return
         wanted = 1 if depth else 2
         # Comments of the block before come before the gap.
@@ -389,7 +393,7 @@ class _Layout:
             if line.strip() and not line.lstrip().startswith("#"):
                 indentation = len(line) - len(line.lstrip())
                 if indentation <= depth * len(_INDENTATION):
-                    return line.split(maxsplit=1)[0] in _DEFINITIONS
+                    return _DEFINITION.match(line, indentation) is not None
         return False
 
     def _gap(self, first: int, depth: int) -> None:
@@ -419,10 +423,6 @@ def _width(line: str) -> int:
     """Return the indentation of a line, in columns."""
     expanded = line.expandtabs()
     return len(expanded) - len(expanded.lstrip())
-
-
-def _is_definition(line: _Line) -> bool:
-    return line.start in _DEFINITIONS
 
 
 def _lines_in_strings(tokens: Tokens) -> Iterator[int]:

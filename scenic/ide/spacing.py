@@ -70,7 +70,10 @@ def lexemes(snapshot: Snapshot, begin: int, end: int) -> list[Lexeme]:
             place = tokens.lines[index], tokens.columns[index]
             before = found[-1].text if found else ""
             is_name = text.isidentifier() and (
-                kind == NAME or place in names or before == "." or before in _DEFINING
+                kind == NAME
+                or place in names
+                or before in _DEFINING
+                or (before == "." and found[0].text != "from")
             )
             if before == "with" and found[0].text not in ("with", "async"):
                 is_name = False  # A property, whose value follows.
@@ -178,7 +181,8 @@ def _is_tight(before: Lexeme, after: Lexeme, bracket: _Bracket) -> bool:
     """Return whether no blank stands before ``after``."""
     text = after.text
     if text == ".":
-        return before.text != "from" and not (before.is_value and before.text.isdigit())
+        is_integer = before.text[0].isdigit() and "." not in before.text
+        return before.text != "from" and not is_integer
     return (
         text in _CLOSERS
         or text in (",", ";")

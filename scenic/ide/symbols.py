@@ -1,15 +1,16 @@
 """Definitions of a document, as a tree, and of a workspace, as a list to search in."""
 
 import ast
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.unparser import UnparseError, unparse
 from scenic.dataclass import dataclass
 from scenic.ide.places import name_span, span_of
 from scenic.ide.snapshot import Snapshot
+from scenic.ide.spacing import text_of
 from scenic.language.spans import Span
 
 __all__ = ["Kind", "Symbol", "flat", "matches", "symbols"]
@@ -104,25 +105,33 @@ def _of_statement(
 ) -> Iterator[Symbol]:
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
         kind = Kind.METHOD if in_class else Kind.FUNCTION
-        yield _symbol(snapshot, node, kind, signature(node.args), _inner(snapshot, node.body, depth))
+        yield _symbol(snapshot, node, kind, _signature(snapshot, node), _inner(snapshot, node.body, depth))
     elif isinstance(node, ast.ClassDef):
-        bases = ", ".join(_text(base) for base in node.bases)
+        bases = ", ".join(_text(snapshot, base) for base in node.bases)
         children = tuple(_of_block(snapshot, node.body, depth, in_class=True))
         yield _symbol(snapshot, node, Kind.CLASS, f"({bases})" if bases else "", children)
     elif isinstance(node, scenic.BehaviorDef):
-        yield _symbol(snapshot, node, Kind.BEHAVIOR, signature(node.args), _inner(snapshot, node.body, depth))
+        yield _symbol(
+            snapshot, node, Kind.BEHAVIOR, _signature(snapshot, node), _inner(snapshot, node.body, depth)
+        )
     elif isinstance(node, scenic.MonitorDef):
-        yield _symbol(snapshot, node, Kind.MONITOR, signature(node.args), _inner(snapshot, node.body, depth))
+        yield _symbol(
+            snapshot, node, Kind.MONITOR, _signature(snapshot, node), _inner(snapshot, node.body, depth)
+        )
     elif isinstance(node, scenic.ScenarioDef):
         body = [*(node.setup or ()), *(node.compose or ())]
         children = tuple(_of_block(snapshot, body, depth))
-        yield _symbol(snapshot, node, Kind.SCENARIO, signature(node.args) if node.args else "", children)
+        yield _symbol(
+            snapshot, node, Kind.SCENARIO, _signature(snapshot, node) if node.args else "", children
+        )
     elif isinstance(node, scenic.PropertyDef):
         attributes = f"[{', '.join(node.attributes)}]" if node.attributes else ""
-        yield _symbol(snapshot, node, Kind.PROPERTY, f"{attributes}: {_text(node.value)}".strip(": "))
+        yield _symbol(
+            snapshot, node, Kind.PROPERTY, f"{attributes}: {_text(snapshot, node.value)}".strip(": ")
+        )
     elif isinstance(node, scenic.Param):
         for item in node.items:
-            yield _symbol(snapshot, item, Kind.PARAMETER, _text(item.value))
+            yield _symbol(snapshot, item, Kind.PARAMETER, _text(snapshot, item.value))
     elif isinstance(node, scenic.Require | scenic.RequireMonitor | scenic.TerminateWhen):
         if node.name:
             span = span_of(snapshot, node)
@@ -136,7 +145,7 @@ def _of_statement(
                     yield Symbol(
                         bound.id,
                         _kind_of_value(node.value, bound.id),
-                        "" if node.value is None else _text(node.value),
+                        "" if node.value is None else _text(snapshot, node.value),
                         span_of(snapshot, node),
                         name_span(snapshot, bound),
                     )
@@ -178,21 +187,30 @@ def _names(target: ast.expr) -> Iterator[ast.Name]:
             stack.append(part.value)
 
 
-def signature(args: ast.arguments) -> str:
-    """Parameters as they are written."""
-    function = ast.FunctionDef("f", args, [ast.Pass()], [], None)
-    try:
-        text = unparse(function)
-    except UnparseError:
-        return "(...)"
-    return text.partition("\n")[0].removeprefix("def f").removesuffix(":")
+def _signature(snapshot: Snapshot, node: Any) -> str:
+    """The parameters of a definition as they are written, on one line."""
+    tokens = snapshot.tokens
+    begin = _token_at(snapshot, node.lineno, node.col_offset)
+    while tokens.texts[begin] not in ("(", ":"):
+        begin += 1
+    end, depth = begin, 0
+    while depth or tokens.texts[end] != ":":
+        depth += (tokens.texts[end] in ("(", "[", "{")) - (tokens.texts[end] in (")", "]", "}"))
+        end += 1
+    return text_of(snapshot, begin, end).partition(" ->")[0]
 
 
-def _text(node: ast.expr) -> str:
-    try:
-        text = unparse(node)
-    except UnparseError:
-        return "..."
+def _token_at(snapshot: Snapshot, line: int, column: int) -> int:
+    """The first token at a place or after it; ``column`` counts bytes."""
+    lines, columns = snapshot.tokens.lines, snapshot.tokens.columns
+    return bisect_left(range(len(lines)), (line, column), key=lambda index: (lines[index], columns[index]))
+
+
+def _text(snapshot: Snapshot, node: ast.expr) -> str:
+    """An expression on one line; a long one is cut."""
+    begin = _token_at(snapshot, node.lineno, node.col_offset)
+    end = _token_at(snapshot, node.end_lineno or 0, node.end_col_offset or 0)
+    text = text_of(snapshot, begin, end)
     line, more, _ = text.partition("\n")
     return line[:_LONGEST] + ("..." if more or len(line) > _LONGEST else "")
 

@@ -23,7 +23,7 @@ def test_faults_have_names_of_their_own():
     assert len({fault.name for fault in FAULTS}) == len(FAULTS) >= 20
     assert {fault.place for fault in FAULTS} >= {
         "parser",
-        "unparser",
+        "formatter",
         "lowering",
         "resolver",
         "lexer",

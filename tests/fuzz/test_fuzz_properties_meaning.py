@@ -17,7 +17,6 @@ from fuzz.properties import (
     content,
     forms,
     neighbours,
-    operands,
     parsers,
     python,
     tokens,
@@ -44,7 +43,7 @@ TEXTS = [
 
 RIGHT = tuple(
     each
-    for module in (tokens, columns, python, forms, operands, content, neighbours, parsers)
+    for module in (tokens, columns, python, forms, content, neighbours, parsers)
     for each in module.OF_TEXTS
 )
 
@@ -211,32 +210,6 @@ def test_what_needs_no_parentheses_should_be_able_to_have_none(monkeypatch: pyte
     monkeypatch.setattr(forms, "parse", lambda _: parse(text))
     with pytest.raises(Violation, match="no operand without parentheses"):
         forms.operators_follow_the_table(Case(text, thorough=True))
-
-
-def test_lost_parentheses_are_noticed(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(operands, "unparse", lambda tree: ast.unparse(tree).replace("(", "").replace(")", ""))
-
-    def exchange() -> None:
-        for number in range(50):
-            operands.operands_can_be_exchanged(Case(f"x{number} = a - b * c - d\n", thorough=True))
-
-    with pytest.raises(Violation, match="another tree"):
-        exchange()
-
-
-def test_operands_of_conditions_are_exchanged(monkeypatch: pytest.MonkeyPatch):
-    text = "require always a until b\n"
-    written: list[str] = []
-
-    def noted(tree: ast.Module) -> str:
-        written.append(unparse(tree))
-        return written[-1]
-
-    unparse = operands.unparse
-    monkeypatch.setattr(operands, "unparse", noted)
-    for number in range(40):
-        operands.operands_can_be_exchanged(Case(f"{text}# {number}\n", thorough=True))
-    assert len(set(written)) > 5
 
 
 # Neighbours of mistakes, and the two parsers.

@@ -195,7 +195,7 @@ def test_properties_can_be_chosen(capsys: pytest.CaptureFixture[str]):
     assert command.main(["--programs", "3", "--mutants", "2", "--seed", "5", "--jobs", "0", *chosen]) == 0
     output = capsys.readouterr().out
     assert "parsing_gives_a_tree" in output
-    assert "written_trees_read_the_same" not in output
+    assert "formatted_texts_read_the_same" not in output
     assert " 0 formulas" in output
     with pytest.raises(SystemExit):
         command.main(["--only", "parsing"])

@@ -193,8 +193,8 @@ from pathlib import Path
 from hypothesis import HealthCheck, given, settings
 from scenic.compiler.check import check_text
 from scenic.compiler.parser import parse
-from scenic.compiler.unparser import unparse
 from scenic.ide.continuations import continuations
+from scenic.ide.formatting import format_text
 from scenic.ide.hover import hover
 from scenic.ide.pygments_lexer import ScenicLexer
 from scenic.ide.snapshot import Snapshot
@@ -269,7 +269,7 @@ print(json.dumps({
     "announced": scene.params["announced"],
     "slab": [slab.height, slab.sensors["warmth"].getObservation(), literal(slab.shape),
              primitive_of("slab").__name__],
-    "written": unparse(parse(TEXT).tree),
+    "written": format_text(TEXT),
     "noun": _NOUNS["exponential"],
     "wrong": messages("x = Exponential()\ny = clamp(1, 2)\nnew Object at Exponential(1)\nnew Object in CubeRegion\nnew SlabShape\nThermometer(3)"),
     "imported": [imported("scenic.core.regions", "CubeRegion"), imported("scenic.core.distributions", "Exponential"),
