@@ -3,7 +3,6 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cache
-from typing import Final
 
 from fuzz.grammar import Program, derivations
 from grammar.origins import of_scenic
@@ -12,11 +11,9 @@ from scenic.compiler import tree
 from scenic.compiler.actions import Actions
 from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
-from scenic.compiler.parser import recursion_limit
+from scenic.compiler.parser import deep_recursion
 
 __all__ = ["Coverage", "Share", "all_choices", "trace"]
-
-_DEEPEST: Final = 20_000
 
 
 @cache
@@ -44,7 +41,7 @@ def trace(text: str) -> Trace:
     tokens = lex(text, WORDS)
     if tokens.diagnostics:
         return Trace(None, frozenset())
-    with recursion_limit(_DEEPEST):
+    with deep_recursion():
         return _parser().parse(tokens.lists(), Actions(tokens))
 
 

@@ -279,20 +279,14 @@ FAULTS: Final = (
         (Change(_SPACING, 'return "\\n".join(lines)', 'return "\\n".join(lines).replace("!r", "")'),),
     ),
     Fault(
-        "endless-loop",
+        "lost-comment",
         "formatter",
-        "writing brackets does not come to an end",
-        (Change(_SPACING, "            brackets.pop()\n", "            while brackets: pass\n"),),
-    ),
-    Fault(
-        "growing-text",
-        "formatter",
-        "each time a comment is a blank further away",
+        "comments after statements are not written",
         (
             Change(
                 "scenic/ide/formatting.py",
-                'self._lines[-1] += f"  {line.trailing}"',
-                'self._lines[-1] += f"  {line.trailing}" + " " * len(line.trailing)',
+                "        if parts and line.trailing:\n",
+                "        if not parts and line.trailing:\n",
             ),
         ),
     ),

@@ -2,20 +2,15 @@
 
 from collections.abc import Callable
 
-from scenic.compiler.parser import recursion_limit
 from scenic.language.errors import ScenicError
 
 __all__ = ["call_deep"]
 
 
-def call_deep(function: Callable[[], str], filename: str, *, frames: int) -> str:
-    """The result of ``function``, which may recurse by a number of frames.
-
-    Raises `ScenicError` with code SC112 if that is not enough.
-    """
+def call_deep(function: Callable[[], str], filename: str) -> str:
+    """The result of ``function``; raises `ScenicError` with code SC112 if it recurses too deeply."""
     try:
-        with recursion_limit(frames):
-            return function()
+        return function()
     except RecursionError:
         raise ScenicError(
             "the program is nested too deeply to be shown",

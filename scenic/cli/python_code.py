@@ -2,7 +2,6 @@
 
 import ast
 import sys
-from typing import Final
 
 import click
 
@@ -12,11 +11,10 @@ from scenic.cli.output import exit_code, show_diagnostics
 from scenic.cli.render import Sources
 from scenic.compiler.check import in_order
 from scenic.compiler.compile import lower_text
+from scenic.compiler.parser import deep_recursion
 from scenic.language.source import read_source
 
 __all__ = ["python_code"]
-
-_FRAMES: Final = 10_000
 
 
 @click.command()
@@ -29,5 +27,10 @@ def python_code(file: str) -> int:
     show_diagnostics(found, Sources([source]))
     module = lowered.module
     if module is not None:
-        sys.stdout.write(call_deep(lambda: ast.unparse(module), file, frames=_FRAMES) + "\n")
+        sys.stdout.write(call_deep(lambda: _text(module), file) + "\n")
     return exit_code(found)
+
+
+def _text(module: ast.Module) -> str:
+    with deep_recursion():
+        return ast.unparse(module)

@@ -16,9 +16,6 @@ from scenic.language.source import read_source
 
 __all__ = ["syntax_tree"]
 
-_FRAMES: Final = 1_000
-"""Each line is indented by its depth, and copied once for each level: more would take minutes."""
-
 _ALL_FIELDS: Final[dict[str, Any]] = {"show_empty": True} if sys.version_info >= (3, 13) else {}
 """Fields without a value are shown, too, as all versions of Python once did."""
 
@@ -40,7 +37,6 @@ def syntax_tree(file: str, positions: bool) -> int:
     shown = call_deep(
         lambda: ast.dump(parsed.tree, indent=2, include_attributes=positions, **_ALL_FIELDS),
         file,
-        frames=_FRAMES,
     )
     sys.stdout.write(f"{shown}\n")
     return exit_code(found)

@@ -2,7 +2,6 @@
 
 import ast
 import re
-import threading
 import warnings
 from collections.abc import Callable
 from types import CodeType
@@ -12,7 +11,7 @@ from scenic.compiler.checks import lint
 from scenic.compiler.complaints import suspects
 from scenic.compiler.lowering import lower
 from scenic.compiler.old_dialect import as_old_dialect
-from scenic.compiler.parser import DEEPEST, ParseResult, ordinary_recursion, parse, recursion_limit
+from scenic.compiler.parser import ParseResult, deep_recursion, parse
 from scenic.compiler.resolver import resolve_within
 from scenic.compiler.scopes import Resolution
 from scenic.compiler.surroundings import SurroundingsOf
@@ -20,12 +19,6 @@ from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.source import Source
 from scenic.language.spans import Span
-
-_DEEPEST_IN_C: Final = 10_000
-"""The recursion limit for Python's compiler, which allows three times as many calls in C."""
-
-_STACK: Final = 128 * 1024 * 1024
-"""Bytes for these; only what is used of them takes memory."""
 
 __all__ = ["Compiled", "Lowered", "check_parsed", "compile_text", "lower_text"]
 
@@ -54,7 +47,7 @@ def lower_text(text: str, *, filename: str) -> Lowered:
     if resolution is None:
         return Lowered(None, found)
     try:
-        with recursion_limit(DEEPEST):
+        with deep_recursion():
             return Lowered(lower(parsed.tree, resolution), found)
     except RecursionError:
         return Lowered(None, (*found, _too_deep(source)))
@@ -117,7 +110,7 @@ def _checked(
     """Check a parsed program; return its diagnostics, and its names if it has no errors."""
     found = list(parsed.diagnostics)
     try:
-        with recursion_limit(DEEPEST):
+        with deep_recursion():
             resolution, context = resolve_within(parsed.tree, source, surroundings_of, bound, go_on, typing)
             hints = lint(context, go_on) if thorough else ()
     except RecursionError:
@@ -132,7 +125,7 @@ def _complaints(
     """Return Python's complaints about statements of a program: an error or ``None``, and warnings by line."""
     tree = ast.Module(body=statements, type_ignores=[])
     try:
-        with recursion_limit(DEEPEST):
+        with deep_recursion():
             module = lower(tree, resolution)
     except RecursionError:
         return _too_deep(source), []
@@ -148,42 +141,14 @@ def _compiled(
     with warnings.catch_warnings(record=True) as noted:
         warnings.simplefilter("always")
         try:
-            code = _compile(module, source.filename)
+            with deep_recursion():
+                code = compile(module, source.filename, "exec", dont_inherit=True)
         except SyntaxError as problem:
             error = _python_error(problem, source)
         except RecursionError:
             error = _too_deep(source)
     # A condition is compiled twice, so it may be warned about twice.
     return code, error, list(dict.fromkeys((warning.lineno, str(warning.message)) for warning in noted))
-
-
-def _compile(module: ast.Module, filename: str) -> CodeType:
-    """Python's compiler, which goes through trees by recursion in C: deep ones get a stack that is large enough."""
-    try:
-        with ordinary_recursion():
-            return compile(module, filename, "exec", dont_inherit=True)
-    except RecursionError:
-        pass
-    result: list[CodeType | BaseException] = []
-
-    def attempt() -> None:
-        try:
-            with ordinary_recursion(_DEEPEST_IN_C):
-                result.append(compile(module, filename, "exec", dont_inherit=True))
-        except BaseException as error:  # noqa: BLE001 - it is raised again where it belongs
-            result.append(error)
-
-    before = threading.stack_size(_STACK)
-    try:
-        thread = threading.Thread(target=attempt)
-        thread.start()
-    finally:
-        threading.stack_size(before)
-    thread.join()
-    [found] = result
-    if isinstance(found, BaseException):
-        raise found
-    return found
 
 
 def _has_errors(diagnostics: list[Diagnostic]) -> bool:

@@ -14,7 +14,7 @@ from itertools import islice
 from typing import ClassVar, Final, NamedTuple
 
 from scenic.compiler import lexemes, lexical_errors
-from scenic.compiler.lines import MOST_DIAGNOSTICS, LineReader
+from scenic.compiler.lines import MOST_DIAGNOSTICS, LineReader, NestedTooDeeplyError
 from scenic.compiler.tokens import (
     DEDENT,
     ENDMARKER,
@@ -31,6 +31,9 @@ from scenic.compiler.tokens import (
 )
 from scenic.dataclass import dataclass
 from scenic.language.spans import Span
+
+MOST_BRACKETS: Final = 200
+"""The largest number of brackets within each other, as in CPython."""
 
 _MOST_BRACKETS_SEARCHED: Final = 100
 """So far out an opening bracket is looked for when a closing one does not fit; keeps the time linear."""
@@ -112,9 +115,16 @@ class Lexer(LineReader):
 
     def run(self) -> Tokens:
         """Tokenise the whole text."""
-        pos: int | None = self.start_line(0)
-        while pos is not None:
-            pos = self.run_from(pos)
+        try:
+            pos: int | None = self.start_line(0)
+            while pos is not None:
+                pos = self.run_from(pos)
+        except NestedTooDeeplyError as error:
+            self.tokens.diagnostics[:] = [
+                lexical_errors.nested_too_deeply(self.here(error.pos, error.pos + 1))
+            ]
+            self.brackets = []
+            self.end(error.pos)
         return self.tokens
 
     def run_from(self, pos: int) -> int | None:
@@ -138,6 +148,8 @@ class Lexer(LineReader):
                 add_column(start - line_start)
                 add_end_column(end - line_start)
             elif group == 2:  # OPENER
+                if len(brackets) == MOST_BRACKETS:
+                    raise NestedTooDeeplyError(start)
                 word = text[start]
                 column = start - line_start
                 add_kind(words[word])

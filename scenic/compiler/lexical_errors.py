@@ -58,6 +58,15 @@ def single_brace(span: Span) -> Diagnostic:
     return Diagnostic("SC105", "single `}` in an f-string", span, help="write `}}` for a brace")
 
 
+def nested_too_deeply(span: Span) -> Diagnostic:
+    return Diagnostic(
+        "SC112",
+        "this is nested too deeply",
+        span,
+        help="write at most 200 brackets, and 99 blocks, within each other",
+    )
+
+
 def open_string(quote: str, span: Span) -> Diagnostic:
     return Diagnostic("SC101", "this string is never closed", span, help=f"add `{quote}`")
 

@@ -10,8 +10,19 @@ from scenic.language.spans import Span
 MOST_DIAGNOSTICS: Final = 1000
 """So many are reported of one text; a file of random bytes has no use for millions."""
 
+MOST_INDENTS: Final = 100
+"""The largest number of levels of indentation, with that of the module, as in CPython."""
+
 _TAB: Final = 8
 _WHITE: Final = " \t\f"
+
+
+class NestedTooDeeplyError(Exception):
+    """Brackets or blocks are nested too deeply at ``pos``."""
+
+    def __init__(self, pos: int) -> None:
+        super().__init__(pos)
+        self.pos = pos
 
 
 class LineReader:
@@ -128,6 +139,8 @@ class LineReader:
         top, strict_top = indents[-1]
         if column > top:
             mixed = strict_column <= strict_top
+            if len(indents) == MOST_INDENTS:
+                raise NestedTooDeeplyError(end)
             indents.append((column, strict_column))
             self.add(INDENT, self.line_start, end)
         else:

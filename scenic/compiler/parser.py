@@ -27,8 +27,8 @@ from scenic.language.spans import Span
 
 __all__ = ["ParseResult", "bare_text", "parse", "parse_lexed"]
 
-DEEPEST: Final = 1_000_000
-"""The deepest recursion that is tried; some 300 MB of Python frames, which use no C stack."""
+_FRAMES: Final = 10_000
+"""Frames of functions that explain a mistake within 200 brackets; CPython's compiler accepts as many levels without harm."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +68,9 @@ def parse(text: str, *, filename: str = "<string>") -> ParseResult:
 
 def parse_lexed(tokens: Tokens, *, filename: str) -> ParseResult:
     """Parse the tokens of a text, as the plain lexer gives them."""
+    if any(each.code == "SC112" for each in tokens.diagnostics):
+        found = (replace(each, filename=filename) for each in tokens.diagnostics)
+        return ParseResult(ast.Module(body=[], type_ignores=[]), tuple(found))
     with no_garbage_collection():
         parsed = _parse_tokens(tokens)
     problems = parsed.problems
@@ -172,7 +175,7 @@ def _recovered(tokens: Tokens) -> Parsed:
 
     actions = Actions(tokens)
     recovery = Recovery(tokens, actions)
-    with recursion_limit(DEEPEST):
+    with deep_recursion():
         tree = recovery.file()
     problems = [*actions.problems.values(), *recovery.problems]
     return Parsed(tokens, tree, problems)
@@ -237,54 +240,32 @@ def _order(diagnostic: Diagnostic) -> tuple[int, int, str, str]:
 
 
 class _Recursion:
-    """The limit of recursion, which all threads share: raised as long as any of them needs it."""
+    """The limit of recursion, which all threads share: raised as long as any of them reads a program."""
 
     def __init__(self) -> None:
-        self._changed = threading.Condition()
-        self._deep = 0
+        self._lock = threading.Lock()
+        self._users = 0
         self._ordinary = sys.getrecursionlimit()
 
     @contextmanager
-    def raised(self, limit: int) -> Iterator[None]:
-        with self._changed:
-            if not self._deep:
+    def raised(self) -> Iterator[None]:
+        with self._lock:
+            if not self._users:
                 self._ordinary = sys.getrecursionlimit()
-            self._deep += 1
-            sys.setrecursionlimit(max(limit, sys.getrecursionlimit()))
+                sys.setrecursionlimit(max(_FRAMES, self._ordinary))
+            self._users += 1
         try:
             yield
         finally:
-            with self._changed:
-                self._deep -= 1
-                if not self._deep:
+            with self._lock:
+                self._users -= 1
+                if not self._users:
                     sys.setrecursionlimit(self._ordinary)
-                    self._changed.notify_all()
-
-    @contextmanager
-    def ordinary(self, limit: int) -> Iterator[None]:
-        with self._changed:
-            while self._deep:
-                self._changed.wait()
-            before = sys.getrecursionlimit()
-            sys.setrecursionlimit(max(limit, before))
-            try:
-                yield
-            finally:
-                sys.setrecursionlimit(before)
 
 
 _RECURSION: Final = _Recursion()
 
 
-def recursion_limit(limit: int) -> AbstractContextManager[None]:
-    """Allow deeper recursion of Python functions for a while."""
-    return _RECURSION.raised(limit)
-
-
-def ordinary_recursion(limit: int = 0) -> AbstractContextManager[None]:
-    """Wait until no other thread needs deeper recursion, and let none begin: for what recurses on the stack of C.
-
-    A higher ``limit`` than the ordinary one is for a thread with a larger stack. Not to be used where the same thread has
-    allowed deeper recursion.
-    """
-    return _RECURSION.ordinary(limit)
+def deep_recursion() -> AbstractContextManager[None]:
+    """Allow the recursion of functions that the deepest programs need, which have 200 brackets within each other."""
+    return _RECURSION.raised()

@@ -11,7 +11,7 @@ from typing import Any, Final
 from scenic.compiler.actions import Actions
 from scenic.compiler.generated import KIND_NAMES, WORDS, build_recording_parser
 from scenic.compiler.lexer import lex
-from scenic.compiler.parser import DEEPEST, recursion_limit
+from scenic.compiler.parser import deep_recursion
 from scenic.compiler.syntax import BLOCK_STARTERS, RULES, Reference, first_words
 from scenic.compiler.tokens import DEDENT, ERROR, INDENT, NEWLINE, Tokens
 from scenic.dataclass import dataclass
@@ -136,7 +136,7 @@ def _expected(tokens: Tokens, mark: int, rule: str) -> set[int | str]:
     probe = _Probe()
     probe.run = build_recording_parser(*tokens.lists(), Actions(tokens), probe)
     try:
-        with recursion_limit(DEEPEST):
+        with deep_recursion():
             probe(rule, 0)
     except RecursionError:
         return set()

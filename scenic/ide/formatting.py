@@ -20,6 +20,7 @@ from typing import Any, Final
 
 from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
+from scenic.compiler.lines import measure
 from scenic.compiler.parser import parse, parse_lexed
 from scenic.compiler.tokens import DEDENT, ENDMARKER, FSTRING_MIDDLE, INDENT, NEWLINE, STRING, Tokens
 from scenic.compiler.traversal import first_position, position
@@ -421,8 +422,7 @@ class _Layout:
 
 def _width(line: str) -> int:
     """Return the indentation of a line, in columns."""
-    expanded = line.expandtabs()
-    return len(expanded) - len(expanded.lstrip())
+    return measure(line[: len(line) - len(line.lstrip())])[0]
 
 
 def _lines_in_strings(tokens: Tokens) -> Iterator[int]:

@@ -10,7 +10,7 @@ from typing import Any, Final, TypeVar
 from scenic.compiler.check import check_tree
 from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
-from scenic.compiler.parser import DEEPEST, ParseResult, parse_lexed, recursion_limit
+from scenic.compiler.parser import ParseResult, deep_recursion, parse_lexed
 from scenic.compiler.resolver import bind
 from scenic.compiler.scopes import Binding, BindingKind, Resolution, Scope, ScopeKind
 from scenic.compiler.surroundings import SurroundingsOf
@@ -203,7 +203,7 @@ class Snapshot:
         )
 
     def _resolve(self) -> Resolution:
-        with recursion_limit(DEEPEST):
+        with deep_recursion():
             return bind(self.tree)
 
 

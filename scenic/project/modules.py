@@ -9,7 +9,7 @@ from typing import Any, Final, TypeVar
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.places import word_span
-from scenic.compiler.parser import DEEPEST, parse, recursion_limit
+from scenic.compiler.parser import deep_recursion, parse
 from scenic.compiler.resolver import bind
 from scenic.compiler.scopes import Resolution, Scope, ScopeKind
 from scenic.compiler.traversal import walk
@@ -197,7 +197,7 @@ def read_module(
     is_scenic = not source.filename.endswith((".py", ".pyi"))
     broken = False
     try:
-        with recursion_limit(DEEPEST):
+        with deep_recursion():
             if tree is None and is_scenic:
                 parsed = parse(source.text, filename=source.filename)
                 tree = parsed.tree

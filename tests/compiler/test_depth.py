@@ -13,9 +13,9 @@ from tests.work import calls_while
 
 Text = Callable[[int], str]
 
-DEPTH = 1050
-"""Of the deep texts: deeper than Python lets functions call each other, unless it is told to."""
-BLOCKS = 0.1
+DEPTH = 190
+"""Of the deep texts: nearly as deep as brackets may nest."""
+BLOCKS = 0.4
 """Blocks in blocks, by the depth of other texts."""
 
 
@@ -223,7 +223,7 @@ for _header in (
     TEXTS[f"blocks of {' '.join(_header)}"] = blocks(*_header, after=_after)
     TEXTS[f"blocks of {' '.join(_header)} with a mistake"] = blocks(*_header, inner="x x", after=_after)
     TEXTS[f"blocks of {' '.join(_header)} with brackets"] = blocks(
-        *_header, inner="x = " + "(" * 500 + ")" * 500
+        *_header, inner="x = " + "(" * 100 + ")" * 100
     )
 TEXTS["blocks of if with else"] = blocks("if a:", after=("else: pass",))
 TEXTS["blocks of all kinds"] = blocks(

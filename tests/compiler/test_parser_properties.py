@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scenic.compiler import parser
 from scenic.compiler.generated import WORDS
 from scenic.compiler.parser import ParseResult, parse
 from tests.compiler.golden_cases import SCENIC_FILES, read_cases
@@ -88,14 +87,35 @@ def test_programs_cut_short(program: str, place: int) -> None:
 )
 def test_deep_nesting_gives_a_tree_or_a_message(text: str) -> None:
     result = parse(text)
-    assert result.tree.body
+    assert result.tree.body or result.diagnostics
     del result
     gc.collect()
 
 
-def test_too_deep_nesting_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    # The real limit takes a gigabyte to reach.
-    monkeypatch.setattr(parser, "DEEPEST", 20_000)
+@pytest.mark.parametrize(
+    ("text", "line", "column"),
+    [
+        ("y = 1\nx = " + "(" * 200 + "a" + ")" * 200 + "\n", None, None),
+        ("y = 1\nx = " + "([" * 100 + "{a}" + "])" * 100 + "\n", 2, 204),
+        ("".join(" " * depth + "if a:\n" for depth in range(99)) + " " * 99 + "pass\n", None, None),
+        ("".join(" " * depth + "if a:\n" for depth in range(100)) + " " * 100 + "pass\n", 101, 100),
+    ],
+)
+def test_brackets_and_blocks_nest_as_deeply_as_in_python(text: str, line: int, column: int) -> None:
+    result = parse(text)
+    assert [(each.code, each.span and (each.span.line, each.span.column)) for each in result.diagnostics] == (
+        [] if line is None else [("SC112", (line, column))]
+    )
+    try:
+        compile(text, "f", "exec")
+    except SyntaxError as error:
+        assert line is not None or "blocks" in str(error)  # noqa: PT017 - loops and the like nest less deeply
+    else:
+        assert line is None
+
+
+def test_long_chains_give_a_tree_or_a_diagnostic() -> None:
+    assert not parse("x = " + "-" * 1_000 + "a\ny = 2\n").diagnostics
     result = parse("x = " + "-" * 22_000 + "a\ny = 2\n")
     assert [each.code for each in result.diagnostics] == ["SC112"]
     assert isinstance(result.tree.body[1], ast.Assign)
@@ -103,6 +123,7 @@ def test_too_deep_nesting_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_the_recursion_limit_and_the_collector_are_left_alone() -> None:
     before = sys.getrecursionlimit(), gc.isenabled()
+    parse("x = " + "(" * 190 + ")" * 190)
     parse("x = " + "(" * 5000 + ")" * 5000)
     parse("x x")
     assert (sys.getrecursionlimit(), gc.isenabled()) == before

@@ -17,7 +17,7 @@ from scenic.compiler import tree
 from scenic.compiler.actions import Actions
 from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
-from scenic.compiler.parser import parse, recursion_limit
+from scenic.compiler.parser import deep_recursion, parse
 from tests.compiler.golden_cases import Case, python_cases, scenic_cases
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -35,7 +35,7 @@ def parser() -> TracingParser:
 
 def trace(text: str) -> Trace:
     tokens = lex(text, WORDS)
-    with recursion_limit(20_000):
+    with deep_recursion():
         return parser().parse(tokens.lists(), Actions(tokens))
 
 
