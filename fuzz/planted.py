@@ -255,7 +255,9 @@ FAULTS: Final = (
         "a mistake that an action finds is not reported",
         (
             Change(
-                _RECOVERY, "            self._add(failure, farthest)\n", "            self._note(farthest)\n"
+                _RECOVERY,
+                "            self._add(self.expectations.failed(start, failure), farthest)\n",
+                "            self._note(farthest)\n",
             ),
         ),
     ),
