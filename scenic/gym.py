@@ -74,7 +74,7 @@ class Continuous:
         )
         self._make = make
 
-    def __call__(self, chosen: Any) -> tuple[Any, ...]:
+    def __call__(self, chosen: object) -> tuple[Any, ...]:
         """The actions for a point of the space."""
         return _several(self._make(*(float(number) for number in np.asarray(chosen))))
 
@@ -96,7 +96,7 @@ class Choice:
         return self._options[int(chosen)]
 
 
-def _several(actions: Any) -> tuple[Any, ...]:
+def _several(actions: object) -> tuple[Any, ...]:
     return tuple(actions) if isinstance(actions, list | tuple) else (actions,)
 
 
@@ -255,7 +255,7 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
         self._k += self._stride
         return self._observe(), info
 
-    def step(self, action: Any) -> tuple[Observed, float, bool, bool, dict[str, Any]]:
+    def step(self, action: object) -> tuple[Observed, float, bool, bool, dict[str, Any]]:
         """Take an action and advance by one step."""
         simulation = self._simulation
         if simulation is None:
@@ -395,7 +395,7 @@ class ScenicVectorEnv(AsyncVectorEnv):
 _ANGLES: Final = ("yaw", "pitch", "roll", "heading")
 
 
-def _named(names: Mapping[Any, str], objects: Iterable[Any], ego: Any) -> dict[str, Any]:
+def _named(names: Mapping[Any, str], objects: Iterable[Any], ego: object) -> dict[str, Any]:
     """Objects by name; the ego has its own besides."""
     found = {} if ego is None else {"ego": ego}
     known = {id(thing): name for thing, name in names.items()}
@@ -405,7 +405,7 @@ def _named(names: Mapping[Any, str], objects: Iterable[Any], ego: Any) -> dict[s
     return found
 
 
-def _box(thing: Any, name: str, bounds: tuple[float, float] | None) -> spaces.Space[Any]:
+def _box(thing: object, name: str, bounds: tuple[float, float] | None) -> spaces.Space[Any]:
     """The space of a property, by its value in a scene."""
     if name.startswith("observations."):
         return _image_space(thing, name.partition(".")[2], bounds)
@@ -450,7 +450,7 @@ def _value(thing: Any, name: str, space: spaces.Space[Any]) -> Any:
     return np.clip(found, space.low, space.high).astype(space.dtype)
 
 
-def _numbers(thing: Any, name: str, value: Any) -> list[float]:
+def _numbers(thing: object, name: str, value: object) -> list[float]:
     if is_number(value):
         return [float(value)]
     if isinstance(value, Orientation):

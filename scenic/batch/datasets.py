@@ -367,7 +367,7 @@ class _PartInProgress:
             numbers, attempts = numbers[: late - made.job.first], attempts[: late - made.job.first]
         self._note(np.stack([numbers, attempts], axis=1))
 
-    def _put(self, encoded: Any) -> None:
+    def _put(self, encoded: object) -> None:
         for block in blocks_of(encoded):
             self._rows += len(block.numbers)
             self._sink.add(block.rows)

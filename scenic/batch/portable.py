@@ -52,7 +52,7 @@ class Portable:
         _Pickler(stream, protocol=5).dump(function)
         self._payload = pickle.dumps((versions(), stream.getvalue()), protocol=5)
 
-    def __call__(self, argument: Any) -> bytes:
+    def __call__(self, argument: object) -> bytes:
         with _LOADING:  # a worker may have many threads
             function = _unpacked(self._payload)
         return pickle.dumps(function(argument), protocol=5)
@@ -61,7 +61,7 @@ class Portable:
 class _Pickler(pickle.Pickler):
     """Pickles scenarios with digests that show whether another process has the same files."""
 
-    def reducer_override(self, value: Any) -> Any:
+    def reducer_override(self, value: object) -> Any:
         if not isinstance(value, Scenario):
             return NotImplemented
         make, given = value.__reduce__()
@@ -130,7 +130,7 @@ def _module_digest(module: ModuleType) -> str:
     """
     digest = hashlib.sha256()
 
-    def add(value: Any) -> None:
+    def add(value: object) -> None:
         if isinstance(value, CodeType):
             digest.update(f"{value.co_code!r}{value.co_names}{value.co_varnames}".encode())
             for item in value.co_consts:

@@ -58,12 +58,12 @@ def _texture_errors(scenario: Scenario) -> Iterator[TextureError]:
                 yield error.at(place)
 
 
-def _image_names(value: Any) -> Iterator[str]:
+def _image_names(value: object) -> Iterator[str]:
     """The image files that a texture may name, as far as the program says them."""
     return (name for item in _constants(value) if (name := image_name(item)) is not None)
 
 
-def texts_of(value: Any) -> list[str]:
+def texts_of(value: object) -> list[str]:
     """The texts that a random value may be, as far as the program says them; texts in tuples and lists count, too."""
     texts: list[str] = []
     for item in _constants(value):
@@ -73,7 +73,7 @@ def texts_of(value: Any) -> list[str]:
     return texts
 
 
-def _constants(value: Any) -> Iterator[Any]:
+def _constants(value: object) -> Iterator[Any]:
     """The constants that a value is computed from."""
     found, left = set(), [as_node(value)]
     while left:

@@ -120,7 +120,7 @@ def _work(function: Callable[[Any], Any], connection: Connection, inherited: Con
             _answer(connection, function(*connection.recv()))
 
 
-def _answer(connection: Connection, result: Any) -> None:
+def _answer(connection: Connection, result: object) -> None:
     """Send a result; in place of its buffers go files in memory, of which the system passes on what it knows them by."""
     buffers: list[pickle.PickleBuffer] = []
     head = pickle.dumps(result, protocol=5, buffer_callback=None if _memory_file is None else buffers.append)

@@ -163,7 +163,7 @@ def _real(value: float) -> str:
 _ENCODER = json.JSONEncoder(allow_nan=False, separators=(",", ":"))
 
 
-def _text_of(data: Any) -> str:
+def _text_of(data: object) -> str:
     return _ENCODER.encode(data)
 
 

@@ -59,7 +59,7 @@ class MeshPaths:
             return {"path": name}
 
 
-def resolved(shape: Any, folder: Path) -> Any:
+def resolved(shape: object, folder: Path) -> Any:
     """A shape as given, with the absolute path of its mesh file; any other value unchanged."""
     if not isinstance(shape, Mapping) or shape.get("kind") != "mesh" or "path" not in shape:
         return shape

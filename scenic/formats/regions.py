@@ -47,7 +47,7 @@ _STEPS: Final = 400
 _HATCHES: Final = 24
 
 
-def outlines(region: Any) -> list[Array]:
+def outlines(region: object) -> list[Array]:
     """Lines ``(k, 3)`` that show where a fixed region is; none for a value that is not a region, or a region without bounds.
 
     Regions made of others are drawn as those parts of the others' lines that bound them; in the plane they are hatched, since
@@ -290,7 +290,7 @@ def view_outline(horizontal: float, vertical: float, distance: float) -> list[Ar
     return lines
 
 
-def bounds(region: Any) -> tuple[Array, Array] | None:
+def bounds(region: object) -> tuple[Array, Array] | None:
     """The lower and upper corner ``(3,)`` of the box around a fixed region; ``None`` where it has none or is not known."""
     if not isinstance(region, Region) or region.is_random:
         return None

@@ -139,7 +139,7 @@ class SceneTable:
     def _rows(
         self,
         scenes: Sequence[Scene],
-        kind: Any,
+        kind: object,
         width: int,
         read: Callable[[ObjectColumns, Sequence[Scene]], NDArray[np.float64]],
     ) -> Any:
@@ -248,7 +248,7 @@ def _common(words: set[str]) -> str:
     return next(iter(words)) if len(words) == 1 else _JSON
 
 
-def _word_of(value: Any) -> str:
+def _word_of(value: object) -> str:
     match value:
         case None:
             return "nothing"
@@ -287,7 +287,7 @@ def _numbers(column: ValueColumn, scenes: Sequence[Scene]) -> Any:
     return [_row(value) for value in column.values(scenes)]
 
 
-def _row(value: Any) -> Any:
+def _row(value: object) -> Any:
     """A number, or the numbers of a vector or an orientation."""
     if isinstance(value, Orientation):
         return (value.x, value.y, value.z, value.w)
@@ -316,5 +316,5 @@ def _struct(arrow: Any, kind: Any, parts: Sequence[Any]) -> Any:
     return arrow.StructArray.from_arrays(parts, fields=list(kind))
 
 
-def _json(value: Any) -> str:
+def _json(value: object) -> str:
     return json.dumps(value, allow_nan=False, separators=(",", ":"))

@@ -102,13 +102,13 @@ def _sun(value: Any) -> Array:
     return np.array([-math.sin(azimuth) * flat, math.cos(azimuth) * flat, math.sin(elevation)])
 
 
-def _strength(value: Any) -> float:
+def _strength(value: object) -> float:
     if isinstance(value, bool) or not (isinstance(value, int | float) and 0 <= value < math.inf):
         raise ValueError("a number from 0 on")
     return float(value)
 
 
-def _exposure(value: Any) -> float:
+def _exposure(value: object) -> float:
     if isinstance(value, bool) or not (isinstance(value, int | float) and abs(value) <= 16):
         raise ValueError("a number of stops from -16 to 16")
     return 2.0**value
@@ -125,7 +125,7 @@ def _color(value: Any) -> Color:
     return red, green, blue
 
 
-def _truth(value: Any) -> bool:
+def _truth(value: object) -> bool:
     if not isinstance(value, bool | np.bool_):
         raise ValueError("True or False")
     return bool(value)

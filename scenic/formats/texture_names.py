@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 __all__ = ["SUFFIXES", "image_name", "is_image_name"]
 
@@ -15,7 +15,7 @@ def is_image_name(text: str) -> bool:
     return text.lower().endswith(SUFFIXES)
 
 
-def image_name(value: Any) -> str | None:
+def image_name(value: object) -> str | None:
     """The image file that a texture names; ``None`` for other textures."""
     if isinstance(value, Mapping):
         value = value.get("image")

@@ -124,7 +124,7 @@ def texture_of(
     return Texture(pattern, float(scale), (red, green, blue))
 
 
-def _image(value: Any, name: str, folder: Path | None) -> ImageTexture | None:
+def _image(value: object, name: str, folder: Path | None) -> ImageTexture | None:
     given = {key: item for key, item in value.items() if key != "image"} if isinstance(value, Mapping) else {}
     scale, projection = given.pop("scale", None), given.pop("projection", PROJECTIONS[0])
     try:
@@ -139,7 +139,7 @@ def _image(value: Any, name: str, folder: Path | None) -> ImageTexture | None:
     return ImageTexture(path, name, None if scale is None else float(scale), projection)
 
 
-def _none_such(value: Any) -> TextureError:
+def _none_such(value: object) -> TextureError:
     return TextureError(
         f"{value!r} is no texture",
         help=f"give the name of a pattern ({', '.join(PATTERNS)}) or of an image ({', '.join(SUFFIXES)}), "

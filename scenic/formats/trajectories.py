@@ -77,7 +77,7 @@ def course_document(course: Course, *, k: int, tries: int) -> dict[str, Any]:
     }
 
 
-def _record(value: Any, numbers: Mapping[int, int]) -> Any:
+def _record(value: object, numbers: Mapping[int, int]) -> Any:
     """Return a recorded value as plain data; a value in a file of its own becomes the name of the file."""
     return {"$file": value.name} if isinstance(value, Filed) else plain(value, numbers)
 

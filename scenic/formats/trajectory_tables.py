@@ -138,10 +138,10 @@ def parquet_steps(path: Path) -> list[dict[str, Any]]:
     return rows
 
 
-def _text(value: Any) -> str:
+def _text(value: object) -> str:
     return json.dumps(value, allow_nan=False, separators=(",", ":"))
 
 
-def _number(value: Any) -> Any:
+def _number(value: object) -> Any:
     """A number that JSON cannot hold, as it is."""
     return float(value["$float"]) if isinstance(value, dict) else value

@@ -164,7 +164,7 @@ def write_world(
 
 
 def solid(
-    thing: Any,
+    thing: object,
     stem: str,
     files: dict[str, bytes],
     name: str,
@@ -237,7 +237,7 @@ def _geometry(thing: Any, stem: str, files: dict[str, bytes], name: str) -> str:
     return f"Mesh {{ url [ {_text(file)} ] }}"
 
 
-def _robot(thing: Any, proto: str, name: str, label: str) -> str:
+def _robot(thing: object, proto: str, name: str, label: str) -> str:
     lines = [f"name {_text(label)}"]
     for given in ("controller", "customData"):
         value = getattr(thing, given, None)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -51,7 +51,9 @@ def forward(node: Node, operands: Sequence[Bounds | None]) -> Bounds | None:
     return integral(node.kind, read(node.operation, node.kind, node.payload, operands))
 
 
-def read(operation: Operation, kind: Kind, payload: Any, operands: Sequence[Bounds | None]) -> Bounds | None:
+def read(
+    operation: Operation, kind: Kind, payload: object, operands: Sequence[Bounds | None]
+) -> Bounds | None:
     """The result of the operation's bounds reading, or else the bounds of the kind."""
     default = of_kind(kind)
     blind = operation.strict and not operation.partial
@@ -166,7 +168,7 @@ def limits_of(bounds: Bounds | None) -> tuple[int, int] | None:
     return math.ceil(low), math.floor(high)
 
 
-def whole_limits(reading: BoundsReading, operands: Sequence[Node], payload: Any) -> tuple[int, int] | None:
+def whole_limits(reading: BoundsReading, operands: Sequence[Node], payload: object) -> tuple[int, int] | None:
     """Limits of an integer result over the whole cube, by a bounds reading."""
     bounds = [overall(operand) for operand in operands]
     if any(bound is None for bound in bounds):

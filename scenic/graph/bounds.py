@@ -1,6 +1,6 @@
 """Interval bounds of a node's value, over many boxes of the unit cube at a time."""
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +29,7 @@ class Bounds:
     upper: Floats
 
     @staticmethod
-    def exactly(value: Any) -> "Bounds":
+    def exactly(value: object) -> "Bounds":
         """Bounds of a constant, for one box (broadcasts against others)."""
         array = np.asarray(value, dtype=np.float64)[np.newaxis]
         return Bounds(array, array)

@@ -6,7 +6,6 @@ sampler see the same nodes.
 """
 
 from collections.abc import Hashable, Sequence
-from typing import Any
 
 from scenic.graph.bounding import limits_of, overall, read
 from scenic.graph.kinds import Kind
@@ -15,7 +14,7 @@ from scenic.graph.operation import Operation
 
 
 def make_node(
-    operation: Operation, operands: Sequence[Node], payload: Any = None, span: Hashable | None = None
+    operation: Operation, operands: Sequence[Node], payload: object = None, span: Hashable | None = None
 ) -> Node:
     """The node of ``operation`` over ``operands``, of the kind that the operation's rule gives."""
     if operation.rewrite is not None:
@@ -38,7 +37,7 @@ def make_node(
 
 
 def _equal_nodes(
-    operation: Operation, operands: Sequence[Node], payload: Any, kind: Kind
+    operation: Operation, operands: Sequence[Node], payload: object, kind: Kind
 ) -> tuple[Consumers | None, Hashable]:
     """Return the table and the key under which a node equal to this one would be stored; ``None`` if equal
     nodes are not merged.

@@ -70,7 +70,7 @@ class Codec(Protocol):
     def decode(self, kind: Kind, column: Column) -> list[Any]:
         """The Python values of a column, lane by lane."""
 
-    def encode(self, kind: Kind, value: Any) -> Any:
+    def encode(self, kind: Kind, value: object) -> Any:
         """The row for a Python value; raises ``TypeError`` when it does not fit the kind."""
 
 

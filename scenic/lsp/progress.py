@@ -57,6 +57,6 @@ class Progress:
             self._shown = percentage
             self._tell(types.WorkDoneProgressReport(message=f"{done} of {count}", percentage=percentage))
 
-    def _tell(self, value: Any) -> None:
+    def _tell(self, value: object) -> None:
         if self._token is not None:
             self._session.notify(types.PROGRESS, types.ProgressParams(self._token, value))

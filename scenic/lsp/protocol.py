@@ -117,7 +117,7 @@ class Protocol(LanguageServerProtocol):
         wrong = JsonRpcParseError(f"the message cannot be read: {error}")
         self._send_response(None, error=wrong.to_response_error())
 
-    def handle_message(self, message: Any) -> None:
+    def handle_message(self, message: object) -> None:
         """Answer a request, take note of a notification, hand on an answer; refuse what is none of these."""
         if self.loop is None:
             self.loop, self._thread = asyncio.get_running_loop(), threading.get_ident()
@@ -140,7 +140,7 @@ class Protocol(LanguageServerProtocol):
         else:
             self._refuse(name if is_named else None, "a message has a method, a result or an error")
 
-    def _request(self, name: Any, method: str, params: Any) -> None:
+    def _request(self, name: Any, method: str, params: object) -> None:
         self._asked[name] = (method, time.monotonic())
         self._trace(f"received request {method} ({name})", params)
         try:
@@ -166,7 +166,7 @@ class Protocol(LanguageServerProtocol):
         if _is_notification(method):
             raise JsonRpcInvalidRequest(f"`{method}` is a notification, and has no answer")
 
-    def _notification(self, method: str, params: Any) -> None:
+    def _notification(self, method: str, params: object) -> None:
         self._trace(f"received notification {method}", params)
         if method == types.EXIT:
             self.exited()
@@ -191,7 +191,7 @@ class Protocol(LanguageServerProtocol):
         else:
             self._handle_response(name, None, types.ResponseError(0, str(wrong)))
 
-    def _typed(self, method: str, params: Any) -> Any:
+    def _typed(self, method: str, params: object) -> Any:
         """Parameters as the protocol's types have them."""
         kind: Any = types.METHOD_TO_TYPES.get(method, (None, None, None))[2]
         if kind is None:
@@ -262,7 +262,7 @@ class Protocol(LanguageServerProtocol):
 
     # Answers
 
-    def _refuse(self, name: Any, message: str) -> None:
+    def _refuse(self, name: object, message: str) -> None:
         self._send_response(name, error=JsonRpcInvalidRequest(message).to_response_error())
 
     def _send_response(
@@ -309,7 +309,7 @@ class Protocol(LanguageServerProtocol):
             self._sending.add(sending)
             sending.add_done_callback(self._sending.discard)
 
-    def _trace(self, message: str, content: Any) -> None:
+    def _trace(self, message: str, content: object) -> None:
         """Tell a client that wants to follow the conversation."""
         if self.trace is types.TraceValue.Off:
             return

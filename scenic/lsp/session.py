@@ -322,11 +322,11 @@ class Session:
 
     # Messages to the client
 
-    def notify(self, method: str, params: Any) -> None:
+    def notify(self, method: str, params: object) -> None:
         """Tell the client something; from any thread."""
         self.protocol.notify(method, params)
 
-    def ask(self, method: str, params: Any) -> "Future[Any]":
+    def ask(self, method: str, params: object) -> "Future[Any]":
         """Send the client a request; return a future of its answer, as JSON."""
         return self.protocol.send_request(method, params)
 

@@ -191,7 +191,7 @@ class Simulation(ABC):
         with self._isolated:
             return next(self._loop, None) is not None
 
-    def take(self, agent: Any, actions: Sequence[Any]) -> None:
+    def take(self, agent: object, actions: Sequence[Any]) -> None:
         """Let an agent take actions from outside in the present step, on top of what its behavior has done.
 
         For simulations that are advanced step by step, before `advanceOnce`.
@@ -270,7 +270,7 @@ class Simulation(ABC):
             self._copies.release()
             self._destroy_once()
 
-    def _where_now(self, frame: Any) -> str:
+    def _where_now(self, frame: object) -> str:
         """The place of the program's code that a frame runs."""
         place = self._run.context.locator(frame)
         return "its code" if place is None else f"line {place.line}"
@@ -325,7 +325,7 @@ class Simulation(ABC):
             self.add(obj)
 
     @abstractmethod
-    def createObjectInSimulator(self, obj: Any) -> None:
+    def createObjectInSimulator(self, obj: object) -> None:
         """Create an object; raises `SimulationCreationError` if that is impossible."""
 
     @abstractmethod
@@ -333,14 +333,14 @@ class Simulation(ABC):
         """Advance by ``timestep`` seconds."""
 
     @abstractmethod
-    def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
+    def getProperties(self, obj: object, properties: object) -> Mapping[str, Any]:
         """The present values of exactly these properties of an object."""
 
     def scheduleForAgents(self) -> Sequence[Any]:
         """The agents, in the order in which they choose their actions."""
         return self.agents
 
-    def actionsAreCompatible(self, agent: Any, actions: Sequence[Any]) -> bool:
+    def actionsAreCompatible(self, agent: object, actions: Sequence[Any]) -> bool:
         """Return whether an agent can take these actions in one step."""
         return all(hasattr(action, "canBeTakenBy") and action.canBeTakenBy(agent) for action in actions)
 
@@ -356,7 +356,7 @@ class Simulation(ABC):
             tuple([obj.position for obj in self.objects]), tuple([obj.orientation for obj in self.objects])
         )
 
-    def valuesHaveDiverged(self, obj: Any, prop: str, expected: Any, actual: Any) -> bool:
+    def valuesHaveDiverged(self, obj: object, prop: str, expected: object, actual: object) -> bool:
         """Return whether a property differs from the replayed simulation's by more than the tolerance."""
         return self._tape.differ(expected, actual)
 
@@ -386,7 +386,7 @@ class Simulation(ABC):
 
     _createObject = add
 
-    def place_of(self, obj: Any) -> tuple[Span | None, str | None]:
+    def place_of(self, obj: object) -> tuple[Span | None, str | None]:
         """Return the span and file where the program creates an object, each ``None`` if unknown."""
         number = next((index for index, item in enumerate(self.objects) if item is obj), len(self.objects))
         if number < len(self._original.objects):
@@ -417,7 +417,7 @@ class Simulation(ABC):
         if self._on_state is not None:
             self._on_state(self, self._now, actions)
 
-    def check_actions(self, agent: Any, actions: tuple[Any, ...]) -> None:
+    def check_actions(self, agent: object, actions: tuple[Any, ...]) -> None:
         """Raise `InvalidScenarioError` for actions that cannot be taken together."""
         if not self.actionsAreCompatible(agent, actions):
             listed = ", ".join(describe(action) for action in actions)
@@ -466,7 +466,7 @@ class Simulation(ABC):
         for obj in self.objects:
             self._update(obj)
 
-    def _update(self, obj: Any) -> None:
+    def _update(self, obj: object) -> None:
         cls = type(obj)
         names = self._dynamic(cls)
         values = self.getProperties(obj, set(names))
@@ -490,7 +490,7 @@ class Simulation(ABC):
         finals.renew_own(obj)
         self._tape.note(self, obj, names)
 
-    def _checked(self, obj: Any, name: str, old: Any, value: Any) -> Any:
+    def _checked(self, obj: object, name: str, old: Any, value: Any) -> Any:
         """The value as the object stores it; raises ``RuntimeError`` for one of another type than before."""
         if type(value) is type(old) and type(old) in _SIMPLE:
             return value

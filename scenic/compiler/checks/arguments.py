@@ -45,7 +45,7 @@ def _parameters(definition: Any) -> ast.arguments | None:
     return empty if definition.args is None else definition.args
 
 
-def required_parameters(definition: Any) -> list[str]:
+def required_parameters(definition: object) -> list[str]:
     """The parameters that every call must give, in order."""
     args = _parameters(definition)
     return [] if args is None else _required(args)

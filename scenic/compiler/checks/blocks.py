@@ -49,7 +49,7 @@ def blocks(tree: ast.Module, statements: Iterable[ast.stmt]) -> Iterator[Block]:
                 stack.extend(inner for inner in _inner(statement, block.where) if inner.statements)
 
 
-def _inner(node: Any, where: Where) -> Iterable[Block]:
+def _inner(node: object, where: Where) -> Iterable[Block]:
     """The blocks directly in a statement."""
     inner = replace(where, in_class_block=False) if where.in_class_block else where
     match node:
@@ -131,7 +131,7 @@ _PLACES: Final = {
 }
 
 
-def where_of(node: Any, scope: Scope) -> Where:
+def where_of(node: object, scope: Scope) -> Where:
     """The surroundings of an expression in ``scope``, apart from loops and the like."""
     function: str | None = None
     for outer in scope.ancestors():

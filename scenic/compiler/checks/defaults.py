@@ -3,7 +3,7 @@
 import ast
 import re
 from collections.abc import Iterator
-from typing import Any, Final
+from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context
@@ -79,7 +79,7 @@ def _changed(context: Context) -> dict[ast.AST, ast.AST]:
     """The parameters, bound just once, whose values are changed, and where."""
     found: dict[ast.AST, ast.AST] = {}
 
-    def note(target: Any, place: ast.AST) -> None:
+    def note(target: object, place: ast.AST) -> None:
         binding = context.binding(target) if isinstance(target, ast.Name) else None
         if binding is not None and len(binding.sites) == 1:
             found.setdefault(binding.sites[0], place)

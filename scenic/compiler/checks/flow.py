@@ -90,7 +90,7 @@ def _unreachable(context: Context, ending: Any, rest: Sequence[Any]) -> Iterator
     )
 
 
-def _ends(statement: Any, where: Where) -> bool:
+def _ends(statement: object, where: Where) -> bool:
     """Return whether nothing after a statement of its block ever runs; misplaced statements are taken for nothing."""
     match statement:
         case ast.Raise():

@@ -21,7 +21,7 @@ def check_guards(context: Context) -> Iterator[Diagnostic]:
                 yield from _misspelt(context, body, index, statement)
 
 
-def _misspelt(context: Context, body: Sequence[Any], index: int, statement: Any) -> Iterator[Diagnostic]:
+def _misspelt(context: Context, body: Sequence[Any], index: int, statement: object) -> Iterator[Diagnostic]:
     if not isinstance(statement, ast.AnnAssign) or statement.value is not None:
         return
     target = statement.target

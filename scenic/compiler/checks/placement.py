@@ -2,7 +2,7 @@
 
 import ast
 from collections.abc import Iterator
-from typing import Any, Final
+from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import DYNAMIC, Where, where_of
@@ -139,7 +139,7 @@ def _problems(node: ast.AST, where: Where) -> Iterator[tuple[str, str]]:
             yield f"`{word}` outside of an `async def` function", "it belongs in a coroutine"
 
 
-def _misplaced_expression(node: Any, where: Where) -> Iterator[tuple[str, str]]:
+def _misplaced_expression(node: object, where: Where) -> Iterator[tuple[str, str]]:
     if isinstance(node, ast.Await):
         if where.function != "async def":
             yield "`await` outside of an `async def` function", "it belongs in a coroutine"

@@ -94,7 +94,7 @@ def _refusal(feature: str, node: ast.AST, context: Context) -> Diagnostic:
     return context.error("SC900", f"{feature} is not supported in this version", node, _INSTEAD)
 
 
-def _refused(node: Any) -> str | None:
+def _refused(node: object) -> str | None:
     """Return the description of an unsupported element that a node uses, or ``None``."""
     match node:
         case scenic.Operation(operator=name):

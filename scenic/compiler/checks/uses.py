@@ -222,7 +222,7 @@ def _exported(context: Context) -> set[str]:
     }
 
 
-def _names_read_first(statement: Any) -> frozenset[str]:
+def _names_read_first(statement: object) -> frozenset[str]:
     """The names that a definition reads before it binds its own: in bases and defaults."""
     arguments = getattr(statement, "args", None)
     values = [*getattr(statement, "bases", ()), *(each.value for each in getattr(statement, "keywords", ()))]

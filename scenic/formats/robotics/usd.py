@@ -181,7 +181,7 @@ class _Writer:
         ):
             self._camera(solid, camera, f"{path}/{'camera' if label == 'geometry' else label}", Gf)
 
-    def _mass(self, prim: Any, solid: Solid) -> None:
+    def _mass(self, prim: object, solid: Solid) -> None:
         from pxr import Gf, UsdPhysics
         from scipy.spatial.transform import Rotation
 
@@ -247,7 +247,7 @@ class _Writer:
 
     # Appearance
 
-    def _appearance(self, geometry: Any, solid: Solid) -> None:
+    def _appearance(self, geometry: object, solid: Solid) -> None:
         from pxr import Sdf, UsdGeom, UsdShade
 
         red, green, blue, alpha = solid.color
@@ -292,7 +292,7 @@ class _Writer:
         )
         return material
 
-    def _friction(self, geometry: Any, solid: Solid) -> None:
+    def _friction(self, geometry: object, solid: Solid) -> None:
         from pxr import UsdPhysics, UsdShade
 
         key = (solid.friction, solid.restitution)
@@ -346,7 +346,7 @@ def _turn_from_up(x: float, y: float, z: float) -> Four:
     return a, b, c, d
 
 
-def _label(prim: Any, kind: str, text: str) -> None:
+def _label(prim: object, kind: str, text: str) -> None:
     """A semantic label; versions of the library before 24.11 have no schema of labels."""
     from pxr import UsdSemantics
 
@@ -363,7 +363,7 @@ def _custom(solid: Solid) -> dict[str, Any]:
     return found
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     """A value as custom data has it; ``None`` if it cannot."""
     from pxr import Gf
 
@@ -382,7 +382,7 @@ def _linear(color: tuple[float, ...]) -> list[float]:
     return [float(part) for part in linear(np.array(color))]
 
 
-def _define_mesh(stage: Any, path: str, solid: Solid) -> Any:
+def _define_mesh(stage: object, path: str, solid: Solid) -> Any:
     """A mesh in the unit box, with normals of every corner and texture coordinates where the object has an image."""
     from pxr import Gf, Sdf, UsdGeom, Vt
 
@@ -406,7 +406,7 @@ def _define_mesh(stage: Any, path: str, solid: Solid) -> Any:
     return mesh.GetPrim()
 
 
-def _touching(geometry: Any, solid: Solid) -> None:
+def _touching(geometry: object, solid: Solid) -> None:
     """Let a prim touch others: a mesh by its convex hull or parts."""
     from pxr import UsdPhysics
 

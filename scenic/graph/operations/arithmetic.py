@@ -28,7 +28,7 @@ def _kind(reading: BoundsReading, *vectors: tuple[bool, ...]) -> KindRule:
     """As numbers, and a vector where the operands that are vectors stand as in one of ``vectors``."""
     numbers = arithmetic_kind(reading)
 
-    def rule(operands: Sequence[Node], payload: Any) -> Kind:
+    def rule(operands: Sequence[Node], payload: object) -> Kind:
         pattern = tuple(operand.kind is Kind.VECTOR for operand in operands)
         fits = all(operand.kind.is_number or operand.kind is Kind.VECTOR for operand in operands)
         return Kind.VECTOR if fits and pattern in vectors else numbers(operands, payload)
@@ -63,7 +63,7 @@ def _divide(call: Call, a: Column, b: Column) -> Column:
     return lane_by_lane(call, operator.truediv, float, a, b)
 
 
-def _divide_kind(operands: Sequence[Node], _payload: Any) -> Kind:
+def _divide_kind(operands: Sequence[Node], _payload: object) -> Kind:
     a, b = (operand.kind for operand in operands)
     if not b.is_number:
         return Kind.OTHER
@@ -72,63 +72,63 @@ def _divide_kind(operands: Sequence[Node], _payload: Any) -> Kind:
     return Kind.SCALAR if a.is_number else Kind.OTHER
 
 
-def _add_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+def _add_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
     return intervals.add(a, b)
 
 
-def _add_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
+def _add_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
     exact = before_rounding(result)
     return [intervals.subtract(exact, b), intervals.subtract(exact, a)]
 
 
-def _subtract_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+def _subtract_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
     return intervals.subtract(a, b)
 
 
-def _subtract_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
+def _subtract_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
     exact = before_rounding(result)
     return [intervals.add(exact, b), intervals.subtract(a, exact)]
 
 
-def _multiply_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+def _multiply_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
     return intervals.multiply(a, b)
 
 
-def _multiply_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
+def _multiply_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
     exact = before_rounding(result)
     return [collapsed(intervals.divide(exact, b), a), collapsed(intervals.divide(exact, a), b)]
 
 
-def _divide_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+def _divide_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
     return intervals.divide(a, b)
 
 
-def _divide_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
+def _divide_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
     exact = before_rounding(result)
     return [intervals.multiply(exact, b), collapsed(intervals.divide(a, exact), b)]
 
 
-def _negative_bounds(_payload: Any, a: Bounds) -> Bounds:
+def _negative_bounds(_payload: object, a: Bounds) -> Bounds:
     return intervals.negative(a)
 
 
-def _negative_inverse(_payload: Any, result: Bounds, _a: Bounds) -> list[Bounds]:
+def _negative_inverse(_payload: object, result: Bounds, _a: Bounds) -> list[Bounds]:
     return [intervals.negative(result)]
 
 
-def _positive_bounds(_payload: Any, a: Bounds) -> Bounds:
+def _positive_bounds(_payload: object, a: Bounds) -> Bounds:
     return a
 
 
-def _positive_inverse(_payload: Any, result: Bounds, _a: Bounds) -> list[Bounds]:
+def _positive_inverse(_payload: object, result: Bounds, _a: Bounds) -> list[Bounds]:
     return [result]
 
 
-def _absolute_bounds(_payload: Any, a: Bounds) -> Bounds:
+def _absolute_bounds(_payload: object, a: Bounds) -> Bounds:
     return intervals.absolute(a)
 
 
-def _absolute_inverse(_payload: Any, result: Bounds, a: Bounds) -> list[Bounds]:
+def _absolute_inverse(_payload: object, result: Bounds, a: Bounds) -> list[Bounds]:
     lower = np.where(a.lower >= 0, result.lower, -result.upper)
     upper = np.where(a.upper <= 0, -result.lower, result.upper)
     return [Bounds(lower, upper)]
@@ -137,21 +137,21 @@ def _absolute_inverse(_payload: Any, result: Bounds, a: Bounds) -> list[Bounds]:
 # On plain numbers; vectors are triples.
 
 
-def _add_scalar(_payload: Any, a: Any, b: Any) -> Any:
+def _add_scalar(_payload: object, a: Any, b: Any) -> Any:
     if type(a) is tuple:
         both = type(b) is tuple and len(a) == len(b) == 3
         return (a[0] + b[0], a[1] + b[1], a[2] + b[2]) if both else NotImplemented
     return NotImplemented if type(b) is tuple else a + b
 
 
-def _subtract_scalar(_payload: Any, a: Any, b: Any) -> Any:
+def _subtract_scalar(_payload: object, a: Any, b: Any) -> Any:
     if type(a) is tuple:
         both = type(b) is tuple and len(a) == len(b) == 3
         return (a[0] - b[0], a[1] - b[1], a[2] - b[2]) if both else NotImplemented
     return NotImplemented if type(b) is tuple else a - b
 
 
-def _multiply_scalar(_payload: Any, a: Any, b: Any) -> Any:
+def _multiply_scalar(_payload: object, a: Any, b: Any) -> Any:
     if type(a) is tuple:
         return NotImplemented if type(b) is tuple or len(a) != 3 else (a[0] * b, a[1] * b, a[2] * b)
     if type(b) is tuple:
@@ -159,7 +159,7 @@ def _multiply_scalar(_payload: Any, a: Any, b: Any) -> Any:
     return a * b
 
 
-def _divide_scalar(_payload: Any, a: Any, b: Any) -> Any:
+def _divide_scalar(_payload: object, a: Any, b: Any) -> Any:
     if type(b) is tuple:
         return NotImplemented
     if type(a) is tuple:
@@ -167,7 +167,7 @@ def _divide_scalar(_payload: Any, a: Any, b: Any) -> Any:
     return a / b
 
 
-def _negative_scalar(_payload: Any, a: Any) -> Any:
+def _negative_scalar(_payload: object, a: Any) -> Any:
     if type(a) is tuple:
         return (-a[0], -a[1], -a[2]) if len(a) == 3 else NotImplemented
     return -a
@@ -190,7 +190,7 @@ def _is_zero_vector(operand: Node) -> bool:
     return operand.is_constant and operand.kind is Kind.VECTOR and not operand.payload.column.any()
 
 
-def _without_zero(operands: Sequence[Node], _payload: Any) -> Node | None:
+def _without_zero(operands: Sequence[Node], _payload: object) -> Node | None:
     for operand, other in (operands, operands[::-1]):
         if operand.kind is Kind.VECTOR and _is_zero_vector(other):
             return operand
@@ -199,7 +199,7 @@ def _without_zero(operands: Sequence[Node], _payload: Any) -> Node | None:
     return None
 
 
-def _minus_zero(operands: Sequence[Node], _payload: Any) -> Node | None:
+def _minus_zero(operands: Sequence[Node], _payload: object) -> Node | None:
     operand, other = operands
     if operand.kind is Kind.VECTOR and _is_zero_vector(other):
         return operand
@@ -208,14 +208,14 @@ def _minus_zero(operands: Sequence[Node], _payload: Any) -> Node | None:
     return None
 
 
-def _times_one(operands: Sequence[Node], _payload: Any) -> Node | None:
+def _times_one(operands: Sequence[Node], _payload: object) -> Node | None:
     for operand, other in (operands, operands[::-1]):
         if _is_number(other, 1) and _keeps(operand, other):
             return operand
     return None
 
 
-def _over_one(operands: Sequence[Node], _payload: Any) -> Node | None:
+def _over_one(operands: Sequence[Node], _payload: object) -> Node | None:
     operand, other = operands
     simple = _is_number(other, 1) and operand.kind in (Kind.SCALAR, Kind.VECTOR)
     return operand if simple else None

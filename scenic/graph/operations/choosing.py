@@ -1,7 +1,6 @@
 """Taking each lane's value from one of several columns, which may be of different kinds."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -11,7 +10,7 @@ from scenic.graph.node import Node
 from scenic.graph.operation import OK, Call
 
 
-def joined_kind(operands: Sequence[Node], _payload: Any) -> Kind:
+def joined_kind(operands: Sequence[Node], _payload: object) -> Kind:
     """The kind of a value that is one of ``operands``."""
     return join(*(operand.kind for operand in operands))
 

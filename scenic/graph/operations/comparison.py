@@ -25,7 +25,7 @@ from scenic.graph.operations.numbers import are_exact, lane_by_lane
 
 
 def _truth_of(function: Callable[[Any, Any], Any]) -> Callable[[Any, Any], bool]:
-    def compare(a: Any, b: Any) -> bool:
+    def compare(a: object, b: object) -> bool:
         return bool(function(a, b))
 
     return compare
@@ -84,7 +84,7 @@ def _numeric(a: Bounds, b: Bounds) -> Mask:
 
 
 def _order_bounds(*, strict: bool, swapped: bool) -> BoundsReading:
-    def bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds | None:
+    def bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds | None:
         if not _comparable(a, b):
             return None
         if swapped:
@@ -97,7 +97,7 @@ def _order_bounds(*, strict: bool, swapped: bool) -> BoundsReading:
 
 
 def _order_inverse(*, strict: bool, swapped: bool) -> InverseReading:
-    def inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> Sequence[Bounds | None]:
+    def inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> Sequence[Bounds | None]:
         if not _comparable(a, b):
             return [None, None]
         if swapped:
@@ -123,7 +123,7 @@ def _below(a: Bounds, b: Bounds, *, strict: bool) -> tuple[Bounds, Bounds]:
 
 
 def _order_solver(function: Callable[[Any, Any], Any]) -> SolverReading:
-    def solver(terms: Terms, _payload: Any, a: Any, b: Any) -> Any:
+    def solver(terms: Terms, _payload: object, a: object, b: object) -> Any:
         if isinstance(a, tuple) or isinstance(b, tuple):
             return terms.fresh(Kind.BOOLEAN)
         return function(terms.number(a), terms.number(b))
@@ -144,21 +144,21 @@ def _equal_certain(a: Bounds, b: Bounds) -> tuple[Mask, Mask] | None:
     return np.asarray(same.all(axis=1)), np.asarray(apart.any(axis=1))
 
 
-def _equal_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds | None:
+def _equal_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds | None:
     known = _equal_certain(a, b)
     return None if known is None else truth(*known)
 
 
-def _differs_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds | None:
+def _differs_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds | None:
     known = _equal_certain(a, b)
     return None if known is None else truth(known[1], known[0])
 
 
-def _equal_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> Sequence[Bounds | None]:
+def _equal_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> Sequence[Bounds | None]:
     return _meet_where(certain(result)[0], a, b)
 
 
-def _differs_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> Sequence[Bounds | None]:
+def _differs_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> Sequence[Bounds | None]:
     return _meet_where(certain(result)[1], a, b)
 
 
@@ -168,7 +168,7 @@ def _meet_where(equal: Mask, a: Bounds, b: Bounds) -> Sequence[Bounds | None]:
     return [where(equal, b), where(equal, a)]
 
 
-def _equal_solver(terms: Terms, _payload: Any, a: Any, b: Any) -> Any:
+def _equal_solver(terms: Terms, _payload: object, a: object, b: object) -> Any:
     if not isinstance(a, tuple) and not isinstance(b, tuple):
         return terms.number(a) == terms.number(b)
     if not (isinstance(a, tuple) and isinstance(b, tuple) and len(a) == len(b)):
@@ -178,14 +178,14 @@ def _equal_solver(terms: Terms, _payload: Any, a: Any, b: Any) -> Any:
     return conjunction([x == y for x, y in zip(a, b, strict=True)])
 
 
-def _differs_solver(terms: Terms, payload: Any, a: Any, b: Any) -> Any:
+def _differs_solver(terms: Terms, payload: object, a: object, b: object) -> Any:
     return ~_equal_solver(terms, payload, a, b)
 
 
 # Minimum and maximum.
 
 
-def _extreme_kind(operands: Sequence[Node], _payload: Any) -> Kind:
+def _extreme_kind(operands: Sequence[Node], _payload: object) -> Kind:
     """Python gives back one of the arguments as it is, so that mixed kinds have no common column."""
     kinds = {operand.kind for operand in operands}
     return kinds.pop() if len(kinds) == 1 and all(kind.is_number for kind in kinds) else Kind.OTHER
@@ -202,11 +202,11 @@ def _extreme(better: Callable[[Any, Any], Any]) -> Callable[..., Column]:
     return batch
 
 
-def _minimum_bounds(_payload: Any, *operands: Bounds) -> Bounds | None:
+def _minimum_bounds(_payload: object, *operands: Bounds) -> Bounds | None:
     return _fold(intervals.minimum, operands)
 
 
-def _maximum_bounds(_payload: Any, *operands: Bounds) -> Bounds | None:
+def _maximum_bounds(_payload: object, *operands: Bounds) -> Bounds | None:
     return _fold(intervals.maximum, operands)
 
 
@@ -219,7 +219,7 @@ def _fold(function: Callable[[Bounds, Bounds], Bounds], operands: Sequence[Bound
     return result
 
 
-def _minimum_inverse(_payload: Any, result: Bounds, *operands: Bounds) -> Sequence[Bounds | None]:
+def _minimum_inverse(_payload: object, result: Bounds, *operands: Bounds) -> Sequence[Bounds | None]:
     """No operand lies below the minimum; where only one reaches down to it, that one is the minimum."""
     if _fold(intervals.minimum, operands) is None:
         return [None] * len(operands)
@@ -236,13 +236,13 @@ def _minimum_inverse(_payload: Any, result: Bounds, *operands: Bounds) -> Sequen
     return narrowed
 
 
-def _maximum_inverse(_payload: Any, result: Bounds, *operands: Bounds) -> Sequence[Bounds | None]:
+def _maximum_inverse(_payload: object, result: Bounds, *operands: Bounds) -> Sequence[Bounds | None]:
     mirrored = _minimum_inverse(None, intervals.negative(result), *(intervals.negative(a) for a in operands))
     return [None if bounds is None else intervals.negative(bounds) for bounds in mirrored]
 
 
 def _extreme_solver(better: Callable[[Any, Any], Any]) -> SolverReading:
-    def solver(terms: Terms, _payload: Any, *operands: Any) -> Any:
+    def solver(terms: Terms, _payload: object, *operands: Any) -> Any:
         if len(operands) < 2 or any(isinstance(operand, tuple) for operand in operands):
             return None
         logical = all(terms.number(operand) is not operand for operand in operands)
@@ -254,7 +254,7 @@ def _extreme_solver(better: Callable[[Any, Any], Any]) -> SolverReading:
     return solver
 
 
-def _orders_vectors(operands: Sequence[Node], _payload: Any) -> bool:
+def _orders_vectors(operands: Sequence[Node], _payload: object) -> bool:
     """Return whether an operand is not a number, so that Python has no order for it."""
     return any(operand.kind.trailing for operand in operands)
 

@@ -21,12 +21,12 @@ def _len(_call: Call, value: Column) -> Column:
     return np.full(1, value.shape[1], dtype=np.int64)
 
 
-def _len_kind(operands: Sequence[Node], _payload: Any) -> Kind:
+def _len_kind(operands: Sequence[Node], _payload: object) -> Kind:
     kind = operands[0].kind
     return Kind.INTEGER if kind is Kind.VECTOR or kind.is_boxed else Kind.OTHER
 
 
-def _getitem_kind(operands: Sequence[Node], _payload: Any) -> Kind:
+def _getitem_kind(operands: Sequence[Node], _payload: object) -> Kind:
     container, item = operands
     whole = item.kind in (Kind.INTEGER, Kind.BOOLEAN)
     return Kind.SCALAR if container.kind is Kind.VECTOR and whole else Kind.OTHER
@@ -46,59 +46,59 @@ def _truth(call: Call, value: Column) -> Column:
     return call.everywhere(value=True) if call.kinds[0].trailing else value != 0
 
 
-def _float_bounds(_payload: Any, number: Bounds) -> Bounds | None:
+def _float_bounds(_payload: object, number: Bounds) -> Bounds | None:
     return number if number.lower.ndim == 1 else None
 
 
-def _float_inverse(_payload: Any, result: Bounds, _number: Bounds) -> list[Bounds]:
+def _float_inverse(_payload: object, result: Bounds, _number: Bounds) -> list[Bounds]:
     return [before_rounding(result)]
 
 
-def _float_solver(terms: Terms, _payload: Any, number: Any) -> Any:
+def _float_solver(terms: Terms, _payload: object, number: object) -> Any:
     return terms.number(number)
 
 
-def _len_bounds(_payload: Any, value: Bounds) -> Bounds | None:
+def _len_bounds(_payload: object, value: Bounds) -> Bounds | None:
     return Bounds.exactly(value.lower.shape[1]) if value.lower.ndim == 2 else None
 
 
-def _len_solver(terms: Terms, _payload: Any, value: Any) -> Any:
+def _len_solver(terms: Terms, _payload: object, value: object) -> Any:
     return terms.real(len(value)) if isinstance(value, tuple) else terms.fresh(Kind.INTEGER)
 
 
-def _getitem_bounds(_payload: Any, container: Bounds, _item: Bounds) -> Bounds | None:
+def _getitem_bounds(_payload: object, container: Bounds, _item: Bounds) -> Bounds | None:
     if container.lower.ndim != 2:
         return None
     return Bounds(container.lower.min(axis=1), container.upper.max(axis=1))
 
 
-def _getitem_solver(terms: Terms, _payload: Any, container: Any, item: Any) -> Any:
+def _getitem_solver(terms: Terms, _payload: object, container: object, item: object) -> Any:
     index = terms.constant(item)
     if isinstance(container, tuple) and index is not None and index in range(-3, 3):
         return container[int(index)]
     return terms.fresh(Kind.SCALAR) if isinstance(container, tuple) else None
 
 
-def _truth_bounds(_payload: Any, value: Bounds) -> Bounds:
+def _truth_bounds(_payload: object, value: Bounds) -> Bounds:
     if value.lower.ndim > 1:
         return Bounds.exactly(1)
     return truth((value.lower > 0) | (value.upper < 0), (value.lower == 0) & (value.upper == 0))
 
 
-def _truth_inverse(_payload: Any, result: Bounds, value: Bounds) -> list[Bounds | None]:
+def _truth_inverse(_payload: object, result: Bounds, value: Bounds) -> list[Bounds | None]:
     if value.lower.ndim > 1:
         return [None]
     _, false = certain(result)
     return [where(false, Bounds(np.zeros_like(value.lower), np.zeros_like(value.upper)))]
 
 
-def _truth_solver(terms: Terms, _payload: Any, value: Any) -> Any:
+def _truth_solver(terms: Terms, _payload: object, value: object) -> Any:
     if isinstance(value, tuple):
         return terms.real(0) == terms.real(0)
     return terms.number(value) != terms.real(0)
 
 
-def _may_miss(operands: Sequence[Node], _payload: Any) -> bool:
+def _may_miss(operands: Sequence[Node], _payload: object) -> bool:
     """Return whether an index may lie outside a vector."""
     limits = operands[1].limits
     return limits is None or limits[0] < -3 or limits[1] > 2

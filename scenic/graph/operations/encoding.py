@@ -13,7 +13,7 @@ def componentwise(function: Callable[..., Any], *vectors: tuple[bool, ...]) -> S
     A number beside a vector counts as three. Elsewhere Python does not define the operation, and nothing is known.
     """
 
-    def reading(terms: Terms, _payload: Any, *operands: Any) -> Any:
+    def reading(terms: Terms, _payload: object, *operands: Any) -> Any:
         pattern = tuple(isinstance(operand, tuple) for operand in operands)
         if not any(pattern):
             return function(terms, *(terms.number(operand) for operand in operands))
@@ -68,7 +68,7 @@ def root_of_squares(terms: Terms, parts: Sequence[Any]) -> Any:
     return length
 
 
-def chain(terms: Terms, index: Any, options: Sequence[Any]) -> Any:
+def chain(terms: Terms, index: object, options: Sequence[Any]) -> Any:
     """The option that a whole number points at; ``None`` where options have no common form."""
     if any(option is None for option in options):
         return None

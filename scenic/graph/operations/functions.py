@@ -49,7 +49,7 @@ def _python_normalize_angle(angle: Any) -> float:
 def _wave_bounds(peak: float) -> Callable[[Any, Bounds], Bounds]:
     """Bounds of the periodic function that reaches 1 at ``peak`` (plus whole turns) and -1 half a turn later."""
 
-    def bounds(_payload: Any, angle: Bounds) -> Bounds:
+    def bounds(_payload: object, angle: Bounds) -> Bounds:
         # Positions in turns since the peak; a margin covers the rounding of large angles.
         start = (angle.lower - peak) / math.tau
         end = (angle.upper - peak) / math.tau
@@ -71,7 +71,7 @@ sin_bounds = _wave_bounds(math.pi / 2)
 cos_bounds = _wave_bounds(0.0)
 
 
-def _tan_bounds(_payload: Any, angle: Bounds) -> Bounds:
+def _tan_bounds(_payload: object, angle: Bounds) -> Bounds:
     # Half turns since an asymptote: the function grows between two of them. A margin covers the rounding of large angles.
     start, end = (angle.lower / math.pi - 0.5, angle.upper / math.pi - 0.5)
     margin = 1e-15 * (2 + np.maximum(np.abs(start), np.abs(end)))
@@ -82,15 +82,15 @@ def _tan_bounds(_payload: Any, angle: Bounds) -> Bounds:
     )
 
 
-def _wave_solver(terms: Terms, _payload: Any, _angle: Any) -> Any:
+def _wave_solver(terms: Terms, _payload: object, _angle: object) -> Any:
     return within(terms, -1.0, 1.0)
 
 
-def _tan_solver(terms: Terms, _payload: Any, _angle: Any) -> Any:
+def _tan_solver(terms: Terms, _payload: object, _angle: object) -> Any:
     return terms.fresh(Kind.SCALAR)
 
 
-def _hypot_bounds(_payload: Any, *parts: Bounds) -> Bounds:
+def _hypot_bounds(_payload: object, *parts: Bounds) -> Bounds:
     return length_bounds(parts)
 
 
@@ -101,15 +101,15 @@ def length_bounds(parts: Any) -> Bounds:
     return Bounds(np.maximum(length.lower, 0.0), length.upper)
 
 
-def _hypot_inverse(_payload: Any, result: Bounds, *parts: Bounds) -> list[Bounds]:
+def _hypot_inverse(_payload: object, result: Bounds, *parts: Bounds) -> list[Bounds]:
     return sides(result, parts)
 
 
-def _hypot_solver(terms: Terms, _payload: Any, *parts: Any) -> Any:
+def _hypot_solver(terms: Terms, _payload: object, *parts: Any) -> Any:
     return root_of_squares(terms, [terms.number(part) for part in parts])
 
 
-def _normalize_bounds(_payload: Any, angle: Bounds) -> Bounds:
+def _normalize_bounds(_payload: object, angle: Bounds) -> Bounds:
     low, high = normalize_angle(angle.lower), normalize_angle(angle.upper)
     # Both ends moved by the same number of turns: the interval moved as a whole.
     turns = (angle.lower - low) / math.tau
@@ -124,7 +124,7 @@ def _normalize_bounds(_payload: Any, angle: Bounds) -> Bounds:
     return intervals.doubtful(Bounds(lower, upper), angle)
 
 
-def _normalize_inverse(_payload: Any, result: Bounds, angle: Bounds) -> list[Bounds]:
+def _normalize_inverse(_payload: object, result: Bounds, angle: Bounds) -> list[Bounds]:
     """The angles within the bounds known so far that whole turns move into the result's."""
     margin = 1e-12 * (1 + intervals.size(angle))
     low, high = result.lower - margin, result.upper + margin
@@ -142,7 +142,7 @@ def _normalize_inverse(_payload: Any, result: Bounds, angle: Bounds) -> list[Bou
     ]
 
 
-def _normalize_solver(terms: Terms, _payload: Any, angle: Any) -> Any:
+def _normalize_solver(terms: Terms, _payload: object, angle: object) -> Any:
     angle = terms.number(angle)
     pi = terms.real(math.pi)
     result = within(terms, -math.pi, math.pi)
@@ -154,7 +154,7 @@ _NORMAL: Final = frozenset({"azimuth", "euler", "normalize angle", "altitude"})
 """Operations whose results are normal angles already."""
 
 
-def _already_normal(operands: Sequence[Node], _payload: Any) -> Node | None:
+def _already_normal(operands: Sequence[Node], _payload: object) -> Node | None:
     (angle,) = operands
     if angle.kind is not Kind.SCALAR:
         return None

@@ -38,7 +38,7 @@ def _modulo(call: Call, a: Column, b: Column) -> Column:
     return np.remainder(a, np.where(zero, np.ones_like(b), b))
 
 
-def _power_kind(operands: Sequence[Node], payload: Any) -> Kind:
+def _power_kind(operands: Sequence[Node], payload: object) -> Kind:
     base, exponent = operands
     if not (base.kind.is_number and exponent.kind.is_number):
         return Kind.OTHER
@@ -65,7 +65,7 @@ def _power(call: Call, a: Column, b: Column) -> Column:
     return lane_by_lane(call, operator.pow, np.int64 if whole else np.float64, a, b)
 
 
-def _round_kind(operands: Sequence[Node], payload: Any) -> Kind:
+def _round_kind(operands: Sequence[Node], payload: object) -> Kind:
     number, *digits = operands
     if not number.kind.is_number or any(not digit.kind.is_number for digit in digits):
         return Kind.OTHER
@@ -83,7 +83,7 @@ def _round(call: Call, number: Column, *digits: Column) -> Column:
     return as_integers(number)
 
 
-def _int_kind(operands: Sequence[Node], payload: Any) -> Kind:
+def _int_kind(operands: Sequence[Node], payload: object) -> Kind:
     if not operands[0].kind.is_number:
         return Kind.OTHER
     return Kind.INTEGER if whole_limits(_int_bounds, operands, payload) is not None else Kind.OTHER
@@ -98,11 +98,11 @@ def _whole(values: Column) -> Column:
     return np.where(np.abs(values) < 2.0**62, values, 0.0).astype(np.int64)
 
 
-def _floor_divide_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+def _floor_divide_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
     return intervals.floor_divide(a, b)
 
 
-def _floor_divide_inverse(_payload: Any, result: Bounds, _a: Bounds, b: Bounds) -> list[Bounds | None]:
+def _floor_divide_inverse(_payload: object, result: Bounds, _a: Bounds, b: Bounds) -> list[Bounds | None]:
     quotient = before_rounding(Bounds(result.lower, result.upper + 1), 2)
     return [intervals.multiply(quotient, b), None]
 
@@ -113,7 +113,7 @@ def _floor_divide_solver(terms: Terms, a: Any, b: Any) -> Any:
     return terms.integer_part(a / b)
 
 
-def _modulo_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+def _modulo_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
     return intervals.modulo(a, b)
 
 
@@ -123,11 +123,11 @@ def _modulo_solver(terms: Terms, a: Any, b: Any) -> Any:
     return a - b * terms.integer_part(a / b)
 
 
-def _power_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+def _power_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
     return intervals.power(a, b)
 
 
-def _power_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds | None]:
+def _power_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds | None]:
     """The root, where the exponent is one positive number."""
     fixed = (b.lower == b.upper) & (b.lower > 0)
     exponent = np.where(fixed, b.lower, 1.0)
@@ -148,7 +148,7 @@ def _root(value: Column, exponent: Column) -> Column:
     return np.asarray(np.sign(value) * np.abs(value) ** (1 / exponent))
 
 
-def _power_solver(terms: Terms, a: Any, b: Any) -> Any:
+def _power_solver(terms: Terms, a: object, b: object) -> Any:
     exponent = terms.constant(b)
     if exponent == 0.5:
         root = terms.fresh(Kind.SCALAR)
@@ -163,13 +163,13 @@ def _power_solver(terms: Terms, a: Any, b: Any) -> Any:
     return result
 
 
-def _round_bounds(_payload: Any, number: Bounds, *digits: Bounds) -> Bounds:
+def _round_bounds(_payload: object, number: Bounds, *digits: Bounds) -> Bounds:
     if not digits:
         return Bounds(np.rint(number.lower), np.rint(number.upper))
     return intervals.widened(number, _unit(digits[0]))
 
 
-def _round_inverse(_payload: Any, result: Bounds, _number: Bounds, *digits: Bounds) -> list[Bounds | None]:
+def _round_inverse(_payload: object, result: Bounds, _number: Bounds, *digits: Bounds) -> list[Bounds | None]:
     if not digits:
         return [Bounds(result.lower - 0.5, result.upper + 0.5)]
     return [intervals.widened(result, _unit(digits[0])), None]
@@ -180,7 +180,7 @@ def _unit(digits: Bounds) -> Any:
     return 10.0 ** -np.maximum(digits.lower, -400.0)
 
 
-def _round_solver(terms: Terms, number: Any, *digits: Any) -> Any:
+def _round_solver(terms: Terms, number: object, *digits: Any) -> Any:
     if digits:
         return terms.fresh(Kind.SCALAR)
     # Halves go to the even neighbour; either neighbour is allowed here.
@@ -191,11 +191,11 @@ def _round_solver(terms: Terms, number: Any, *digits: Any) -> Any:
     return terms.either(at_half & down, low - terms.real(1), low)
 
 
-def _int_bounds(_payload: Any, number: Bounds) -> Bounds:
+def _int_bounds(_payload: object, number: Bounds) -> Bounds:
     return Bounds(np.trunc(number.lower), np.trunc(number.upper))
 
 
-def _int_inverse(_payload: Any, result: Bounds, _number: Bounds) -> list[Bounds]:
+def _int_inverse(_payload: object, result: Bounds, _number: Bounds) -> list[Bounds]:
     lower = np.where(result.lower > 0, result.lower, result.lower - 1)
     return [Bounds(lower, np.where(result.upper < 0, result.upper, result.upper + 1))]
 

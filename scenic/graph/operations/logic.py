@@ -67,25 +67,25 @@ def _if(call: Call, test: Column, then: Column, otherwise: Column) -> Column:
     return choose(call, masks, (then, otherwise), first=1)
 
 
-def _python_if(test: bool, then: Any, otherwise: Any) -> Any:
+def _python_if(test: bool, then: object, otherwise: object) -> Any:
     return then if test else otherwise
 
 
-def _and_bounds(_payload: Any, *operands: Bounds) -> Bounds:
+def _and_bounds(_payload: object, *operands: Bounds) -> Bounds:
     result = operands[0]
     for operand in operands[1:]:
         result = Bounds(np.minimum(result.lower, operand.lower), np.minimum(result.upper, operand.upper))
     return result
 
 
-def _or_bounds(_payload: Any, *operands: Bounds) -> Bounds:
+def _or_bounds(_payload: object, *operands: Bounds) -> Bounds:
     result = operands[0]
     for operand in operands[1:]:
         result = Bounds(np.maximum(result.lower, operand.lower), np.maximum(result.upper, operand.upper))
     return result
 
 
-def _and_inverse(_payload: Any, result: Bounds, *operands: Bounds) -> list[Bounds | None]:
+def _and_inverse(_payload: object, result: Bounds, *operands: Bounds) -> list[Bounds | None]:
     """All hold where the conjunction holds; where it fails and all others hold, the last one fails.
 
     An operand is reached when all before it hold.
@@ -102,7 +102,7 @@ def _and_inverse(_payload: Any, result: Bounds, *operands: Bounds) -> list[Bound
     return narrowed
 
 
-def _or_inverse(_payload: Any, result: Bounds, *operands: Bounds) -> list[Bounds | None]:
+def _or_inverse(_payload: object, result: Bounds, *operands: Bounds) -> list[Bounds | None]:
     return _mirrored(_and_inverse(None, _not_bounds(None, result), *(_not_bounds(None, a) for a in operands)))
 
 
@@ -110,32 +110,34 @@ def _mirrored(narrowed: list[Bounds | None]) -> list[Bounds | None]:
     return [None if bounds is None else _not_bounds(None, bounds) for bounds in narrowed]
 
 
-def _not_bounds(_payload: Any, value: Bounds) -> Bounds:
+def _not_bounds(_payload: object, value: Bounds) -> Bounds:
     return Bounds(1 - value.upper, 1 - value.lower)
 
 
-def _not_inverse(_payload: Any, result: Bounds, _value: Bounds) -> list[Bounds]:
+def _not_inverse(_payload: object, result: Bounds, _value: Bounds) -> list[Bounds]:
     return [_not_bounds(None, result)]
 
 
-def _and_solver(_terms: Terms, _payload: Any, *operands: Any) -> Any:
+def _and_solver(_terms: Terms, _payload: object, *operands: Any) -> Any:
     return conjunction(operands)
 
 
-def _or_solver(_terms: Terms, _payload: Any, *operands: Any) -> Any:
+def _or_solver(_terms: Terms, _payload: object, *operands: Any) -> Any:
     return disjunction(operands)
 
 
-def _not_solver(_terms: Terms, _payload: Any, value: Any) -> Any:
+def _not_solver(_terms: Terms, _payload: object, value: Any) -> Any:
     return ~value
 
 
-def _if_bounds(_payload: Any, test: Bounds, then: Bounds | None, otherwise: Bounds | None) -> Bounds | None:
+def _if_bounds(
+    _payload: object, test: Bounds, then: Bounds | None, otherwise: Bounds | None
+) -> Bounds | None:
     return hull_of_possible((then, otherwise), (test.upper > 0, test.lower < 1))
 
 
 def _if_inverse(
-    _payload: Any, result: Bounds, test: Bounds, then: Bounds | None, otherwise: Bounds | None
+    _payload: object, result: Bounds, test: Bounds, then: Bounds | None, otherwise: Bounds | None
 ) -> list[Bounds | None]:
     true, false = certain(test)
     narrowed: list[Bounds | None] = [truth(~can_give(otherwise, result), ~can_give(then, result))]
@@ -145,7 +147,7 @@ def _if_inverse(
     return narrowed
 
 
-def _if_solver(terms: Terms, _payload: Any, test: Any, then: Any, otherwise: Any) -> Any:
+def _if_solver(terms: Terms, _payload: object, test: object, then: object, otherwise: object) -> Any:
     return chain(terms, terms.either(test, terms.real(0), terms.real(1)), (then, otherwise))
 
 

@@ -18,7 +18,7 @@ EXACT: Final = 2**53
 def arithmetic_kind(reading: BoundsReading) -> KindRule:
     """Numbers follow Python: a float makes a float, integers stay integers while they provably fit 64 bits."""
 
-    def rule(operands: Sequence[Node], payload: Any) -> Kind:
+    def rule(operands: Sequence[Node], payload: object) -> Kind:
         kinds = [operand.kind for operand in operands]
         if not all(kind.is_number for kind in kinds):
             return Kind.OTHER
@@ -35,7 +35,7 @@ def where_defined(reading: BoundsReading, *vectors: tuple[bool, ...]) -> BoundsR
     Elsewhere Python does not define the operation, and nothing is known.
     """
 
-    def bounds(payload: Any, *operands: Bounds) -> Bounds | None:
+    def bounds(payload: object, *operands: Bounds) -> Bounds | None:
         shapes = [operand.lower.shape[1:] for operand in operands]
         pattern = tuple(shape == (3,) for shape in shapes)
         if any(shapes) and (pattern not in vectors or (4,) in shapes):

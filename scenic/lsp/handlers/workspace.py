@@ -14,7 +14,7 @@ __all__ = ["HANDLERS", "read_settings", "take_settings"]
 _SECTION: Final = "scenic"
 
 
-def take_settings(session: Session, settings: Any) -> None:
+def take_settings(session: Session, settings: object) -> None:
     """Take settings over, as they come with `initialize` or later; those of other sections are none of ours."""
     inner = settings.get(_SECTION) if isinstance(settings, dict) else None
     settings = inner if isinstance(inner, dict) else settings

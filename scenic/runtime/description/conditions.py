@@ -146,7 +146,7 @@ def leaf(
     return build
 
 
-def truth(value: Any) -> Node:
+def truth(value: object) -> Node:
     """The truth value of a value, as a node; raises `NotSymbolicError` if only a sample decides it."""
     if is_answered_by_code(value, _OF_TRUTH):
         raise NotSymbolicError

@@ -17,7 +17,7 @@ __all__ = ["Copier", "Declared", "End", "Kept", "MonitorUse", "RecordUse", "Requ
 class Copier(Protocol):
     """Gives the values of a program in a simulation."""
 
-    def value(self, value: Any) -> Any:
+    def value(self, value: object) -> Any:
         """The value in the simulation."""
 
 

@@ -188,7 +188,7 @@ def define(base: type[Invocable], definition: Definition, documentation: str | N
     return type(definition.name, (base,), members)
 
 
-def behavior_of(value: Any) -> Any:
+def behavior_of(value: object) -> Any:
     """The value of the property ``behavior``: a class stands for an instance without arguments.
 
     Raises `ScenicTypeError` for what is no behavior, nor a random value that may be one.

@@ -28,7 +28,7 @@ from scenic.runtime.values.values import (
 )
 
 
-def request(targets: Iterable[Any], scale: Any) -> None:
+def request(targets: Iterable[Any], scale: object) -> None:
     """Set the scale of the noise of instances: what ``mutate`` does."""
     if not is_number(scale):
         raise ScenicTypeError(
@@ -76,7 +76,7 @@ def mutate_now(instance: Point) -> None:
                 break
 
 
-def _mutate(instance: Point, scale: Any) -> bool:
+def _mutate(instance: Point, scale: object) -> bool:
     mutators = active(instance)
     if is_built_in(mutators):
         for mutator in mutators:
@@ -109,7 +109,7 @@ def _copy(instance: Point) -> Point:
     return type(instance)._make(instance.__dict__)
 
 
-def _settle(instance: Point, changed: Any) -> None:
+def _settle(instance: Point, changed: object) -> None:
     """Give an instance what a mutator has made of its properties, and what follows from them."""
     update(instance, {name: getattr(changed, name) for name in _free(instance) if name not in KEPT})
 
@@ -120,7 +120,7 @@ def _free(instance: Point) -> list[str]:
     return [name for name in instance.properties if name not in derived]
 
 
-def _kind(value: Any) -> Kind | None:
+def _kind(value: object) -> Kind | None:
     return value.node.kind if hasattr(value, "node") else None
 
 

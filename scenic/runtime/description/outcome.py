@@ -103,7 +103,7 @@ class Program:
             with self._originals.put_back():
                 yield
 
-    def parameter(self, name: str, default: Any = None) -> Any:
+    def parameter(self, name: str, default: object = None) -> Any:
         """A global parameter as it is so far, or else a default."""
         self.read_parameters.add(name)
         return self.overrides.get(name, self.parameters.get(name, default))

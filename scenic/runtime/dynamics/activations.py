@@ -54,7 +54,9 @@ class Activation(Guarded):
     """True if it runs scenarios."""
     __slots__ = ("agent", "direct", "generator", "scenario")
 
-    def __init__(self, run: "Run", instance: Invocable, agent: Any, scenario: "ScenarioActivation") -> None:
+    def __init__(
+        self, run: "Run", instance: Invocable, agent: object, scenario: "ScenarioActivation"
+    ) -> None:
         if instance._activation is not None:
             raise InvalidScenarioError(
                 f"{instance._kind} {instance!r} is running already",

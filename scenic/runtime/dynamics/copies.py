@@ -66,12 +66,12 @@ class Copies(Sample):
         self._own[id(names)] = names
         self.remember(module, module)
 
-    def remember(self, value: Any, copy: Any) -> None:
+    def remember(self, value: object, copy: object) -> None:
         """Say what the copy of a value is while it is being made; the copy is its own."""
         super().remember(value, copy)
         self._memo[id(copy)] = copy
 
-    def _sampled(self, value: Any) -> Any:
+    def _sampled(self, value: object) -> Any:
         if self._shares and value in self._originals:
             return value
         # An array may be changed in place.
@@ -79,7 +79,7 @@ class Copies(Sample):
             self._originals.contents(value).copy() if type(value) is np.ndarray else super()._sampled(value)
         )
 
-    def _stays(self, item: Any) -> bool:
+    def _stays(self, item: object) -> bool:
         if isinstance(item, DECORATED):
             return all(map(self._stays, functions_of(item)))
         if not isinstance(item, FunctionType):
@@ -106,7 +106,7 @@ class Copies(Sample):
                 self._depth -= 1
         return copy
 
-    def _complete(self, instance: Instance, copy: Any) -> None:
+    def _complete(self, instance: Instance, copy: object) -> None:
         """Give a copy the values of its own."""
         for name, value in instance.__dict__.items():
             copy.__dict__[name] = self.value(value)

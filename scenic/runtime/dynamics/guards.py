@@ -30,7 +30,7 @@ class Guarded(ABC):
 
     __slots__ = ("instance", "invariants", "preconditions", "run")
 
-    def __init__(self, run: "Run", instance: Any) -> None:
+    def __init__(self, run: "Run", instance: object) -> None:
         self.run = run
         self.preconditions: list[Guard] = []
         self.invariants: list[Guard] = []

@@ -125,12 +125,12 @@ class Dynamics:
         return Termination(simulation=simulation, span=here())
 
     def do(
-        self, instance: Invocable, targets: Sequence[Any], limit: Any = None, unit: str | None = None
+        self, instance: Invocable, targets: Sequence[Any], limit: object = None, unit: str | None = None
     ) -> Any:
         """``do``: what to delegate to."""
         return statements.do(instance._activation, targets, limit, unit)
 
-    def wait(self, instance: Invocable, limit: Any, unit: str) -> Any:
+    def wait(self, instance: Invocable, limit: object, unit: str) -> Any:
         """``wait for`` and ``wait until``: what to delegate to."""
         return statements.wait(instance._activation, limit, unit)
 
@@ -151,7 +151,7 @@ class Dynamics:
         """``try-interrupt``: what to delegate to."""
         return statements.interruptible(instance._activation, body, clauses)
 
-    def leave(self, value: Any) -> statements.Outcome:
+    def leave(self, value: object) -> statements.Outcome:
         """``return value`` in a block of ``try-interrupt``."""
         return statements.Outcome("return", value)
 
@@ -165,7 +165,7 @@ class Dynamics:
 
     # Statements that do not
 
-    def override(self, target: Any, *specifiers: Any) -> None:
+    def override(self, target: object, *specifiers: Any) -> None:
         """``override``."""
         run = self._run
         if run is None:
@@ -173,7 +173,7 @@ class Dynamics:
         else:
             run.current.overrides.apply(target, specifiers)
 
-    def require_monitor(self, monitor: Any, *, name: str | None = None) -> None:
+    def require_monitor(self, monitor: object, *, name: str | None = None) -> None:
         """``require monitor``."""
         if not isinstance(monitor, Monitor):
             raise not_a_monitor(monitor)
@@ -190,7 +190,7 @@ class Dynamics:
         label = name or _numbered("termination condition")
         self._declared.ends.append(End(Kept(concrete, captured), label, simulation))
 
-    def terminate_after(self, value: Any, unit: str) -> None:
+    def terminate_after(self, value: object, unit: str) -> None:
         """``terminate after``."""
         if not is_number(value) or isinstance(value, bool):
             raise ScenicTypeError(
@@ -209,7 +209,7 @@ class Dynamics:
         name: str | None,
         every: tuple[Any, str] | None = None,
         after: tuple[Any, str] | None = None,
-        to: Any = None,
+        to: object = None,
     ) -> None:
         """``record``."""
         span = here()

@@ -47,7 +47,7 @@ def margin(symbols: Sequence[str], operands: Sequence[Any]) -> float | None:
     return least
 
 
-def _part(symbol: str, left: Any, right: Any) -> float | None:
+def _part(symbol: str, left: object, right: object) -> float | None:
     match symbol:
         case "<" | "<=" | ">" | ">=":
             if not (is_number(left) and is_number(right)):
@@ -68,7 +68,7 @@ def _part(symbol: str, left: Any, right: Any) -> float | None:
             return None if opposite is None else -opposite
 
 
-def _equality(left: Any, right: Any) -> float | None:
+def _equality(left: object, right: object) -> float | None:
     if is_number(left) and is_number(right):
         apart = abs(float(left - right))
     elif (isinstance(left, Vector) and is_vector(right)) or (is_vector(left) and isinstance(right, Vector)):
@@ -78,7 +78,7 @@ def _equality(left: Any, right: Any) -> float | None:
     return -apart if apart else math.inf
 
 
-def _direction(words: str, place: Any, base: Any) -> float | None:
+def _direction(words: str, place: object, base: object) -> float | None:
     """By which angle, in radians, the base could turn before the place leaves the direction."""
     if not isinstance(base, OrientedPoint):
         return None
@@ -86,7 +86,7 @@ def _direction(words: str, place: Any, base: Any) -> float | None:
     return DIRECTIONS[words].margin(bearing)
 
 
-def _membership(item: Any, region: Any) -> float | None:
+def _membership(item: object, region: object) -> float | None:
     """The signed distance of a point, or of the corner of an object that is least inside."""
     if not isinstance(region, Region):
         return None
@@ -141,7 +141,7 @@ def _depths(points: Floats, region: Region) -> Floats:
     return np.full(len(points), math.inf) if surface is None else _distances(points, surface())
 
 
-def _overlap(left: Any, right: Any) -> float | None:
+def _overlap(left: object, right: object) -> float | None:
     """Return the depth, in metres, to which two objects overlap, or the gap between them as a negative
     number.
 
@@ -161,7 +161,7 @@ def _overlap(left: Any, right: Any) -> float | None:
     return math.inf
 
 
-def _sight(observer: Any, target: Any) -> float | None:
+def _sight(observer: object, target: object) -> float | None:
     """By how much an observer sees a point or an object past those of the simulation; unknown in the plane."""
     context = current.get()
     if context is None or context.mode_2d:

@@ -66,7 +66,7 @@ class Overrides:
         self._before = {}
 
 
-def override_before(target: Any, specifiers: Sequence[Specifier], *, mode_2d: bool) -> None:
+def override_before(target: object, specifiers: Sequence[Specifier], *, mode_2d: bool) -> None:
     """``override`` in the set-up of the scenario that is compiled, which scenes are samples of.
 
     Raises what `Overrides.apply` does.
@@ -84,7 +84,7 @@ def refresh(obj: Any) -> None:
     finals.renew_own(obj)
 
 
-def _values(target: Any, specifiers: Sequence[Specifier], *, mode_2d: bool) -> dict[str, Any]:
+def _values(target: object, specifiers: Sequence[Specifier], *, mode_2d: bool) -> dict[str, Any]:
     """Return the values, by property, that the specifiers of an `override` give to the object ``target``."""
     if not isinstance(target, Object):
         raise ScenicTypeError(f"`override`: expected an object, not {describe(target)}", span=here())

@@ -28,7 +28,7 @@ def plain(value: Any) -> Any:
     return repr(value)
 
 
-def as_array(value: Any) -> Any:
+def as_array(value: object) -> Any:
     try:
         array = value if isinstance(value, np.ndarray) else np.asarray(plain(value))
     except ValueError:  # lists of different lengths
@@ -38,7 +38,7 @@ def as_array(value: Any) -> Any:
     return array
 
 
-def as_pixels(value: Any) -> Any:
+def as_pixels(value: object) -> Any:
     """An image as bytes: intensities or RGB, integers from 0 to 255 or floats from 0 to 1; what lies beyond is cut off."""
     array = np.asarray(value)
     if not (array.ndim == 2 or (array.ndim == 3 and array.shape[2] in (3, 4))):

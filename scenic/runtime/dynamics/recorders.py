@@ -27,7 +27,7 @@ class Recorder:
     """
 
     def beginRecording(
-        self, config: Any, simulationName: str, timestep: float, globalParams: Mapping[str, Any]
+        self, config: object, simulationName: str, timestep: float, globalParams: Mapping[str, Any]
     ) -> None:
         """A simulation begins."""
         self.config = config
@@ -35,7 +35,7 @@ class Recorder:
         self.timestep = timestep
         self.globalParams = globalParams
 
-    def recordValue(self, value: Any, step: int) -> None:
+    def recordValue(self, value: object, step: int) -> None:
         """A value at a step."""
 
     def endRecording(self, canceled: bool) -> None:
@@ -102,7 +102,7 @@ class File(_Pattern):
         """The file."""
         return Filed(str(self.path(0)))
 
-    def recordValue(self, value: Any, step: int) -> None:
+    def recordValue(self, value: object, step: int) -> None:
         """A value at a step."""
         if self._series is None:
             self._series = self._write(self._place(0), self.timestep, **self.options)
@@ -139,7 +139,7 @@ class Files(_Pattern):
         """The files."""
         return Filed(str(Path(self.globalParams.get("recordFolder", "."), self.pattern)))
 
-    def recordValue(self, value: Any, step: int) -> None:
+    def recordValue(self, value: object, step: int) -> None:
         """Write the value."""
         with whole(self._place(step)) as stream:
             self._write(stream, value, **self.options)
@@ -177,11 +177,11 @@ def for_pattern(pattern: str) -> Recorder:
 # Formats of one value
 
 
-def _npy(stream: BinaryIO, value: Any) -> None:
+def _npy(stream: BinaryIO, value: object) -> None:
     np.save(stream, as_array(value))
 
 
-def _image(stream: BinaryIO, value: Any, **options: Any) -> None:
+def _image(stream: BinaryIO, value: object, **options: Any) -> None:
     try:
         from PIL import Image  # optional, and slow to import
     except ImportError as error:
@@ -197,7 +197,7 @@ def _image_format(stream: BinaryIO) -> str:
     return {"jpg": "JPEG"}.get(suffix := Path(str(stream.name)).suffix[1:].lower(), suffix.upper())
 
 
-def _json(stream: BinaryIO, value: Any) -> None:
+def _json(stream: BinaryIO, value: object) -> None:
     stream.write(json.dumps(plain(value)).encode() + b"\n")
 
 

@@ -123,7 +123,7 @@ def check_duration(duration: tuple[Any, str] | None, what: str, least: float, sp
         )
 
 
-def check_target(target: Any, span: Span | None) -> None:
+def check_target(target: object, span: Span | None) -> None:
     """Raise an error for something to which nothing can be recorded."""
     if target is None or isinstance(target, Recorder):
         return

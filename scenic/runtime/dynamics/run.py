@@ -34,10 +34,10 @@ class Simulated(Protocol):
     agents: list[Any]
     records: dict[str, Any]
 
-    def add(self, obj: Any) -> None:
+    def add(self, obj: object) -> None:
         """Create an object in the simulator."""
 
-    def place_of(self, obj: Any) -> Any:
+    def place_of(self, obj: object) -> Any:
         """Return where the program creates an object: span and file, each ``None`` if unknown."""
 
     def sense(self) -> None:
@@ -49,7 +49,7 @@ class Simulated(Protocol):
     def scheduleForAgents(self) -> Any:
         """The agents in the order in which they act."""
 
-    def check_actions(self, agent: Any, actions: tuple[Any, ...]) -> None:
+    def check_actions(self, agent: object, actions: tuple[Any, ...]) -> None:
         """Raise `InvalidScenarioError` for actions that cannot be taken together."""
 
     def act(self, actions: Mapping[Any, tuple[Any, ...]]) -> None:
@@ -243,7 +243,7 @@ class Run:
 
     # Objects and agents
 
-    def create(self, instance: Any) -> None:
+    def create(self, instance: object) -> None:
         """A new instance of the running program."""
         instance.__dict__["_sample"] = self.copies  # Members read it where code of a simulator asks for them.
         scenario = self._creating
@@ -299,7 +299,7 @@ class Run:
                 raise
         self.note_agent(agent)
 
-    def note_agent(self, agent: Any) -> None:
+    def note_agent(self, agent: object) -> None:
         """An object has a behavior."""
         if not any(known is agent for known in (*self.simulation.agents, *self._new_agents)):
             self._new_agents.append(agent)

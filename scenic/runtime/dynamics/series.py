@@ -24,7 +24,7 @@ __all__ = ["Arrays", "Film", "Lines", "Pickled", "Series"]
 class Series(Protocol):
     """A file for a series, made for a path and the seconds in a step."""
 
-    def add(self, step: int, value: Any) -> None:
+    def add(self, step: int, value: object) -> None:
         """Go on by a value."""
 
     def save(self) -> None:
@@ -42,7 +42,7 @@ class Lines:
         self._timestep = timestep
         self._stream = unnamed(path)
 
-    def add(self, step: int, value: Any) -> None:
+    def add(self, step: int, value: object) -> None:
         """Go on by a line."""
         row = {"step": step, "time": step * self._timestep, "value": plain(value)}
         with naming(self._path):
@@ -73,7 +73,7 @@ class Arrays:
         self._kind: np.dtype[Any] | None = None
         self._stream = unnamed(path)
 
-    def add(self, step: int, value: Any) -> None:
+    def add(self, step: int, value: object) -> None:
         """Go on by a value, of the same shape as the others."""
         found = as_array(value)
         if self._kind is None:
@@ -126,7 +126,7 @@ class Pickled:
         self._path = path
         self._series: list[tuple[int, Any]] = []
 
-    def add(self, step: int, value: Any) -> None:
+    def add(self, step: int, value: object) -> None:
         """Go on by a value."""
         self._series.append((step, plain(value)))
 
@@ -151,7 +151,7 @@ class Film:
         self._writer: Any = None
         self._file: Path | None = None
 
-    def add(self, step: int, value: Any) -> None:
+    def add(self, step: int, value: object) -> None:
         """Go on by an image, of the same size as the others."""
         frame = _even(as_pixels(value))
         if self._first is None:

@@ -38,7 +38,7 @@ class Outcome:
 
     __slots__ = ("value", "way")
 
-    def __init__(self, way: str, value: Any = None) -> None:
+    def __init__(self, way: str, value: object = None) -> None:
         self.way = way
         self.value = value
 
@@ -48,7 +48,7 @@ BREAK: Final = Outcome("break")
 CONTINUE: Final = Outcome("continue")
 
 
-def limit_in_steps(value: Any, unit: str, timestep: float, what: str) -> float:
+def limit_in_steps(value: object, unit: str, timestep: float, what: str) -> float:
     """A duration in steps, not rounded."""
     if not is_number(value) or isinstance(value, bool):
         raise ScenicTypeError(f"{what}: expected a number of {unit}, not {describe(value)}", span=here())
@@ -74,7 +74,7 @@ def _stop_test(owner: Running, limit: Any, unit: str | None) -> Callable[[], boo
     return lambda: run.simulation.currentTime - start >= steps
 
 
-def begin(owner: Running, target: Any) -> Running:
+def begin(owner: Running, target: object) -> Running:
     """Make something ready to be started from within something else."""
     in_compose = owner.composes
     if isinstance(target, type) and issubclass(target, Invocable):
@@ -92,7 +92,7 @@ def begin(owner: Running, target: Any) -> Running:
     raise ScenicTypeError(f"`do`: expected {expected}, not {describe(target)}", span=here(), help=hint)
 
 
-def do(owner: Running, targets: Sequence[Any], limit: Any = None, unit: str | None = None) -> Steps:
+def do(owner: Running, targets: Sequence[Any], limit: object = None, unit: str | None = None) -> Steps:
     """``do``, with ``for`` or ``until``."""
     stop = _stop_test(owner, limit, unit)
     started: list[Running] = []
@@ -144,7 +144,7 @@ def _joined(outputs: Sequence[Yielded]) -> Yielded:
     return actions
 
 
-def wait(owner: Running, limit: Any, unit: str) -> Steps:
+def wait(owner: Running, limit: object, unit: str) -> Steps:
     """``wait for`` and ``wait until``."""
     stop = _stop_test(owner, limit, unit)
     assert stop is not None

@@ -41,7 +41,7 @@ _BUCKETS: Final = 5
 """Default number of buckets that approximate a prior."""
 
 
-def _make(operation: str, operands: Sequence[Any], payload: Any, choosable: Choosable) -> Any:
+def _make(operation: str, operands: Sequence[Any], payload: object, choosable: Choosable) -> Any:
     """A value whose axis a search may choose; in a simulation it is drawn at once."""
     context = current.get()
     if context is None or not context.is_symbolic or context.evaluating:
@@ -58,12 +58,12 @@ def _make(operation: str, operands: Sequence[Any], payload: Any, choosable: Choo
 class _Kind(type):
     """The class of a kind of external parameter: calling it gives a random value, which is an instance of it."""
 
-    def __instancecheck__(cls, value: Any) -> bool:
+    def __instancecheck__(cls, value: object) -> bool:
         found = choosable_of(value)
         return found is not None and (cls.__name__ in ("ExternalParameter", "VerifaiParameter", found.kind))
 
 
-def choosable_of(value: Any) -> Choosable | None:
+def choosable_of(value: object) -> Choosable | None:
     """The values that may be chosen, if a value is an external parameter itself."""
     context = current.get()
     if context is None or not isinstance(value, Random):
@@ -92,7 +92,7 @@ class VerifaiParameter(ExternalParameter):
     """A value that a sampler of the package gives."""
 
     @staticmethod
-    def withPrior(dist: Any, buckets: int | None = None) -> Any:
+    def withPrior(dist: object, buckets: int | None = None) -> Any:
         """An external parameter whose prior is a primitive distribution, in buckets (5 unless given).
 
         Samplers choose among the buckets and places in them; within a bucket the law is that of the prior. Buckets of a normal law
@@ -105,15 +105,15 @@ class VerifaiRange(VerifaiParameter):
     """A real number between two fixed ends, uniform, or with a weight for each of some buckets of equal width."""
 
     def __new__(
-        cls, low: Any, high: Any, buckets: int | None = None, weights: Sequence[float] | None = None
+        cls, low: object, high: object, buckets: int | None = None, weights: Sequence[float] | None = None
     ) -> Any:
         return cls._over(low, high, buckets, weights)
 
     @classmethod
     def _over(
         cls,
-        low: Any,
-        high: Any,
+        low: object,
+        high: object,
         buckets: int | None,
         weights: Sequence[float] | None = None,
         *,
@@ -148,7 +148,7 @@ class VerifaiRange(VerifaiParameter):
 class VerifaiDiscreteRange(VerifaiParameter):
     """An integer between two fixed ones, both included, uniform, or with a weight for each."""
 
-    def __new__(cls, low: Any, high: Any, weights: Sequence[float] | None = None) -> Any:
+    def __new__(cls, low: object, high: object, weights: Sequence[float] | None = None) -> Any:
         ends = [_fixed(end, cls.__name__) for end in (low, high)]
         if any(end != int(end) for end in ends) or ends[0] > ends[1]:
             raise ScenicValueError(
@@ -210,7 +210,7 @@ def _possible(chosen: Choosable, cells: tuple[tuple[float, float], ...]) -> Choo
     )
 
 
-def _fixed(value: Any, name: str) -> float:
+def _fixed(value: object, name: str) -> float:
     if is_random(value) or not is_number(value) or not math.isfinite(value):
         raise ScenicTypeError(
             f"the ends of `{name}` are fixed, finite numbers, not {describe(value)}",
@@ -220,13 +220,13 @@ def _fixed(value: Any, name: str) -> float:
     return float(value)
 
 
-def _count(buckets: Any) -> int:
+def _count(buckets: object) -> int:
     if not isinstance(buckets, int) or buckets < 1:
         raise ScenicValueError(f"the number of buckets is an integer from 1 on, not {buckets!r}", span=here())
     return buckets
 
 
-def _with_prior(dist: Any, buckets: int) -> Any:
+def _with_prior(dist: object, buckets: int) -> Any:
     if not isinstance(dist, Random) or not dist.isPrimitive:
         raise ScenicTypeError(
             f"the prior of an external parameter is a primitive distribution, not {describe(dist)}",

@@ -35,19 +35,19 @@ def _for_python(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], 
 
 
 @_for_python(math.sin)
-def sin(x: Any) -> Any:
+def sin(x: object) -> Any:
     """Sine of an angle in radians."""
     return _of_numbers("sin", x)
 
 
 @_for_python(math.cos)
-def cos(x: Any) -> Any:
+def cos(x: object) -> Any:
     """Cosine of an angle in radians."""
     return _of_numbers("cos", x)
 
 
 @_for_python(math.tan)
-def tan(x: Any) -> Any:
+def tan(x: object) -> Any:
     """Tangent of an angle in radians."""
     return _of_numbers("tan", x)
 
@@ -129,14 +129,14 @@ def filter(function: Callable[[Any], Any] | None, values: Any) -> Any:
     return chosen
 
 
-def _note_empty(result: Any, count: int) -> None:
+def _note_empty(result: object, count: int) -> None:
     """Record the place where a filter left none of some elements, for the error of a choice from its result."""
     context = current.get()
     if context is not None and context.is_symbolic:
         context.record.emptied.append((result, count, here()))
 
 
-def _kept_of_options(function: Callable[[Any], Any] | None, values: Any) -> Any:
+def _kept_of_options(function: Callable[[Any], Any] | None, values: object) -> Any:
     """Filter each option of a random choice; return the kept items as a choice, or ``None`` if only sampling can decide.
 
     Random names that the function reads have to be choices by the same draw.
@@ -146,7 +146,7 @@ def _kept_of_options(function: Callable[[Any], Any] | None, values: Any) -> Any:
     if function is not None and not is_pure(function, drawn):
         return None
 
-    def kept(items: Any, *given: Any) -> list[Any]:
+    def kept(items: object, *given: Any) -> list[Any]:
         if not given:
             return _kept(function, items)
         names = {**scope, **dict(zip(drawn, given, strict=True))}

@@ -88,15 +88,15 @@ class _Reading(NamedTuple):
     by_some: bool = False
 
 
-def _number(value: Any) -> bool:
+def _number(value: object) -> bool:
     return value.node.kind.is_number if isinstance(value, Random) else is_number(value)
 
 
-def _place(value: Any) -> bool:
+def _place(value: object) -> bool:
     return is_vector(value) or (not isinstance(value, Random | type) and hasattr(value, "toVector"))
 
 
-def _is_measure(value: Any) -> bool:
+def _is_measure(value: object) -> bool:
     """Return whether a value is a number or a vector itself, not what stands for one."""
     return _number(value) or (is_vector(value) and isinstance(value, Random | Vector))
 
@@ -120,7 +120,7 @@ _READINGS: Final[Mapping[Type, _Reading]] = MappingProxyType(
 )
 
 
-def _is(type_: Type, value: Any) -> bool:
+def _is(type_: Type, value: object) -> bool:
     reading = _READINGS[type_]
     options = options_of(value)
     if options:
@@ -128,7 +128,7 @@ def _is(type_: Type, value: Any) -> bool:
     return reading.fits(value)
 
 
-def type_of(value: Any, types: Sequence[Type], label: str) -> Type | None:
+def type_of(value: object, types: Sequence[Type], label: str) -> Type | None:
     """The first of the types that a value has, all of its options where it is a choice; ``None`` where only the draw shows it.
 
     Raises:
@@ -151,18 +151,18 @@ def type_of(value: Any, types: Sequence[Type], label: str) -> Type | None:
     raise wrong_type(types, value, label)
 
 
-def is_kind(value: Any, cls: type[Point]) -> bool:
+def is_kind(value: object, cls: type[Point]) -> bool:
     """Return whether a value is certainly an instance of a class: for a choice, every option."""
     options = options_of(value)
     return all(is_kind(option, cls) for option in options) if options else isinstance(value, cls)
 
 
-def is_unknown(value: Any, cls: type[Point] = Object) -> bool:
+def is_unknown(value: object, cls: type[Point] = Object) -> bool:
     """Return whether only the draw shows if a random value is an instance of a class (section 4.3)."""
     return is_open(value) or len({is_kind(option, cls) for option in options_of(value)}) > 1
 
 
-def _to_yaw(value: Any, label: str) -> Any:
+def _to_yaw(value: object, label: str) -> Any:
     """A heading; here three numbers are Euler angles, as wherever an orientation is wanted."""
     if not isinstance(value, Point) and is_vector(value):
         value = to_orientation(value, label)
@@ -199,14 +199,14 @@ def reader(types: Sequence[Type], label: str) -> Read:
     if len(types) == 1 and types[0] in _COERCED:
         exact, convert = _COERCED[types[0]]
 
-        def read(value: Any) -> Any:
+        def read(value: object) -> Any:
             if type(value) in exact:
                 return value
             return UNDECIDED if is_lazy(value) else convert(value, label)
 
         return read
 
-    def decide(value: Any) -> Any:
+    def decide(value: object) -> Any:
         if is_lazy(value):
             return UNDECIDED
         found = type_of(value, types, label)
@@ -219,7 +219,7 @@ def _reading_places(types: Sequence[Type], label: str) -> Read:
     """`reader` for a vector, or a vector or a region; points are the most frequent ones."""
     takes_regions = REGION in types
 
-    def read(value: Any) -> Any:
+    def read(value: object) -> Any:
         if type(value) is Vector:
             return value
         if isinstance(value, Point):
@@ -246,7 +246,7 @@ def region_of(value: Any, label: str) -> Region:
     raise wrong_type(REGION, value, label)
 
 
-def _observer(value: Any, label: str) -> Any:
+def _observer(value: object, label: str) -> Any:
     if not is_kind(value, Point):
         raise wrong_type(POINT, value, label)
     return value
@@ -307,7 +307,7 @@ def bound(declared: Operator, function: Callable[..., Any], drawn: Callable[...,
 
 
 def _unary(read: Read, function: Callable[..., Any], undecided: Callable[..., Any]) -> Bound:
-    def call(ego: Ego, given: Any) -> Any:
+    def call(ego: Ego, given: object) -> Any:
         operand = read(given)
         return undecided(call, ego, (given,), (given,)) if operand is UNDECIDED else function(operand)
 
@@ -323,7 +323,7 @@ def _binary(
 ) -> Bound:
     (read_first, read_second), (first_is_ego, second_is_ego) = reads, egos
 
-    def call(ego: Ego, first: Any, second: Any) -> Any:
+    def call(ego: Ego, first: object, second: object) -> Any:
         if type(first) is Vector and type(second) is Vector and are_places:
             return function(first, second)
         given = first, second
@@ -350,7 +350,7 @@ def _ternary(
 ) -> Bound:
     read_first, read_second, read_third = reads
 
-    def call(ego: Ego, first: Any, second: Any, third: Any) -> Any:
+    def call(ego: Ego, first: object, second: object, third: object) -> Any:
         one, two, three = read_first(first), read_second(second), read_third(third)
         if one is UNDECIDED or two is UNDECIDED or three is UNDECIDED:
             return undecided(call, ego, (first, second, third), (first, second, third))

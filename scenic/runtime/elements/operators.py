@@ -45,7 +45,7 @@ _minus, _azimuth, _slope, _normal = (
 )
 
 
-def _degrees(value: Any) -> Any:
+def _degrees(value: object) -> Any:
     return operate("multiply", value, 0.017453292519943295)
 
 
@@ -58,11 +58,11 @@ def _follow(field: Any, start: Any, distance: Any) -> Any:
     return oriented_point(end, field[end])
 
 
-def _offset_along(start: Any, direction: Any, offset: Any) -> Any:
+def _offset_along(start: object, direction: object, offset: object) -> Any:
     return _add(start, _rotate(frame_at(direction, start, "`offset along`"), offset))
 
 
-def _relative_heading(heading: Any, base: Any) -> Any:
+def _relative_heading(heading: object, base: object) -> Any:
     return _normal(_minus(heading, base))
 
 
@@ -79,7 +79,7 @@ def _apparent_heading_to(target: Any, viewer: Any) -> Any:
 def _lies(direction: Direction) -> Callable[[Any, Any], Any]:
     """Return the operator that tests whether a place lies in a direction from an oriented point."""
 
-    def build(target: Any, base: Any) -> Any:
+    def build(target: object, base: object) -> Any:
         bearing = _apparent_heading_to(target, base)
         if direction.either_side:
             bearing = operate("absolute", bearing)
@@ -90,7 +90,7 @@ def _lies(direction: Direction) -> Callable[[Any, Any], Any]:
     return build
 
 
-def _distance(start: Any, end: Any) -> Any:
+def _distance(start: object, end: object) -> Any:
     if type(start) is Vector and type(end) is Vector:
         return _distance_between(start, end)
     if isinstance(start, Region):
@@ -104,11 +104,11 @@ def _distance_past(target: Any, base: Any) -> Any:
     return base.distancePast(target)
 
 
-def _angle(start: Any, end: Any) -> Any:
+def _angle(start: object, end: object) -> Any:
     return _azimuth(_minus(end, start))
 
 
-def _altitude(start: Any, end: Any) -> Any:
+def _altitude(start: object, end: object) -> Any:
     return _slope(_minus(end, start))
 
 
@@ -204,7 +204,7 @@ def _relative_to(ego: Ego, value: Any, frame: Any) -> Any:
     return _compose(to_orientation(frame), to_orientation(value))
 
 
-def _can_see(ego: Ego, viewer: Any, target: Any) -> Any:
+def _can_see(ego: Ego, viewer: object, target: object) -> Any:
     if is_lazy(viewer) or is_lazy(target):
         return defer(_can_see, ego, viewer, target)
     context = current.get()

@@ -395,7 +395,7 @@ def _circle(specifiers: Sequence[Specifier]) -> SpecifierError:
     )
 
 
-def _check_value(name: str, value: Any, *, mode_2d: bool) -> None:
+def _check_value(name: str, value: object, *, mode_2d: bool) -> None:
     """Raise an error for a property of an object that no object can have."""
     if name in ("width", "length", "height") and is_number(value) and not 0 < value < math.inf:
         raise ScenicValueError(

@@ -20,7 +20,7 @@ class Sensor:
         """The latest observation; ``None`` as long as nothing has delivered one."""
         return getattr(self, "_observation", None)
 
-    def deliver(self, observation: Any) -> None:
+    def deliver(self, observation: object) -> None:
         """Give the sensor its latest observation."""
         self._observation = observation
 
@@ -44,8 +44,8 @@ class CameraSensor(Sensor):
     def __init__(
         self,
         *,
-        offset: Any = None,
-        rotation: Any = (0.0, 0.0, 0.0),
+        offset: object = None,
+        rotation: object = (0.0, 0.0, 0.0),
         width: int = 640,
         height: int = 480,
         attributes: Mapping[str, Any] | None = None,
@@ -93,7 +93,7 @@ class SSSensor(CameraSensor):
 class GroundTruthSensor(Carrier, Sensor):
     """Observes a value as it is at each step: a function is called, anything else is taken as it stands."""
 
-    def __init__(self, value: Any) -> None:
+    def __init__(self, value: object) -> None:
         self.value = value
 
     def getObservation(self) -> Any:
@@ -109,14 +109,14 @@ class CallbackSensor(Sensor):
 
     """
 
-    def __init__(self, defaultValue: Any = None) -> None:
+    def __init__(self, defaultValue: object = None) -> None:
         self._observation = defaultValue
 
-    def process(self, data: Any) -> Any:
+    def process(self, data: object) -> Any:
         """The observation that data come to."""
         raise NotImplementedError(f"{type(self).__name__} does not say how data are processed (`process`)")
 
-    def onData(self, data: Any) -> None:
+    def onData(self, data: object) -> None:
         """Take new data."""
         self.deliver(self.process(data))
 

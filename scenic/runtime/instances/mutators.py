@@ -14,7 +14,7 @@ from scenic.runtime.values.values import Vector, is_number, operate, to_scalar, 
 class Mutator:
     """Adds noise to instances. Derive from it, and give the instances of a class one by ``mutator[additive]: ...``."""
 
-    def appliedTo(self, instance: Any) -> tuple[Any, bool]:
+    def appliedTo(self, instance: object) -> tuple[Any, bool]:
         """The instance with noise, and whether the mutators of the class's bases shall follow.
 
         ``instance`` is that of one sample; it may be changed in place.
@@ -37,10 +37,10 @@ def applied(mutator: Any, instance: Any) -> tuple[Any, bool]:
 class _NormalNoise(Mutator):
     """Normal noise on three numbers of an instance; equal deviations make equal mutators."""
 
-    def __init__(self, stddevs: Any) -> None:
+    def __init__(self, stddevs: object) -> None:
         self.stddevs = to_vector(stddevs, f"`{type(self).__name__}`")
 
-    def appliedTo(self, instance: Any) -> tuple[Any, bool]:
+    def appliedTo(self, instance: object) -> tuple[Any, bool]:
         return _sampled_noise(self, instance)
 
     def random_parts(self) -> list[Any]:
@@ -72,7 +72,7 @@ class PositionMutator(_NormalNoise):
 class OrientationMutator(_NormalNoise):
     """Normal noise on yaw, pitch and roll; ``stddevs`` of each, in radians, for a scale of 1."""
 
-    def noisy(self, instance: Any, scale: Any) -> Mapping[str, Any]:
+    def noisy(self, instance: object, scale: object) -> Mapping[str, Any]:
         """The properties that change."""
         noise = _noise(self.stddevs, scale)
         names = ("yaw", "pitch", "roll")
@@ -88,7 +88,7 @@ KEPT = frozenset({"shape", "behavior", "sensors", "mutator", "regionContainedIn"
 """Properties that mutation leaves alone: the graph needs to know them."""
 
 
-def active(instance: Any) -> list[Any]:
+def active(instance: object) -> list[Any]:
     """The mutators of an instance, in order."""
     given = instance.__dict__.get("mutator")  # what a side of an object is made of has none
     return [item for item in (given if isinstance(given, tuple | list) else (given,)) if item is not None]
@@ -99,7 +99,7 @@ def is_built_in(mutators: Iterable[Any]) -> bool:
     return all(type(mutator) in BUILT_IN for mutator in mutators)
 
 
-def _noise(deviations: Any, scale: Any) -> list[Any]:
+def _noise(deviations: Any, scale: object) -> list[Any]:
     """Normal noise for each of three axes; none is drawn where there is certainly none."""
     noise = []
     for deviation in deviations:

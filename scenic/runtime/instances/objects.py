@@ -207,11 +207,11 @@ class Point(Instance):
         """The position."""
         return self.position
 
-    def sample(self, subsamples: Any = None) -> Any:
+    def sample(self, subsamples: object = None) -> Any:
         """The instance with its random properties drawn now, independent of all scenes."""
         return sample_of(self)
 
-    def canSee(self, other: Any, occludingObjects: Any = (), *, certain: bool = False) -> Any:
+    def canSee(self, other: object, occludingObjects: object = (), *, certain: bool = False) -> Any:
         """Return whether it sees a vector, a point or an object past some objects.
 
         Rays may miss what shows between them. With ``certain`` they are not used: an object counts as seen if that is
@@ -275,15 +275,15 @@ class OrientedPoint(Point):
         """The global orientation."""
         return self.orientation
 
-    def relativePosition(self, offset: Any) -> Any:
+    def relativePosition(self, offset: object) -> Any:
         """The global position of ``offset``, a vector given in this frame."""
         return operate("add", self.position, operate("rotate", self.orientation, to_vector(offset)))
 
-    def relativize(self, offset: Any) -> "OrientedPoint":
+    def relativize(self, offset: object) -> "OrientedPoint":
         """The oriented point at ``offset``, a vector given in this frame, turned as this one is."""
         return oriented_point(self.relativePosition(offset), self.orientation)
 
-    def distancePast(self, point: Any) -> Any:
+    def distancePast(self, point: object) -> Any:
         """The distance of this point past ``point``, measured along its heading (metres)."""
         back = operate("from euler", operate("negative", self.heading), 0, 0)
         return operate("rotate", back, operate("subtract", self.position, to_vector(point))).y
@@ -362,15 +362,15 @@ class Object(OrientedPoint):
             return operate("minimum", self.hw, self.hl)
         return planar_inradius(self)
 
-    def distanceTo(self, point: Any) -> Any:
+    def distanceTo(self, point: object) -> Any:
         """Distance from the space that it fills to a point; 0 inside."""
         return self.occupiedSpace.distanceTo(point)
 
-    def containsPoint(self, point: Any) -> Any:
+    def containsPoint(self, point: object) -> Any:
         """Return whether the shape holds a point."""
         return self.occupiedSpace.containsPoint(point)
 
-    def intersects(self, other: Any) -> Any:
+    def intersects(self, other: object) -> Any:
         """Return whether the shape shares a point with another object or region."""
         body = placed_of(self)
         if body is not None:
@@ -462,7 +462,7 @@ for _name in ("top", "bottom", "left", "right", "front", "back"):
     setattr(Object, f"{_name}Surface", _surface(_name))
 
 
-def oriented_point(position: Any, orientation: Any, *, by_angles: bool = False) -> OrientedPoint:
+def oriented_point(position: object, orientation: object, *, by_angles: bool = False) -> OrientedPoint:
     """An oriented point that the program did not create with ``new``.
 
     Its orientation is that of its parent; or, ``by_angles``, its own yaw, pitch and roll in the global frame. All its other

@@ -31,7 +31,7 @@ def may_mutate(code: CodeType) -> bool:
     return any(may_mutate(item) for item in code.co_consts if isinstance(item, CodeType))
 
 
-def stand_in(instance: Any) -> Any:
+def stand_in(instance: object) -> Any:
     """An instance with the values of another after mutation; the instance itself where nothing is mutated."""
     context = current.get()
     if context is None or not context.is_symbolic or context.sample is not None:
@@ -55,7 +55,7 @@ def _made(instance: Point) -> Point:
     return type(instance)._make({**stored, **values})
 
 
-def _late(value: Any) -> Any:
+def _late(value: object) -> Any:
     """A value of which only the kind is known so far; the value itself if it is not a number, vector or orientation."""
     if isinstance(value, bool) or value is None or isinstance(value, str | tuple | list | dict):
         return value
@@ -65,7 +65,7 @@ def _late(value: Any) -> Any:
     return as_value(make_node(_LATE, [node], node.kind, here()))
 
 
-def _of_any_kind(value: Any) -> Any:
+def _of_any_kind(value: object) -> Any:
     """A value of which nothing is known: a mutator of the program's own may give anything, but leaves places what they are."""
     kind = as_node(value).kind
     if kind not in (Kind.VECTOR, Kind.ORIENTATION):

@@ -57,7 +57,7 @@ class PropertyDefinition:
     span: Span | None = None
     is_builtin: bool = False
 
-    def compute(self, instance: Any) -> Any:
+    def compute(self, instance: object) -> Any:
         """The value for one instance, by the program's names as they are in what is running."""
         context = None if self.is_builtin else current.get()
         return (self.value if context is None else context.settled(self.value))(instance)
@@ -79,7 +79,7 @@ class Property:
         names = (name for definition in self.definitions for name in definition.dependencies)
         object.__setattr__(self, "dependencies", frozenset(names))
 
-    def default(self, instance: Any) -> Any:
+    def default(self, instance: object) -> Any:
         """The default for one instance; additive properties give all definitions, most derived first."""
         if self.additive:
             return tuple(definition.compute(instance) for definition in self.definitions)
@@ -111,7 +111,7 @@ class Finals:
         inputs = {name for entry in builtin for name in entry.dependencies} - found.keys()
         return cls(builtin, tuple(sorted(inputs)), tuple(entry for entry in ordered if entry not in builtin))
 
-    def renew_own(self, instance: Any) -> None:
+    def renew_own(self, instance: object) -> None:
         """Compute the values of the program's own final properties of an instance again."""
         stored = instance.__dict__
         for entry in self.own:
@@ -159,17 +159,17 @@ def _combine(name: str, definitions: Sequence[PropertyDefinition]) -> Property:
 # Values as they are stored
 
 
-def normalised(name: str, value: Any) -> Any:
+def normalised(name: str, value: object) -> Any:
     """A property's value as instances store it: vectors, scalars and angles in (-pi, pi] by name."""
     normalise = NORMAL.get(name)
     return value if normalise is None else normalise(name, value)
 
 
-def _vector(name: str, value: Any) -> Any:
+def _vector(name: str, value: object) -> Any:
     return value if type(value) is Vector else to_vector(value, f"property {name!r}")
 
 
-def _position(name: str, value: Any) -> Any:
+def _position(name: str, value: object) -> Any:
     position = _vector(name, value)
     if type(position) is Vector and not all(map(math.isfinite, position)):
         raise ScenicValueError(
@@ -180,11 +180,11 @@ def _position(name: str, value: Any) -> Any:
     return position
 
 
-def _scalar(name: str, value: Any) -> Any:
+def _scalar(name: str, value: object) -> Any:
     return value if type(value) is float else to_scalar(value, f"property {name!r}")
 
 
-def _distance(name: str, value: Any) -> Any:
+def _distance(name: str, value: object) -> Any:
     distance = _scalar(name, value)
     if is_number(distance) and not distance >= 0:
         raise ScenicValueError(
@@ -195,7 +195,7 @@ def _distance(name: str, value: Any) -> Any:
     return distance
 
 
-def _angle(name: str, value: Any) -> Any:
+def _angle(name: str, value: object) -> Any:
     angle = _scalar(name, value)
     if type(angle) is float and abs(angle) <= math.pi:
         return angle
@@ -206,17 +206,17 @@ def _angle(name: str, value: Any) -> Any:
     return operate("normalize angle", angle)
 
 
-def _orientation(name: str, value: Any) -> Any:
+def _orientation(name: str, value: object) -> Any:
     return to_orientation(value, f"property {name!r}")
 
 
-def _shape(name: str, value: Any) -> Any:
+def _shape(name: str, value: object) -> Any:
     if not isinstance(value, Shape):
         raise wrong_type(SHAPE, value, f"property {name!r}")
     return value
 
 
-def _truth(name: str, value: Any) -> Any:
+def _truth(name: str, value: object) -> Any:
     """Python's own rule holds; of what is random, numbers have a truth of their own."""
     if not isinstance(value, Random):
         return bool(value)
@@ -237,7 +237,7 @@ def _per_drawn(
     ``together`` normalises a list of drawn values, or gives ``None`` where they have to be looked at one by one.
     """
 
-    def applied(name: str, value: Any) -> Any:
+    def applied(name: str, value: object) -> Any:
         if not (isinstance(value, Random) and value.node.kind.is_boxed):
             return normalise(name, value)
         if options_of(value):
@@ -247,13 +247,13 @@ def _per_drawn(
     return applied
 
 
-def _density(name: str, value: Any) -> Any:
+def _density(name: str, value: object) -> Any:
     """A number, left as it is written."""
     _scalar(name, value)
     return value
 
 
-def _ray_count(name: str, value: Any) -> Any:
+def _ray_count(name: str, value: object) -> Any:
     """Check the numbers of rays across and upward; ``None`` stands for the default."""
     if value is None:
         return value
@@ -269,7 +269,7 @@ def _ray_count(name: str, value: Any) -> Any:
     return tuple(value)
 
 
-def _container(name: str, value: Any) -> Any:
+def _container(name: str, value: object) -> Any:
     if not isinstance(value, Region | Random | None):
         raise wrong_type(REGION, value, f"property {name!r}")
     if isinstance(value, Random) and is_open(value):
@@ -277,7 +277,7 @@ def _container(name: str, value: Any) -> Any:
     return value
 
 
-def _view_angles(_name: str, value: Any) -> Any:
+def _view_angles(_name: str, value: object) -> Any:
     """A pair of angles, at most all around."""
     if not (isinstance(value, tuple | list | Vector) and len(value) in (2, 3)):
         raise wrong_type(VIEW_ANGLES, value, "property 'viewAngles'")
@@ -303,7 +303,7 @@ def _view_angles(_name: str, value: Any) -> Any:
     return tuple(limited)
 
 
-def _colour(_name: str, value: Any) -> Any:
+def _colour(_name: str, value: object) -> Any:
     if value is None:
         return value
     parts = tuple(value) if isinstance(value, tuple | list) else ()

@@ -64,7 +64,7 @@ class GlobalParameters:
     def __len__(self) -> int:
         return len({**self._program.parameters, **self._program.overrides})
 
-    def __setattr__(self, name: str, value: Any) -> None:
+    def __setattr__(self, name: str, value: object) -> None:
         raise InvalidScenarioError(
             "global parameters are set by `param`, not by assignment",
             span=here(),

@@ -142,7 +142,7 @@ class Prelude(Symbolic, Dynamics):
         return self._module.ego
 
     @ego.setter
-    def ego(self, value: Any) -> None:
+    def ego(self, value: object) -> None:
         if not isinstance(value, Object):
             made = value.__name__ if isinstance(value, type) else "Object"
             hint = f"write `ego = new {made}`, with specifiers where they are needed"
@@ -176,7 +176,7 @@ class Prelude(Symbolic, Dynamics):
         return known
 
     @workspace.setter
-    def workspace(self, value: Any) -> None:
+    def workspace(self, value: object) -> None:
         if not isinstance(value, Workspace):
             raise ScenicTypeError(
                 f"the workspace must be a Workspace, not {describe(value)}",
@@ -213,7 +213,7 @@ class Prelude(Symbolic, Dynamics):
             operands = (property, *operands)
         return specify(name, self._ego, self._space, *operands, site=site)
 
-    def new(self, cls: Any, *specifiers: Specifier) -> Any:
+    def new(self, cls: object, *specifiers: Specifier) -> Any:
         """A new instance of a Scenic class."""
         if not (isinstance(cls, type) and issubclass(cls, Point)):
             raise ScenicTypeError(
@@ -312,7 +312,7 @@ class Prelude(Symbolic, Dynamics):
         self._context.parameters.model_place = self._context.place(), self._context.file()
         self._modules.use_model(name, scope, self._module)
 
-    def mutate(self, targets: Sequence[Any] | None = None, scale: Any = 1) -> None:
+    def mutate(self, targets: Sequence[Any] | None = None, scale: object = 1) -> None:
         """``mutate a, b by scale``; without targets all objects so far."""
         if self._context.evaluating:
             raise InvalidScenarioError(

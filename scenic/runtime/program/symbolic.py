@@ -52,17 +52,17 @@ class Symbolic:
     What only a sample can tell raises `NotSymbolicError`: then Python evaluates the condition on each sample.
     """
 
-    def provided(self, name: str, function: Any) -> Any:
+    def provided(self, name: str, function: object) -> Any:
         """The function, if it is the one that every module finds in scope under this name."""
         if function is not names.provided(name):
             raise NotSymbolicError
         return function
 
-    def read(self, value: Any, name: str) -> Any:
+    def read(self, value: object, name: str) -> Any:
         """An attribute, read when the condition is evaluated."""
         return getattr(value, name)
 
-    def call(self, value: Any, name: str, *args: Any) -> Any:
+    def call(self, value: object, name: str, *args: Any) -> Any:
         """A method that takes random arguments; any other is called on samples."""
         if not isinstance(value, VectorMethods | OrientationMethods | Region | Random | Object | Frozen):
             raise NotSymbolicError
@@ -70,7 +70,7 @@ class Symbolic:
             raise NotSymbolicError  # The program's own method: never traced.
         return getattr(value, name)(*args)
 
-    def compare(self, operator: str, left: Any, right: Any) -> Any:
+    def compare(self, operator: str, left: object, right: object) -> Any:
         """``left operator right`` as a truth value, which may be random."""
         if may_return_instances(left) or may_return_instances(right):
             return call_later(TABLE[_COMPARISONS[operator]].python, left, right)
@@ -82,7 +82,7 @@ class Symbolic:
             raise NotSymbolicError  # Whether two instances are equal is decided on their samples.
         return operate(_COMPARISONS[operator], left, right)
 
-    def identical(self, left: Any, right: Any) -> Any:
+    def identical(self, left: object, right: object) -> Any:
         """``left is right`` of instances, of objects that never change, and of random choices among these."""
         if all(item is None or isinstance(item, Point) for item in (left, right)):
             return left is right  # so are their samples
@@ -91,7 +91,7 @@ class Symbolic:
             raise NotSymbolicError
         return apply(IDENTITY, left, right)
 
-    def contains(self, item: Any, container: Any) -> Any:
+    def contains(self, item: object, container: object) -> Any:
         """``item in container``: containment in a region, else Python's."""
         region = as_region(container)
         # Of a value that is unknown until it is drawn, the draw has to tell whether all of it has to lie in the region.
@@ -107,7 +107,7 @@ class Symbolic:
         """``or`` of truth values inside an expression."""
         return self._logic("or", values)
 
-    def invert(self, value: Any) -> Any:
+    def invert(self, value: object) -> Any:
         """``not`` of a truth value inside an expression."""
         if isinstance(value, bool):
             return not value
@@ -119,24 +119,24 @@ class Symbolic:
             raise NotSymbolicError  # Python's `and` and `or` give an operand, not a truth value.
         return as_value(connect(operation, nodes))
 
-    def iterated(self, name: str, function: Any, *sequences: Any) -> Any:
+    def iterated(self, name: str, function: object, *sequences: Any) -> Any:
         """The sequence over which one of Python's own functions iterates, of fixed sequences."""
         return unrolling.iterated(self.provided(name, function), sequences)
 
-    def each(self, sequence: Any, function: Callable[..., list[Any]], spread: bool) -> list[Any]:
+    def each(self, sequence: object, function: Callable[..., list[Any]], spread: bool) -> list[Any]:
         """The values of a comprehension, by a function of an element, or of its parts."""
         return unrolling.each(sequence, function, spread=spread)
 
-    def given(self, test: Any, make: Callable[[], list[Any]]) -> list[Any]:
+    def given(self, test: object, make: Callable[[], list[Any]]) -> list[Any]:
         """The values behind an ``if`` of a comprehension."""
         return unrolling.given(test, make)
 
-    def over(self, name: str, function: Any, values: Any) -> Any:
+    def over(self, name: str, function: object, values: object) -> Any:
         """``all``, ``any``, ``sum``, ``min`` or ``max`` of fixed sequences."""
         self.provided(name, function)
         return unrolling.over(name, values)
 
-    def construct(self, name: str, function: Any, *args: Any, **keywords: Any) -> Any:
+    def construct(self, name: str, function: object, *args: Any, **keywords: Any) -> Any:
         """A region or vector that a condition makes."""
         return constructed(self.provided(name, function), *args, **keywords)
 

@@ -28,7 +28,7 @@ def iterated(function: Callable[..., Any], sequences: Sequence[Any]) -> list[Any
     return _fixed(list(_few(function(*given))))
 
 
-def each(sequence: Any, function: Callable[..., list[Any]], *, spread: bool) -> list[Any]:
+def each(sequence: object, function: Callable[..., list[Any]], *, spread: bool) -> list[Any]:
     """The values that a function gives for the elements of a fixed sequence, or for their parts where it is ``spread``."""
     found: list[Any] = []
     for item in _fixed(sequence):
@@ -36,7 +36,7 @@ def each(sequence: Any, function: Callable[..., list[Any]], *, spread: bool) -> 
     return _fixed(found)
 
 
-def given(test: Any, make: Callable[[], list[Any]]) -> list[Any]:
+def given(test: object, make: Callable[[], list[Any]]) -> list[Any]:
     """The result of ``make`` where a condition holds, which has to be fixed, and nothing elsewhere."""
     node = truth(test)
     if not node.is_constant:
@@ -44,7 +44,7 @@ def given(test: Any, make: Callable[[], list[Any]]) -> list[Any]:
     return make() if node.value else []
 
 
-def over(name: str, values: Any) -> Any:
+def over(name: str, values: object) -> Any:
     """``all``, ``any``, ``sum``, ``min`` or ``max`` of the elements of a fixed sequence."""
     elements = _fixed(values)
     if name in ("all", "any"):

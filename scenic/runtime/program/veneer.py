@@ -94,7 +94,7 @@ def _function(
     return function
 
 
-def With(prop: str, val: Any) -> Specifier:
+def With(prop: str, val: object) -> Specifier:
     """The specifier ``with prop val``."""
     language = _language()
     if language is None:
@@ -109,7 +109,7 @@ def new(cls: Any, specifiers: Sequence[Specifier] = ()) -> Any:
     return build(cls, tuple(specifiers)) if language is None else language.new(cls, *specifiers)
 
 
-def ego(obj: Any = None) -> Any:
+def ego(obj: object = None) -> Any:
     """The ego; with an argument, it becomes the ego."""
     language = _needed("ego")
     if obj is not None:
@@ -117,7 +117,7 @@ def ego(obj: Any = None) -> Any:
     return language.ego
 
 
-def workspace(workspace: Any = None) -> Any:
+def workspace(workspace: object = None) -> Any:
     """The workspace; with an argument, it becomes the workspace."""
     language = _needed("workspace")
     if workspace is not None:
@@ -130,7 +130,7 @@ def param(params: Mapping[str, Any]) -> None:
     _needed("program to set parameters of").param(params)
 
 
-def mutate(*objects: Any, scale: Any = 1) -> None:
+def mutate(*objects: Any, scale: object = 1) -> None:
     """Mutate these objects; without any, all that the program has made so far."""
     language = _language()
     if language is None:

@@ -110,7 +110,7 @@ def _ends(found: Any) -> tuple[float, float]:
     return low, high
 
 
-def _no_interval(found: Any, wanted: str) -> InvalidScenarioError:
+def _no_interval(found: object, wanted: str) -> InvalidScenarioError:
     return InvalidScenarioError(
         f"the bounds that `bounded` was given are {found!r}, which is no interval", help=f"give {wanted}"
     )

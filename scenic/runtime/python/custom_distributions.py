@@ -30,7 +30,7 @@ class _AnyLaw(type):
         context = current.get()
         return law if context is None or context.is_symbolic else context.settled(_drawn_now(law))
 
-    def __instancecheck__(cls, value: Any) -> bool:
+    def __instancecheck__(cls, value: object) -> bool:
         return isinstance(value, Random) if cls.__base__ is Random else super().__instancecheck__(value)
 
 
@@ -60,7 +60,7 @@ class Distribution(Random, metaclass=_AnyLaw):
         node = later(_SCALAR if valueType is float else _LAW, _drawn, (_Holder(self), dependencies))
         super().__init__(node, self.clone)
 
-    def sampleGiven(self, value: Any) -> Any:
+    def sampleGiven(self, value: object) -> Any:
         """One draw; ``value[d]`` is the sampled value of the dependency ``d``."""
         raise NotImplementedError(f"{type(self).__name__} does not say how it is drawn (`sampleGiven`)")
 
@@ -71,7 +71,7 @@ class Distribution(Random, metaclass=_AnyLaw):
         Distribution.__init__(copy, *self._dependencies, valueType=self._valueType)
         return copy
 
-    def bucket(self, buckets: Any = None) -> Any:
+    def bucket(self, buckets: object = None) -> Any:
         """An approximation by buckets; not every distribution has one."""
         raise NotImplementedError(f"{type(self).__name__} cannot be divided into buckets")
 
@@ -93,7 +93,7 @@ class Values:
     def __init__(self, before: tuple[Any, ...], after: tuple[Any, ...]) -> None:
         self._values = {id(old): new for old, new in zip(before, after, strict=True)}
 
-    def __getitem__(self, dependency: Any) -> Any:
+    def __getitem__(self, dependency: object) -> Any:
         return self._values.get(id(dependency), dependency)
 
 
@@ -158,7 +158,7 @@ def distributionMethod(method: Callable[..., Any]) -> Callable[..., Any]:
     """Make a method take random arguments: it is then called with their sampled values."""
 
     @functools.wraps(method)
-    def lifted(self: Any, *args: Any, **keywords: Any) -> Any:
+    def lifted(self: object, *args: Any, **keywords: Any) -> Any:
         if is_random(args) or is_random(keywords):
             return call_later(method, self, *args, **keywords)
         return method(self, *args, **keywords)

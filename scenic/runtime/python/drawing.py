@@ -18,7 +18,7 @@ from scenic.runtime.values import generic
 from scenic.runtime.values.values import CODEC, Random, as_node, is_number
 
 
-def sample_of(value: Any) -> Any:
+def sample_of(value: object) -> Any:
     """A sample of a value and of all that is random in it, from Python's generator.
 
     Raises:
@@ -49,7 +49,7 @@ def _drawn(nodes: Sequence[Node], keys: Words, *, grouped: bool = True) -> Batch
     return batch
 
 
-def support_of(value: Any) -> tuple[float | None, float | None]:
+def support_of(value: object) -> tuple[float | None, float | None]:
     """The least and the greatest value that a number, random or not, can have; ``None`` where that is not known."""
     if is_number(value):
         return (value, value)

@@ -62,7 +62,7 @@ _CHANGING: Final = frozenset(
 """Attributes that may change a container or an array, or draw. No object that never changes has such a one."""
 
 
-def is_pure(function: Any, given: Collection[str] = ()) -> bool:
+def is_pure(function: object, given: Collection[str] = ()) -> bool:
     """Return whether the result of a call with data, or objects that never change, follows from the arguments alone.
 
     Global names that are ``given`` count as arguments.
@@ -70,7 +70,7 @@ def is_pure(function: Any, given: Collection[str] = ()) -> bool:
     return _is_pure(function, frozenset(), given)
 
 
-def global_names(function: Any) -> list[str]:
+def global_names(function: object) -> list[str]:
     """The global names that a function of the program reads itself, or what is nested in it."""
     if not isinstance(function, FunctionType):
         return []
@@ -78,7 +78,7 @@ def global_names(function: Any) -> list[str]:
     return list(dict.fromkeys(found))
 
 
-def _is_pure(function: Any, within: frozenset[CodeType], given: Collection[str] = ()) -> bool:
+def _is_pure(function: object, within: frozenset[CodeType], given: Collection[str] = ()) -> bool:
     if getattr(function, "__module__", None) == FUNCTIONS:
         function = getattr(function, "__wrapped__", function)
     if isinstance(function, type | BuiltinFunctionType):

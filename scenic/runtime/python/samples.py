@@ -114,7 +114,7 @@ class Globals:
             return []
         return [module for module in prelude.modules if module.__name__.rpartition(".")[2] in words]
 
-    def is_fixed(self, item: Any) -> bool:
+    def is_fixed(self, item: object) -> bool:
         """Return whether a function or class does the same in every sample: nothing that it reaches is random or rebound."""
         known = self._fixed.get(id(item))
         if known is None:
@@ -133,7 +133,7 @@ class Globals:
         """Return whether plain instances of a class are others in each sample; the class may be one, as a base of objects is."""
         return self.owns(cls) or bool(self.members(cls))
 
-    def _is_plain(self, value: Any) -> bool:
+    def _is_plain(self, value: object) -> bool:
         if isinstance(value, Random | Instance):  # instances have a copy in each sample
             return False
         if not isinstance(value, FunctionType):
@@ -180,7 +180,7 @@ class Reach:
     instances: tuple[Instance, ...]
 
 
-def may_return_instances(value: Any) -> bool:
+def may_return_instances(value: object) -> bool:
     """Return whether a value comes from code of the program that has instances in reach: each call has copies of its own."""
     if not isinstance(value, Random) or not value.node.kind.is_boxed:
         return False
@@ -286,7 +286,7 @@ def _boxed_constants(root: Node, seen: dict[int, Any]) -> list[Any]:
     return values
 
 
-def parts(value: Any, names: Globals) -> Iterator[Any]:
+def parts(value: object, names: Globals) -> Iterator[Any]:
     """The parts of a value, as far as sampling goes."""
     if isinstance(value, Instance):
         yield from value.__dict__.get("_source", value).__dict__.values()
@@ -369,7 +369,7 @@ def kind_of_container(cls: type) -> Any:
     return next((kind for kind in kinds if issubclass(cls, kind)), None)
 
 
-def contents_of(container: Any) -> list[Any]:
+def contents_of(container: object) -> list[Any]:
     """The present items of a container, or pairs of a dictionary, even if its class overrides the access to them."""
     kind = kind_of_container(type(container))
     return list(kind.items(container) if issubclass(kind, dict) else kind.__iter__(container))
@@ -420,7 +420,7 @@ class Sample:
         self._alive: dict[int, Any] = {}
         self._scopes: dict[int, dict[str, Any]] = {}
 
-    def value(self, value: Any) -> Any:
+    def value(self, value: object) -> Any:
         """The sampled value: ``value`` itself where nothing in it is random.
 
         One value gives one object, however often it is asked for, so that identity survives sampling.
@@ -442,7 +442,7 @@ class Sample:
             self._alive[id(value)] = value
         return known
 
-    def member(self, member: Any, owner: type) -> Any:
+    def member(self, member: object, owner: type) -> Any:
         """A member of a class of objects, which may read other members."""
         if not self._varies(owner):
             return member
@@ -452,7 +452,7 @@ class Sample:
             self.remember(member, known)
         return known
 
-    def _again(self, value: Any) -> Any:
+    def _again(self, value: object) -> Any:
         """A function, or what decorators make of one, over sampled names: even if it reads none."""
         if isinstance(value, DECORATED):
             return self._decorated(value, self._again)
@@ -461,7 +461,7 @@ class Sample:
             return self._function(value)
         return self.value(value)
 
-    def remember(self, value: Any, copy: Any) -> None:
+    def remember(self, value: object, copy: object) -> None:
         """Say what the copy of a value is while it is being made: parts of it may lead back to it."""
         self._memo[id(value)] = copy
         self._alive[id(value)] = value
@@ -512,7 +512,7 @@ class Sample:
             return self._object(value)
         return value
 
-    def _stays(self, item: Any) -> bool:
+    def _stays(self, item: object) -> bool:
         """Return whether a function or class is the same in this sample."""
         return self._names.is_fixed(item)
 
@@ -596,7 +596,7 @@ class Sample:
             made.attrname = value.attrname
         return made
 
-    def _object(self, instance: Any) -> Any:
+    def _object(self, instance: object) -> Any:
         """The instance of a plain Python class of the program."""
         cls = self.value(type(instance))
         if cls is type(instance) and self._stays(instance):
@@ -615,7 +615,7 @@ class Sample:
         return copy
 
     @staticmethod
-    def _empty(instance: Any, cls: type) -> Any:
+    def _empty(instance: object, cls: type) -> Any:
         """An instance of a class, without attributes, which stands for one of the class that this is a copy of."""
         try:
             return object.__new__(cls)

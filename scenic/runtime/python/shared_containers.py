@@ -40,15 +40,15 @@ class Originals:
             id(item): (item, _contents(item)) for item in _shareable(list(roots))
         }
 
-    def __contains__(self, item: Any) -> bool:
+    def __contains__(self, item: object) -> bool:
         return id(item) in self._kept
 
-    def contents(self, container: Any) -> Any:
+    def contents(self, container: object) -> Any:
         """The contents of a container when the program had run; the present ones if it is none of these."""
         kept = self._kept.get(id(container))
         return _contents(container)[0] if kept is None else kept[1][0]
 
-    def claim(self, user: Any) -> bool:
+    def claim(self, user: object) -> bool:
         """Let a simulation use the containers, filled as at first; false if another one is using them."""
         if self._user is not None and self._user() is not None:
             return False
@@ -57,7 +57,7 @@ class Originals:
             _fill(container, contents)
         return True
 
-    def release(self, user: Any) -> None:
+    def release(self, user: object) -> None:
         """A simulation has ended; what the containers hold stays there to be looked at."""
         if self._user is not None and self._user() is user:
             self._user = None
@@ -93,7 +93,7 @@ def _shareable(roots: list[Any]) -> Iterator[Any]:
             yield item
 
 
-def _moves(item: Any, names: Globals) -> bool:
+def _moves(item: object, names: Globals) -> bool:
     """Return whether each sample or simulation has its own of a value, whatever that holds."""
     if isinstance(item, Random | Instance):
         return True
@@ -104,13 +104,13 @@ def _moves(item: Any, names: Globals) -> bool:
     return names.owns(item) if isinstance(item, type) else names.copies(type(item))
 
 
-def _contents(container: Any) -> _Contents:
+def _contents(container: object) -> _Contents:
     if type(container) is np.ndarray:
         return container.copy(), {}
     return contents_of(container), dict(getattr(container, "__dict__", {}))
 
 
-def _fill(container: Any, contents: _Contents) -> None:
+def _fill(container: object, contents: _Contents) -> None:
     """Put contents back in place."""
     held, attributes = contents
     if type(container) is np.ndarray:

@@ -61,7 +61,7 @@ from scenic.runtime.values.values import (
 )
 
 
-def _operand(value: Any, what: str) -> Region:
+def _operand(value: object, what: str) -> Region:
     """A region to combine: an object means the space that it fills."""
     region = as_region(value)
     if region is None:
@@ -81,7 +81,7 @@ def _unwrapped(region: Region) -> Region:
 # Fixed regions in terms of other libraries
 
 
-def region_of(geometry: Any, height: float | None, orientation: Any) -> Region:
+def region_of(geometry: object, height: float | None, orientation: object) -> Region:
     """The region of a shapely geometry: of its parts of the highest dimension."""
     import shapely
 
@@ -117,7 +117,7 @@ def _field_of_drawn(members: Sequence[tuple[Any, float | None, Any]]) -> Piecewi
     return field_of_union([region_of(*member) for member in members])
 
 
-def _volume(mesh: Mesh | None, orientation: Any = None) -> Region:
+def _volume(mesh: Mesh | None, orientation: object = None) -> Region:
     if mesh is None or not mesh.volume > 0:
         return nowhere
     return MeshVolumeRegion(mesh, centerMesh=False, orientation=orientation)
@@ -139,7 +139,7 @@ def _by_option(operation: Callable[[Any, Any], Region], a: Region, b: Region) ->
 
 
 @generic.intersection.register(Region)
-def intersection(first: Any, second: Any) -> Region:
+def intersection(first: object, second: object) -> Region:
     """The points that lie in both regions."""
     a, b = _operand(first, "`intersect`"), _operand(second, "`intersect`")
     if isinstance(a, Everywhere) or isinstance(b, Nowhere):
@@ -199,7 +199,7 @@ def _exact_intersection(a: Region, b: Region) -> Region | None:
     return None
 
 
-def _line_inside(line: LineRegion, solid: Mesh, orientation: Any) -> Region:
+def _line_inside(line: LineRegion, solid: Mesh, orientation: object) -> Region:
     """The pieces of a line inside a solid, with an orientation field."""
     pieces = pieces_inside(line, solid)
     if not pieces:
@@ -214,13 +214,13 @@ def _line_inside(line: LineRegion, solid: Mesh, orientation: Any) -> Region:
     return PathRegion(polylines=pieces, orientation=_of_pieces(orientation))
 
 
-def _of_pieces(orientation: Any) -> Any:
+def _of_pieces(orientation: object) -> Any:
     """The field of what is left of a line: where it was that of the line's own directions, those of the pieces (``True``)."""
     return True if orientation is None or isinstance(orientation, RegionField) else orientation
 
 
 @generic.union.register(Region)
-def union(first: Any, second: Any) -> Region:
+def union(first: object, second: object) -> Region:
     """The points that lie in either region."""
     a, b = _operand(first, "`union`"), _operand(second, "`union`")
     if isinstance(a, Everywhere) or isinstance(b, Nowhere):
@@ -251,7 +251,7 @@ def union(first: Any, second: Any) -> Region:
 
 
 @generic.difference.register(Region)
-def difference(first: Any, second: Any) -> Region:
+def difference(first: object, second: object) -> Region:
     """The points of the first region that do not lie in the second."""
     a, b = _operand(first, "`difference`"), _operand(second, "`difference`")
     if isinstance(b, Everywhere) or isinstance(a, Nowhere):
@@ -279,7 +279,7 @@ def difference(first: Any, second: Any) -> Region:
 
 
 @generic.intersects.register(Region)
-def intersects(first: Any, second: Any) -> Any:
+def intersects(first: object, second: object) -> Any:
     """Return whether two regions or objects share a point; random where one of them is."""
     if is_open(second):
         return call_later(intersects, first, second)
@@ -375,7 +375,7 @@ _MEET = Operation(
 
 
 @generic.contains_region.register(Region)
-def contains_region(first: Any, second: Any, tolerance: float = 0) -> bool:
+def contains_region(first: object, second: object, tolerance: float = 0) -> bool:
     """Return whether a fixed region holds another; raises `UnknownPairError` where that is not known."""
     a, b = _operand(first, "`containsRegion`"), _operand(second, "`containsRegion`")
     if isinstance(a, Everywhere) or isinstance(b, Nowhere):

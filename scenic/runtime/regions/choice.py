@@ -32,7 +32,7 @@ class RegionChoice(VaryingRegion):
 
     """
 
-    def __init__(self, index: Any, options: Sequence[Region]) -> None:
+    def __init__(self, index: object, options: Sequence[Region]) -> None:
         super().__init__(index, *(value for option in options for value in option.parameters))
         self.options = tuple(options)
         self.dimension = max(option.dimension for option in options)
@@ -54,14 +54,14 @@ class RegionChoice(VaryingRegion):
                 option.uniform_placement()  # says why not
         return super().uniform_placement()
 
-    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+    def project(self, point: object, direction: object) -> tuple[Any, Any]:
         """Onto the option that is drawn; one on which the point does not land rejects only where it is drawn."""
         landings = [_landing(option, point, direction) for option in self.options]
         index = as_node(self.parameters[0])
         places, orientations = ([as_node(part) for part in parts] for parts in zip(*landings, strict=True))
         return select(index, places), select(index, orientations) if self.has_orientation else None
 
-    def orientation_at(self, point: Any) -> Any:
+    def orientation_at(self, point: object) -> Any:
         """Return the orientation that the drawn option has at a point; an option with a vector field evaluates its own."""
         if not self.has_orientation or self._has_no_field:
             return super().orientation_at(point)
@@ -172,7 +172,7 @@ def _rows(bounds: Bounds, rows: NDArray[np.intp]) -> Bounds:
     return bounds if len(bounds.lower) == 1 else Bounds(bounds.lower[rows], bounds.upper[rows])
 
 
-def _landing(option: Region, point: Any, direction: Any) -> tuple[Any, Any]:
+def _landing(option: Region, point: object, direction: object) -> tuple[Any, Any]:
     try:
         return option.project(point, direction)
     except InvalidScenarioError:  # a definite point that does not land
@@ -195,7 +195,7 @@ _NO_LANDING = Operation(
 )
 
 
-def as_region(value: Any) -> Region | None:
+def as_region(value: object) -> Region | None:
     """A region, or a random choice among regions; ``None`` for anything else."""
     if isinstance(value, Region):
         return value

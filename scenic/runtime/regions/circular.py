@@ -45,7 +45,7 @@ def disc_extent(center: Bounds | None, radius: Bounds | None) -> Bounds | None:
     return intervals.add(center, Bounds(-reach, reach))
 
 
-def _disc_bounds(_payload: Any, first: Bounds, second: Bounds) -> Bounds:
+def _disc_bounds(_payload: object, first: Bounds, second: Bounds) -> Bounds:
     radius = outward(np.sqrt(first.lower), np.sqrt(first.upper), ulps=4)
     radius = Bounds(np.maximum(radius.lower, 0.0), radius.upper)
     angle = Bounds(math.tau * second.lower, math.tau * second.upper)
@@ -53,7 +53,7 @@ def _disc_bounds(_payload: Any, first: Bounds, second: Bounds) -> Bounds:
     return intervals.widened(intervals.stacked([x, y, Bounds.exactly(0.0)]), 1e-14)
 
 
-def _disc_inverse(_payload: Any, result: Bounds, _first: Bounds, _second: Bounds) -> list[Bounds | None]:
+def _disc_inverse(_payload: object, result: Bounds, _first: Bounds, _second: Bounds) -> list[Bounds | None]:
     """The squares of the distances that points in these bounds have from the middle."""
     squares = [intervals.square(part) for part in intervals.components(result)[:2]]
     return [intervals.widened(intervals.total(squares), 1e-13), None]
@@ -82,7 +82,9 @@ class CircularRegion(PlanarRegion):
     parameter_names = ("center", "radius")
     draws = 2
 
-    def __init__(self, center: Any, radius: Any, resolution: int = 32, *, name: str | None = None) -> None:
+    def __init__(
+        self, center: object, radius: object, resolution: int = 32, *, name: str | None = None
+    ) -> None:
         self.center = to_vector(center, "`CircularRegion` center")
         self.radius = positive(radius, "`CircularRegion` radius")
         self.resolution = resolution

@@ -32,7 +32,7 @@ from scenic.runtime.regions.planar import Footprint, PlanarRegion
 class IntersectionRegion(Composite):
     """The points that lie in all members."""
 
-    def __init__(self, *members: Region, orientation: Any = None, name: str | None = None) -> None:
+    def __init__(self, *members: Region, orientation: object = None, name: str | None = None) -> None:
         super().__init__(*members, orientation=orientation, name=name)
         self.dimension = min(member.dimension for member in members)
         oriented = next((member for member in members if member.has_orientation), None)
@@ -175,7 +175,7 @@ class IntersectionRegion(Composite):
 class UnionRegion(Composite):
     """The points that lie in any member."""
 
-    def __init__(self, *members: Region, orientation: Any = None, name: str | None = None) -> None:
+    def __init__(self, *members: Region, orientation: object = None, name: str | None = None) -> None:
         super().__init__(*members, orientation=orientation, name=name)
         self.dimension = max(member.dimension for member in members)
 
@@ -294,7 +294,7 @@ class DifferenceRegion(Composite):
     """The points of the first member that do not lie in the second."""
 
     def __init__(
-        self, regionA: Region, regionB: Region, *, orientation: Any = None, name: str | None = None
+        self, regionA: Region, regionB: Region, *, orientation: object = None, name: str | None = None
     ) -> None:
         super().__init__(regionA, regionB, orientation=orientation, name=name)
         self.regionA, self.regionB = regionA, regionB

@@ -57,7 +57,7 @@ class Composite(Region):
     draws = 1
     may_find_none = True
 
-    def __init__(self, *members: Region, orientation: Any = None, name: str | None = None) -> None:
+    def __init__(self, *members: Region, orientation: object = None, name: str | None = None) -> None:
         super().__init__(*(value for member in members for value in member.parameters), name=name)
         self.members = members
         self.tolerance = max(member.tolerance for member in members)
@@ -296,7 +296,7 @@ class Composite(Region):
             raise UndefinedSamplingException("no point can be drawn from an unbounded region", span=here())
         return super().uniform_placement()
 
-    def orientation_at(self, point: Any) -> Any:
+    def orientation_at(self, point: object) -> Any:
         if self.orientation is not None:
             return self.orientation[point]
         for member in self.members:

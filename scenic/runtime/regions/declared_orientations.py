@@ -1,7 +1,6 @@
 """Promises of a program about regions that only the draw shows: whether they give what lies in them an orientation."""
 
 import copy
-from typing import Any
 
 from scenic.language.errors import InvalidScenarioError
 from scenic.language.types import REGION
@@ -15,7 +14,7 @@ from scenic.runtime.values.values import Random, wrong_type
 __all__ = ["orientedRegion", "unorientedRegion"]
 
 
-def orientedRegion(region: Any) -> Region:
+def orientedRegion(region: object) -> Region:
     """A region, perhaps random, whose points have preferred orientations: `in` and `on` take them.
 
     Raises:
@@ -29,7 +28,7 @@ def orientedRegion(region: Any) -> Region:
     return _oriented(known)
 
 
-def unorientedRegion(region: Any) -> Region:
+def unorientedRegion(region: object) -> Region:
     """A region, perhaps random, from which `in` and `on` take only the position, even if it has preferred orientations.
 
     Raises:
@@ -42,7 +41,7 @@ def unorientedRegion(region: Any) -> Region:
     return plain
 
 
-def _region(value: Any, what: str) -> Region:
+def _region(value: object, what: str) -> Region:
     known = as_region(value)
     if known is not None:
         return known

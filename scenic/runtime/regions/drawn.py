@@ -50,10 +50,10 @@ class DrawnRegion(VaryingRegion):
         region: Region = sample.value(self.parameters[0])
         return region
 
-    def orientation_at(self, point: Any) -> Any:
+    def orientation_at(self, point: object) -> Any:
         return to_orientation(call_later(_orientation_at, self.parameters[0], point))
 
-    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+    def project(self, point: object, direction: object) -> tuple[Any, Any]:
         landing = call_later(_landing, self.parameters[0], point, direction)
         place, orientation = operate("getitem", landing, 0), operate("getitem", landing, 1)
         return to_vector(place), to_orientation(orientation)
@@ -88,7 +88,7 @@ class DrawnRegion(VaryingRegion):
         return points, known
 
 
-def _wanted(value: Any, what: str) -> Region:
+def _wanted(value: object, what: str) -> Region:
     if not isinstance(value, Region):
         raise wrong_type(REGION, value, what)
     return value
@@ -98,11 +98,11 @@ def _footprint(region: Region) -> Region:
     return region.footprint
 
 
-def _orientation_at(region: Region, point: Any) -> Any:
+def _orientation_at(region: Region, point: object) -> Any:
     return region.orientation_at(point) if region.has_orientation else Orientation()
 
 
-def _landing(region: Region, point: Any, direction: Any) -> tuple[Any, Any]:
+def _landing(region: Region, point: object, direction: object) -> tuple[Any, Any]:
     try:
         place, orientation = region.project(point, direction)
     except InvalidScenarioError as error:  # in a program of which nothing is random that is a mistake

@@ -1,7 +1,7 @@
 """Meeting of two fixed regions: the cells of the kinds that are not made of others."""
 
 from collections.abc import Iterable
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -101,7 +101,7 @@ def _crosses_plane(line: LineRegion, region: PlanarRegion) -> bool:
     return False
 
 
-def _is_over(shell: Mesh, polygons: Any) -> bool:
+def _is_over(shell: Mesh, polygons: object) -> bool:
     """Return whether a face of a surface, which may stand upright, has a point above or below polygons."""
     import shapely
 

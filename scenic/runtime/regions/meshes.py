@@ -29,9 +29,9 @@ class _Placement:
     def __init__(
         self,
         mesh: Mesh,
-        dimensions: Any,
-        position: Any,
-        rotation: Any,
+        dimensions: object,
+        position: object,
+        rotation: object,
         centered: bool,
         what: str,
         *,
@@ -81,7 +81,7 @@ def _mesh(mesh: Any, what: str) -> Mesh:
     return Mesh(*without_unused(whole.vertices, whole.faces))
 
 
-def _loaded(cls: type[Region], path: Any, unit: str, scale: float, **how: bool) -> Mesh:
+def _loaded(cls: type[Region], path: object, unit: str, scale: float, **how: bool) -> Mesh:
     """The mesh of a file, in metres."""
     what = f"{cls.__name__}.fromFile"
     if not isinstance(path, str | Path):
@@ -119,14 +119,14 @@ class MeshVolumeRegion(OccupiedSpace):
 
     def __init__(
         self,
-        mesh: Any,
-        dimensions: Any = None,
-        position: Any = None,
-        rotation: Any = None,
-        orientation: Any = None,
+        mesh: object,
+        dimensions: object = None,
+        position: object = None,
+        rotation: object = None,
+        orientation: object = None,
         tolerance: float = 1e-6,
         centerMesh: bool = True,
-        onDirection: Any = None,
+        onDirection: object = None,
         name: str | None = None,
         **_established: Any,
     ) -> None:
@@ -139,7 +139,13 @@ class MeshVolumeRegion(OccupiedSpace):
         self.onDirection = onDirection
 
     def _finish(
-        self, mesh: Mesh, dimensions: Any, position: Any, rotation: Any, centered: bool, name: str | None
+        self,
+        mesh: Mesh,
+        dimensions: object,
+        position: object,
+        rotation: object,
+        centered: bool,
+        name: str | None,
     ) -> None:
         what = f"`{type(self).__name__}`"
         placed = _Placement(mesh, dimensions, position, rotation, centered, what, flat=False)
@@ -161,12 +167,12 @@ class MeshVolumeRegion(OccupiedSpace):
 
     @classmethod
     def fromFile(
-        cls, path: Any, unify: bool = True, unit: str = "m", scale: float = 1, **options: Any
+        cls, path: object, unify: bool = True, unit: str = "m", scale: float = 1, **options: Any
     ) -> Self:
         """The region of a mesh file in a unit of length, times ``scale``; further arguments are those of the class."""
         return cls(_loaded(cls, path, unit, scale, unify=unify), **options)
 
-    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+    def project(self, point: object, direction: object) -> tuple[Any, Any]:
         return super().project(point, self.onDirection if direction is None else direction)
 
 
@@ -181,11 +187,11 @@ class MeshSurfaceRegion(SideSurface):
 
     def __init__(
         self,
-        mesh: Any,
-        dimensions: Any = None,
-        position: Any = None,
-        rotation: Any = None,
-        orientation: Any = True,
+        mesh: object,
+        dimensions: object = None,
+        position: object = None,
+        rotation: object = None,
+        orientation: object = True,
         tolerance: float = 1e-6,
         centerMesh: bool = True,
         onDirection: Any = None,
@@ -200,7 +206,7 @@ class MeshSurfaceRegion(SideSurface):
         self.onDirection = onDirection
 
     @classmethod
-    def of_operands(cls, operands: tuple[Any, ...], orientation: Any = True) -> Self:
+    def of_operands(cls, operands: tuple[Any, ...], orientation: object = True) -> Self:
         """The surface of a body given by the operands of `body_of`."""
         self = cls.__new__(cls)
         self._finish(operands, orientation, None)
@@ -208,7 +214,7 @@ class MeshSurfaceRegion(SideSurface):
         self.tolerance, self.onDirection = 1e-6, None
         return self
 
-    def _finish(self, operands: tuple[Any, ...], orientation: Any, name: str | None) -> None:
+    def _finish(self, operands: tuple[Any, ...], orientation: object, name: str | None) -> None:
         Region.__init__(self, *operands, name=name)
         self.facing = Facing()
         self.orientation = RegionField(self) if orientation is True else orientation
@@ -216,7 +222,7 @@ class MeshSurfaceRegion(SideSurface):
 
     @classmethod
     def fromFile(
-        cls, path: Any, unify: bool = True, unit: str = "m", scale: float = 1, **options: Any
+        cls, path: object, unify: bool = True, unit: str = "m", scale: float = 1, **options: Any
     ) -> Self:
         """The region of a mesh file in a unit of length, times ``scale``; further arguments are those of the class."""
         return cls(_loaded(cls, path, unit, scale, unify=unify, volume=False), **options)
@@ -227,7 +233,7 @@ class MeshSurfaceRegion(SideSurface):
             return point, None
         return point, normal if isinstance(self.orientation, RegionField) else self.orientation[point]
 
-    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+    def project(self, point: object, direction: object) -> tuple[Any, Any]:
         landed, normal = super().project(point, self.onDirection if direction is None else direction)
         return landed, normal if isinstance(self.orientation, RegionField) else self.orientation_at(landed)
 

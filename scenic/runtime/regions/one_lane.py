@@ -19,7 +19,7 @@ class _Lane:
             row = lane if len(column) > 1 else 0
             (self._values[id(parameter)],) = CODEC.decode(as_node(parameter).kind, column[row : row + 1])
 
-    def value(self, parameter: Any) -> Any:
+    def value(self, parameter: object) -> Any:
         return self._values.get(id(parameter), parameter)
 
 

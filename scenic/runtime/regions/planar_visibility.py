@@ -18,14 +18,14 @@ FULL_ANGLE = 2 * np.pi - 0.017
 """View angles from here on count as all around (section 11.2)."""
 
 
-def sees_in_plane(observer: Any, target: Any, occluders: Iterable[Any] = ()) -> Any:
+def sees_in_plane(observer: object, target: object, occluders: Iterable[Any] = ()) -> Any:
     """Return whether the disc or sector that an observer sees meets the bounding polygon of an object, or holds a point.
 
     Where something may hide others, which in 2D mode has to be asked for, rays decide as in space.
     """
     everything = tuple(occluders)
 
-    def seen(viewer: Any, thing: Any) -> Any:
+    def seen(viewer: Any, thing: object) -> Any:
         hiding = [item for item in everything if item is not viewer and item is not thing and _may_hide(item)]
         if hiding:
             return sees(viewer, thing, hiding)
@@ -42,7 +42,7 @@ def sees_in_plane(observer: Any, target: Any, occluders: Iterable[Any] = ()) -> 
     return per_option(observer, lambda viewer: per_option(target, lambda thing: seen(viewer, thing)))
 
 
-def sees_in_mode(observer: Any, target: Any, occluders: Iterable[Any], *, mode_2d: bool) -> Any:
+def sees_in_mode(observer: object, target: object, occluders: Iterable[Any], *, mode_2d: bool) -> Any:
     """Return whether an observer sees something: in the plane where the program is in 2D mode, otherwise in space."""
     return (sees_in_plane if mode_2d else sees)(observer, target, occluders)
 

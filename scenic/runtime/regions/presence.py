@@ -11,7 +11,7 @@ from scenic.runtime.values.values import operate
 __all__ = ["absent", "hides", "is_always_present", "seen_if_present"]
 
 
-def is_always_present(item: Any) -> bool:
+def is_always_present(item: object) -> bool:
     """Return whether an object takes part in every scene; true for what has no such property."""
     return getattr(item, "present", True) is True
 

@@ -41,7 +41,7 @@ class RectangularRegion(PlanarRegion):
     draws = 2
 
     def __init__(
-        self, position: Any, heading: Any, width: Any, length: Any, *, name: str | None = None
+        self, position: object, heading: object, width: object, length: object, *, name: str | None = None
     ) -> None:
         self.position = to_vector(position, "`RectangularRegion` position")
         self.heading = to_heading(heading, "`RectangularRegion` heading")

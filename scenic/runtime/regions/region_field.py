@@ -28,7 +28,7 @@ def _is_fixed(region: Region) -> bool:
 
 
 def way_given(
-    position: Any, distance: Any, steps: Any, size: Any
+    position: object, distance: object, steps: Any, size: Any
 ) -> tuple[tuple[Any, Any], tuple[int | None, float | None]] | None:
     """The operands of a way along a field, for `over_lanes`."""
     if is_random((steps, size)):
@@ -70,7 +70,7 @@ class RegionField(VectorField):
         faults=True,
     )
     def followFrom(
-        self, position: Any, distance: Any, steps: int | None = None, stepSize: float | None = None
+        self, position: object, distance: object, steps: int | None = None, stepSize: float | None = None
     ) -> Any:
         return super().followFrom(position, distance, steps, stepSize)
 

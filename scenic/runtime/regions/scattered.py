@@ -34,8 +34,8 @@ class PointSetRegion(Region):
         self,
         name: str | None,
         points: Sequence[Any],
-        kdTree: Any = None,
-        orientation: Any = None,
+        kdTree: object = None,
+        orientation: object = None,
         tolerance: float = 1e-6,
     ) -> None:
         super().__init__(name=name)
@@ -69,7 +69,7 @@ class PointSetRegion(Region):
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return np.asarray(self.kdTree.query(points)[0], dtype=np.float64)
 
-    def closestPointTo(self, point: Any) -> Vector:
+    def closestPointTo(self, point: object) -> Vector:
         place = tuple(to_vector(point, "`closestPointTo`"))
         return Vector.of(self.points[self.kdTree.query(place)[1]].tolist())
 
@@ -95,12 +95,12 @@ class GridRegion(PointSetRegion):
     def __init__(
         self,
         name: str | None,
-        grid: Any,
+        grid: object,
         Ax: float,
         Ay: float,
         Bx: float,
         By: float,
-        orientation: Any = None,
+        orientation: object = None,
     ) -> None:
         self.grid = np.array(grid)
         if self.grid.ndim != 2:
@@ -116,7 +116,7 @@ class GridRegion(PointSetRegion):
         column, row = cell
         return (self.Ax * column + self.Bx, self.Ay * row + self.By)
 
-    def pointToGrid(self, point: Any) -> tuple[int, int] | None:
+    def pointToGrid(self, point: object) -> tuple[int, int] | None:
         """Column and row of the cell nearest to a point; ``None`` beside the grid."""
         x, y, _ = to_vector(point)
         column, row = round((x - self.Bx) / self.Ax), round((y - self.By) / self.Ay)

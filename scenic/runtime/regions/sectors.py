@@ -54,10 +54,10 @@ class SectorRegion(PlanarRegion):
 
     def __init__(
         self,
-        center: Any,
-        radius: Any,
-        heading: Any,
-        angle: Any,
+        center: object,
+        radius: object,
+        heading: object,
+        angle: object,
         resolution: int = 32,
         *,
         name: str | None = None,

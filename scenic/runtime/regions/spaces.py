@@ -50,7 +50,7 @@ class Everywhere(Region):
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
         return np.zeros(len(points))
 
-    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+    def project(self, point: object, direction: object) -> tuple[Any, Any]:
         return point, None
 
 
@@ -90,7 +90,7 @@ class Nowhere(Region):
     def uniformPointInner(self) -> Any:
         raise RejectionException("no point can be drawn from the empty region")
 
-    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+    def project(self, point: object, direction: object) -> tuple[Any, Any]:
         raise InvalidScenarioError("nothing lands on the empty region", span=here())
 
     def uniform_placement(self) -> tuple[Any, Any]:
@@ -106,7 +106,7 @@ class Workspace(Region):
 
     dimension: float
 
-    def __init__(self, region: Any = everywhere, *, name: str | None = None) -> None:
+    def __init__(self, region: object = everywhere, *, name: str | None = None) -> None:
         if not isinstance(region, Region):
             raise ScenicTypeError(f"a workspace is made of a region, not of {region!r}", span=here())
         if region.is_random:
@@ -173,7 +173,7 @@ class Workspace(Region):
     def uniform_placement(self) -> tuple[Any, Any]:
         return self.region.uniform_placement()
 
-    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+    def project(self, point: object, direction: object) -> tuple[Any, Any]:
         return self.region.project(point, direction)
 
     @property

@@ -21,7 +21,7 @@ from scenic.runtime.shapes.shapes import Shape
 from scenic.runtime.values.values import Orientation, Random, Vector, options_of, to_scalar, vector
 
 
-def is_body(value: Any) -> bool:
+def is_body(value: object) -> bool:
     """Return whether a value certainly is an object, something with a shape: for a choice, every option."""
     options = options_of(value)
     if options:

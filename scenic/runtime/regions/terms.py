@@ -51,7 +51,7 @@ def flat_of(region: Region) -> tuple[Any, float | None] | None:
     return None
 
 
-def prism_about(solid: Mesh, polygon: Any) -> Mesh | None:
+def prism_about(solid: Mesh, polygon: object) -> Mesh | None:
     """The part of a footprint that can meet a solid, as a prism somewhat higher than it."""
     low, high = float(solid.bounds[0][2]), float(solid.bounds[1][2])
     return prism(polygon, low - 1, high + 1)
@@ -82,7 +82,7 @@ def are_inside(solid: Mesh, points: Floats) -> Booleans:
     return contains_points(body, points)
 
 
-def holds(region: Region, point: Any) -> bool:
+def holds(region: Region, point: object) -> bool:
     """Return whether a fixed region holds a point; one of the plane only what is at its height."""
     place = np.asarray(point, dtype=np.float64).reshape(1, 3)
     return bool(exactly_contains(region, place, region.fixed_columns("containment"))[0])

@@ -51,7 +51,7 @@ def unturned(condition: Node) -> Node | None:
     return result.node if isinstance(result, Random) else None
 
 
-def _seen_from(place: Node, centre: Node, turn: Any) -> Any:
+def _seen_from(place: Node, centre: Node, turn: object) -> Any:
     """A place in a frame: parts of it that were turned into the world with the frame are turned back by leaving that out."""
     terms, is_there = [], False
     for term in _terms(place):

@@ -69,11 +69,11 @@ class ViewRegion(Region):
 
     def __init__(
         self,
-        visibleDistance: Any,
+        visibleDistance: object,
         viewAngles: Any,
         name: str | None = None,
-        position: Any = (0, 0, 0),
-        rotation: Any = None,
+        position: object = (0, 0, 0),
+        rotation: object = None,
     ) -> None:
         """The view of an observer that is none of the program's.
 
@@ -98,7 +98,7 @@ class ViewRegion(Region):
         )
 
     @classmethod
-    def of(cls, observer: Any) -> Self:
+    def of(cls, observer: object) -> Self:
         """The view of an observer."""
         region = object.__new__(cls)
         Region.__init__(region, *view_operands(observer)[:VIEW_PARAMETERS])
@@ -187,7 +187,7 @@ class ViewRegion(Region):
         region: Region = generic.meshed(self).voxelized(pitch)
         return region
 
-    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+    def project(self, point: object, direction: object) -> tuple[Any, Any]:
         """As onto its mesh."""
         landing: tuple[Any, Any] = generic.meshed(self).project(point, direction)
         return landing
@@ -250,7 +250,7 @@ class NearView(Region):
     draws = 4
     may_find_none = True
 
-    def __init__(self, container: Region, observer: Any, thing: Any) -> None:
+    def __init__(self, container: Region, observer: object, thing: Any) -> None:
         size = vector(to_scalar(thing.width), to_scalar(thing.length), to_scalar(thing.height))
         radius = operate("multiply", 0.5, operate("norm", size))
         self.container = container.footprint
@@ -330,17 +330,17 @@ def _rows(columns: Sequence[Column], lanes: Column) -> list[Column]:
     return [column if len(column) == 1 else column[lanes] for column in columns]
 
 
-def place_near(observer: Any, container: Region, thing: Any) -> Any:
+def place_near(observer: object, container: Region, thing: object) -> Any:
     """A uniform point of a container, as far as an observer may see a thing there."""
     if container.dimension < 2:
         return container.uniform_placement()[0]
     return NearView(container, observer, thing).uniform_placement()[0]
 
 
-def place_in_plane(observer: Any, container: Region, *, seen: bool) -> Any:
+def place_in_plane(observer: object, container: Region, *, seen: bool) -> Any:
     """A uniform point of a container that an observer has in view, or has not, in 2D mode (section 5.5)."""
 
-    def place(viewer: Any) -> Any:
+    def place(viewer: object) -> Any:
         view = view_in_plane(viewer)
         if not seen:
             return container.difference(view).uniform_placement()[0]
@@ -359,7 +359,7 @@ def view_in_plane(observer: Any) -> PlanarRegion:
     return SectorRegion(center, distance, observer.heading, angle)
 
 
-def part_of(region: Region, observer: Any, *, seen: bool) -> Region:
+def part_of(region: Region, observer: object, *, seen: bool) -> Region:
     """The part of a region that an observer has in view, or has not."""
     view = ViewRegion.of(observer)
     while isinstance(region, Workspace):

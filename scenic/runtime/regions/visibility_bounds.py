@@ -64,7 +64,7 @@ def sees_inverse(
     return parts
 
 
-def sees_in_plane_bounds(_payload: Any, *operands: Bounds | None) -> Bounds | None:
+def sees_in_plane_bounds(_payload: object, *operands: Bounds | None) -> Bounds | None:
     """Bound the truth of "sees" in 2D mode: false where the target is certainly too far away.
 
     The operands are camera, heading, angle, distance, place and body.
@@ -76,7 +76,9 @@ def sees_in_plane_bounds(_payload: Any, *operands: Bounds | None) -> Bounds | No
     return only_within(at_any_height(camera), at_any_height(place), distance.upper + radius)
 
 
-def sees_in_plane_inverse(_payload: Any, result: Bounds, *operands: Bounds | None) -> Sequence[Bounds | None]:
+def sees_in_plane_inverse(
+    _payload: object, result: Bounds, *operands: Bounds | None
+) -> Sequence[Bounds | None]:
     """Bound the positions of an observer and of the target that it sees in 2D mode."""
     parts: list[Bounds | None] = [None] * len(operands)
     camera, _, _, distance, place, *_ = operands

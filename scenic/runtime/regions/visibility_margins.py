@@ -33,7 +33,7 @@ _LEAST: Final = 1e-9
 """Margins are at least this far from 0, on the side of the truth."""
 
 
-def clearance(observer: Any, target: Any, occluders: Iterable[Any], *, seen: bool) -> float:
+def clearance(observer: object, target: object, occluders: Iterable[Any], *, seen: bool) -> float:
     """By how much an observer sees a definite object or point past others.
 
     Args:
@@ -131,7 +131,7 @@ def _angle(some: Floats, others: Floats) -> float:
     return float(2 * np.arcsin(min(1.0, chord / 2)))
 
 
-def _column(value: Any) -> Any:
+def _column(value: object) -> Any:
     """A definite value as a column of one lane."""
     raw = getattr(value, "row", None)
     if raw is None:

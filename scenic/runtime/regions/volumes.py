@@ -49,13 +49,13 @@ class PlacedVolume(Region):
 
     def __init__(
         self,
-        dimensions: Any = (1, 1, 1),
-        position: Any = None,
-        rotation: Any = None,
-        orientation: Any = None,
+        dimensions: object = (1, 1, 1),
+        position: object = None,
+        rotation: object = None,
+        orientation: object = None,
         tolerance: float = 1e-6,
         centerMesh: bool = True,
-        onDirection: Any = None,
+        onDirection: object = None,
         *,
         name: str | None = None,
     ) -> None:
@@ -72,7 +72,7 @@ class PlacedVolume(Region):
         self.rotation = Orientation() if rotation is None else to_orientation(rotation, f"{what} rotation")
         super().__init__(self.dimensions, self.position, self.rotation, name=name)
 
-    def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
+    def project(self, point: object, direction: object) -> tuple[Any, Any]:
         way = self.onDirection if direction is None else direction
         landed: Any = generic.meshed(self).project(point, way)[0]
         return landed, self.orientation_at(landed)
@@ -148,7 +148,7 @@ class PlacedVolume(Region):
         dimensions, position, rotation = parameters
         return super().extent(*parameters) or body_box(position, rotation, dimensions)
 
-    def _placed(self, x: Any, y: Any, z: Any) -> tuple[Any, Any]:
+    def _placed(self, x: object, y: object, z: object) -> tuple[Any, Any]:
         """The point at these fractions of the dimensions from the centre."""
         size = self.dimensions
         offset = vector(
@@ -225,7 +225,7 @@ def ball_points(first: Column, second: Column, third: Column) -> Points:
     return np.stack([radius * level * np.cos(angle), radius * level * np.sin(angle), radius * z], axis=-1)
 
 
-def _ball_bounds(_payload: Any, first: Bounds, *_others: Bounds) -> Bounds:
+def _ball_bounds(_payload: object, first: Bounds, *_others: Bounds) -> Bounds:
     reach = outward(first.upper, np.cbrt(first.upper), ulps=4).upper
     upper = np.stack([reach, reach, reach], axis=-1)
     return Bounds(-upper, upper)
@@ -243,7 +243,7 @@ BALL_POINT = Operation(
 class SpheroidRegion(PlacedVolume):
     """A solid ellipsoid with these three diameters."""
 
-    def __init__(self, dimensions: Any = (2, 2, 2), *args: Any, **options: Any) -> None:
+    def __init__(self, dimensions: object = (2, 2, 2), *args: Any, **options: Any) -> None:
         super().__init__(dimensions, *args, **options)
 
     @staticmethod

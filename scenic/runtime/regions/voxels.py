@@ -40,7 +40,7 @@ class VoxelRegion(Region):
     draws = 4
 
     def __init__(
-        self, voxelGrid: Any, orientation: Any = None, name: str | None = None, **_established: Any
+        self, voxelGrid: Any, orientation: object = None, name: str | None = None, **_established: Any
     ) -> None:
         try:
             filled = np.asarray(voxelGrid.matrix, dtype=np.bool_)
@@ -58,7 +58,7 @@ class VoxelRegion(Region):
 
     @classmethod
     def of_cells(
-        cls, filled: NDArray[np.bool_], corner: Points, pitch: float, orientation: Any = None
+        cls, filled: NDArray[np.bool_], corner: Points, pitch: float, orientation: object = None
     ) -> Self:
         """The region of cells of one edge length from the lower corner ``(3,)`` of the grid on."""
         self = object.__new__(cls)
@@ -66,7 +66,7 @@ class VoxelRegion(Region):
         return self
 
     def _fill(
-        self, filled: NDArray[np.bool_], corner: Points, pitch: Points, orientation: Any, name: str | None
+        self, filled: NDArray[np.bool_], corner: Points, pitch: Points, orientation: object, name: str | None
     ) -> None:
         if not filled.any():
             raise ScenicValueError("`VoxelRegion` needs at least one filled cell", span=here())

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -133,7 +133,7 @@ def _span(node: Node) -> Span | None:
     return node.span if isinstance(node.span, Span) else None
 
 
-def _place(program: Program, item: Any) -> tuple[Span | None, str | None]:
+def _place(program: Program, item: object) -> tuple[Span | None, str | None]:
     return program.places.get(id(item), (None, None))
 
 
@@ -306,7 +306,7 @@ def _warn_of_size(program: Program, item: Object, size: str, container: str) -> 
 def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[NodeCheck]:
     """Return the checks of visibility: each object that has to be seen by an observer, or must not be (section 10.1)."""
 
-    def seen(observer: Any, target: Any) -> Node:
+    def seen(observer: object, target: object) -> Node:
         return truth(sees_in_mode(observer, target, program.objects, mode_2d=mode_2d))
 
     checks: list[NodeCheck] = []
@@ -371,7 +371,7 @@ def _collisions(program: Program) -> list[Check]:
     return [CollisionCheck(nodes, pairs)]
 
 
-def _if_present(item: Any, condition: Node) -> Node:
+def _if_present(item: object, condition: Node) -> Node:
     """A condition that applies to an object only if it is present."""
     return condition if is_always_present(item) else connect("or", [as_node(absent(item)), condition])
 
@@ -441,7 +441,7 @@ def _requirements(program: Program) -> list[Check]:
     return checks
 
 
-def _called(program: Program, item: Any, *, article: str = "") -> str:
+def _called(program: Program, item: object, *, article: str = "") -> str:
     """The property `name` of an instance, else the variable that holds it, else its class after ``article``."""
     if is_random(item):
         return f"{article}random observer"
@@ -451,6 +451,6 @@ def _called(program: Program, item: Any, *, article: str = "") -> str:
     return given or article + type(item).__name__
 
 
-def _subject(program: Program, item: Any) -> str:
+def _subject(program: Program, item: object) -> str:
     """An instance as the subject of a message at its own place."""
     return _called(program, item, article="this ")

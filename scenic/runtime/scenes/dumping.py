@@ -43,7 +43,7 @@ class NoLiteralError(Exception):
 
 
 def program_of(
-    objects: tuple[Any, ...], ego: Any, params: Mapping[str, Any], names: Mapping[Any, str]
+    objects: tuple[Any, ...], ego: object, params: Mapping[str, Any], names: Mapping[Any, str]
 ) -> str:
     """The text of a program whose only scene has these objects and parameters.
 
@@ -91,7 +91,7 @@ def _instance(name: str, item: Any) -> Iterator[str]:
     yield from comments
 
 
-def literal(value: Any) -> str:
+def literal(value: object) -> str:
     """A value as an expression of the language; raises `NoLiteralError` where there is none."""
     if isinstance(value, np.generic):
         value = value.item()
@@ -144,7 +144,7 @@ def _shape(shape: Shape) -> str:
     raise NoLiteralError
 
 
-def _described(value: Any) -> str:
+def _described(value: object) -> str:
     text = f"a {type(value).__name__}" if isinstance(value, Region) else repr(value)
     return text.replace("\n", " ")[:80]
 

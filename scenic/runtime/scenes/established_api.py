@@ -46,14 +46,14 @@ _COERCIONS: Mapping[type, Callable[[Any], Any]] = MappingProxyType(
 )
 
 
-def needsSampling(thing: Any) -> bool:
+def needsSampling(thing: object) -> bool:
     """Return whether a value is random, or holds something random."""
     if isinstance(thing, Point):
         return any(is_random(value) for value in thing.__dict__.values())
     return is_random(thing) or is_random(getattr(thing, "parameters", None))
 
 
-def needsLazyEvaluation(thing: Any) -> bool:
+def needsLazyEvaluation(thing: object) -> bool:
     """Return whether a value depends on the object being specified."""
     return is_lazy(thing)
 
@@ -63,12 +63,12 @@ def DelayedArgument(requiredProps: Iterable[str], value: Callable[[Any], Any], *
     return Lazy(frozenset(requiredProps), value)
 
 
-def toDistribution(value: Any) -> Any:
+def toDistribution(value: object) -> Any:
     """A value as one that may be random: itself."""
     return value
 
 
-def underlyingType(thing: Any) -> type:
+def underlyingType(thing: object) -> type:
     """The type of what a value is, or of what is drawn from it; ``object`` where that is not known."""
     if not isinstance(thing, Random):
         return type(thing)
@@ -81,12 +81,12 @@ def underlyingType(thing: Any) -> type:
     }.get(thing.node.kind.value, object)
 
 
-def isA(thing: Any, ty: type) -> bool:
+def isA(thing: object, ty: type) -> bool:
     """Return whether a value is certainly of a type: also a random value, if it is known."""
     return issubclass(underlyingType(thing), ty)
 
 
-def canCoerce(thing: Any, ty: type, exact: bool = False) -> bool:
+def canCoerce(thing: object, ty: type, exact: bool = False) -> bool:
     """Return whether a value can be read as a type."""
     if exact or ty not in _COERCIONS:
         return isA(thing, ty)
@@ -104,17 +104,17 @@ def canCoerceType(typeA: type, typeB: type) -> bool:
     return typeB is Vector and issubclass(typeA, tuple | list | Vector | Point)
 
 
-def coerce(thing: Any, ty: type, error: str = "wrong type") -> Any:
+def coerce(thing: object, ty: type, error: str = "wrong type") -> Any:
     """A value as a type; raises ``TypeError`` with this message where it cannot be read so."""
     return toType(thing, ty, error)
 
 
-def toType(thing: Any, ty: type, typeError: str = "wrong type") -> Any:
+def toType(thing: object, ty: type, typeError: str = "wrong type") -> Any:
     """A value as a type; raises ``TypeError`` with this message where it cannot be read so."""
     return toTypes(thing, (ty,), typeError)
 
 
-def toTypes(thing: Any, types: Sequence[type], typeError: str = "wrong type") -> Any:
+def toTypes(thing: object, types: Sequence[type], typeError: str = "wrong type") -> Any:
     """A value as the first of several types that it can be read as."""
     for ty in types:
         if canCoerce(thing, ty):
@@ -122,22 +122,22 @@ def toTypes(thing: Any, types: Sequence[type], typeError: str = "wrong type") ->
     raise ScenicTypeError(typeError)
 
 
-def toScalar(thing: Any, typeError: str = "non-scalar in scalar context") -> Any:
+def toScalar(thing: object, typeError: str = "non-scalar in scalar context") -> Any:
     """A value as a number."""
     return toType(thing, float, typeError)
 
 
-def toHeading(thing: Any, typeError: str = "non-heading in heading context") -> Any:
+def toHeading(thing: object, typeError: str = "non-heading in heading context") -> Any:
     """A value as a heading, in radians."""
     return toType(thing, Heading, typeError)
 
 
-def toOrientation(thing: Any, typeError: str = "non-orientation in orientation context") -> Any:
+def toOrientation(thing: object, typeError: str = "non-orientation in orientation context") -> Any:
     """A value as an orientation."""
     return toType(thing, Orientation, typeError)
 
 
-def toVector(thing: Any, typeError: str = "non-vector in vector context") -> Any:
+def toVector(thing: object, typeError: str = "non-vector in vector context") -> Any:
     """A value as a vector."""
     return toType(thing, Vector, typeError)
 
@@ -157,7 +157,7 @@ def normalizeAngle(angle: float) -> float:
     return angle
 
 
-def headingOfSegment(pointA: Any, pointB: Any) -> Any:
+def headingOfSegment(pointA: object, pointB: object) -> Any:
     """The heading from one point of the plane to another (radians)."""
     start, end = to_vector(pointA), to_vector(pointB)
     return operate("azimuth", operate("subtract", end, start))
@@ -168,23 +168,23 @@ def averageVectors(a: Any, b: Any, weight: float = 0.5) -> Any:
     return tuple((1 - weight) * p + weight * q for p, q in zip(tuple(a)[:2], tuple(b)[:2], strict=True))
 
 
-def viewAngleToPoint(point: Any, base: Any, heading: float) -> Any:
+def viewAngleToPoint(point: object, base: object, heading: float) -> Any:
     """The angle of a point seen from ``base``, relative to ``heading`` (radians)."""
     return normalizeAngle(headingOfSegment(base, point) - heading)
 
 
-def apparentHeadingAtPoint(point: Any, heading: float, base: Any) -> Any:
+def apparentHeadingAtPoint(point: object, heading: float, base: object) -> Any:
     """A heading at a point relative to the line of sight from ``base`` (radians)."""
     return normalizeAngle(heading - headingOfSegment(base, point))
 
 
-def rotateVector(vector: Any, angle: float) -> Any:
+def rotateVector(vector: object, angle: float) -> Any:
     """A vector of the plane turned anticlockwise, as a pair."""
     turned = to_vector(vector).rotatedBy(angle)
     return (turned.x, turned.y)
 
 
-def pointIsInCone(point: Any, base: Any, heading: float, angle: float) -> bool:
+def pointIsInCone(point: object, base: object, heading: float, angle: float) -> bool:
     """Return whether a point of the plane lies within ``angle / 2`` of ``heading`` seen from ``base`` (radians)."""
     return bool(abs(viewAngleToPoint(point, base, heading)) <= angle / 2)
 
@@ -209,7 +209,7 @@ def removeHoles(polygon: Any) -> Any:
     return shapely.union_all(parts) if polygon.geom_type == "MultiPolygon" else parts[0]
 
 
-def triangulatePolygon(polygon: Any) -> list[Any]:
+def triangulatePolygon(polygon: object) -> list[Any]:
     """A shapely polygon, perhaps with holes, as triangles that fill it."""
     import shapely
 
@@ -217,7 +217,7 @@ def triangulatePolygon(polygon: Any) -> list[Any]:
     return parts
 
 
-def regionFromShapelyObject(obj: Any, orientation: Any = None) -> Region:
+def regionFromShapelyObject(obj: object, orientation: object = None) -> Region:
     """The region of a shapely geometry: its polygons, else its lines, else its points."""
     return region_of(obj, 0.0, orientation)
 
@@ -227,7 +227,7 @@ def convertToFootprint(region: Region) -> Region:
     return region.footprint
 
 
-def toPolygon(thing: Any) -> Any:
+def toPolygon(thing: object) -> Any:
     """The shapely geometry of a polygon, of a region of the plane, its footprint or a line; ``None`` of anything else."""
     if hasattr(thing, "geom_type"):
         return thing if "Polygon" in thing.geom_type else None
@@ -276,12 +276,12 @@ def batched(iterable: Iterable[Any], n: int) -> Iterator[tuple[Any, ...]]:
         yield part
 
 
-def proper_mesh(mesh: Any, pitch: float = 1 / 64, verbose: bool = True) -> Any:  # noqa: ARG001 - of the established call
+def proper_mesh(mesh: object, pitch: float = 1 / 64, verbose: bool = True) -> Any:  # noqa: ARG001 - of the established call
     """A trimesh mesh as one that bounds a volume: vertices merged, normals outwards. Raises ``ValueError`` where it has holes."""
     return _solid_of(mesh, unify=False)
 
 
-def united_mesh(mesh: Any, verbose: bool = False) -> Any:  # noqa: ARG001 - of the established call
+def united_mesh(mesh: object, verbose: bool = False) -> Any:  # noqa: ARG001 - of the established call
     """A trimesh mesh with its overlapping bodies united."""
     return _solid_of(mesh, unify=True)
 
@@ -293,7 +293,7 @@ def _solid_of(mesh: Any, *, unify: bool) -> Any:
     return trimesh.Trimesh(np.array(solid.vertices), np.array(solid.faces), process=False)
 
 
-def plotPolygon(polygon: Any, plt: Any, style: str = "r-", **options: Any) -> None:
+def plotPolygon(polygon: object, plt: Any, style: str = "r-", **options: Any) -> None:
     """Draw the outlines of a shapely polygon or multipolygon with a ``matplotlib.pyplot``."""
     for part in getattr(polygon, "geoms", [polygon]):
         for ring in (part.exterior, *part.interiors):
@@ -308,7 +308,7 @@ def makeDelayedFunctionCall(
     return defer(func, *args, **kwargs)
 
 
-def dumpAsScenicCode(value: Any, stream: TextIO) -> None:
+def dumpAsScenicCode(value: object, stream: TextIO) -> None:
     """Write a value as an expression of the language."""
     try:
         stream.write(literal(value))
@@ -316,7 +316,7 @@ def dumpAsScenicCode(value: Any, stream: TextIO) -> None:
         stream.write(repr(value))
 
 
-def scenicToJSON(obj: Any) -> Any:
+def scenicToJSON(obj: object) -> Any:
     """Vectors as lists, for ``json.dumps(..., default=scenicToJSON)``."""
     if isinstance(obj, Vector):
         return list(obj)
@@ -350,7 +350,7 @@ def cached_method(method: Callable[..., Any]) -> Callable[..., Any]:
     name = f"_cached_{method.__name__}"
 
     @functools.wraps(method)
-    def lookup(self: Any) -> Any:
+    def lookup(self: object) -> Any:
         if name not in self.__dict__:
             self.__dict__[name] = method(self)
         return self.__dict__[name]
@@ -363,7 +363,7 @@ def cached(function: Callable[[], Any]) -> Callable[[], Any]:
     return functools.cache(function)
 
 
-def alwaysGlobalOrientation(thing: Any) -> bool:
+def alwaysGlobalOrientation(thing: object) -> bool:
     """Return whether an orientation is certainly that of the world."""
     return isinstance(thing, Orientation) and thing == Orientation()
 

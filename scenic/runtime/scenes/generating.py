@@ -68,7 +68,12 @@ class Generating(ABC):
         """The scene in the data of `sceneToBytes`."""
 
     def generate(
-        self, maxIterations: int = 2000, verbosity: int = 0, feedback: Any = None, *, seed: int | None = None
+        self,
+        maxIterations: int = 2000,
+        verbosity: int = 0,
+        feedback: object = None,
+        *,
+        seed: int | None = None,
     ) -> tuple[Scene, int]:
         """One scene, and the number of candidates tried for it.
 
@@ -92,7 +97,7 @@ class Generating(ABC):
         (scene,) = self.sample(1, seed=seed, max_attempts=maxIterations)
         return scene, scene.attempts
 
-    def _generate_chosen(self, most: int, feedback: Any) -> tuple[Scene, int]:
+    def _generate_chosen(self, most: int, feedback: object) -> tuple[Scene, int]:
         """One scene whose external parameters their sampler chooses."""
         assert self._services.external_sampler is not None
         if self._external_sampler is None:
@@ -114,7 +119,7 @@ class Generating(ABC):
         numScenes: int,
         maxIterations: float = math.inf,
         verbosity: int = 0,
-        feedback: Any = None,
+        feedback: object = None,
         numWorkers: int = 0,
         mute: bool = True,
         serialized: bool = False,
@@ -150,7 +155,7 @@ class Generating(ABC):
         numScenes: float = math.inf,
         maxIterations: float = math.inf,
         verbosity: int = 0,
-        feedback: Any = None,
+        feedback: object = None,
         numWorkers: int = 0,
         bufferSize: int | None = None,
         mute: bool = True,
@@ -257,6 +262,6 @@ class Generating(ABC):
         return simulator.replay(scene, data[end:], **options)
 
 
-def _check_workers(workers: int, limit: float, feedback: Any) -> None:
+def _check_workers(workers: int, limit: float, feedback: object) -> None:
     if workers > 0 and (limit != math.inf or feedback is not None):
         raise ValueError("several processes go without `maxIterations` and `feedback`")

@@ -128,7 +128,7 @@ class _Naming:
         for name in sorted(drawn, key=lambda name: (left[name], name in _FOLLOWING)):
             self.name(f"{owner}.{name}", found[name], _UNITS.get(name, ""))
 
-    def name(self, text: str, value: Any, unit: str = "", most: int | None = None) -> None:
+    def name(self, text: str, value: object, unit: str = "", most: int | None = None) -> None:
         """Name the draws that a value depends on, and no value before; none of a value that depends on more than ``most``."""
         if isinstance(value, tuple | list):
             for place, item in enumerate(value):
@@ -213,7 +213,7 @@ def _ends(bounds: Bounds, component: Any, size: Any) -> tuple[float, float] | No
     return round(float(first), 9) + 0.0, round(float(first + slope), 9) + 0.0
 
 
-def _nodes(value: Any) -> list[Node]:
+def _nodes(value: object) -> list[Node]:
     """Return the nodes that a value depends on; none of an instance, whose properties have names of their own."""
     if isinstance(value, RandomBase):
         return [value.node]

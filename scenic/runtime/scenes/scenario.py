@@ -496,7 +496,7 @@ class Scenario(Generating):
     def validate(self) -> None:
         """Do nothing: fixed values are checked when the program is loaded."""
 
-    def setSampleChecker(self, checker: Any) -> None:
+    def setSampleChecker(self, checker: object) -> None:
         """Do nothing: the order of checks follows their cost and rejections."""
 
     # Scenes as data
@@ -514,7 +514,7 @@ class Scenario(Generating):
             raise TypeError("a scenario that was made by hand cannot be pickled")
         return self._services.recipe
 
-    def __deepcopy__(self, _memo: Any) -> "Scenario":
+    def __deepcopy__(self, _memo: object) -> "Scenario":
         return self  # scenes do not depend on what has been sampled before
 
     def __copy__(self) -> "Scenario":
@@ -619,7 +619,7 @@ class Scenario(Generating):
         vars(self).update({name: vars(other)[name] for name in self._unconditioned})
         self._external_sampler = None
 
-    def _number(self, item: Any) -> int:
+    def _number(self, item: object) -> int:
         """The place of an object, which is given by itself or by its place."""
         if not isinstance(item, int):
             families: tuple[Family, ...] = (self._family, self._unconditioned["_family"])

@@ -43,7 +43,7 @@ class Origin:
         given = sorted({*values.get("_given", names)} - {"present"})
         return cls(names, tuple(given), frozenset(fixed))
 
-    def read(self, thing: Any, name: str) -> Any:
+    def read(self, thing: object, name: str) -> Any:
         """The value of a property in one scene."""
         return getattr(thing, name)
 
@@ -251,7 +251,7 @@ class Scene:
         view = self._family.view
         return None if view is None else view(self)
 
-    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Mapping[str, str]:
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> Mapping[str, str]:
         """The scene by type of media, as notebooks ask for it: a page in which it can be turned, and text."""
         bundle = self._family.bundle
         return {"text/plain": repr(self)} if bundle is None else bundle(self)
@@ -260,7 +260,7 @@ class Scene:
         """The same as `show`."""
         return self.show(axes)
 
-    def show2D(self, zoom: Any = None, block: bool = True) -> Any:
+    def show2D(self, zoom: object = None, block: bool = True) -> Any:
         """The same as `show`; the arguments are accepted for compatibility."""
         return self.show()
 
@@ -273,7 +273,7 @@ class Scene:
         scene.__dict__.update(self.__dict__)
         return scene
 
-    def __deepcopy__(self, _memo: Any) -> "Scene":
+    def __deepcopy__(self, _memo: object) -> "Scene":
         """The same scene with objects of its own."""
         scene = self.__copy__()
         scene._sample = scene._cast = scene._objects = scene._params = None

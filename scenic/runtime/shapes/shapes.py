@@ -96,7 +96,7 @@ class Shape:
         size = self.dimensions[axis]
         return size if self._factor is None else size * self._factor
 
-    def _scale_by(self, scale: Any) -> Any:
+    def _scale_by(self, scale: object) -> Any:
         """Keep a random scale as the factor of the dimensions; returns the scale that is left."""
         if isinstance(scale, RandomBase):
             self._factor = scale
@@ -129,7 +129,11 @@ class PrimitiveShape(Shape):
     make: ClassVar[Callable[..., Mesh]]
 
     def __init__(
-        self, dimensions: Any = (1, 1, 1), scale: Any = 1, initial_rotation: Any = None, **parameters: int
+        self,
+        dimensions: object = (1, 1, 1),
+        scale: object = 1,
+        initial_rotation: object = None,
+        **parameters: int,
     ) -> None:
         name = type(self).__name__
         rotation = _rotation(initial_rotation, name)
@@ -156,10 +160,10 @@ class CylinderShape(PrimitiveShape):
 
     def __init__(
         self,
-        dimensions: Any = (1, 1, 1),
-        scale: Any = 1,
-        initial_rotation: Any = None,
-        sections: Any = primitives.CYLINDER_SECTIONS,
+        dimensions: object = (1, 1, 1),
+        scale: object = 1,
+        initial_rotation: object = None,
+        sections: object = primitives.CYLINDER_SECTIONS,
     ) -> None:
         if not isinstance(sections, numbers.Integral):
             raise ScenicTypeError(
@@ -210,14 +214,16 @@ class MeshShape(Shape):
     """
 
     def __init__(
-        self, mesh: Any, dimensions: Any = None, scale: Any = 1, initial_rotation: Any = None
+        self, mesh: object, dimensions: object = None, scale: object = 1, initial_rotation: object = None
     ) -> None:
         rotation = _rotation(initial_rotation, "MeshShape")
         solid = proper_volume(_as_mesh(mesh), unify=False)
         unit, extents = _measured(solid, rotation)
         self._finish(unit, extents, dimensions, scale, ShapeSource("mesh", initial_rotation=rotation))
 
-    def _finish(self, unit: Mesh, extents: Triple, dimensions: Any, scale: Any, source: ShapeSource) -> None:
+    def _finish(
+        self, unit: Mesh, extents: Triple, dimensions: object, scale: object, source: ShapeSource
+    ) -> None:
         size = extents if dimensions is None else _triple(dimensions, "dimensions", "MeshShape")
         scale = self._scale_by(scale)
         super().__init__(unit, _scaled(size, scale, "MeshShape"), source)
@@ -225,11 +231,11 @@ class MeshShape(Shape):
     @classmethod
     def fromFile(
         cls,
-        path: Any,
+        path: object,
         unify: bool = True,
-        dimensions: Any = None,
-        scale: Any = 1,
-        initial_rotation: Any = None,
+        dimensions: object = None,
+        scale: object = 1,
+        initial_rotation: object = None,
         unit: str = "m",
     ) -> "MeshShape":
         """The shape in a mesh file; see `load_mesh`. Relative paths start from the current directory.
@@ -319,7 +325,7 @@ def _as_mesh(mesh: Any) -> Mesh:
     return Mesh(vertices, faces)
 
 
-def _rotation(value: Any, name: str) -> Triple | None:
+def _rotation(value: object, name: str) -> Triple | None:
     return None if value is None else _triple(value, "initial_rotation", name)
 
 
@@ -334,7 +340,7 @@ def _triple(value: Any, what: str, name: str) -> Triple:
     return x, y, z
 
 
-def _scaled(dimensions: Triple, scale: Any, name: str) -> Triple:
+def _scaled(dimensions: Triple, scale: object, name: str) -> Triple:
     factor = _number(scale, "scale", name)
     width, length, height = (factor * extent for extent in dimensions)
     if not min(width, length, height) > 0:
@@ -345,7 +351,7 @@ def _scaled(dimensions: Triple, scale: Any, name: str) -> Triple:
     return width, length, height
 
 
-def _number(value: Any, what: str, name: str) -> float:
+def _number(value: object, what: str, name: str) -> float:
     if not isinstance(value, numbers.Real):
         raise ScenicTypeError(
             f"{name} needs a fixed number in `{what}`, not {_described(value)}",
@@ -357,7 +363,7 @@ def _number(value: Any, what: str, name: str) -> float:
     return number
 
 
-def _described(value: Any) -> str:
+def _described(value: object) -> str:
     return (
         f"`{value!r}`"
         if isinstance(value, str | int | float | tuple | list)

@@ -64,7 +64,7 @@ def elements_of(node: Node) -> Sequence[Node] | None:
     return None
 
 
-def element_at(node: Node, index: Any) -> Any:
+def element_at(node: Node, index: object) -> Any:
     """An element of a choice among containers: the choice among their elements. ``None`` for other operands."""
     if node.operation is not TABLE["select"] or type(index) not in (int, str):
         return None
@@ -87,7 +87,7 @@ def element_at(node: Node, index: Any) -> Any:
     return select(draw, results)
 
 
-def element(value: RandomBase, index: Any) -> Any:
+def element(value: RandomBase, index: object) -> Any:
     """The element of a random container, or of a choice among containers, at an index."""
     if is_lazy(index):
         return defer(element, value, index)
@@ -100,7 +100,7 @@ def element(value: RandomBase, index: Any) -> Any:
     return operate("getitem", value, index) if found is None else found
 
 
-def _element_over_lanes(node: Node, index: Any) -> Any:
+def _element_over_lanes(node: Node, index: object) -> Any:
     """The element of a choice among fields at a random place; ``None`` for other options."""
     draw, *options = node.operands
     if not all(option.is_constant and hasattr(type(option.value), "__getitem__") for option in options):
@@ -109,7 +109,7 @@ def _element_over_lanes(node: Node, index: Any) -> Any:
     return None if found is None else as_value(found)
 
 
-def sliceable(container: Any) -> Any:
+def sliceable(container: object) -> Any:
     """A container to take a slice of; one that takes random and lazy bounds, if it is a sequence of Python's own."""
     return _Sliceable(container) if isinstance(container, list | tuple | str) else container
 
@@ -222,11 +222,11 @@ _DRAWING: Final = frozenset({"sample", "uniformPointInner"})
 """Methods of the runtime that draw whenever they are called: of a choice they are called in each sample."""
 
 
-def _draws(function: Any) -> bool:
+def _draws(function: object) -> bool:
     return getattr(function, "__name__", None) in _DRAWING
 
 
-def _is_of_runtime(function: Any) -> bool:
+def _is_of_runtime(function: object) -> bool:
     """Return whether a callable is one of the runtime's own, which take random arguments; what programs define does not."""
     defined = getattr(function, "__func__", function)
     module = getattr(defined, "__module__", None) or ""
@@ -294,7 +294,7 @@ def holds_instances(node: Node) -> bool:
     return False
 
 
-def _with_instances(value: Any) -> bool:
+def _with_instances(value: object) -> bool:
     if isinstance(value, dict):
         value = list(value.values())
     if isinstance(value, tuple | list | set | frozenset):
@@ -330,7 +330,7 @@ _PLACE = Operation(
 )
 
 
-def _place_in_all(call: Call, index: Any, draw: Any) -> Any:
+def _place_in_all(call: Call, index: Any, draw: object) -> Any:
     counts = np.array(call.payload)
     starts, mine = np.cumsum(counts) - counts, counts[index]
     if (mine == 0).any():

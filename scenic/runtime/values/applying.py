@@ -31,12 +31,12 @@ def scalar_of(name: str) -> Callable[..., Any]:
     return scalar
 
 
-def operate(name: str, *operands: Any, payload: Any = None) -> Any:
+def operate(name: str, *operands: Any, payload: object = None) -> Any:
     """Apply an operation of the table to values."""
     return apply(TABLE[name], *operands, payload=payload)
 
 
-def apply(operation: Operation, *operands: Any, payload: Any = None) -> Any:
+def apply(operation: Operation, *operands: Any, payload: object = None) -> Any:
     """Apply any operation to values: at once when all are definite, as a new node otherwise; later where one is lazy."""
     if operation.scalar is not None:
         result = _at_once(operation.scalar, payload, operands)
@@ -70,7 +70,7 @@ _INSTEAD: Final = MappingProxyType(
 """Methods that Python calls where a class has none of the function's own name."""
 
 
-def _at_once(scalar: Callable[..., Any], payload: Any, operands: Sequence[Any]) -> Any:
+def _at_once(scalar: Callable[..., Any], payload: object, operands: Sequence[Any]) -> Any:
     """The value of an operation on plain numbers, vectors and orientations; ``NotImplemented`` where there are others."""
     rows = []
     for operand in operands:
@@ -119,7 +119,7 @@ def binary(name: str) -> Callable[[Any, Any], Any]:
     return applied
 
 
-def folded(operation: Operation, nodes: Sequence[Node], payload: Any) -> Any:
+def folded(operation: Operation, nodes: Sequence[Node], payload: object) -> Any:
     """The value of an operation on constants; raises what a sample of it would raise."""
     kind = operation.kind(nodes, payload)
     plain = all(node.kind.is_number for node in nodes) or kind.is_boxed

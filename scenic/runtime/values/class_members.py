@@ -22,13 +22,13 @@ class _Member:
 
     __slots__ = ("member",)
 
-    def __init__(self, member: Any) -> None:
+    def __init__(self, member: object) -> None:
         self.member = member
 
-    def __get__(self, instance: Any, owner: type | None = None) -> Any:
+    def __get__(self, instance: object, owner: type | None = None) -> Any:
         return self._of(instance, owner).__get__(instance, owner)
 
-    def _of(self, instance: Any, owner: type | None = None) -> Any:
+    def _of(self, instance: object, owner: type | None = None) -> Any:
         """The member in the sample of an instance, or of the innermost code that runs in one."""
         sample = getattr(instance, "__dict__", {}).get("_sample")
         if sample is None:
@@ -43,10 +43,10 @@ class _Property(_Member):
 
     __slots__ = ()
 
-    def __set__(self, instance: Any, value: Any) -> None:
+    def __set__(self, instance: object, value: object) -> None:
         self._of(instance).__set__(instance, value)
 
-    def __delete__(self, instance: Any) -> None:
+    def __delete__(self, instance: object) -> None:
         self._of(instance).__delete__(instance)
 
 
@@ -55,7 +55,7 @@ class _Value(_Member):
 
     __slots__ = ()
 
-    def __get__(self, instance: Any, owner: type | None = None) -> Any:
+    def __get__(self, instance: object, owner: type | None = None) -> Any:
         return self._of(instance, owner)
 
 

@@ -21,7 +21,7 @@ from scenic.runtime.values.random_base import RandomBase
 from scenic.runtime.values.rows import OrientationRow, VectorRow, orientation_of, vector_of
 
 
-def to_scalar(value: Any, what: str = "") -> Any:
+def to_scalar(value: object, what: str = "") -> Any:
     """A real number, as a float."""
     if type(value) is float:
         return value
@@ -68,7 +68,7 @@ def to_vector(value: Any, what: str = "") -> Any:
     raise wrong_type(VECTOR, value, what)
 
 
-def to_heading(value: Any, what: str = "") -> Any:
+def to_heading(value: object, what: str = "") -> Any:
     """A heading in radians: a number, the global yaw of an orientation, the heading of an oriented point."""
     if type(value) is float:
         return value
@@ -88,7 +88,7 @@ def to_heading(value: Any, what: str = "") -> Any:
     raise wrong_type(HEADING, value, what)
 
 
-def to_orientation(value: Any, what: str = "") -> Any:
+def to_orientation(value: object, what: str = "") -> Any:
     """An orientation: also a heading, a triple of Euler angles, and anything that has an orientation."""
     if isinstance(value, OrientationRow):
         return value
@@ -114,7 +114,7 @@ def to_orientation(value: Any, what: str = "") -> Any:
     raise wrong_type(ORIENTATION, value, what)
 
 
-def from_euler(yaw: Any, pitch: Any, roll: Any) -> Any:
+def from_euler(yaw: object, pitch: object, roll: object) -> Any:
     """The orientation of intrinsic rotations about Z, the new X and the new Y (radians)."""
     if (
         type(yaw) is float
@@ -126,7 +126,7 @@ def from_euler(yaw: Any, pitch: Any, roll: Any) -> Any:
     return operate("from euler", *map(to_scalar, (yaw, pitch, roll)))
 
 
-def vector(x: Any, y: Any, z: Any = 0) -> Any:
+def vector(x: object, y: object, z: object = 0) -> Any:
     """The vector of three numbers."""
     if type(x) is float and type(y) is float and type(z) is float:
         return vector_of((x, y, z))
@@ -165,7 +165,7 @@ def when_drawn(
     return apply(operation, value)
 
 
-def with_vector(name: str, left: Any, right: Any) -> Any:
+def with_vector(name: str, left: object, right: object) -> Any:
     """An operation on two values read as vectors; ``NotImplemented`` where one is none."""
     try:
         return operate(name, to_vector(left), to_vector(right))
@@ -173,7 +173,7 @@ def with_vector(name: str, left: Any, right: Any) -> Any:
         return NotImplemented
 
 
-def with_number(name: str, left: Any, right: Any) -> Any:
+def with_number(name: str, left: object, right: object) -> Any:
     """An operation on a vector and a number; ``NotImplemented`` where it is none."""
     is_scalar = is_number(right) or isinstance(right, RandomBase)
     if is_scalar and not is_vector(right) and not is_orientation(right):

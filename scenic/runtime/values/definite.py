@@ -54,24 +54,24 @@ class Vector(VectorRow, VectorMethods, length=3):
 
     # The operations that running simulations do most, without a detour.
 
-    def __add__(self, other: Any) -> Any:
+    def __add__(self, other: object) -> Any:
         if type(other) is Vector:
             return Vector.of(_ADD(None, self._row, other._row))
         return super().__add__(other)
 
-    def __sub__(self, other: Any) -> Any:
+    def __sub__(self, other: object) -> Any:
         if type(other) is Vector:
             return Vector.of(_SUBTRACT(None, self._row, other._row))
         return super().__sub__(other)
 
-    def __mul__(self, other: Any) -> Any:
+    def __mul__(self, other: object) -> Any:
         if type(other) is float or type(other) is int:
             return Vector.of(_MULTIPLY(None, self._row, float(other)))
         return super().__mul__(other)
 
     __rmul__ = __mul__
 
-    def rotatedBy(self, rotation: Any) -> Any:
+    def rotatedBy(self, rotation: object) -> Any:
         """As of `VectorMethods`, without a detour."""
         turn = to_orientation(rotation)
         if type(turn) is Orientation:
@@ -88,24 +88,24 @@ class Vector(VectorRow, VectorMethods, length=3):
     def __hash__(self) -> int:
         return hash(self._row)
 
-    def index(self, value: Any) -> int:
+    def index(self, value: object) -> int:
         """The axis of the first coordinate that is equal to a number; raises ``ValueError`` where none is."""
         return self._row.index(value)
 
-    def count(self, value: Any) -> int:
+    def count(self, value: object) -> int:
         """Number of coordinates that are equal to a number."""
         return self._row.count(value)
 
     def __repr__(self) -> str:
         return "Vector({}, {}, {})".format(*map(plain_number, self._row))
 
-    def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
+    def __array__(self, dtype: Any = None, copy: object = None) -> Any:
         return np.array(self._row, dtype=dtype)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Vector, self._row
 
-    def __deepcopy__(self, _memo: Any) -> Self:
+    def __deepcopy__(self, _memo: object) -> Self:
         return self  # nothing of it can change
 
     def __copy__(self) -> Self:
@@ -145,7 +145,7 @@ class Orientation(OrientationRow, OrientationMethods, length=4):
 
     __slots__ = ()
 
-    def __init__(self, rotation: Any = None) -> None:
+    def __init__(self, rotation: object = None) -> None:
         if rotation is not None and not hasattr(rotation, "as_quat"):
             raise ScenicTypeError(
                 f"`Orientation` takes a rotation of SciPy, not {describe(rotation)}",
@@ -155,7 +155,7 @@ class Orientation(OrientationRow, OrientationMethods, length=4):
         self._row = (0.0, 0.0, 0.0, 1.0) if rotation is None else tuple(rotation.as_quat().tolist())
 
     @staticmethod
-    def fromEuler(yaw: Any, pitch: Any, roll: Any) -> Any:
+    def fromEuler(yaw: object, pitch: object, roll: object) -> Any:
         """Intrinsic rotations about Z, the new X and the new Y (radians)."""
         return from_euler(yaw, pitch, roll)
 

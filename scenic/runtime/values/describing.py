@@ -1,7 +1,6 @@
 """Values in words, for messages about those that cannot be used."""
 
 from collections.abc import Sequence
-from typing import Any
 
 from scenic.graph.kinds import Kind
 from scenic.language.errors import ScenicTypeError
@@ -10,7 +9,7 @@ from scenic.runtime.ground.context import here
 from scenic.runtime.values.random_base import RandomBase
 
 
-def describe(value: Any) -> str:
+def describe(value: object) -> str:
     """A value in words for a message."""
     if isinstance(value, RandomBase):
         known = value.node.kind
@@ -24,7 +23,7 @@ def describe(value: Any) -> str:
     return f"{text} ({kind})" if len(text) < 40 else f"a value of type {kind}"
 
 
-def wrong_type(types: Type | Sequence[Type] | str, value: Any, what: str = "") -> ScenicTypeError:
+def wrong_type(types: Type | Sequence[Type] | str, value: object, what: str = "") -> ScenicTypeError:
     """The error for a value that has none of the types, or does not match a noun."""
     noun, hint = (
         (types, None) if isinstance(types, str) else wanted((types,) if isinstance(types, Type) else types)

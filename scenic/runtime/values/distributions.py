@@ -58,7 +58,7 @@ class Law:
                 keywords[name] = to_scalar(keywords[name], self._label)
         return self._function(*numbers, *args[count:], **keywords)
 
-    def __instancecheck__(self, value: Any) -> bool:
+    def __instancecheck__(self, value: object) -> bool:
         return (
             isinstance(value, Random) and value.isPrimitive and value.node.operation.name in self._operations
         )
@@ -67,7 +67,7 @@ class Law:
         return f"<law {self._function.__name__}>"
 
 
-def primitive(operation: str | Operation, *operands: Any, payload: Any = None) -> Any:
+def primitive(operation: str | Operation, *operands: Any, payload: object = None) -> Any:
     """A primitive random value: the operation's first operand is an axis of its own.
 
     In a simulation it is drawn at once. Raises `InvalidScenarioError` inside a requirement.
@@ -93,19 +93,19 @@ def primitive(operation: str | Operation, *operands: Any, payload: Any = None) -
 
 
 @Law
-def Range(low: Any, high: Any) -> Any:
+def Range(low: object, high: object) -> Any:
     """A real number, uniform between two ends (in either order; they may be random)."""
     return primitive("range", low, high)
 
 
 @Law
-def Normal(mean: Any, stdDev: Any) -> Any:
+def Normal(mean: object, stdDev: object) -> Any:
     """A real number, normally distributed."""
     return primitive("normal", mean, stdDev)
 
 
 @Law
-def TruncatedNormal(mean: Any, stdDev: Any, low: Any, high: Any) -> Any:
+def TruncatedNormal(mean: object, stdDev: object, low: object, high: object) -> Any:
     """A real number, normally distributed on condition that it lies between two fixed ends."""
     if is_random(low) or is_random(high):
         raise ScenicValueError("the window of `TruncatedNormal` must be fixed", span=here())
@@ -120,7 +120,7 @@ def TruncatedNormal(mean: Any, stdDev: Any, low: Any, high: Any) -> Any:
 
 
 @Law
-def DiscreteRange(low: Any, high: Any, weights: Sequence[float] | None = None) -> Any:
+def DiscreteRange(low: object, high: object, weights: Sequence[float] | None = None) -> Any:
     """An integer between two ends (included), uniform, or with a weight for each."""
     if weights is None:
         return primitive("discrete range", _end(low), _end(high))
@@ -147,7 +147,7 @@ def DiscreteRange(low: Any, high: Any, weights: Sequence[float] | None = None) -
     return primitive("weighted integer", payload=(ends[0], cumulative(fixed)))
 
 
-def _end(value: Any) -> Any:
+def _end(value: object) -> Any:
     """An end of a range of integers. Integers stay integers: above 2**53 floats cannot represent all of them."""
     if isinstance(value, int) and abs(value) < _MOST_EXACT:
         return int(value)
@@ -203,7 +203,7 @@ def nothing_to_choose(name: str) -> InvalidScenarioError:
     )
 
 
-def checked_weight(weight: Any) -> float:
+def checked_weight(weight: object) -> float:
     if is_random(weight) or not is_number(weight):
         raise ScenicTypeError(f"a weight is a fixed number, not {describe(weight)}", span=here())
     if not 0 <= weight < math.inf:
@@ -222,6 +222,6 @@ def cumulative(weights: Sequence[float]) -> tuple[float, ...]:
     return (*sums[:-1], 1.0)
 
 
-def resample(value: Any) -> Any:
+def resample(value: object) -> Any:
     """An independent draw of the same primitive distribution; a value that is not random stays as it is."""
     return value.resampled() if isinstance(value, Random) else value

@@ -30,7 +30,7 @@ class Lazy:
         self.reads = reads
         self._compute = compute
 
-    def value_for(self, instance: Any) -> Any:
+    def value_for(self, instance: object) -> Any:
         """The value for one instance: the same on every call while the instance is built."""
         known = instance.__dict__.setdefault(MEMO, {})
         if id(self) not in known:
@@ -50,7 +50,7 @@ class Lazy:
             raise AttributeError(name)
         return defer(getattr, self, name)
 
-    def __getitem__(self, index: Any) -> Any:
+    def __getitem__(self, index: object) -> Any:
         return defer(operator.getitem, self, index)
 
     def __call__(self, *args: Any, **keywords: Any) -> Any:
@@ -72,10 +72,10 @@ class Lazy:
     def __len__(self) -> int:
         raise self._definite("taking Python's own `len` of")
 
-    def __contains__(self, item: Any) -> bool:
+    def __contains__(self, item: object) -> bool:
         raise self._definite("looking into")
 
-    def __lt__(self, other: Any) -> bool:
+    def __lt__(self, other: object) -> bool:
         raise self._definite("comparing")
 
     __le__ = __gt__ = __ge__ = __lt__
@@ -101,10 +101,10 @@ def _called(function: Any, *args: Any, **keywords: Any) -> Any:
 
 
 def _binary(function: Callable[[Any, Any], Any]) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    def straight(self: Lazy, other: Any) -> Any:
+    def straight(self: Lazy, other: object) -> Any:
         return defer(function, self, other)
 
-    def reflected(self: Lazy, other: Any) -> Any:
+    def reflected(self: Lazy, other: object) -> Any:
         return defer(function, other, self)
 
     return straight, reflected
@@ -155,7 +155,7 @@ def reads_of(value: Any, within: tuple[int, ...] = ()) -> frozenset[str]:
     return found
 
 
-def is_lazy(value: Any) -> bool:
+def is_lazy(value: object) -> bool:
     """Return whether a value is lazy, or a container or slice with lazy parts."""
     return isinstance(value, Lazy) or (type(value) in (tuple, list, dict, slice) and bool(reads_of(value)))
 
@@ -177,14 +177,14 @@ def defer(function: Callable[..., Any], *args: Any, **keywords: Any) -> Lazy:
     """The lazy value of a call, some arguments of which are lazy."""
     reads = reads_of(args) | reads_of(keywords)
 
-    def compute(instance: Any) -> Any:
+    def compute(instance: object) -> Any:
         given: Mapping[str, Any] = resolve(keywords, instance)
         return function(*(resolve(arg, instance) for arg in args), **given)
 
     return Lazy(reads, compute)
 
 
-def definite(value: Any, what: str) -> Any:
+def definite(value: object, what: str) -> Any:
     """``value``, unless it is lazy: then `InvalidScenarioError`, since ``what`` has no object to read."""
     if is_lazy(value):
         raise InvalidScenarioError(

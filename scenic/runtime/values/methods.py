@@ -16,52 +16,52 @@ class Arithmetic:
 
     __slots__ = ()
 
-    def __add__(self, other: Any) -> Any:
+    def __add__(self, other: object) -> Any:
         return operate("add", self, other)
 
-    def __radd__(self, other: Any) -> Any:
+    def __radd__(self, other: object) -> Any:
         return operate("add", other, self)
 
-    def __sub__(self, other: Any) -> Any:
+    def __sub__(self, other: object) -> Any:
         return operate("subtract", self, other)
 
-    def __rsub__(self, other: Any) -> Any:
+    def __rsub__(self, other: object) -> Any:
         return operate("subtract", other, self)
 
-    def __mul__(self, other: Any) -> Any:
+    def __mul__(self, other: object) -> Any:
         return operate("multiply", self, other)
 
-    def __rmul__(self, other: Any) -> Any:
+    def __rmul__(self, other: object) -> Any:
         return operate("multiply", other, self)
 
-    def __truediv__(self, other: Any) -> Any:
+    def __truediv__(self, other: object) -> Any:
         return operate("divide", self, other)
 
-    def __rtruediv__(self, other: Any) -> Any:
+    def __rtruediv__(self, other: object) -> Any:
         return operate("divide", other, self)
 
-    def __floordiv__(self, other: Any) -> Any:
+    def __floordiv__(self, other: object) -> Any:
         return operate("floor divide", self, other)
 
-    def __rfloordiv__(self, other: Any) -> Any:
+    def __rfloordiv__(self, other: object) -> Any:
         return operate("floor divide", other, self)
 
-    def __mod__(self, other: Any) -> Any:
+    def __mod__(self, other: object) -> Any:
         return operate("modulo", self, other)
 
-    def __rmod__(self, other: Any) -> Any:
+    def __rmod__(self, other: object) -> Any:
         return operate("modulo", other, self)
 
-    def __divmod__(self, other: Any) -> Any:
+    def __divmod__(self, other: object) -> Any:
         return operate("divmod", self, other)
 
-    def __rdivmod__(self, other: Any) -> Any:
+    def __rdivmod__(self, other: object) -> Any:
         return operate("divmod", other, self)
 
-    def __pow__(self, other: Any) -> Any:
+    def __pow__(self, other: object) -> Any:
         return operate("power", self, other)
 
-    def __rpow__(self, other: Any) -> Any:
+    def __rpow__(self, other: object) -> Any:
         return operate("power", other, self)
 
     def __neg__(self) -> Any:
@@ -73,7 +73,7 @@ class Arithmetic:
     def __abs__(self) -> Any:
         return operate("absolute", self)
 
-    def __round__(self, digits: Any = None) -> Any:
+    def __round__(self, digits: object = None) -> Any:
         return operate("round", self) if digits is None else operate("round", self, digits)
 
 
@@ -101,11 +101,11 @@ class VectorMethods:
         """Euclidean length."""
         return operate("norm", self)
 
-    def dot(self, other: Any) -> Any:
+    def dot(self, other: object) -> Any:
         """Scalar product."""
         return operate("dot", self, to_vector(other))
 
-    def cross(self, other: Any) -> Any:
+    def cross(self, other: object) -> Any:
         """Vector product."""
         return operate("cross", self, to_vector(other))
 
@@ -113,47 +113,47 @@ class VectorMethods:
         """The unit vector of the same direction; the zero vector stays as it is."""
         return operate("normalized", self)
 
-    def rotatedBy(self, rotation: Any) -> Any:
+    def rotatedBy(self, rotation: object) -> Any:
         """Rotated by an orientation, or by an angle about the vertical axis (radians, anticlockwise)."""
         return operate("rotate", to_orientation(rotation), self)
 
-    def distanceTo(self, other: Any) -> Any:
+    def distanceTo(self, other: object) -> Any:
         """Distance to another point, or to the nearest point of a region."""
         if isinstance(other, Lazy):
             return defer(self.distanceTo, other)
         return as_drawn(VectorMethods._distance_to, self, other)
 
-    def _distance_to(self, other: Any) -> Any:
+    def _distance_to(self, other: object) -> Any:
         space = getattr(other, "occupiedSpace", other)
         measure = getattr(space, "distance_from", None)
         return operate("distance", self, to_vector(other)) if measure is None else measure(self)
 
-    def angleTo(self, other: Any) -> Any:
+    def angleTo(self, other: object) -> Any:
         """Azimuth of the direction to ``other`` (radians, from North, anticlockwise)."""
         return operate("azimuth", operate("subtract", to_vector(other), self))
 
     azimuthTo = angleTo
 
-    def altitudeTo(self, other: Any) -> Any:
+    def altitudeTo(self, other: object) -> Any:
         """Altitude of the direction to ``other`` (radians above the horizon)."""
         return operate("altitude", operate("subtract", to_vector(other), self))
 
-    def angleWith(self, other: Any) -> Any:
+    def angleWith(self, other: object) -> Any:
         """Signed angle in the plane from this vector to ``other`` (radians, within [-pi, pi])."""
         return operate(
             "normalize angle",
             operate("subtract", operate("azimuth", to_vector(other)), operate("azimuth", self)),
         )
 
-    def offsetRotated(self, rotation: Any, offset: Any) -> Any:
+    def offsetRotated(self, rotation: object, offset: object) -> Any:
         """This point displaced by ``offset`` read in the frame ``rotation``."""
         return operate("add", self, operate("rotate", to_orientation(rotation), to_vector(offset)))
 
-    def offsetLocally(self, orientation: Any, offset: Any) -> Any:
+    def offsetLocally(self, orientation: object, offset: object) -> Any:
         """This point displaced by ``offset`` read in the frame ``orientation``."""
         return self.offsetRotated(orientation, offset)
 
-    def offsetRadially(self, radius: Any, heading: Any) -> Any:
+    def offsetRadially(self, radius: object, heading: object) -> Any:
         """This point displaced by ``radius`` metres in the direction ``heading``."""
         return self.offsetRotated(heading, vector(0, radius, 0))
 
@@ -171,28 +171,28 @@ class VectorMethods:
         """The three coordinates, as a tuple."""
         return (self.x, self.y, self.z)
 
-    def applyRotation(self, rotation: Any) -> Any:
+    def applyRotation(self, rotation: object) -> Any:
         """The vector turned by an orientation."""
         return self.rotatedBy(rotation)
 
-    def __add__(self, other: Any) -> Any:
+    def __add__(self, other: object) -> Any:
         return with_vector("add", self, other)
 
-    def __radd__(self, other: Any) -> Any:
+    def __radd__(self, other: object) -> Any:
         return with_vector("add", self, other)
 
-    def __sub__(self, other: Any) -> Any:
+    def __sub__(self, other: object) -> Any:
         return with_vector("subtract", self, other)
 
-    def __rsub__(self, other: Any) -> Any:
+    def __rsub__(self, other: object) -> Any:
         return with_vector("subtract", other, self)
 
-    def __mul__(self, other: Any) -> Any:
+    def __mul__(self, other: object) -> Any:
         return with_number("multiply", self, other)
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: Any) -> Any:
+    def __truediv__(self, other: object) -> Any:
         return with_number("divide", self, other)
 
     def __neg__(self) -> Any:
@@ -204,7 +204,7 @@ class VectorMethods:
     def __len__(self) -> int:
         return 3
 
-    def __getitem__(self, index: Any) -> Any:
+    def __getitem__(self, index: object) -> Any:
         if isinstance(index, int) and -3 <= index < 3:
             return operate("component", self, payload=index % 3)
         if isinstance(index, slice):
@@ -274,11 +274,11 @@ class OrientationMethods:
         """The opposite rotation."""
         return operate("inverse", self)
 
-    def localAnglesFor(self, other: Any) -> Any:
+    def localAnglesFor(self, other: object) -> Any:
         """Euler angles of ``other`` in this frame."""
         return operate("compose", self.inverse, to_orientation(other)).eulerAngles
 
-    def globalToLocalAngles(self, yaw: Any, pitch: Any, roll: Any) -> Any:
+    def globalToLocalAngles(self, yaw: object, pitch: object, roll: object) -> Any:
         """Euler angles in this frame of the orientation that has these ones globally."""
         return self.localAnglesFor((yaw, pitch, roll))
 
@@ -290,15 +290,15 @@ class OrientationMethods:
         """Global yaw."""
         return self.yaw
 
-    def __mul__(self, other: Any) -> Any:
+    def __mul__(self, other: object) -> Any:
         if is_orientation(other):
             return operate("compose", self, other)
         if is_vector(other):
             return operate("rotate", self, to_vector(other))
         return NotImplemented
 
-    def __add__(self, other: Any) -> Any:
+    def __add__(self, other: object) -> Any:
         return operate("compose", self, to_orientation(other))
 
-    def __radd__(self, other: Any) -> Any:
+    def __radd__(self, other: object) -> Any:
         return operate("compose", to_orientation(other), self)

@@ -26,12 +26,12 @@ _NUMBERS = (int, float, np.integer, np.floating, np.bool_)  # made once: it is a
 ROWS = (tuple, list, np.ndarray)
 
 
-def is_number(value: Any) -> TypeGuard[float]:
+def is_number(value: object) -> TypeGuard[float]:
     """Return whether a definite value is a real number."""
     return isinstance(value, _NUMBERS)
 
 
-def is_vector(value: Any) -> bool:
+def is_vector(value: object) -> bool:
     """Return whether a value is a vector, or a pair or triple that stands for one."""
     if isinstance(value, RandomBase):
         return value.node.kind is Kind.VECTOR
@@ -40,14 +40,14 @@ def is_vector(value: Any) -> bool:
     return isinstance(value, VectorRow) or (isinstance(value, np.ndarray) and value.shape in ((2,), (3,)))
 
 
-def is_orientation(value: Any) -> bool:
+def is_orientation(value: object) -> bool:
     """Return whether a value is an orientation."""
     if isinstance(value, RandomBase):
         return value.node.kind is Kind.ORIENTATION
     return isinstance(value, OrientationRow)
 
 
-def kind_of(value: Any) -> Kind:
+def kind_of(value: object) -> Kind:
     """The kind of a definite value."""
     if isinstance(value, bool | np.bool_):
         return Kind.BOOLEAN
@@ -76,7 +76,7 @@ class ValueCodec:
             value._row = row
         return values
 
-    def encode(self, kind: Kind, value: Any) -> Any:
+    def encode(self, kind: Kind, value: object) -> Any:
         """The row of a value; raises ``TypeError`` where it is of another kind."""
         if kind.is_boxed:
             return value
@@ -155,7 +155,7 @@ CONTAINERS_MADE: Final = frozenset({TUPLE, LIST, DICTIONARY, _SET, _FROZEN_SET})
 """Operations that put their operands into a container, as they are."""
 
 
-def _container(value: Any) -> Operation:
+def _container(value: object) -> Operation:
     """Return the operation that makes a container of the type of ``value`` from its parts."""
     if isinstance(value, list):
         return LIST

@@ -55,12 +55,12 @@ CONTAINERS: Final = frozenset({list, dict, set, deque, defaultdict, OrderedDict,
 """Containers that a program may change in place; each has ``copy`` and ``clear``."""
 
 
-def is_own_function(value: Any) -> bool:
+def is_own_function(value: object) -> bool:
     """Return whether a value is a function of a program."""
     return isinstance(value, FunctionType) and PRELUDE in value.__globals__
 
 
-def leads_back(function: Any) -> bool:
+def leads_back(function: object) -> bool:
     """Return whether a function, or one that it wraps, is a program's: a library's decorator makes such functions."""
     seen: set[int] = set()
     stack: list[Any] = [function]
@@ -106,7 +106,7 @@ def own_functions(cls: type) -> Iterator[FunctionType]:
         yield from filter(is_own_function, functions_of(member))
 
 
-def functions_of(member: Any) -> list[Any]:
+def functions_of(member: object) -> list[Any]:
     """The functions that a member of a class is made of."""
     match member:
         case FunctionType():

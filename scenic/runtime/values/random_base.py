@@ -63,19 +63,19 @@ class RandomBase:
     def __ne__(self, other: object) -> bool:
         raise self._definite("comparing")
 
-    def __lt__(self, other: Any) -> bool:
+    def __lt__(self, other: object) -> bool:
         raise self._definite("comparing")
 
-    def __le__(self, other: Any) -> bool:
+    def __le__(self, other: object) -> bool:
         raise self._definite("comparing")
 
-    def __gt__(self, other: Any) -> bool:
+    def __gt__(self, other: object) -> bool:
         raise self._definite("comparing")
 
-    def __ge__(self, other: Any) -> bool:
+    def __ge__(self, other: object) -> bool:
         raise self._definite("comparing")
 
-    def __contains__(self, item: Any) -> bool:
+    def __contains__(self, item: object) -> bool:
         raise self._definite("looking into")
 
     def __iter__(self) -> Iterator[Any]:
@@ -123,7 +123,7 @@ def random_value(node: Node, again: Callable[[], Any] | None = None) -> Any:
     return classes.get(node.kind, classes[None])(node, again)
 
 
-def is_random(value: Any, within: tuple[int, ...] = ()) -> bool:
+def is_random(value: object, within: tuple[int, ...] = ()) -> bool:
     """Return whether a value is random or a container with random parts; ``within``: the identities of those that hold it."""
     if isinstance(value, RandomBase):
         return True

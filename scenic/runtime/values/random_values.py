@@ -23,7 +23,7 @@ class Random(Arithmetic, RandomBase, kinds=[None]):
 
     # Parts
 
-    def __getitem__(self, index: Any) -> Any:
+    def __getitem__(self, index: object) -> Any:
         return element(self, index)
 
     def __getattr__(self, name: str) -> Any:
@@ -36,7 +36,7 @@ class Random(Arithmetic, RandomBase, kinds=[None]):
 
     # What scripts ask of a law
 
-    def sample(self, subsamples: Any = None) -> Any:
+    def sample(self, subsamples: object = None) -> Any:
         """One sample, drawn now from Python's generator, independent of all scenes."""
         return sample_of(self)
 

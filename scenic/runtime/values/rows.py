@@ -84,7 +84,7 @@ def orientation_of(row: tuple[float, ...]) -> Any:
     return value
 
 
-def of_row(result: Any) -> Any:
+def of_row(result: object) -> Any:
     """The result of an operation on plain numbers as a value: a row as a vector or an orientation."""
     if type(result) is not tuple:
         return result

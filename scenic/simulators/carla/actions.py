@@ -18,7 +18,7 @@ __all__ = [
 class _ActorAction(Action):
     """An action on the simulator's actor."""
 
-    def canBeTakenBy(self, agent: Any) -> bool:
+    def canBeTakenBy(self, agent: object) -> bool:
         """Return whether the agent is an actor of CARLA."""
         return hasattr(agent, "carlaActor")
 
@@ -26,7 +26,7 @@ class _ActorAction(Action):
 class SetAngularVelocityAction(_ActorAction):
     """Set the angular velocity."""
 
-    def __init__(self, angularVel: Any) -> None:
+    def __init__(self, angularVel: object) -> None:
         self.angularVel = angularVel
 
     def applyTo(self, agent: Any, simulation: Any) -> None:
@@ -37,7 +37,7 @@ class SetAngularVelocityAction(_ActorAction):
 class SetTransformAction(_ActorAction):
     """Teleport to a position and heading."""
 
-    def __init__(self, pos: Any, heading: float) -> None:
+    def __init__(self, pos: object, heading: float) -> None:
         self.pos, self.heading = pos, heading
 
     def applyTo(self, agent: Any, simulation: Any) -> None:
@@ -62,10 +62,10 @@ class SetAutopilotAction(_ActorAction):
 class SetVehicleLightStateAction(_ActorAction):
     """Set the lights of a vehicle."""
 
-    def __init__(self, vehicleLightState: Any) -> None:
+    def __init__(self, vehicleLightState: object) -> None:
         self.vehicleLightState = vehicleLightState
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: Any, simulation: object) -> None:
         """Set them."""
         agent.carlaActor.set_light_state(self.vehicleLightState)
 

@@ -159,7 +159,7 @@ def ids(category: str) -> tuple[str, ...]:
     return tuple(CATALOGUE[category])
 
 
-def dimension(blueprint: Any, axis: int, default: Any) -> Any:
+def dimension(blueprint: Any, axis: int, default: object) -> Any:
     """A size of a blueprint in metres (0 width, 1 length, 2 height); ``default`` for unknown ones.
 
     A random choice among blueprints gives the choice among their sizes.

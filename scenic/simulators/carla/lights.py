@@ -53,22 +53,22 @@ def getTrafficLightStatus(signal: Any) -> str:
     return color
 
 
-def setClosestTrafficLightStatus(vehicle: Any, color: str, distance: float = 100) -> None:
+def setClosestTrafficLightStatus(vehicle: object, color: str, distance: float = 100) -> None:
     """Set the traffic light ahead of a vehicle within a distance in metres."""
     running_simulation().set_closest_traffic_light(vehicle, color, distance)
 
 
-def getClosestTrafficLightStatus(vehicle: Any, distance: float = 100) -> str:
+def getClosestTrafficLightStatus(vehicle: object, distance: float = 100) -> str:
     """The colour of the traffic light ahead of a vehicle within a distance in metres; ``none`` if there is none."""
     found: str = running_simulation().closest_traffic_light(vehicle, distance)
     return found
 
 
-def withinDistanceToRedYellowTrafficLight(vehicle: Any, thresholdDistance: float) -> bool:
+def withinDistanceToRedYellowTrafficLight(vehicle: object, thresholdDistance: float) -> bool:
     """Return whether a red or yellow traffic light is ahead of a vehicle, nearer than the threshold in metres."""
     return getClosestTrafficLightStatus(vehicle, thresholdDistance) in ("red", "yellow")
 
 
-def withinDistanceToTrafficLight(vehicle: Any, thresholdDistance: float) -> bool:
+def withinDistanceToTrafficLight(vehicle: object, thresholdDistance: float) -> bool:
     """Return whether a traffic light is ahead of a vehicle, nearer than the threshold in metres."""
     return getClosestTrafficLightStatus(vehicle, thresholdDistance) != "none"

@@ -55,13 +55,13 @@ def environment(parts: Library, network: Path, **settings: Any) -> Any:
     class Environment(parts.BaseEnv):  # type: ignore[name-defined,misc] # a class that is known when it runs
         """An environment without goals."""
 
-        def reward_function(self, _agent: Any) -> tuple[float, dict[str, Any]]:
+        def reward_function(self, _agent: object) -> tuple[float, dict[str, Any]]:
             return 0.0, {}
 
-        def cost_function(self, _agent: Any) -> tuple[float, dict[str, Any]]:
+        def cost_function(self, _agent: object) -> tuple[float, dict[str, Any]]:
             return 0.0, {}
 
-        def done_function(self, _agent: Any) -> tuple[bool, dict[str, Any]]:
+        def done_function(self, _agent: object) -> tuple[bool, dict[str, Any]]:
             return False, {}
 
         def get_single_observation(self) -> Any:

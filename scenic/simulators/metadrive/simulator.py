@@ -164,11 +164,11 @@ class MetaDriveSimulation(DrivingSimulation):
 
     # What actions and behaviors do
 
-    def place(self, obj: Any, position: Any) -> None:
+    def place(self, obj: object, position: object) -> None:
         """Move an object."""
         self._actors[id(obj)].set_position(self._place(position))
 
-    def turn(self, obj: Any, heading: float) -> None:
+    def turn(self, obj: object, heading: float) -> None:
         """Turn an object to a heading in radians."""
         self._actors[id(obj)].set_heading_theta(_theta(heading))
 

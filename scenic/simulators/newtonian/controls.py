@@ -24,7 +24,7 @@ class Controls:
 class _Moved:
     """Objects that the simulation moves."""
 
-    def setPosition(self, pos: Any, elevation: Any) -> None:
+    def setPosition(self, pos: object, elevation: object) -> None:
         """Teleport to a position."""
         running_simulation().place(self, pos)
 
@@ -32,7 +32,7 @@ class _Moved:
         """Turn to an orientation, of which the plane keeps the heading."""
         running_simulation().turn(self, orientation.yaw)
 
-    def setVelocity(self, vel: Any) -> None:
+    def setVelocity(self, vel: object) -> None:
         """Set the velocity in m/s."""
         running_simulation().push(self, vel)
 

@@ -13,7 +13,7 @@ __all__ = ["ApplyForceAction", "OffsetAction", "WriteFileAction"]
 class OffsetAction(Action):
     """Put the object elsewhere at once: ``offset`` metres to its right, ahead of it and above it."""
 
-    def __init__(self, offset: Any) -> None:
+    def __init__(self, offset: object) -> None:
         self.offset = to_vector(offset, "OffsetAction")
 
     def applyTo(self, agent: Any, simulation: Any) -> None:
@@ -33,7 +33,7 @@ class ApplyForceAction(Action):
 
     """
 
-    def __init__(self, force: Any, relative: bool = False) -> None:
+    def __init__(self, force: object, relative: bool = False) -> None:
         self.force = to_vector(force, "ApplyForceAction")
         self.relative = bool(relative)
 
@@ -54,11 +54,11 @@ class WriteFileAction(Action):
 
     """
 
-    def __init__(self, path: Any, data: Any) -> None:
+    def __init__(self, path: Any, data: object) -> None:
         self.path = Path(path)
         self.text = json.dumps(data)
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: object) -> None:
         """Write the file whole."""
         from scenic.formats.files import write
 

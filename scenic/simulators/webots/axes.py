@@ -51,11 +51,11 @@ class Axes:
         """A place or velocity of the world, in our axes, ``(3,)``."""
         return self.matrix.T @ np.array(tuple(theirs), dtype=np.float64)
 
-    def spin(self, ours: Any) -> list[float]:
+    def spin(self, ours: object) -> list[float]:
         """An angular velocity of ours in the world's axes, which turn the other way round where they are left-handed."""
         return [self._hand * value for value in self.place(ours)]
 
-    def spin_here(self, theirs: Any) -> Floats:
+    def spin_here(self, theirs: object) -> Floats:
         """An angular velocity of the world, in our axes, ``(3,)``."""
         return self._hand * self.place_here(theirs)
 

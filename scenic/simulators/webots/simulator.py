@@ -141,7 +141,7 @@ class WebotsSimulation(Simulation):
             node.setVelocity([*self.axes.place(obj.velocity), *self.axes.spin(obj.angularVelocity)])
         self._start_controller(obj, node)
 
-    def _write(self, obj: Any, node: Any) -> None:
+    def _write(self, obj: object, node: Any) -> None:
         """Write the fields of the node that the object has properties for."""
         density = getattr(obj, "density", None)
         physics = node.getField("physics")
@@ -167,7 +167,7 @@ class WebotsSimulation(Simulation):
         if getattr(obj, "heights", None) is not None:
             write_heights(obj, node)
 
-    def _start_controller(self, obj: Any, node: Any) -> None:
+    def _start_controller(self, obj: object, node: Any) -> None:
         """Start the object's controller: Webots does so by itself where the field changes."""
         name = getattr(obj, "controller", None)
         if name is None:
@@ -178,7 +178,7 @@ class WebotsSimulation(Simulation):
         elif getattr(obj, "resetController", True):
             node.restartController()
 
-    def _node(self, obj: Any) -> Any:
+    def _node(self, obj: object) -> Any:
         """The node of an object in the world; raises `SimulationCreationError`."""
         adhoc = getattr(obj, "webotsAdhoc", None)
         if adhoc is not None:
@@ -219,7 +219,7 @@ class WebotsSimulation(Simulation):
         self._made.append(node)
         return node
 
-    def _has_pose(self, obj: Any) -> bool:
+    def _has_pose(self, obj: object) -> bool:
         return self._nodes[id(obj)].getField("translation") is not None
 
     def destroy(self) -> None:
@@ -238,7 +238,7 @@ class WebotsSimulation(Simulation):
         place = Vector(*position) + Vector(*getattr(obj, "positionOffset", (0, 0, 0)))
         self._moved(obj).getField("translation").setSFVec3f(self.axes.place(place))
 
-    def _turn(self, obj: Any, orientation: Orientation) -> None:
+    def _turn(self, obj: object, orientation: Orientation) -> None:
         turned = self.axes.turn(orientation_of(matrix_of(orientation) @ matrix_of(_offset(obj))))
         self._nodes[id(obj)].getField("rotation").setSFRotation(axis_angle(turned))
 
@@ -250,7 +250,7 @@ class WebotsSimulation(Simulation):
             force = matrix_of(_offset(obj)).T @ np.array(tuple(force), dtype=np.float64)
         node.addForce(self.axes.place(force), relative)
 
-    def _moved(self, obj: Any) -> Any:
+    def _moved(self, obj: object) -> Any:
         """The node of an object that is to move; raises `SimulationError` if it has none."""
         node = self._nodes.get(id(obj))
         if node is None or node.getField("translation") is None:
@@ -269,7 +269,7 @@ class WebotsSimulation(Simulation):
                 "Webots ended the simulation", help="run it again: the world was reloaded or closed"
             )
 
-    def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
+    def getProperties(self, obj: object, properties: Any) -> Mapping[str, Any]:
         """Read the state of the object's node."""
         stored, node = obj.__dict__, self._nodes.get(id(obj))
         if node is None or not self._has_pose(obj):
@@ -299,7 +299,7 @@ class WebotsSimulation(Simulation):
         return {name: values[name] if name in values else stored[name] for name in properties}
 
 
-def _offset(obj: Any) -> Orientation:
+def _offset(obj: object) -> Orientation:
     yaw, pitch, roll = (float(angle) for angle in getattr(obj, "rotationOffset", (0, 0, 0)))
     if not all(map(math.isfinite, (yaw, pitch, roll))):
         raise SimulationCreationError(

@@ -32,7 +32,7 @@ class Polygons:
 
     """
 
-    def __init__(self, polygon: Any) -> None:  # shapely has no types
+    def __init__(self, polygon: object) -> None:  # shapely has no types
         import shapely
 
         kind = getattr(polygon, "geom_type", type(polygon).__name__)

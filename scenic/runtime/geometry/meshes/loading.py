@@ -49,7 +49,7 @@ METRES: Final[Mapping[str, float]] = MappingProxyType(
 """Metres in each unit of length that a mesh file may be in."""
 
 
-def factor_of(unit: Any, scale: Any, what: str) -> float:
+def factor_of(unit: object, scale: object, what: str) -> float:
     """The factor that turns the numbers of a mesh file into metres.
 
     Args:

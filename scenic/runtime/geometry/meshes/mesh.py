@@ -81,7 +81,7 @@ class Mesh:
     def __copy__(self) -> "Mesh":
         return self
 
-    def __deepcopy__(self, _memo: Any) -> "Mesh":
+    def __deepcopy__(self, _memo: object) -> "Mesh":
         return self
 
     def __repr__(self) -> str:

@@ -8,7 +8,7 @@ from scenic.runtime.geometry.meshes.booleans import union
 from scenic.runtime.geometry.meshes.mesh import Mesh
 
 
-def prism(polygon: Any, low: float, high: float) -> Mesh | None:
+def prism(polygon: object, low: float, high: float) -> Mesh | None:
     """The points above a shapely polygon or multipolygon between two heights; ``None`` where it is empty."""
     parts = [
         part for part in getattr(polygon, "geoms", [polygon]) if part.geom_type == "Polygon" and part.area > 0
@@ -19,7 +19,7 @@ def prism(polygon: Any, low: float, high: float) -> Mesh | None:
     return union(solids)
 
 
-def _prism(polygon: Any, low: float, high: float) -> Mesh:
+def _prism(polygon: object, low: float, high: float) -> Mesh:
     import shapely
 
     outline = shapely.orient_polygons(shapely.force_2d(polygon))
