@@ -191,6 +191,20 @@ def test_rooms_import_downwards(package: str) -> None:
     assert not wrong
 
 
+def test_the_semantic_model_knows_no_rule() -> None:
+    rooms = {
+        name: names for name, names in all_imports().items() if name.startswith("scenic.compiler.semantics")
+    }
+    assert rooms
+    wrong = [
+        f"{module} imports {name}"
+        for module, names in rooms.items()
+        for name in names
+        if name.startswith(("scenic.compiler.checks", "scenic.compiler.resolver", "scenic.compiler.compile"))
+    ]
+    assert not wrong
+
+
 def test_only_commands_and_the_api_call_the_pipeline() -> None:
     joins = [
         module

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from scenic.compiler.checks.context import Context
-from scenic.compiler.kinds import Kind
+from scenic.compiler.semantics.kinds import Kind
+from scenic.compiler.semantics.model import Model
 from scenic.ide.expressions import expression, operand_before
 from scenic.ide.parameters import settings
 from scenic.ide.possibilities import Completion, CompletionKind, kind_of_symbol
@@ -45,7 +45,7 @@ def members(
     )
     kind = None
     if owner is None or owner.name in NAMES:
-        kind = Context(module.tree, module.source, module.resolution).kind_of(node)
+        kind = Model(module.tree, module.resolution).kind_of(node)
         if owner is None and (_is_instance(kind) or text == "self"):
             owner = Symbol("Object", SymbolKind.CLASS)  # Of whatever class, it is an object.
     cls = None if owner is None else class_of_symbol(project, owner)

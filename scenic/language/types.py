@@ -47,7 +47,7 @@ class Type:
     """One type that the language wants of a value.
 
     ``name`` is the type in documentation, ``noun`` the same in a message: "expected a number". ``advice`` says how a
-    program gets such a value. ``kinds`` are the kinds of values (`scenic.compiler.kinds`) that can be given for it, ``None``
+    program gets such a value. ``kinds`` are the kinds of values (`scenic.compiler.semantics.kinds`) that can be given for it, ``None``
     if the text of a program does not show that; ``lengths`` are those of tuples and lists of numbers that can. ``items`` is the
     type of the elements of a tuple or list of any length that can.
     """

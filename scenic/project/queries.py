@@ -8,8 +8,8 @@ from typing import Any, Final
 from unicodedata import normalize
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import DEFINITIONS
 from scenic.compiler.scopes import Binding, BindingKind, Scope
+from scenic.compiler.semantics.names import DEFINITIONS
 from scenic.compiler.traversal import walk
 from scenic.dataclass import dataclass
 from scenic.language.spans import Span

@@ -7,9 +7,9 @@ from types import MappingProxyType
 from typing import Any
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.classes import BUILT_IN, own_property
-from scenic.compiler.checks.context import DEFINITIONS
 from scenic.compiler.scopes import Resolution
+from scenic.compiler.semantics.classes import BUILT_IN, own_property
+from scenic.compiler.semantics.names import DEFINITIONS
 from scenic.compiler.surroundings import Foreign, Property, Surroundings, SurroundingsOf
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.source import Source

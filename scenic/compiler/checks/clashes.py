@@ -21,7 +21,7 @@ def _class(node: ast.ClassDef, _scope: Scope, context: Context) -> Iterator[Diag
     inherited = context.classes.inherited(node)
     if inherited is None or context.classes.of(node) is None:
         return
-    base = context.meanings.base(node.bases[0]) if node.bases else "Object"
+    base = context.classes.base(node.bases[0]) if node.bases else "Object"
     taken = attributes_of(base) if base is not None else {}
     for item in node.body:
         match item:
@@ -79,7 +79,7 @@ def check_size(name: str, value: ast.expr | None, context: Context) -> Iterator[
 
 def _new(node: scenic.New, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """``new Object with width 0``."""
-    if context.meanings.base(node.cls) == "Object":
+    if context.classes.base(node.cls) == "Object":
         for specifier in node.specifiers:
             if specifier.property is not None and specifier.operands:
                 yield from check_size(specifier.property, specifier.operands[0], context)

@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from typing import Final
 
 from scenic.compiler.checks.context import Context, NodeRule
-from scenic.compiler.kinds import NUMBERS
 from scenic.compiler.literals import literal_number
 from scenic.compiler.scopes import Scope
+from scenic.compiler.semantics.kinds import NUMBERS
 from scenic.language.diagnostics import Diagnostic
 
 __all__ = ["RULES"]

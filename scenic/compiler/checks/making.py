@@ -200,7 +200,7 @@ def _wrong(
 def _new(node: scenic.New, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """SC401: an object that is made while a simulation runs."""
     where = where_of(node, scope)
-    if where.place in DYNAMIC and where.function is None and context.meanings.base(node.cls) == "Object":
+    if where.place in DYNAMIC and where.function is None and context.classes.base(node.cls) == "Object":
         yield context.error(
             "SC401",
             f"no object can be created {where.place}",

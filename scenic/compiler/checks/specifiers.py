@@ -6,10 +6,10 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.classes import find_cycle
 from scenic.compiler.checks.context import Context, NodeRule
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import Scope
+from scenic.compiler.semantics.classes import find_cycle
 from scenic.compiler.surroundings import Property
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.operators import OPERATORS

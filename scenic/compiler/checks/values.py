@@ -7,8 +7,8 @@ from typing import Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context, NodeRule
 from scenic.compiler.checks.wanted import may_be_meant, wrong_kinds
-from scenic.compiler.kinds import Kind
 from scenic.compiler.scopes import Scope, ScopeKind
+from scenic.compiler.semantics.kinds import Kind
 from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
 from scenic.language.members import MEMBERS, members_of
@@ -434,7 +434,7 @@ def _end(node: ast.Attribute, context: Context) -> Span:
 def _class(node: ast.ClassDef, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """SC214: ``size: self.lenth * 2``, in the defaults of a class."""
     defaults = [item.value for item in node.body if isinstance(item, scenic.PropertyDef)]
-    known = context.meanings.members_of(node) if defaults else None
+    known = context.classes.members_of(node) if defaults else None
     if known is None:
         return
     for default in defaults:

@@ -4,8 +4,8 @@ import ast
 from collections.abc import Iterator, Sequence
 
 from scenic.compiler.checks.context import Context
-from scenic.compiler.kinds import accepts
 from scenic.compiler.scopes import Scope
+from scenic.compiler.semantics.kinds import accepts
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.types import COLOR, VECTOR, Type, wanted

@@ -7,9 +7,11 @@ through names that are bound just once. `None` stands for all that is not certai
 import ast
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
-from typing import Final, Protocol
+from typing import Final
 
 from scenic.compiler import tree as scenic
+from scenic.compiler.semantics.classes import Classes
+from scenic.compiler.semantics.names import Names
 from scenic.dataclass import dataclass
 from scenic.language.members import INSTANCE_METHODS, MEMBERS, Member, members_of
 from scenic.language.names import NAMES, NameKind
@@ -141,48 +143,12 @@ def _accepts_sequence(wanted: Type, kind: Kind) -> bool:
     return fits and kind.odd is None and (kind.items is None or kind.items.name in NUMBERS)
 
 
-class Meanings(Protocol):
-    """The meanings of the names of a program."""
-
-    def provided(self, name: ast.expr) -> str | None:
-        """The name of what the language provides."""
-
-    def only_value(self, name: ast.Name) -> tuple[ast.expr, bool] | None:
-        """The expression that is certainly bound to a name; true if it is the parts of that expression in turn."""
-
-    def annotation(self, name: ast.Name) -> ast.expr | None:
-        """The annotation of the parameter that a name certainly is."""
-
-    def members(self, cls: ast.expr) -> frozenset[str] | None:
-        """All attributes and methods of the instances of a class of objects."""
-
-    def defined(self, name: ast.expr) -> str | None:
-        """The kind of what the program or a module that it imports defines under a name, in a word: function, behavior, ..."""
-
-    def returned(self, function: ast.expr) -> Sequence[ast.expr]:
-        """The expressions of which a function of the program certainly returns one; none if it may return others."""
-
-    def kind_of_brought(self, name: ast.expr) -> str | None:
-        """The kind of a value that a module defines, in the word of the declared type."""
-
-    def grows(self, name: ast.Name) -> bool:
-        """Return whether the program may change the elements of the list or dictionary that a name means."""
-
-    def redefines(self, name: str) -> bool:
-        """Return whether classes of the program define a method or attribute of a name."""
-
-    def ego_members(self) -> frozenset[str] | None:
-        """All attributes and methods of the ego."""
-
-    def base(self, cls: ast.expr) -> str | None:
-        """The built-in class from which a class derives."""
-
-
 class KindOf:
     """Infers kinds of the expressions of one program; keeps what it has inferred."""
 
-    def __init__(self, meanings: Meanings) -> None:
-        self._meanings = meanings
+    def __init__(self, names: Names, classes: Classes) -> None:
+        self._names = names
+        self._classes = classes
         self._known: dict[ast.expr, Kind | None] = {}
 
     def __call__(self, node: ast.expr | None, depth: int = 0) -> Kind | None:
@@ -237,9 +203,9 @@ class KindOf:
         return None
 
     def _instance(self, cls: ast.expr) -> Kind | None:
-        base = self._meanings.base(cls)
+        base = self._classes.base(cls)
         name = {"Point": "point", "OrientedPoint": "oriented point"}.get(base or "", "object")
-        return Kind(name if base is not None else "object", members=self._meanings.members(cls))
+        return Kind(name if base is not None else "object", members=self._classes.members(cls))
 
     def _joint(self, options: Iterable[ast.expr], depth: int) -> Kind | None:
         return joint([self(option, depth) for option in options])
@@ -278,12 +244,12 @@ class KindOf:
         if isinstance(function, ast.Attribute):
             found = self.method(function, depth)
             return None if found is None or found.result is None else kind_of_type(found.result.name)
-        name = self._meanings.provided(function)
+        name = self._names.provided(function)
         if name is None:
-            defined = self._meanings.defined(function)
+            defined = self._classes.defined(function)
             if defined in _RUN:
                 return Kind(defined)
-            returned = self._meanings.returned(function) if defined == "function" else ()
+            returned = self._names.returned(function) if defined == "function" else ()
             return self._joint(returned, depth) if returned else None
         if name not in NAMES:
             return None
@@ -310,11 +276,11 @@ class KindOf:
         """The declared method that a call of an attribute calls."""
         owner = self(function.value, depth)
         if owner is None:
-            if self._meanings.provided(function.value) == "Orientation":
+            if self._names.provided(function.value) == "Orientation":
                 return MEMBERS["orientation"].get(function.attr) if function.attr.startswith("from") else None
             return None
         if owner.name in INSTANCES:
-            return None if self._meanings.redefines(function.attr) else INSTANCE_METHODS.get(function.attr)
+            return None if function.attr in self._names.owners else INSTANCE_METHODS.get(function.attr)
         found = members_of(owner.name).get(function.attr)
         return found if found is not None and found.is_method else None
 
@@ -335,9 +301,9 @@ class KindOf:
         return None if attribute is None or attribute.is_method else kind_of_type(attribute.type)
 
     def _name(self, node: ast.Name, depth: int) -> Kind | None:
-        name = self._meanings.provided(node)
+        name = self._names.provided(node)
         if name == "ego":
-            return Kind("object", members=self._meanings.ego_members())
+            return Kind("object", members=self._classes.ego_members())
         if name in ("everywhere", "nowhere"):
             return REGION
         if name is not None:
@@ -345,33 +311,33 @@ class KindOf:
             return (
                 FUNCTION if declared is NameKind.FUNCTION else CLASS if declared in _MADE_BY_CALLS else None
             )
-        annotation = self._meanings.annotation(node)
+        annotation = self._names.annotation(node)
         if annotation is not None:
             return self._annotated(annotation)
-        defined = self._meanings.defined(node)
+        defined = self._classes.defined(node)
         if defined is not None:
             return Kind(defined)
-        found = self._meanings.only_value(node)
+        found = self._names.only_value(node)
         if found is None:
-            brought = self._meanings.kind_of_brought(node)
+            brought = self._names.kind_of_brought(node)
             return None if brought is None else kind_of_type(brought)
         value, in_turn = found
         if in_turn:
-            is_range = isinstance(value, ast.Call) and self._meanings.provided(value.func) == "range"
+            is_range = isinstance(value, ast.Call) and self._names.provided(value.func) == "range"
             of = None if is_range else self(value, depth)
             return NUMBER if is_range else of.items if of is not None and of.name in _SEQUENCES else None
         kind = self(value, depth)
         if kind is not None and kind.name in ("list", "dictionary"):
             # Lists grow.
-            return Kind(kind.name, items=None if self._meanings.grows(node) else kind.items)
+            return Kind(kind.name, items=None if node.id in self._names.grown else kind.items)
         return kind
 
     def _annotated(self, annotation: ast.expr) -> Kind | None:
-        name = self._meanings.provided(annotation)
+        name = self._names.provided(annotation)
         if name in ("int", "float", "str", "Vector", "Orientation", "VectorField"):
             kinds = {"str": TEXT, "Vector": VECTOR, "Orientation": ORIENTATION, "VectorField": FIELD}
             return kinds.get(name, NUMBER)
-        return self._instance(annotation) if self._meanings.members(annotation) is not None else None
+        return self._instance(annotation) if self._classes.members(annotation) is not None else None
 
 
 def _options(node: ast.Call) -> Iterator[ast.expr]:

@@ -1,14 +1,15 @@
-"""The properties of the classes that a program uses, as far as its text shows them."""
+"""The properties and members of the classes that a program uses, as far as its text shows them."""
 
 import ast
 from collections.abc import Callable, Iterator, Mapping
 from types import MappingProxyType
-from typing import Protocol
+from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.surroundings import Foreign, Property
+from scenic.compiler.semantics.names import Names
+from scenic.compiler.surroundings import Property
 from scenic.compiler.traversal import walk
-from scenic.language.properties import CLASSES, properties_of
+from scenic.language.properties import CLASSES, attributes_of, properties_of
 
 __all__ = ["BUILT_IN", "Classes", "find_cycle", "own_property"]
 
@@ -23,36 +24,37 @@ BUILT_IN: Mapping[str, Mapping[str, Property]] = MappingProxyType(
 )
 
 
-class Meanings(Protocol):
-    """The meanings of expressions that name something."""
+_DEEPEST: Final = 20
+"""Length to which a chain of base classes is followed."""
 
-    def definition(self, name: ast.expr) -> ast.AST | None:
-        """The one definition that an expression can mean."""
 
-    def provided(self, name: ast.expr) -> str | None:
-        """The name of what the language provides."""
-
-    def foreign(self, name: ast.expr) -> Foreign | None:
-        """The definition in another module that a name means."""
+_DEFINED: Final[Mapping[type[Any], str]] = MappingProxyType(
+    {
+        ast.FunctionDef: "function",
+        scenic.BehaviorDef: "behavior",
+        scenic.MonitorDef: "monitor",
+        scenic.ScenarioDef: "scenario",
+    }
+)
 
 
 class Classes:
-    """The properties of built-in classes and of those that the module defines."""
+    """The properties and members of built-in classes and of those that the module defines."""
 
-    def __init__(self, meanings: Meanings) -> None:
-        self._meanings = meanings
+    def __init__(self, names: Names) -> None:
+        self._names = names
         self._known: dict[ast.AST, Mapping[str, Property] | None] = {}
         self._circular: dict[int, bool] = {}
 
     def properties(self, name: ast.expr) -> Mapping[str, Property] | None:
         """All properties of the class that an expression names; ``None`` if they cannot be known."""
-        provided = self._meanings.provided(name)
+        provided = self._names.provided(name)
         if provided is not None:
             return BUILT_IN.get(provided)
-        foreign = self._meanings.foreign(name)
+        foreign = self._names.foreign(name)
         if foreign is not None:
             return foreign.properties
-        definition = self._meanings.definition(name)
+        definition = self._names.definition(name)
         return None if definition is None else self.of(definition)
 
     def of(self, definition: ast.AST) -> Mapping[str, Property] | None:
@@ -76,6 +78,63 @@ class Classes:
         if known is None:
             known = self._circular[id(properties)] = _is_circular(properties)
         return known
+
+    def base(self, cls: ast.expr, depth: int = 0) -> str | None:
+        """The built-in class from which a class derives."""
+        name = self._names.provided(cls)
+        if name is not None:
+            return name if name in CLASSES else None
+        foreign = self._names.foreign(cls)
+        if foreign is not None:
+            return foreign.base
+        definition = self._names.definition(cls)
+        if depth > _DEEPEST or not isinstance(definition, ast.ClassDef):
+            return None
+        return self.base(definition.bases[0], depth + 1) if definition.bases else "Object"
+
+    def members(self, cls: ast.expr, depth: int = 0) -> frozenset[str] | None:
+        """All attributes and methods of the instances of a class of objects."""
+        name = self._names.provided(cls)
+        if name is not None:
+            return frozenset(properties_of(name)).union(attributes_of(name)) if name in CLASSES else None
+        foreign = self._names.foreign(cls)
+        if foreign is not None:
+            return foreign.members
+        definition = self._names.definition(cls)
+        if depth > _DEEPEST or not isinstance(definition, ast.ClassDef):
+            return None
+        return self.members_of(definition, depth)
+
+    def members_of(self, definition: ast.ClassDef, depth: int = 0) -> frozenset[str] | None:
+        """All attributes and methods of the instances of a class that the program defines."""
+        properties = self.of(definition)
+        scope = self._names.resolution.scopes.get(definition)
+        if properties is None or scope is None or definition.decorator_list:
+            return None
+        found = frozenset(properties).union(scope.bindings, attributes_of("Object"))
+        for base in definition.bases:
+            inherited = self.members(base, depth + 1)
+            if inherited is None:
+                return None
+            found |= inherited
+        return found
+
+    def defined(self, name: ast.expr) -> str | None:
+        """The kind of what the program or a module that it imports defines under a name, in a word: function, behavior, ..."""
+        if not isinstance(name, ast.Name | ast.Attribute) or self._names.provided(name) is not None:
+            return None
+        foreign = self._names.foreign(name)
+        definition = self._names.definition(name) if foreign is None else foreign.definition
+        if foreign is None and getattr(definition, "name", None) != getattr(name, "id", None):
+            return None  # `self` in a behavior.
+        if isinstance(definition, ast.ClassDef):
+            return "class" if self.properties(name) is not None else None
+        return _DEFINED.get(type(definition))
+
+    def ego_members(self) -> frozenset[str] | None:
+        """All attributes and methods of the ego, if the program sets it just once and makes it there."""
+        value = self._names.ego_value
+        return self.members(value.cls) if isinstance(value, scenic.New) else None
 
     def _defined(self, node: ast.ClassDef) -> Mapping[str, Property] | None:
         if node not in self._known:
