@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final, Protocol
 
-from scenic.compiler.careful import lex_carefully
 from scenic.compiler.check import check_text
 from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
 from scenic.compiler.parser import ParseResult, parse
 from scenic.compiler.tokens import Tokens
+from scenic.compiler.tolerant_lexer import lex_tolerantly
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.source import Source
 from scenic.language.spans import Span
@@ -79,7 +79,7 @@ class Case:
     @cached_property
     def tokens(self) -> Tokens:
         """The tokens that the tree was made of."""
-        return lex_carefully(self.text, WORDS) if self.has_error else lex(self.text, WORDS)
+        return lex_tolerantly(self.text, WORDS) if self.has_error else lex(self.text, WORDS)
 
     @cached_property
     def lines(self) -> tuple[str, ...]:

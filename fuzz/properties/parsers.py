@@ -5,8 +5,8 @@ from typing import Any, Final
 from fuzz.properties.case import Case, Property, Violation
 from fuzz.properties.differences import difference
 from scenic.compiler.actions import Actions
-from scenic.compiler.closing_words import closed_operands, in_parentheses
 from scenic.compiler.generated import build_parser, build_recording_parser
+from scenic.compiler.shared_words import closed_operands, in_parentheses
 from scenic.compiler.tokens import DEDENT, ENDMARKER, Tokens
 
 __all__ = ["OF_TEXTS"]

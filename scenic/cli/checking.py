@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from scenic.compiler.check import check_text, in_order
-from scenic.compiler.ignores import apply_ignores
+from scenic.compiler.suppression_comments import apply_ignores
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.dataclass import dataclass
 from scenic.language.diagnostics import UNSUPPORTED, Diagnostic, Severity

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from scenic.compiler.compile import check_parsed
-from scenic.compiler.ignores import apply_ignores
 from scenic.compiler.parser import ParseResult, parse
 from scenic.compiler.scopes import Resolution
+from scenic.compiler.suppression_comments import apply_ignores
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.language.diagnostics import UNSUPPORTED, Diagnostic, Severity
 from scenic.language.garbage import no_garbage_collection

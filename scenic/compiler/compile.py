@@ -8,10 +8,10 @@ from types import CodeType
 from typing import Final
 
 from scenic.compiler.checks import lint
-from scenic.compiler.complaints import suspects
 from scenic.compiler.lowering import lower
 from scenic.compiler.old_dialect import as_old_dialect
 from scenic.compiler.parser import ParseResult, deep_recursion, parse
+from scenic.compiler.python_warnings import suspects
 from scenic.compiler.resolver import resolve_within
 from scenic.compiler.scopes import Resolution
 from scenic.compiler.surroundings import SurroundingsOf

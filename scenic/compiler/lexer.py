@@ -104,8 +104,8 @@ class Lexer(LineReader):
 
     __slots__ = ("brackets", "fields", "words")
 
-    careful: ClassVar[bool] = False
-    """True if the methods that are called only then doubt what they read (see `scenic.compiler.careful`)."""
+    tolerant: ClassVar[bool] = False
+    """True if the methods that are called only then doubt what they read (see `scenic.compiler.tolerant_lexer`)."""
 
     def __init__(self, text: str, words: Mapping[str, int]) -> None:
         super().__init__(text)
@@ -136,7 +136,7 @@ class Lexer(LineReader):
         kinds, texts, columns, end_columns = tokens.kinds, tokens.texts, tokens.columns, tokens.end_columns
         add_kind, add_text = kinds.append, texts.append
         add_column, add_end_column = columns.append, end_columns.append
-        kind_of, name_kind, careful = words.get, NAME, self.careful
+        kind_of, name_kind, tolerant = words.get, NAME, self.tolerant
         line_start = self.line_start
         for found in lexemes.TOKEN.finditer(text, pos):
             group = found.lastindex or 0
@@ -174,7 +174,7 @@ class Lexer(LineReader):
                     if lexemes.STATEMENT_WORD.match(text, end):
                         self.never_closed(start)
                         return self.start_line(self.line_start)
-                    if careful:
+                    if tolerant:
                         leap = self.line_in_brackets(start, end)
                         if leap is not None:
                             return leap
@@ -188,7 +188,7 @@ class Lexer(LineReader):
                     self.next_lines(start, end)
                     line_start = self.line_start
                     white = text[line_start:end]
-                    if white != self.white or careful:
+                    if white != self.white or tolerant:
                         return self.start_line(line_start)
             elif group == 5:  # COLON, and an exclamation mark
                 if fields and len(brackets) == 1:
@@ -207,7 +207,7 @@ class Lexer(LineReader):
                 else:
                     self.add(NUMBER, start, end)
             elif group == 7:  # TEXT
-                if careful and self.text_is_open(start, end):
+                if tolerant and self.text_is_open(start, end):
                     quotes = len(text[start:end]) - len(text[start:end].lstrip("bBrRuU")) + 3
                     return self.open_text(start, start + quotes)
                 self.add(STRING, start, end)

@@ -112,8 +112,8 @@ def _parse_tokens(tokens: Tokens) -> Parsed:
     if parsed is not None:
         return parsed
     # A text without mistakes does not wait for all that reads another one.
-    from scenic.compiler.careful import lex_carefully
-    from scenic.compiler.closing_words import closed_operands, in_parentheses
+    from scenic.compiler.shared_words import closed_operands, in_parentheses
+    from scenic.compiler.tolerant_lexer import lex_tolerantly
 
     # Statements that are wrong because an operator took a closing word from another are read once more without that.
     operands = None if tokens.diagnostics else closed_operands(tokens)
@@ -122,7 +122,7 @@ def _parse_tokens(tokens: Tokens) -> Parsed:
         if parsed is not None:
             return parsed
     # Now the text is known to be wrong.
-    tokens = lex_carefully(text, WORDS)
+    tokens = lex_tolerantly(text, WORDS)
     operands = [] if operands == [] else closed_operands(tokens)
     for _ in range(2):
         if not operands:

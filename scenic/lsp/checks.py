@@ -19,16 +19,16 @@ from scenic.ide.diagnostics import found_in
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import ScenicError
 from scenic.language.source import Source, read_source
-from scenic.lsp.beside import GoOn
 from scenic.lsp.convert import Lines, to_diagnostic
 from scenic.lsp.documents import Document
 from scenic.lsp.session import Session
 from scenic.lsp.uris import to_uri
+from scenic.lsp.workers import GoOn
 from scenic.project.index import Project
 
 __all__ = ["Checks"]
 
-PAUSE: Final = 0.02
+PAUSE: Final = 0.01
 """Seconds without a change after which a document is checked."""
 LONG_PAUSE: Final = 0.5
 """Seconds without a change after which the documents are checked that may import the changed one."""

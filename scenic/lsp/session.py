@@ -18,11 +18,11 @@ from scenic.language.errors import ScenicError
 from scenic.language.selection import Rules
 from scenic.language.source import Source, read_source
 from scenic.language.spans import Span
-from scenic.lsp.beside import Beside, GoOn
 from scenic.lsp.convert import Encoding, Lines
 from scenic.lsp.documents import Document, snapshot_of
 from scenic.lsp.garbage import Garbage
 from scenic.lsp.uris import to_path, to_uri
+from scenic.lsp.workers import GoOn, Workers
 from scenic.project.index import Project
 from scenic.project.modules import Module
 
@@ -86,10 +86,10 @@ class Session:
         """True if programs may be run; ``None`` if the client did not say."""
         self.settings: Mapping[str, Any] = {}
         self.garbage = Garbage()
-        self.checker = Beside("checks", idle)
+        self.checker = Workers("checks", idle)
         self.checks: Checks
-        self.requests = Beside("requests", idle)
-        self.runs = Beside("runs", idle, threads=4)
+        self.requests = Workers("requests", idle)
+        self.runs = Workers("runs", idle, threads=4)
         """For work that mostly waits."""
         self.tokens = Results()
         self.generation = 0
@@ -291,14 +291,14 @@ class Session:
         *,
         document: str | None = None,
         token: types.ProgressToken | None = None,
-        beside: Beside | None = None,
+        workers: Workers | None = None,
     ) -> Future[_T]:
         """The answer to a request that takes long.
 
         ``document`` is the one whose change makes the answer worthless, if there is one; by ``token`` the client may call
         off the work.
         """
-        future = (beside or self.requests).begin(work)
+        future = (workers or self.requests).begin(work)
         if document is not None:
             self._working[future] = document
             future.add_done_callback(lambda done: self._working.pop(done, None))

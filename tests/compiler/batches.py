@@ -5,17 +5,17 @@ import gc
 from collections.abc import Callable, Iterable, Sequence
 
 from scenic.compiler.actions import Actions
-from scenic.compiler.closing_words import closed_operands
 from scenic.compiler.generated import WORDS, build_parser
 from scenic.compiler.lexer import lex
 from scenic.compiler.parser import parse
+from scenic.compiler.shared_words import closed_operands
 from scenic.compiler.tokens import NEWLINE
 
 
 def parse_lines(lines: Sequence[str], *, shared_words: bool = True) -> list[ast.stmt | None]:
     """The statements that are the lines; ``None`` for lines that are wrong. Positions are those in the whole.
 
-    Without ``shared_words`` no operator leaves a closing word to another one (`scenic.compiler.closing_words`).
+    Without ``shared_words`` no operator leaves a closing word to another one (`scenic.compiler.shared_words`).
     """
     gc.disable()
     try:

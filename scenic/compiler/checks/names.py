@@ -22,7 +22,7 @@ from scenic.compiler.checks.unfinished import (
 )
 from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Reference, ScopeKind
 from scenic.compiler.traversal import position
-from scenic.language.diagnostics import Diagnostic, Label
+from scenic.language.diagnostics import Diagnostic, Fix, Label
 from scenic.language.libraries import DRIVING_CLASSES, LIBRARIES
 from scenic.language.names import CONVERSIONS, IMPORTABLE, NAMES, TRACKED, NameKind
 from scenic.language.properties import CLASSES
@@ -63,108 +63,117 @@ def check_names(context: Context) -> Iterator[Diagnostic]:
     resolution = context.resolution
     if resolution.wildcard:
         return
-    skipped: set[str] | None = None
-    alone: set[ast.Name] = set()
-    compared: set[ast.Name] = set()
-    meant: set[str] = set()
-    being_typed: set[str] = set()
-    slips: set[str] = set()
-    importing = half_typed = False
-    suggestions: dict[str, str | None] = {}
     missing = [reference for name in context.unresolved for reference in resolution.uses[name]]
     if missing and (model := _imported_model(context)) is not None:
         # Its names are those that are missing.
         yield model
         return
+    judge: _MissingNames | None = None
     for reference in sorted(missing, key=lambda each: position(each.node)):
-        node = reference.node
+        if reference.node in resolution.tolerated or isinstance(reference.node.ctx, ast.Store):
+            continue
+        judge = judge or _MissingNames(context)
+        diagnostic = judge.diagnostic(reference)
+        if diagnostic is not None:
+            yield diagnostic
+
+
+class _MissingNames:
+    """Judges names that nothing binds, by the rest of a program in which there are such."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._skipped = _skipped_words(context)
+        self._alone = alone_names(context)
+        self._compared = compared_names(context)
+        self._meant = {each.id for each in self._compared}
+        self._suggestions: dict[str, str | None] = {}
+        words = {each.id for each in begun_names(context)}
+        # Only who is still typing may be about to write what would bind the name.
+        missing_imports = _missing_imports(context) if context.typing else []
+        self._importing = any(_is_import(word) for word in words) or _is_import_broken(context)
+        self._half_typed = may_bind_more(context) or any(
+            context.surroundings is not None and context.surroundings.is_begun(site)
+            for binding in missing_imports
+            for site in binding.sites
+            if isinstance(site, ast.alias)
+        )
+        self._slips = {each.name for each in _missing_imports(context)} if context.surroundings else set()
+        self._being_typed = words | _last_words(context) | {each.name for each in missing_imports}
+
+    def diagnostic(self, reference: Reference) -> Diagnostic | None:
+        """Return the diagnostic of a name; ``None`` if another one, or half a line, explains it."""
+        context, node = self._context, reference.node
         name = node.id
-        if node in resolution.tolerated or isinstance(node.ctx, ast.Store):
-            continue
-        if skipped is None:
-            skipped = _skipped_words(context)
-            alone = alone_names(context)
-            words = {each.id for each in begun_names(context)}
-            compared = compared_names(context)
-            meant = {each.id for each in compared}
-            # Only who is still typing may be about to write what would bind the name.
-            missing_imports = _missing_imports(context) if context.typing else []
-            importing = any(_is_import(word) for word in words) or _is_import_broken(context)
-            half_typed = may_bind_more(context) or any(
-                context.surroundings is not None and context.surroundings.is_begun(site)
-                for binding in missing_imports
-                for site in binding.sites
-                if isinstance(site, ast.alias)
-            )
-            slips = {each.name for each in _missing_imports(context)} if context.surroundings else set()
-            being_typed = words | _last_words(context) | {each.name for each in missing_imports}
-        if name in skipped or (slips and nearest(name, slips) is not None):
+        if name in self._skipped or (self._slips and nearest(name, self._slips) is not None):
             # The import of a misspelt name is reported.
-            continue
-        if node not in alone and (importing or any(_may_become(word, name) for word in being_typed)):
-            continue
-        if name in meant:
-            if node in compared:
-                yield context.error(
-                    "SC202",
-                    f"the name `{name}` is not defined",
-                    node,
-                    f"`==` compares; `{name} = ...` would define it",
-                )
-            continue
+            return None
+        if node not in self._alone and (
+            self._importing or any(_may_become(word, name) for word in self._being_typed)
+        ):
+            return None
+        if name in self._meant:
+            advice = f"`==` compares; `{name} = ...` would define it"
+            return self._undefined(node, advice) if node in self._compared else None
         if context.broken:
             # Its binding may be among what is broken: once is enough.
-            skipped.add(name)
+            self._skipped.add(name)
         if any(node is new.cls for new in context.nodes_around(node, scenic.New)):
-            if name not in suggestions and len(suggestions) < MOST_SUGGESTIONS:
-                suggestions[name] = nearest(name, _classes_in_reach(reference, context))
-            if half_typed and suggestions.get(name) is None:
-                continue
-            yield _unknown_class(context, reference, suggestions.get(name))
-            continue
+            return self._of_class(reference)
         keyword = unfinished(context, node)
         if keyword is not None:
-            yield keyword
-            continue
+            return keyword
         if _names_property(context, reference):
-            yield _without_self(context, reference)
-            continue
+            return _without_self(context, reference)
         elsewhere = _bound_somewhere(name, context)
-        if elsewhere is not None:
-            yield _out_of_reach(context, reference, elsewhere)
-            continue
+        return self._of_name(reference) if elsewhere is None else _out_of_reach(context, reference, elsewhere)
+
+    def _of_class(self, reference: Reference) -> Diagnostic | None:
+        name = reference.node.id
+        if name not in self._suggestions and len(self._suggestions) < MOST_SUGGESTIONS:
+            self._suggestions[name] = nearest(name, _classes_in_reach(reference, self._context))
+        suggestion = self._suggestions.get(name)
+        if self._half_typed and suggestion is None:
+            return None
+        return _unknown_class(self._context, reference, suggestion)
+
+    def _of_name(self, reference: Reference) -> Diagnostic | None:
+        context, node = self._context, reference.node
+        name = node.id
+        suggestion = self._suggestion(reference)
+        if suggestion is None or suggestion in PROVIDED:
+            known = _known_elsewhere(context, node)
+            if known is not None:
+                return known
+        if self._half_typed and suggestion is None and node not in self._alone:
+            # No slip of another name: what is being typed may bind it.
+            return None
+        if text_before(context, node).endswith("//"):
+            advice = "a comment begins with `#`, not with `//`"
+        elif suggestion:
+            advice = f"did you mean `{suggestion}`?"
+        elif name in IMPORTABLE:
+            advice = f"import it: `from {IMPORTABLE[name]} import {name}`"
+        else:
+            advice = "define it before it is used, or import it"
+        # What the program does not define may be any of the many names that are always there.
+        certain = suggestion not in PROVIDED
+        fix = context.renaming(node, name, suggestion, certain=certain) if suggestion else None
+        return self._undefined(node, advice, fix)
+
+    def _suggestion(self, reference: Reference) -> str | None:
+        name, suggestions = reference.node.id, self._suggestions
         if name not in IMPORTABLE and name not in suggestions and len(suggestions) < MOST_SUGGESTIONS:
-            own = resolution.names_in_reach(reference.scope).union(context.brought)
+            own = self._context.resolution.names_in_reach(reference.scope).union(self._context.brought)
             suggestions[name] = (
-                begun_word(context, node)
+                begun_word(self._context, reference.node)
                 or _similar(name, own, {word for word in PROVIDED if word[0] != "_"})
                 or _only_one(each for each in own.union(TRACKED) if len(name) > 1 and each.startswith(name))
             )
-        suggestion = suggestions.get(name)
-        if suggestion is None or suggestion in PROVIDED:
-            elsewhere_known = _known_elsewhere(context, node)
-            if elsewhere_known is not None:
-                yield elsewhere_known
-                continue
-        if half_typed and suggestion is None and node not in alone:
-            # No slip of another name: what is being typed may bind it.
-            continue
-        yield context.error(
-            "SC202",
-            f"the name `{name}` is not defined",
-            node,
-            "a comment begins with `#`, not with `//`"
-            if text_before(context, node).endswith("//")
-            else f"did you mean `{suggestion}`?"
-            if suggestion
-            else f"import it: `from {IMPORTABLE[name]} import {name}`"
-            if name in IMPORTABLE
-            else "define it before it is used, or import it",
-            # What the program does not define may be any of the many names that are always there.
-            fix=context.renaming(node, name, suggestion, certain=suggestion not in PROVIDED)
-            if suggestion
-            else None,
-        )
+        return suggestions.get(name)
+
+    def _undefined(self, node: ast.Name, advice: str, fix: Fix | None = None) -> Diagnostic:
+        return self._context.error("SC202", f"the name `{node.id}` is not defined", node, advice, fix=fix)
 
 
 def _imported_model(context: Context) -> Diagnostic | None:

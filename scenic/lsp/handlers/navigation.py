@@ -11,11 +11,11 @@ from pygls.exceptions import JsonRpcInvalidParams
 from scenic.ide import hierarchies, navigation
 from scenic.ide.navigation import Target
 from scenic.ide.symbols import Kind, flat, matches, symbols
-from scenic.lsp.beside import GoOn
 from scenic.lsp.handlers.information import Placed, place_of
 from scenic.lsp.progress import Partial, Progress
 from scenic.lsp.session import Session
 from scenic.lsp.uris import to_path
+from scenic.lsp.workers import GoOn
 from scenic.project.index import Project
 from scenic.project.symbols import Symbol, SymbolKind
 

@@ -9,11 +9,11 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 
 from scenic.ide.running import RunError, sample_page, simulation_page
-from scenic.lsp.beside import GoOn
 from scenic.lsp.capabilities import COMMANDS, SIMULATE
 from scenic.lsp.documents import Document
 from scenic.lsp.progress import Progress
 from scenic.lsp.session import Session
+from scenic.lsp.workers import GoOn
 
 __all__ = ["HANDLERS"]
 
@@ -58,7 +58,7 @@ def _execute(session: Session, params: types.ExecuteCommandParams) -> Future[str
             except RunError as error:
                 raise _failed(str(error)) from None
 
-    return session.work(work, token=params.work_done_token, beside=session.runs)
+    return session.work(work, token=params.work_done_token, workers=session.runs)
 
 
 def _permission(session: Session, document: Document) -> Callable[[GoOn], None]:

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from scenic.compiler.check import check_text
 from scenic.compiler.fixes import apply_fixes
-from scenic.compiler.ignores import apply_ignores
+from scenic.compiler.suppression_comments import apply_ignores
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.spans import Span
 

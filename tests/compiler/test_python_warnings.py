@@ -6,8 +6,8 @@ import pytest
 
 from scenic.compiler import compile as compiling
 from scenic.compiler.check import check_text
-from scenic.compiler.complaints import suspects
 from scenic.compiler.parser import parse
+from scenic.compiler.python_warnings import suspects
 from scenic.compiler.resolver import bind
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.source import Source

@@ -4,10 +4,10 @@ import ast
 
 import pytest
 
-from scenic.compiler.closing_words import closed_operands, in_parentheses
 from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
 from scenic.compiler.parser import parse
+from scenic.compiler.shared_words import closed_operands, in_parentheses
 from tests.work import calls_while
 
 READINGS = [

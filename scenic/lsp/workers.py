@@ -7,7 +7,7 @@ from typing import Final, TypeAlias, TypeVar
 
 from scenic.ide.snapshot import Cancelled
 
-__all__ = ["Beside", "GoOn"]
+__all__ = ["GoOn", "Workers"]
 
 _T = TypeVar("_T")
 
@@ -18,7 +18,7 @@ _COURTESY: Final = 0.05
 """So many seconds work waits at a time for an event loop that is busy, with which it shares one processor."""
 
 
-class Beside:
+class Workers:
     """Threads that do work in its order. ``idle`` is set while the event loop waits for messages."""
 
     def __init__(self, name: str, idle: threading.Event, *, threads: int = 1) -> None:

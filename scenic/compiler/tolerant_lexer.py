@@ -1,7 +1,7 @@
 """Tokens of a text that is known to be wrong, read so that each mistake spoils no more than its own statement.
 
 The ordinary lexer believes what it reads: an open bracket or string goes on until it is closed, and every change of indentation
-is a block. That is right for right programs, and the only right thing. Once the parser has refused a text, `lex_carefully`
+is a block. That is right for right programs, and the only right thing. Once the parser has refused a text, `lex_tolerantly`
 reads it again and doubts: it looks at indentation, and at whether a line looks like the start of a statement, to find where a
 bracket or a string was left open; it repairs indentation that belongs to no block; and it leaves out the markers of a merge.
 """
@@ -30,7 +30,7 @@ from scenic.compiler.syntax import (
 )
 from scenic.compiler.tokens import DEDENT, ERROR, INDENT, NEWLINE, STRING, Tokens
 
-__all__ = ["lex_carefully"]
+__all__ = ["lex_tolerantly"]
 
 _HEADERS: Final = frozenset(WORDS[word] for word in BLOCK_STARTERS)
 """The first words of lines that begin a block."""
@@ -135,18 +135,18 @@ _CONFLICT_END: Final = re.compile(r"^>{7}(?:[ \t][^\n]*+)?+\n", re.MULTILINE)
 _MARKS: Final = re.compile(r"\"[^\"\n]*+\"|'[^'\n]*+'|([()\[\]{}])|\#")
 
 
-def lex_carefully(text: str, words: Mapping[str, int]) -> Tokens:
+def lex_tolerantly(text: str, words: Mapping[str, int]) -> Tokens:
     """As `scenic.compiler.lexer.lex`, for a text with a mistake.
 
     ``afresh`` is given the tokens before which nothing mattered any more (see `scenic.compiler.relexing`).
     """
-    return prepared(text, words, _CarefulLexer)
+    return prepared(text, words, _TolerantLexer)
 
 
-class _CarefulLexer(Lexer):
+class _TolerantLexer(Lexer):
     __slots__ = ("columns", "conflicts_end", "in_conflict", "phantoms", "shifted", "specifiers")
 
-    careful = True
+    tolerant = True
 
     def __init__(self, text: str, words: Mapping[str, int]) -> None:
         super().__init__(text, words)
