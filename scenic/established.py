@@ -28,6 +28,7 @@ _FUNCTIONS: Final = "scenic.runtime.elements.functions"
 _OBJECTS: Final = "scenic.runtime.instances.objects"
 _MUTATORS: Final = "scenic.runtime.instances.mutators"
 _VENEER: Final = "scenic.runtime.program.veneer"
+_PROPOSITIONS: Final = "scenic.runtime.temporal.propositions"
 _SENSORS: Final = "scenic.runtime.elements.sensors"
 _LAZY: Final = "scenic.runtime.values.lazy"
 _EXTERNAL: Final = "scenic.runtime.elements.external_parameters"
@@ -331,12 +332,16 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
         ),
         "scenic.syntax.veneer": _homes(
             (_ERRORS, "InvalidScenarioError"),
+            (_LANGUAGE, "Modifier DynamicScenario"),
+            (
+                _PROPOSITIONS,
+                "Always AtomicProposition Eventually Implies Next PropositionAnd PropositionNot PropositionOr Until",
+            ),
             (_VENEER, f"{_functions()} {_STATEMENTS}"),
             (
                 _INSIDE,
                 (
-                    "Always AtomicProposition Eventually Implies Modifier Next ParameterTableProxy PropositionAnd PropositionNot"
-                    " PropositionOr Until activate alwaysProvidesOrientation beginSimulation callWithStarArgs deactivate"
+                    "ParameterTableProxy activate alwaysProvidesOrientation beginSimulation callWithStarArgs deactivate"
                     " directionalSpecHelper endScenario endSimulation executeInBehavior executeInGuard executeInRequirement"
                     " executeInScenario finishScenarioSetup instantiateSimulator makeRequirement model override prepareScenario"
                     " projectVectorHelper record record_final record_initial registerDynamicScenarioClass"

@@ -1,13 +1,15 @@
 """The names that are always in scope (sections 7.2, 8 and 9 of the specification), as data."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import field
 from enum import StrEnum
 from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.dataclass import dataclass
+from scenic.language.operators import OPERATORS
+from scenic.language.specifiers import SPECIFIERS
 from scenic.language.types import (
     CALLABLE,
     DIMENSIONS,
@@ -75,6 +77,7 @@ class Name:
             as such a call.
         operations: further operations of the value graph that make values of a distribution.
         noun: a value of a distribution in words, where the operation's name does not say it.
+        syntax: how the language writes what the name stands for, where it has syntax for that.
 
     """
 
@@ -94,6 +97,7 @@ class Name:
     operation: str | None = None
     operations: tuple[str, ...] = ()
     noun: str | None = None
+    syntax: str | None = None
 
     @property
     def accepted(self) -> Mapping[str, tuple[Type, ...]]:
@@ -165,8 +169,9 @@ def _sensor(signature: str, documentation: str, home: str = "scenic.runtime.elem
     return _name(NameKind.SENSOR, signature, documentation, home)
 
 
-def _class(signature: str, documentation: str, home: str, **rest: Any) -> Name:
-    return _name(NameKind.CLASS, signature, documentation, f"scenic.runtime.{home}", **rest)
+def _class(signature: str, documentation: str, home: str, implementation: str = "", **rest: Any) -> Name:
+    where = f"scenic.runtime.{home}{f':{implementation}' if implementation else ''}"
+    return _name(NameKind.CLASS, signature, documentation, where, **rest)
 
 
 def _exception(signature: str, documentation: str) -> Name:
@@ -239,6 +244,17 @@ _ALL = (
     _class("Mutator", "Base class of mutators, which add noise to mutated objects.", "instances.mutators"),
     _class("Behavior", "Base class of all behaviors.", "description.definitions"),
     _class("Monitor", "Base class of all monitors.", "description.definitions"),
+    _class(
+        "DynamicScenario",
+        "Base class of all scenarios.",
+        "description.definitions",
+        implementation="ModularScenario",
+    ),
+    _class(
+        "Modifier(name, value, terminator)",
+        "A limit of a `do` statement as data: `for` or `until`, its value, and its unit.",
+        "description.definitions",
+    ),
     _class("Distribution", "Base class of distributions written in Python.", "python.custom_distributions"),
     _class("File(pattern, **options)", "A recorder that writes one file per series.", "dynamics.recorders"),
     _class("Files(pattern, **options)", "A recorder that writes one file per value.", "dynamics.recorders"),
@@ -520,7 +536,37 @@ _ALL = (
     ),
 )
 
-NAMES: Final[Mapping[str, Name]] = MappingProxyType({name.name: name for name in _ALL})
+
+def _functions_of_elements() -> Iterator[Name]:
+    """The functions of the established Python API that do what operators and specifiers do."""
+    for element in (*OPERATORS.values(), *SPECIFIERS.values()):
+        for function in element.functions:
+            yield _function(
+                function.signature,
+                f"`{element.forms[0]}` as a function.",
+                "scenic.runtime.program.veneer",
+                syntax=element.forms[0],
+            )
+
+
+_PROPOSITIONS = tuple(
+    _function(signature, f"`{syntax}` as a formula.", "scenic.runtime.temporal.propositions", syntax=syntax)
+    for signature, syntax in (
+        ("Always(req)", "always X"),
+        ("Eventually(req)", "eventually X"),
+        ("Next(req)", "next X"),
+        ("Until(lhs, rhs)", "X until Y"),
+        ("Implies(lhs, rhs)", "X implies Y"),
+        ("PropositionAnd(reqs)", "X and Y"),
+        ("PropositionOr(reqs)", "X or Y"),
+        ("PropositionNot(req)", "not X"),
+        ("AtomicProposition(closure, syntaxId)", "X"),
+    )
+)
+
+NAMES: Final[Mapping[str, Name]] = MappingProxyType(
+    {name.name: name for name in (*_ALL, *_PROPOSITIONS, *_functions_of_elements())}
+)
 """Names in scope beside Python's own builtins."""
 
 CONVERSIONS: Final = frozenset({"int", "float", "str"})

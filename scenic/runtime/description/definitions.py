@@ -8,7 +8,7 @@ attributes. An instance made while the scenario is compiled may hold random valu
 import inspect
 from collections.abc import Callable, Sequence
 from types import SimpleNamespace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic
@@ -19,7 +19,16 @@ from scenic.runtime.values.describing import describe
 from scenic.runtime.values.lazy import Lazy, is_lazy, resolve
 from scenic.runtime.values.random_values import Random
 
-__all__ = ["Behavior", "Definition", "Invocable", "ModularScenario", "Monitor", "behavior_of", "define"]
+__all__ = [
+    "Behavior",
+    "Definition",
+    "Invocable",
+    "Modifier",
+    "ModularScenario",
+    "Monitor",
+    "behavior_of",
+    "define",
+]
 
 Guard = Callable[..., Any]
 
@@ -164,6 +173,14 @@ class ModularScenario(Invocable):
         raise AttributeError(
             f"scenario {self._definition.name!r} has no variable {name!r}", name=name, obj=self
         )
+
+
+class Modifier(NamedTuple):
+    """A limit of a ``do`` statement as data: ``for`` or ``until``, its value, and its unit."""
+
+    name: str
+    value: Any
+    terminator: str | None = None
 
 
 def _need_time(instance: Invocable) -> None:
