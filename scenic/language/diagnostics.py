@@ -158,6 +158,7 @@ CODES: Final = MappingProxyType(
         "SC312": "behavior or monitor that nothing runs",
         "SC313": "attribute where a property is meant",
         "SC314": "wrong kind of thing to run",
+        "SC315": "function where the language has words",
         "SC390": "ignore comment that silences nothing",
         "SC391": "ignore comment that cannot be understood",
         # Found while the program runs.

@@ -8,8 +8,8 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.dataclass import dataclass
-from scenic.language.operators import OPERATORS
-from scenic.language.specifiers import SPECIFIERS
+from scenic.language.operators import OPERATORS, Operator
+from scenic.language.specifiers import SPECIFIERS, SpecifierDeclaration
 from scenic.language.types import (
     CALLABLE,
     DIMENSIONS,
@@ -33,6 +33,7 @@ __all__ = [
     "ANGLE_METHODS",
     "CONSTRUCTORS",
     "CONVERSIONS",
+    "ELEMENT_FUNCTIONS",
     "IMPORTABLE",
     "LIFTED_FUNCTIONS",
     "LIFTED_METHODS",
@@ -539,13 +540,16 @@ _ALL = (
 
 def _functions_of_elements() -> Iterator[Name]:
     """The functions of the established Python API that do what operators and specifiers do."""
-    for element in (*OPERATORS.values(), *SPECIFIERS.values()):
+    elements: list[Operator | SpecifierDeclaration] = [*OPERATORS.values(), *SPECIFIERS.values()]
+    for element in elements:
+        forms = " or ".join(f"`{form}`" for form in element.forms)
         for function in element.functions:
             yield _function(
                 function.signature,
-                f"`{element.forms[0]}` as a function.",
+                f"{forms} as a function.",
                 "scenic.runtime.program.veneer",
-                syntax=element.forms[0],
+                syntax=forms,
+                lifted=element.name in OPERATORS,
             )
 
 
@@ -569,6 +573,9 @@ NAMES: Final[Mapping[str, Name]] = MappingProxyType(
 )
 """Names in scope beside Python's own builtins."""
 
+ELEMENT_FUNCTIONS: Final = frozenset(name.name for name in _functions_of_elements())
+"""Functions of operators and specifiers: calls of them may read the ego."""
+
 CONVERSIONS: Final = frozenset({"int", "float", "str"})
 """Conversions: their calls are lifted wherever they stand, so the names cannot be bound."""
 
@@ -583,7 +590,7 @@ TRACKED: Final[Mapping[str, str]] = MappingProxyType(
 RESERVED: Final = frozenset({*TRACKED, *CONVERSIONS, "globalParameters"})
 """Names that nothing else may bind (section 1.3)."""
 
-LIFTED_FUNCTIONS: Final = frozenset(name.name for name in _ALL if name.lifted)
+LIFTED_FUNCTIONS: Final = frozenset(name.name for name in NAMES.values() if name.lifted)
 """Functions whose calls in a condition may become part of the value graph."""
 
 CONSTRUCTORS: Final = frozenset(

@@ -35,6 +35,7 @@ from scenic.compiler.checks import (
     support,
     uses,
     values,
+    written_forms,
 )
 from scenic.compiler.checks.context import Context, NodeRule, ProgramRule
 from scenic.language.diagnostics import Diagnostic
@@ -96,6 +97,7 @@ _LINTS: Final[tuple[ProgramRule, ...]] = (
     order.check_order,
     python_habits.check_maps,
     uses.check_uses,
+    written_forms.check_written_forms,
 )
 
 MOST_OF_ONE_CODE: Final = 200

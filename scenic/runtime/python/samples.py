@@ -17,6 +17,7 @@ from weakref import ref
 
 from scenic.dataclass import dataclass
 from scenic.graph.node import Graph, Node
+from scenic.language.names import ELEMENT_FUNCTIONS
 from scenic.runtime.values.class_members import members
 from scenic.runtime.values.instance_base import PLACEMENT, Instance, put
 from scenic.runtime.values.ownership import (
@@ -219,6 +220,8 @@ def _loads(code: CodeType) -> Iterator[str]:
             is_egoless = member in EGOLESS or (member == "operation" and first in EGOLESS_OPERATORS)
             if step.argval != PRELUDE or not is_egoless:
                 yield step.argval
+            if step.argval in ELEMENT_FUNCTIONS:
+                yield PRELUDE
 
 
 @lru_cache(maxsize=4096)

@@ -75,3 +75,5 @@ else:
 x = [thing for thing in [1, 2]]
 print(BoxShape, x)
 new Object
+far = [DistanceFrom(new Point at (3, 4)), DistanceFrom(new Point)]
+#      ^^^^^^^^^^^^ SC315 the language writes `DistanceFrom` in words

@@ -1,0 +1,33 @@
+"""Functions of the established Python API where the language has syntax for what they do."""
+
+import ast
+from collections.abc import Iterator
+
+from scenic.compiler.checks.context import Context
+from scenic.compiler.traversal import position
+from scenic.language.diagnostics import Diagnostic, Severity
+from scenic.language.names import NAMES
+
+__all__ = ["check_written_forms"]
+
+
+def check_written_forms(context: Context) -> Iterator[Diagnostic]:
+    """SC315, as information: the first use of each function that the language writes in words."""
+    uses: dict[str, ast.Name] = {}
+    for node in context.resolution.references:
+        if isinstance(node, ast.Name) and (name := context.provided(node)) is not None:
+            first = uses.setdefault(name, node)
+            if position(node) < position(first):
+                uses[name] = node
+    for name, node in uses.items():
+        declared = NAMES.get(name)
+        if declared is None or declared.syntax is None:
+            continue
+        yield Diagnostic(
+            "SC315",
+            f"the language writes `{declared.name}` in words",
+            context.span(node),
+            Severity.INFORMATION,
+            context.source.filename,
+            f"write {declared.syntax}",
+        )
