@@ -13,7 +13,10 @@ from numpy.typing import NDArray
 from scenic.analysis.facts import Fact
 from scenic.graph.node import Node
 
-__all__ = ["FREQUENT", "seldom_met"]
+__all__ = ["CROWD", "FREQUENT", "seldom_met"]
+
+CROWD: Final = 48
+"""Groups from which on each is judged by itself: things of a crowd are drawn apart, each until its own conditions hold."""
 
 FREQUENT: Final = 0.8
 """The share of candidates, at least, that conditions meet together which are left out."""
@@ -38,7 +41,8 @@ def seldom_met(groups: Sequence[Sequence[Fact]], met: Mapping[Node, NDArray[np.b
     passing = np.True_
     for number in sorted(masks, key=lambda number: -np.count_nonzero(masks[number])):
         passing = passing & masks[number]
-        if np.mean(passing) < FREQUENT:
+        many = len(groups) > CROWD and np.mean(masks[number]) >= FREQUENT
+        if np.mean(passing) < FREQUENT and not many:
             break
         left_out.add(number)
     return [list(group) for number, group in enumerate(groups) if number not in left_out]

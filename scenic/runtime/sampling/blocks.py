@@ -85,6 +85,22 @@ def pieces(reads: Reads, checks: Sequence[Check]) -> tuple[list[Piece], list[fro
     return found, units
 
 
+def coarse_pieces(reads: Reads, checks: Sequence[Check]) -> tuple[list[Piece], list[frozenset[int]]]:
+    """The checks as pieces, all pairs of a check of collisions as one, and sets of draws; those of objects come first."""
+    units: list[frozenset[int]] = []
+    found: list[Piece] = []
+    for number, check in enumerate(checks):
+        if isinstance(check, CollisionCheck):
+            below = [reads.of(item.all) for item in check.objects]
+            units = [*below, *units]
+            whole = frozenset[int]().union(*below)
+            found.append(Piece(check, whole, number, tuple(range(len(check.pairs)))))
+        else:
+            units.append(reads.of(check.nodes))
+            found.append(Piece(check, units[-1], number))
+    return found, units
+
+
 def blocks(units: Iterable[frozenset[int]]) -> list[frozenset[int]]:
     """The draws of sets one after the other, each draw in the first set that has it."""
     known: set[int] = set()

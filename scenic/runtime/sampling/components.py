@@ -20,7 +20,7 @@ from scenic.graph.node import Graph, Node
 from scenic.runtime.geometry.ragged import distinct
 from scenic.runtime.sampling.checks import Check, CollisionCheck, NodeCheck, ObjectNodes
 from scenic.runtime.sampling.engine import Engine, Plan
-from scenic.runtime.sampling.halving import Tree, any_passes, divide
+from scenic.runtime.sampling.halving import Tree, divide
 
 __all__ = ["Components", "components_of", "divided"]
 
@@ -62,8 +62,6 @@ def divided(engine: Engine, components: Components | None, *, always: bool = Fal
         always: divide them whether or not that pays.
 
     """
-    if components is None and not always and any_passes(engine):
-        return None
     known = components or Components((engine.plan,), {}, (None,))
     trees = divide(engine, known.plans, always=always)
     if not any(trees):

@@ -186,6 +186,8 @@ class Engine:
         """Processor time of all rounds so far."""
         self.rehearsed: int | None = None
         """Number of candidates of the rehearsal that passed; `None` where no rehearsal went through all checks."""
+        self.rehearsed_of = _REHEARSED_LANES
+        """Number of candidates of a rehearsal."""
         self.met: dict[int, Mask] = {}
         """Candidates of the rehearsal that met a check, by the number of the check; only of checks that it could ask."""
         self._pace = Pace(

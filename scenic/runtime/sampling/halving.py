@@ -1,4 +1,7 @@
-"""Recursive division of a component into halves where hardly any candidate passes its checks.
+"""Division of a component into parts that are found apart, where few candidates pass its checks.
+
+Things that hang together by their draws are *groups*. A candidate that fails for a fault of one group costs the draws of all; so
+each group is drawn until its own checks hold, and the checks between groups are made of what was found.
 
 Candidates for a half that pass the checks within it are found apart from those for the other half. Pairs of them are
 candidates for the whole, of which only the checks between the halves are asked; one that fails loses two halves, not all
@@ -9,6 +12,7 @@ Estimates of how often each check holds decide where to divide, and whether that
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -17,8 +21,8 @@ from numpy.typing import NDArray
 from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
 from scenic.graph.node import Graph
-from scenic.runtime.sampling.blocks import Piece, Reads, blocks, merged, pieces
-from scenic.runtime.sampling.checks import Check
+from scenic.runtime.sampling.blocks import Piece, Reads, blocks, coarse_pieces, merged, pieces
+from scenic.runtime.sampling.checks import Check, CollisionCheck
 from scenic.runtime.sampling.engine import Engine, Plan
 
 __all__ = ["Joint", "Tree", "any_passes", "divide"]
@@ -30,16 +34,34 @@ TRIED: Final = 1024
 """Candidates for a component none of which may pass, or it is not divided."""
 
 RARE: Final = 1e-3
-"""A component is divided if fewer candidates pass, by the estimates."""
+"""A component is divided into halves of its draws if fewer candidates pass, by the estimates."""
+
+SELDOM: Final = 0.1
+"""A component is divided into groups if fewer candidates pass."""
 
 GAIN: Final = 5
 """The factor by which draws must become fewer then."""
+
+GROUP_GAIN: Final = 3
+"""The same for groups, which are drawn side by side."""
 
 OVERHEAD: Final = 0.5
 """The cost of a candidate for a part beside its draws, in blocks of draws."""
 
 MOST_BLOCKS: Final = 256
 """Blocks of draws of a component, at most."""
+
+MOST_GROUPS: Final = 2048
+"""Groups of draws of a component, at most."""
+
+MOST_PAIRS: Final = 32_000
+"""Pairs of objects, at most, of each of which it is estimated how often it collides."""
+
+MOST_CUTS: Final = 64
+"""Places, at most, between which cuts are chosen where there are many groups."""
+
+_APART: Final = -1
+"""In the place of a cut: all blocks are found by themselves."""
 
 _LEAST: Final = -600.0
 """Logarithms of probabilities below are taken for this."""
@@ -71,7 +93,7 @@ class Tree:
         draws: of a leaf: the addresses of its draws.
         joints: checks that read draws of it, and not of one half alone.
         chance: how often candidates pass these, as far as is known before any was tried.
-        halves: none of a leaf.
+        halves: its parts, two or more; none of a leaf.
 
     """
 
@@ -80,7 +102,7 @@ class Tree:
     draws: frozenset[int]
     joints: tuple[Joint, ...]
     chance: float
-    halves: tuple["Tree", "Tree"] | None = None
+    halves: tuple["Tree", ...] | None = None
 
     @property
     def leaves(self) -> int:
@@ -91,7 +113,7 @@ class Tree:
         """The numbers of the leaves that draws belong to, by address."""
         if self.halves is None:
             return dict.fromkeys(self.draws, self.first)
-        return {**self.halves[0].owners(), **self.halves[1].owners()}
+        return {place: leaf for half in self.halves for place, leaf in half.owners().items()}
 
 
 def divide(engine: Engine, plans: Sequence[Plan], *, always: bool = False) -> list[Tree | None]:
@@ -113,12 +135,12 @@ def divide(engine: Engine, plans: Sequence[Plan], *, always: bool = False) -> li
     leaf = 0
     for plan in plans:
         tree = None if _may_fault(plan) else _divided(plan, reads, batch, leaf, always)
-        if tree is not None and not always:
+        if tree is not None and not always and not tree.is_seldom:
             part = engine if plan is engine.plan else engine.of_part(plan)
             if any_passes(part):
                 tree = None
-        trees.append(tree)
-        leaf += 1 if tree is None else tree.leaves
+        trees.append(None if tree is None else tree.tree)
+        leaf += 1 if tree is None else tree.tree.leaves
     return trees
 
 
@@ -127,69 +149,144 @@ def any_passes(engine: Engine) -> bool:
     return engine.trial([(0, k) for k in range(min(TRIED, engine.most_lanes))]) > 0
 
 
-def _divided(plan: Plan, reads: Reads, batch: Batch, leaf: int, always: bool) -> Tree | None:
-    """Return the division of a component as a tree of halves, estimated on a batch of candidates, or ``None``
-    if dividing does not pay.
+@dataclass(frozen=True, slots=True)
+class _Division:
+    """A division that pays; ``is_seldom`` says that candidates are known to pass seldom, though some may."""
+
+    tree: Tree
+    is_seldom: bool
+
+
+def _divided(plan: Plan, reads: Reads, batch: Batch, leaf: int, always: bool) -> _Division | None:
+    """Return the division of a component, estimated on a batch of candidates, or ``None`` if dividing does not pay.
 
     The leaves are numbered from ``leaf``.
     """
-    found, units = pieces(reads, plan.checks)
+    is_large = sum(map(_pairs, plan.checks)) > MOST_PAIRS
+    found, units = coarse_pieces(reads, plan.checks) if is_large else pieces(reads, plan.checks)
     read = frozenset[int]().union(*(piece.read for piece in found))
-    news = blocks(unit & read for unit in units)
-    if not 1 < len(news) <= MOST_BLOCKS:
-        return None
-    parts = [check.parts(batch) for check in plan.checks]
-    holds = np.array(
-        [
-            np.logical_and.reduce([parts[piece.number][pair].holds for pair in piece.pairs or (0,)])
+    if is_large:
+        holds = np.array([_holds(piece.check, batch) for piece in found])
+    else:
+        parts = [check.parts(batch) for check in plan.checks]
+        holds = np.array(
+            [
+                np.logical_and.reduce([parts[piece.number][pair].holds for pair in piece.pairs or (0,)])
+                for piece in found
+            ]
+        )
+    passing = float(holds.all(axis=0).mean()) if len(holds) else 1.0
+    ways = [(_grouped(plan, reads, units, read), SELDOM), (blocks(unit & read for unit in units), RARE)]
+    for sets, most in ways:
+        most_sets = MOST_GROUPS if most == SELDOM else MOST_BLOCKS
+        if (
+            not 1 < len(sets) <= most_sets
+            or (is_large and most == RARE)
+            or (passing > (0.0 if most == RARE else most) and not always)
+        ):
+            continue
+        outlined = _Outline(sets, found, holds)
+        if always or outlined.pays(most):
+            return _Division(_tree(plan, outlined, leaf, always), most == SELDOM)
+    return None
+
+
+def _pairs(check: Check) -> int:
+    return len(check.pairs) if isinstance(check, CollisionCheck) else 0
+
+
+def _holds(check: Check, batch: Batch) -> NDArray[np.bool_]:
+    verdict = check.test(batch)
+    return verdict.holds if verdict.failed is None else verdict.holds & ~verdict.failed
+
+
+def _grouped(
+    plan: Plan, reads: Reads, units: Sequence[frozenset[int]], read: frozenset[int]
+) -> list[frozenset[int]]:
+    """The draws in groups: those of objects that share draws, then what other checks read alone."""
+    groups: list[frozenset[int]] = []
+    owner: dict[int, int] = {}
+    objects = {
+        id(item): item for check in plan.checks if isinstance(check, CollisionCheck) for item in check.objects
+    }
+    for mine in (reads.of(item.all) & read for item in objects.values()):
+        joined = sorted({owner[place] for place in mine if place in owner})
+        whole = mine.union(*(groups[number] for number in joined))
+        for number in joined:
+            groups[number] = frozenset()
+        target = joined[0] if joined else len(groups)
+        if joined:
+            groups[target] = whole
+        else:
+            groups.append(whole)
+        owner.update(dict.fromkeys(whole, target))
+    groups = [group for group in groups if group]
+    return blocks([*groups, *(unit & read for unit in units)])
+
+
+class _Outline:
+    """The blocks of a division, the checks within and between them, and estimates of how often these hold."""
+
+    def __init__(
+        self, sets: Sequence[frozenset[int]], found: Sequence[Piece], holds: NDArray[np.bool_]
+    ) -> None:
+        self.sets = sets
+        self.found = found
+        number_of = {place: number for number, new in enumerate(sets) for place in new}
+        self.spans = [
+            (min(mine), max(mine)) if (mine := [number_of[place] for place in piece.read]) else (0, 0)
             for piece in found
         ]
-    )
-    if holds.all(axis=0).any() and not always:
-        return None
-    number_of = {place: number for number, new in enumerate(news) for place in new}
-    spans = [
-        (min(mine), max(mine)) if (mine := [number_of[place] for place in piece.read]) else (0, 0)
-        for piece in found
-    ]
-    chances = [
-        1 - piece.check.probability * (1 - max(float(mine.mean()), 0.5 / CANDIDATES))
-        for piece, mine in zip(found, holds, strict=True)
-    ]
-    within = _within(len(news), spans, np.log(chances))
-    cost, cuts = _cheapest(within, always)
-    whole = float(within[0, len(news)])
-    pays = whole < np.log(RARE) and len(news) * np.exp(-whole) > GAIN * cost
-    if not pays and not always:
-        return None
+        chances = [
+            1 - piece.check.probability * (1 - max(float(mine.mean()), 0.5 / CANDIDATES))
+            for piece, mine in zip(found, holds, strict=True)
+        ]
+        self.within = _within(len(sets), self.spans, np.log(chances))
+
+    def pays(self, most: float) -> bool:
+        """Return whether dividing makes draws enough fewer, where at most a share of candidates passes."""
+        count = len(self.sets)
+        cost, _ = _cheapest(self.within, always=False)
+        whole = float(self.within[0, count])
+        gain = GROUP_GAIN if most == SELDOM else GAIN
+        return whole < np.log(most) and count * np.exp(-whole) > gain * cost
+
+
+def _tree(plan: Plan, outlined: _Outline, leaf: int, always: bool) -> Tree:
+    within = outlined.within
+    _, cuts = _cheapest(within, always)
     soft = [index for index, check in enumerate(plan.checks) if check.probability < 1]
     places = range(len(soft)) if plan.soft_places is None else plan.soft_places
     soft_places = dict(zip(soft, places, strict=True))
     numbers = range(len(plan.checks)) if plan.numbers is None else plan.numbers
-    ordered = sorted(zip(found, spans, strict=True), key=lambda item: item[0].check.cost)
+    ordered = sorted(zip(outlined.found, outlined.spans, strict=True), key=lambda item: item[0].check.cost)
 
-    def tree(start: int, stop: int, leaf: int) -> Tree:
-        cut = int(cuts[start, stop])
-        halves = None
-        if cut:
-            first = tree(start, cut, leaf)
-            halves = first, tree(cut, stop, first.stop)
+    def tree(start: int, stop: int, leaf: int, cut: int) -> Tree:
+        if cut == _APART:
+            edges = list(range(start, stop + 1))
+        else:
+            edges = [start, cut, stop] if cut else [start, stop]
+        halves: list[Tree] = []
+        for first, last in pairwise(edges) if cut else ():
+            way = 0 if cut == _APART else int(cuts[first, last])
+            halves.append(tree(first, last, halves[-1].stop if halves else leaf, way))
+        inner = [*pairwise(edges)] if cut else []
         own = [
             piece
             for piece, (low, high) in ordered
-            if start <= low and high < stop and (not cut or low < cut <= high)
+            if start <= low and high < stop and not any(first <= low and high < last for first, last in inner)
         ]
-        chance = within[start, stop] - (within[start, cut] + within[cut, stop] if cut else 0.0)
+        chance = within[start, stop] - sum(within[first, last] for first, last in inner)
         return Tree(
             leaf,
-            halves[1].stop if halves else leaf + 1,
-            frozenset[int]().union(*news[start:stop]),
+            halves[-1].stop if halves else leaf + 1,
+            frozenset[int]().union(*outlined.sets[start:stop]),
             _joints(own, numbers, soft_places),
             float(np.exp(chance)),
-            halves,
+            tuple(halves) or None,
         )
 
-    return tree(0, len(news), leaf)
+    return tree(0, len(outlined.sets), leaf, int(cuts[0, len(outlined.sets)]))
 
 
 def _joints(own: Sequence[Piece], numbers: Sequence[int], soft_places: dict[int, int]) -> tuple[Joint, ...]:
@@ -219,21 +316,37 @@ def _within(count: int, spans: Sequence[tuple[int, int]], logs: NDArray[np.float
     return np.maximum(np.cumsum(table[::-1], axis=0)[::-1], _LEAST)
 
 
-def _cheapest(within: NDArray[np.float64], always: bool) -> tuple[float, NDArray[np.intp]]:
-    """Return the least cost of a scene, in blocks of draws, and for blocks ``i`` to ``j`` the place to cut (0: do not cut).
+def _cheapest(
+    within: NDArray[np.float64], always: bool, limit: int = MOST_CUTS
+) -> tuple[float, NDArray[np.intp]]:
+    """Return the least cost of a scene, in blocks of draws, and for blocks ``i`` to ``j`` the place to cut.
 
-    With ``always`` they are cut wherever there are two.
+    The place is 0 where they are not cut, and -1 where each block is found by itself, and all are joined at once. With ``always``
+    they are cut wherever there are two.
     """
     count = len(within) - 1
+    edges = np.arange(count + 1)
+    if count > MOST_BLOCKS or not always:
+        edges = np.unique(np.round(np.linspace(0, count, min(count, limit) + 1)).astype(np.intp))
     cost = np.zeros((count + 1, count + 1))
     cuts = np.zeros((count + 1, count + 1), dtype=np.intp)
-    for length in range(1, count + 1):
-        for start in range(count + 1 - length):
-            stop = start + length
+    alone = within[np.arange(count), np.arange(1, count + 1)]
+    summed = np.concatenate([[0.0], np.cumsum(alone)])
+    costs = np.concatenate([[0.0], np.cumsum((1 + OVERHEAD) * np.exp(-alone))])
+    for width in range(1, len(edges)):
+        for number in range(len(edges) - width):
+            start, stop = int(edges[number]), int(edges[number + width])
+            length = stop - start
             cost[start, stop] = (length + OVERHEAD) * np.exp(-within[start, stop])
             if length == 1:
                 continue
-            cut = np.arange(start + 1, stop)
+            apart = costs[stop] - costs[start] + length + OVERHEAD
+            apart *= np.exp(min(summed[stop] - summed[start] - within[start, stop], -_LEAST))
+            if apart < cost[start, stop] and not always:
+                cost[start, stop], cuts[start, stop] = apart, _APART
+            cut = edges[number + 1 : number + width]
+            if not len(cut):
+                continue
             between = within[start, stop] - within[start, cut] - within[cut, stop]
             divided = (cost[start, cut] + cost[cut, stop] + length + OVERHEAD) * np.exp(
                 np.minimum(-between, -_LEAST)

@@ -25,6 +25,12 @@ __all__ = ["Joined", "join"]
 
 Numbers = NDArray[np.int64]
 
+_MANY: Final = 4
+"""Leaves from which on they are tried side by side."""
+
+_TURNS: Final = 8
+"""Times that this is done, at most; those that miss candidates then go on by themselves."""
+
 _FAITH: Final = 20
 """Number of candidates that an estimate counts for that was made before any candidate was tried."""
 
@@ -183,6 +189,54 @@ class _Search:
             queue.learn(len(lanes), len(good))
             queue.add(lanes[good], candidates[good])
 
+    def _supply_together(self, leaves: Sequence[_Queue], wanted: Numbers) -> None:
+        """Try attempts at many leaves side by side, of scenes that miss candidates for one: alike checks are made together."""
+        if len(leaves) < _MANY:
+            return
+        for _ in range(_TURNS):
+            missing = np.max([wanted - leaf.count for leaf in leaves], axis=0)
+            scenes = np.flatnonzero((missing > 0) & ~self._is_over)
+            tried = np.max([leaf.tried[scenes] for leaf in leaves], axis=0)
+            scenes = scenes[tried < self._limit]
+            if not len(scenes):
+                return
+            if self._deadline is not None and time.monotonic() > self._deadline:
+                raise _LateError
+            rate = min(leaf.rate for leaf in leaves)
+            scenes = scenes[: self._lanes]
+            room = np.min([self._limit - leaf.tried[scenes] for leaf in leaves], axis=0)
+            counts = np.ceil(missing[scenes] / rate) + 1
+            counts = np.clip(counts, 1, np.minimum(max(1, self._lanes // len(scenes)), room)).astype(np.int64)
+            owner, offset = expand(counts)
+            lanes = scenes[owner]
+            candidates = np.stack([leaf.tried[lanes] + offset + 1 for leaf in leaves], axis=1)
+            passes = self._pass_each([leaf.tree for leaf in leaves], lanes, candidates)
+            for number, leaf in enumerate(leaves):
+                good = np.flatnonzero(passes[number])
+                leaf.tried[scenes] += counts
+                leaf.learn(len(lanes), len(good))
+                leaf.add(lanes[good], candidates[good, number : number + 1])
+
+    def _pass_each(
+        self, trees: Sequence[Tree], lanes: NDArray[np.intp], candidates: Numbers
+    ) -> NDArray[np.bool_]:
+        """Return a mask ``(leaves, m)`` of the candidates ``(m, leaves)`` for leaves that pass the checks of these."""
+        passes = np.ones((len(trees), len(lanes)), dtype=np.bool_)
+        joints = [(number, joint) for number, tree in enumerate(trees) for joint in tree.joints]
+        if not joints:
+            return passes
+        batch = self._engine.batch(self._source(trees, lanes, candidates))
+        batch.need(dict.fromkeys(node for _, joint in joints for node in joint.check.nodes))
+        for number, joint in joints:
+            begun = time.perf_counter()
+            verdict = joint.check.test(batch)
+            if joint.soft_place is not None:
+                verdict = verdict.unless(self._pending.inactive[lanes, joint.soft_place])
+            passes[number] &= verdict.passes
+            count = int(np.count_nonzero(verdict.passes))
+            self._engine.note(joint.number, len(lanes), count, time.perf_counter() - begun)
+        return passes
+
     def _next(
         self, queue: _Queue, scenes: NDArray[np.intp], counts: Numbers
     ) -> tuple[NDArray[np.intp], Numbers]:
@@ -197,6 +251,7 @@ class _Search:
             halves = [self._queues[id(half)] for half in queue.tree.halves]
             wanted = np.zeros(len(self._is_over), dtype=np.int64)
             wanted[scenes] = counts
+            self._supply_together([half for half in halves if half.tree.halves is None], wanted)
             for half in halves:
                 self._supply(half, wanted)
             counts = np.where(self._is_over[scenes], 0, counts)
@@ -213,7 +268,7 @@ class _Search:
         passes = np.ones(len(lanes), dtype=np.bool_)
         if not tree.joints or not len(lanes):
             return passes
-        batch = self._engine.batch(self._source(tree, lanes, candidates))
+        batch = self._engine.batch(self._source([tree], lanes, candidates))
         for joint in tree.joints:
             begun = time.perf_counter()
             batch.need(joint.check.nodes)
@@ -230,12 +285,17 @@ class _Search:
                 break
         return passes
 
-    def _source(self, tree: Tree, lanes: NDArray[np.intp], candidates: Numbers) -> Source:
-        """The draws of candidates for a part: of each leaf those of its attempt."""
+    def _source(self, trees: Sequence[Tree], lanes: NDArray[np.intp], candidates: Numbers) -> Source:
+        """The draws of candidates for parts: of each leaf those of its attempt."""
         pending = self._pending
         seeds, scenes, keys = pending.seed[lanes], pending.k[lanes], pending.key[lanes]
         sources = [
             self._engine.source_of(Lanes(seeds, scenes, mine, attempt_keys(keys, mine)))
             for mine in (candidates - 1).T
         ]
-        return Composed(sources, self._owner, tree.first)
+        leaves = [leaf for tree in trees for leaf in range(tree.first, tree.stop)]
+        if leaves == list(range(leaves[0], leaves[0] + len(leaves))):
+            return Composed(sources, self._owner, leaves[0])
+        place = {leaf: number for number, leaf in enumerate(leaves)}
+        owner = {draw: place[leaf] for draw, leaf in self._owner.items() if leaf in place}
+        return Composed(sources, owner)

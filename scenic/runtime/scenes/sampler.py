@@ -12,6 +12,7 @@ from scenic.graph.node import Node
 from scenic.graph.points import PointSet
 from scenic.runtime.sampling.checks import NodeCheck
 from scenic.runtime.sampling.components import Components, components_of, divided
+from scenic.runtime.sampling.halving import SELDOM
 from scenic.runtime.sampling.engine import Accepted, Engine, Plan
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.piecewise import PiecewiseEngine
@@ -79,7 +80,11 @@ class Sampler:
         if self.impossible:
             return
         self._finder.prepare()
-        self._may_divide = self.engine.rehearsed == 0
+        masks = list(self.engine.met.values())
+        passed = self.engine.rehearsed
+        if passed is None and masks:
+            passed = int(np.count_nonzero(np.logical_and.reduce(masks)))
+        self._may_divide = passed is not None and passed < 2 * SELDOM * self.engine.rehearsed_of
 
     def met(self) -> dict[Node, NDArray[np.bool_]]:
         """The candidates of the rehearsal that met a requirement, ``(n,)``, by its node; without requirements that it could not ask."""

@@ -99,6 +99,31 @@ def is_divided(text: str) -> bool:
     return isinstance(program._sampler._finder, PiecewiseEngine)
 
 
+CROWD = (
+    "yard = CircularRegion((0, 0), 5)\n"
+    "for i in range(9):\n    new Object in yard, with regionContainedIn yard, facing Range(0, 360) deg\n"
+)
+
+
+def test_crowds_are_drawn_apart_by_the_same_law(tmp_path: Any) -> None:
+    program = scenario(CROWD)
+    scenes = program.sample(amount(250, 1000), seed=1)
+    assert isinstance(program._sampler._finder, PiecewiseEngine)
+    assert program._sampler._finder._components.leaves > 1
+    expected = [fingerprint(scene) for scene in scenes[:8]]
+    assert [fingerprint(*program.stream(1, first=k, seed=1)) for k in range(8)] == expected
+    assert [fingerprint(scene) for scene in program.sample(8, seed=1, lanes=3)] == expected
+    scenes[3].save(tmp_path / "scene.json")
+    assert fingerprint(program.replay(tmp_path / "scene.json")) == expected[3]
+    found = observed(scenes)
+    program._sampler._finder = program._sampler.engine
+    whole = observed(program.sample(amount(250, 1000), seed=2))
+    for ours, theirs in zip(found.T, whole.T, strict=True):
+        assert stats.ks_2samp(ours, theirs).pvalue > FALSE_ALARM
+    near, near_whole = (np.linalg.norm(rows[:, 0:2] - rows[:, 2:4], axis=1) for rows in (found, whole))
+    assert stats.ks_2samp(near, near_whole).pvalue > FALSE_ALARM
+
+
 def test_rare_chains_are_divided_and_common_ones_are_not() -> None:
     rare = scenario(CHAIN.format(16))
     scenes = rare.sample(3, seed=1)
