@@ -249,7 +249,7 @@ class _Outline:
         cost, _ = _cheapest(self.within, always=False)
         whole = float(self.within[0, count])
         gain = GROUP_GAIN if most == SELDOM else GAIN
-        return whole < np.log(most) and count * np.exp(-whole) > gain * cost
+        return bool(whole < np.log(most) and count * np.exp(-whole) > gain * cost)
 
 
 def _tree(plan: Plan, outlined: _Outline, leaf: int, always: bool) -> Tree:

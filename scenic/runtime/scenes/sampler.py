@@ -12,8 +12,8 @@ from scenic.graph.node import Node
 from scenic.graph.points import PointSet
 from scenic.runtime.sampling.checks import NodeCheck
 from scenic.runtime.sampling.components import Components, components_of, divided
-from scenic.runtime.sampling.halving import SELDOM
 from scenic.runtime.sampling.engine import Accepted, Engine, Plan
+from scenic.runtime.sampling.halving import SELDOM
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.piecewise import PiecewiseEngine
 from scenic.runtime.sampling.planning import Outline
