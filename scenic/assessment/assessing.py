@@ -4,10 +4,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from scenic.analysis.finite.explaining import findings
 from scenic.analysis.supports import DrawnSupport, places_of, supports
 from scenic.assessment.assessment import Assessment, ValueRow
 from scenic.assessment.drawing import Whereabouts
 from scenic.language.spans import Span
+from scenic.narrowing import decision_of
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
@@ -71,6 +73,7 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
         estimates,
         tuple(impossible),
         found[0].approximation if found else None,
+        () if impossible else findings(decision_of(scenario.outline), scenario.outline.checks),
     )
 
 

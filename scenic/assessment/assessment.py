@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.analysis.finite.explaining import FiniteFinding
 from scenic.analysis.supports import DrawnSupport
 from scenic.assessment.drawing import Whereabouts, png, svg
 from scenic.dataclass import dataclass
@@ -61,6 +62,7 @@ class Assessment:
         components: the estimates for each independent component.
         impossible: labels of requirements that are proven to fail in every scene.
         approximation: the probability of scenes, estimated by approximate scenes, if no candidate of some component was accepted.
+        finite: the components of discrete values that requirements couple.
 
     """
 
@@ -71,6 +73,7 @@ class Assessment:
     components: tuple[ComponentEstimate, ...]
     impossible: tuple[str, ...]
     approximation: Approximation | None = None
+    finite: tuple[FiniteFinding, ...] = ()
 
     @property
     def acceptance(self) -> float:
@@ -138,6 +141,7 @@ class Assessment:
                 f"{len(self.components)} independent components, each looked for by itself: "
                 f"the rarest takes {alone:.3g} candidates"
             )
+        lines += map(str, self.finite)
         worst = self.costliest
         if worst is not None:
             gain = (
@@ -180,6 +184,17 @@ class Assessment:
                     "removed": row.support.removed,
                 }
                 for row in self.values
+            ],
+            "finite": [
+                {
+                    "values": len(one.draws),
+                    "combinations": one.combinations,
+                    "solutions": one.solutions,
+                    "drawn": list(one.ways),
+                    "requirements": one.requirements,
+                    "left": list(one.left),
+                }
+                for one in self.finite
             ],
             "objects": [
                 {"name": place.name, "lower": _vector(place.lower), "upper": _vector(place.upper)}

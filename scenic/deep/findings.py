@@ -4,12 +4,13 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from scenic.analysis.contraction import contract
+from scenic.analysis.finite.explaining import contradiction, narrowed_values
 from scenic.deep.dead_branches import prove_branches
 from scenic.failures import diagnose
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.errors import ScenicSyntaxError
 from scenic.language.extras import installation
-from scenic.narrowing import conditions
+from scenic.narrowing import conditions, decision_of
 from scenic.pipeline import load
 
 __all__ = ["deep_check"]
@@ -39,10 +40,14 @@ def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
         return (found,)
     graph, facts = scenario.outline.graph, conditions(scenario.outline)
     proven = prove(graph, facts)
+    decision = decision_of(scenario.outline)
+    if all(item.severity is not Severity.ERROR for item in proven):
+        proven += contradiction(decision, scenario.outline.checks)
     temporal = [item.formula for item in scenario.requirements if item.formula and item.probability == 1]
     proven += prove_in_time(temporal, {item.span for item in proven if item.severity is Severity.ERROR})
     if all(item.severity is not Severity.ERROR for item in proven):
-        proven += prove_dead(graph, contract(graph, facts).domain)
+        domain = contract(graph, facts).domain.with_finite(narrowed_values(decision))
+        proven += prove_dead(graph, domain)
         proven += prove_branches(scenario.text, filename, scenario.program, graph.nodes, facts)
     return tuple(
         Diagnostic(

@@ -42,6 +42,7 @@ class Decision:
         settled: the numbers of the checks that always hold then.
         left: the numbers of the checks that read discrete values and are left to chance.
         impossible: the numbers of checks that cannot hold together; then there is no scene.
+        problem: the problem of the components.
 
     """
 
@@ -51,6 +52,7 @@ class Decision:
     settled: frozenset[int] = frozenset()
     left: tuple[int, ...] = ()
     impossible: tuple[int, ...] = ()
+    problem: Problem | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,14 +100,14 @@ def decide(
     order = tuple(builder.order)
     impossible = next((one for one in components if one.share == 0), None)
     if impossible is not None:
-        return Decision(order, components, impossible=_core(problem, impossible))
+        return Decision(order, components, impossible=_core(problem, impossible), problem=problem)
     parts = tuple(_part(drawn, order) for one in components for drawn in one.drawn)
     met_always = {id(constraint) for one in components for constraint in one.met}
     by_chance = {
         constraint.check for constraint in builder.constraints if id(constraint) not in met_always
     } | builder.undecided
     settled = frozenset(numbers) - by_chance
-    return Decision(order, components, parts, settled, tuple(sorted(by_chance)))
+    return Decision(order, components, parts, settled, tuple(sorted(by_chance)), problem=problem)
 
 
 def _rejects(numbers: Sequence[int], met: Mapping[int, Mask]) -> bool:

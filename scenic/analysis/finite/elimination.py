@@ -16,7 +16,7 @@ from scenic.dataclass import dataclass
 from scenic.graph.bounds import Floats
 from scenic.graph.finite import Step
 
-__all__ = ["WIDEST", "Elimination", "eliminate", "ordered", "width"]
+__all__ = ["WIDEST", "Elimination", "eliminate", "ordered"]
 
 WIDEST: Final = 1 << 20
 """Entries of an intermediate table, at most."""
@@ -34,11 +34,11 @@ class Elimination:
 
 
 def ordered(
-    scopes: Sequence[frozenset[int]], sizes: Mapping[int, int], first: frozenset[int] = frozenset()
+    scopes: Sequence[frozenset[int]], sizes: Mapping[int, int], last: int | None = None
 ) -> list[int] | None:
     """An order in which the variables of some scopes can be eliminated: each time the one that makes the smallest table.
 
-    ``None`` where tables become too large. Variables of ``first`` come before the others where tables are of equal size.
+    ``None`` where tables become too large. The variable ``last`` comes after all others.
     """
     neighbours: dict[int, set[int]] = {}
     for scope in scopes:
@@ -52,7 +52,7 @@ def ordered(
 
     costs = {variable: entries(variable) for variable in neighbours}
     while neighbours:
-        variable = min(costs, key=lambda one: (costs[one], one not in first, one))
+        variable = min(costs, key=lambda one: (one == last, costs[one], one))
         total += costs[variable]
         if costs[variable] > WIDEST or total > MOST:
             return None
@@ -65,11 +65,6 @@ def ordered(
         for other in others:
             costs[other] = entries(other)
     return result
-
-
-def width(order: Sequence[int] | None) -> bool:
-    """Return whether there is an order."""
-    return order is not None
 
 
 def eliminate(tables: Sequence[Table], weights: Mapping[int, Floats], order: Sequence[int]) -> Elimination:

@@ -1,0 +1,174 @@
+"""The finite part of a program in words and numbers: solutions of components, values that no solution has, contradictions."""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenic.analysis.finite.deciding import Decision
+from scenic.analysis.finite.elimination import eliminate, ordered
+from scenic.analysis.finite.network import Problem, merged
+from scenic.analysis.finite.solving import Component, solve
+from scenic.analysis.finite.tables import Mask
+from scenic.dataclass import dataclass
+from scenic.graph.draws import Floats
+from scenic.graph.finite import Finite, Listed
+from scenic.language.diagnostics import Diagnostic, Label, Severity
+from scenic.runtime.sampling.checks import Check
+
+__all__ = ["FiniteFinding", "contradiction", "findings", "narrowed_values"]
+
+_SHOWN: Final = 3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FiniteFinding:
+    """The findings about one component.
+
+    Attributes:
+        draws: the addresses of its draws.
+        combinations: the number of combinations of their values.
+        solutions: the number of those that meet what the draws meet.
+        ways: how the draws are made; empty where they are left to chance.
+        requirements: the number of requirements and pairs of objects that always hold then.
+        left: labels of the requirements that are left to chance.
+
+    """
+
+    draws: tuple[int, ...]
+    combinations: float
+    solutions: float
+    ways: tuple[str, ...]
+    requirements: int
+    left: tuple[str, ...]
+
+    def __str__(self) -> str:
+        noun = "value" if len(self.draws) == 1 else "values"
+        text = (
+            f"{len(self.draws)} discrete {noun}: {self.solutions:.4g} of {self.combinations:.4g} combinations"
+        )
+        if not self.ways:
+            return f"{text}; drawn one by one, which suffices"
+        text += f", drawn {' and '.join(self.ways)}; {self.requirements} requirements and pairs always hold"
+        if self.left:
+            shown = ", ".join(self.left[:_SHOWN]) + (", ..." if len(self.left) > _SHOWN else "")
+            text += f"; left to chance: {shown}"
+        return text
+
+
+def findings(decision: Decision, checks: Sequence[Check]) -> tuple[FiniteFinding, ...]:
+    """The findings about each component of a decision about checks."""
+    problem = decision.problem
+    if problem is None:
+        return ()
+    counting = Problem(
+        tuple((weights > 0).astype(np.float64) for weights in problem.weights),
+        problem.draws,
+        problem.constraints,
+    )
+    found = []
+    for one, counted in zip(decision.components, solve(counting), strict=True):
+        met = {id(constraint) for constraint in one.met}
+        chance = dict.fromkeys(
+            checks[constraint.check].label
+            for constraint in one.constraints
+            if id(constraint) not in met or constraint.check in decision.left
+        )
+        found.append(
+            FiniteFinding(
+                tuple(decision.variables[variable].address for variable in one.variables),
+                float(np.prod([decision.variables[variable].size for variable in one.variables])),
+                counted.share,
+                tuple(dict.fromkeys(drawn.way for drawn in one.drawn)),
+                len(one.met),
+                tuple(chance) if one.drawn else (),
+            )
+        )
+    return tuple(found)
+
+
+def narrowed_values(decision: Decision) -> tuple[Finite, ...]:
+    """Each discrete value that constraints narrow, with the values that some solution has: for reports, not to be drawn from."""
+    parts = []
+    for component in decision.components:
+        for variable, mask in _alive(decision, component).items():
+            one = decision.variables[variable]
+            if mask.all():
+                continue
+            left = np.flatnonzero(mask)
+            weights: Floats = one.weights[left]
+            law = Listed(left[:, np.newaxis] * 0 + np.arange(len(left))[:, np.newaxis], np.cumsum(weights))
+            parts.append(
+                Finite(
+                    np.array([one.number], dtype=np.intp),
+                    (one.lower[left],),
+                    (one.upper[left],),
+                    np.array([one.address], dtype=np.uint64),
+                    law,
+                    float(weights.sum()),
+                )
+            )
+    return tuple(parts)
+
+
+def _alive(decision: Decision, component: Component) -> dict[int, Mask]:
+    """The values of each draw that some solution has, as far as that is found out."""
+    problem = decision.problem
+    masks = {variable: component.domains[variable].copy() for variable in component.variables}
+    if problem is None:
+        return masks
+    for drawn in component.drawn:
+        if isinstance(drawn.law, Listed):
+            for place, variable in enumerate(drawn.variables):
+                masks[variable] = _of(drawn.law.rows[:, place], drawn.values[place], len(masks[variable]))
+            return masks
+    tables = merged(table for constraint in component.constraints for table in constraint.tables)
+    sizes = {variable: len(mask) for variable, mask in component.domains.items()}
+    scopes = [frozenset(table.scope) for table in tables]
+    for variable in component.variables:
+        order = ordered(scopes, sizes, last=variable)
+        if order is None or variable not in order:
+            continue
+        weights = {each: problem.weights[each] for each in order}
+        marginal = np.diff(eliminate(tables, weights, order).steps[0].cumulative[0], prepend=0.0)
+        masks[variable] &= marginal > 0
+    return masks
+
+
+def _of(places: NDArray[np.intp], values: NDArray[np.intp], size: int) -> Mask:
+    mask = np.zeros(size, dtype=np.bool_)
+    mask[values[np.unique(places)]] = True
+    return mask
+
+
+def contradiction(decision: Decision, checks: Sequence[Check]) -> tuple[Diagnostic, ...]:
+    """The checks of discrete values that cannot hold together, as a diagnostic at the last of them (SC700)."""
+    if not decision.impossible:
+        return ()
+    core = [checks[number] for number in decision.impossible]
+    core.sort(key=lambda check: (check.span is None, check.span.line if check.span is not None else 0))
+    placed = [check for check in core if check.span is not None]
+    last = placed[-1] if placed else core[-1]
+    others = [check for check in placed if check is not last]
+    subject = "this requirement" if last.position > 0 else f"'{last.label}', which the language requires,"
+    message = (
+        f"{subject} cannot hold together with the others marked, whatever the discrete values are"
+        if len(core) > 1
+        else f"{subject} cannot hold for any of the discrete values that it depends on"
+    )
+    return (
+        Diagnostic(
+            "SC700",
+            message,
+            last.span,
+            Severity.ERROR,
+            last.filename,
+            help="no scene can meet all of the marked places; change one of them"
+            if others
+            else "no scene can meet it; change or remove it",
+            labels=tuple(
+                Label(check.span, "while this is required") for check in others if check.span is not None
+            ),
+        ),
+    )

@@ -1,0 +1,66 @@
+"""Reports on the finite part of programs: solutions, dead options, contradictions."""
+
+from pathlib import Path
+
+import pytest
+
+import scenic
+from scenic.analysis.finite.explaining import findings
+from scenic.narrowing import decision_of
+
+LATIN = """
+x = [[DiscreteRange(1, 4) for j in range(4)] for i in range(4)]
+for i in range(4):
+    for j in range(4):
+        for k in range(j):
+            require x[i][j] != x[i][k]
+            require x[j][i] != x[k][i]
+"""
+SEATS = """
+s = [DiscreteRange(0, 6) for i in range(5)]
+for i in range(5):
+    for j in range(i):
+        require s[i] != s[j]
+"""
+
+
+@pytest.mark.parametrize(("text", "solutions", "combinations"), [(LATIN, 576, 4**16), (SEATS, 2520, 7**5)])
+def test_solutions_are_counted(text: str, solutions: int, combinations: int) -> None:
+    outlined = scenic.scenarioFromString(text).outline
+    (found,) = findings(decision_of(outlined), outlined.checks)
+    assert round(found.solutions) == solutions
+    assert found.combinations == combinations
+    assert not found.left
+    assert f"{solutions} of" in str(found)
+
+
+def test_what_is_left_to_chance_is_named() -> None:
+    text = "a, b, c = Uniform(1, 2), Uniform(1, 2), Range(0, 4)\nrequire a != b as apart\nrequire c > a + b as above\n"
+    outlined = scenic.scenarioFromString(text).outline
+    decision = decision_of(outlined)
+    assert [outlined.checks[number].label for number in decision.left] == ["above"]
+    assert "apart" in {outlined.checks[number].label for number in decision.settled}
+
+
+def deep(tmp_path: Path, text: str) -> list[tuple[str, int]]:
+    from scenic.deep.findings import deep_check
+
+    (tmp_path / "program.scenic").write_text(text)
+    found = deep_check(tmp_path / "program.scenic")
+    return [(item.code, 0 if item.span is None else item.span.line) for item in found]
+
+
+def test_options_that_no_solution_has_are_reported(tmp_path: Path) -> None:
+    text = (
+        "ego = new Object\na = DiscreteRange(0, 5)\nb = Uniform(1, 2, 3, 4)\nc = Uniform('x', 'y', 'z')\n"
+        "require a + b > 7\nrequire c != 'z' or a < 2\n"
+    )
+    assert deep(tmp_path, text) == [("SC702", 3), ("SC702", 4)]
+
+
+def test_contradictions_that_only_tables_show_are_reported(tmp_path: Path) -> None:
+    text = (
+        "ego = new Object\na, b, c = Uniform('r', 'g'), Uniform('r', 'g'), Uniform('r', 'g')\n"
+        "require a != b\nrequire b != c\nrequire c != a\n"
+    )
+    assert deep(tmp_path, text) == [("SC700", 5)]
