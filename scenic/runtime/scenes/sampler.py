@@ -84,7 +84,7 @@ class Sampler:
         passed = self.engine.rehearsed
         if passed is None and masks:
             passed = int(np.count_nonzero(np.logical_and.reduce(masks)))
-        self._may_divide = passed is not None and passed < 2 * SELDOM * self.engine.rehearsed_of
+        self._may_divide = passed is not None and passed <= SELDOM * self.engine.rehearsed_of
 
     def met(self) -> dict[Node, NDArray[np.bool_]]:
         """The candidates of the rehearsal that met a requirement, ``(n,)``, by its node; without requirements that it could not ask."""
