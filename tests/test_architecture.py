@@ -31,8 +31,10 @@ LAYERS = {
     "playground": {"ide"},
     "templates": set(),
     "deep": {"analysis", "formats", "runtime", "graph", "language", "compiler"},
+    "trying": {"batch", "domains", "formats", "runtime", "graph", "language", "compiler", "project"},
     "cli": {
         "templates",
+        "trying",
         "deep",
         "assessment",
         "domains",

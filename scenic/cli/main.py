@@ -30,6 +30,11 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
         "check": ("scenic.cli.check", "check", "Report mistakes in programs, without running them."),
         "format": ("scenic.cli.format", "format_command", "Format programs in the usual style."),
         "migrate": ("scenic.cli.migrate", "migrate", "Convert programs of Scenic 2 to Scenic 3."),
+        "try": (
+            "scenic.cli.try_command",
+            "try_command",
+            "Report the phase that programs reach, with all diagnostics.",
+        ),
         "explain": ("scenic.cli.explain", "explain", "Explain a diagnostic by its code."),
         "playground": ("scenic.cli.playground", "playground", "Write and sample programs in the browser."),
         "lsp": ("scenic.cli.lsp", "lsp", "Start the language server, for editors."),
@@ -61,7 +66,7 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
 
 _GROUPS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
     {
-        "Write programs": ("new", "check", "format", "migrate", "explain", "playground", "lsp"),
+        "Write programs": ("new", "check", "try", "format", "migrate", "explain", "playground", "lsp"),
         "Make scenes": ("sample", "analyze", "view", "dataset", "map"),
         "Run simulations": ("simulate", "falsify", "replay"),
         "Inspect the tools": ("doctor", "cache", "completion", "ast", "python"),
