@@ -17,6 +17,7 @@ extensions = [
     "docs._extensions.programs",
     "docs._extensions.declared",
     "docs._extensions.commands",
+    "docs._extensions.for_models",
     "docs._extensions.gallery",
     "docs._extensions.links",
 ]

@@ -37,6 +37,7 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
         ),
         "explain": ("scenic.cli.explain", "explain", "Explain a diagnostic by its code."),
         "playground": ("scenic.cli.playground", "playground", "Write and sample programs in the browser."),
+        "mcp": ("scenic.cli.mcp_command", "mcp_command", "Serve tools for language models (MCP)."),
         "lsp": ("scenic.cli.lsp", "lsp", "Start the language server, for editors."),
         "sample": ("scenic.cli.sample", "sample", "Sample scenes from a program."),
         "analyze": (
@@ -66,7 +67,7 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
 
 _GROUPS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
     {
-        "Write programs": ("new", "check", "try", "format", "migrate", "explain", "playground", "lsp"),
+        "Write programs": ("new", "check", "try", "format", "migrate", "explain", "playground", "lsp", "mcp"),
         "Make scenes": ("sample", "analyze", "view", "dataset", "map"),
         "Run simulations": ("simulate", "falsify", "replay"),
         "Inspect the tools": ("doctor", "cache", "completion", "ast", "python"),

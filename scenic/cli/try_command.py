@@ -53,7 +53,18 @@ EXIT_CODES: Final[Mapping[str, int]] = MappingProxyType(
     default=0,
     help="Simulate N steps of the scene.",
 )
-@click.option("--png", metavar="FILE.png", help="Draw the scene; of several programs, each into this folder.")
+@click.option("--png", metavar="FILE.png", help="Draw the scene; of several, into this folder.")
+@click.option(
+    "-n",
+    "scenes",
+    metavar="N",
+    type=click.IntRange(min=1),
+    default=1,
+    help="Sample N scenes of each program.",
+)
+@click.option(
+    "--moments", metavar="FILE.png", help="With --simulate and one program: draw moments of the simulation."
+)
 @click.option(
     "--candidates",
     metavar="M",
@@ -97,6 +108,8 @@ def try_command(
     mode_2d: bool,
     steps: int,
     png: str | None,
+    scenes: int,
+    moments: str | None,
     candidates: int,
     seconds: float,
     memory: int,
@@ -116,11 +129,13 @@ def try_command(
     files = discover(paths, Configurations(PLAIN)).files
     if form == "object" and len(files) > 1:
         raise click.UsageError("--json prints one object for one program; several need `--json lines`")
+    if moments is not None and (len(files) > 1 or not steps):
+        raise click.UsageError("--moments draws the simulation of one program: give --simulate N")
     limits = Limits(candidates, seconds, memory << 20)
     trials = [
         Trial(
             source.text, source.filename, dict(parameters), model, scenario, mode_2d, seed or 0, steps,
-            None if png is None else _picture(png, source.filename, len(files)), limits,
+            None if png is None else _picture(png, source.filename, len(files)), scenes, moments, limits,
         )
         for source in (_read(file, stdin_filename) for file in files)
     ]  # fmt: skip

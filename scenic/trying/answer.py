@@ -62,7 +62,9 @@ class Trial:
         mode_2d: whether it is compiled in the 2D mode.
         seed: the seed of the scene and of the simulation.
         steps: the steps to simulate; 0 for none.
-        png: a file for a picture of the scene.
+        png: a file for a picture of the scene; of several scenes, a folder.
+        scenes: how many scenes to sample.
+        moments: a file for a picture of moments of the simulation.
         limits: limits of candidates, time and memory.
 
     """
@@ -76,6 +78,8 @@ class Trial:
     seed: int = 0
     steps: int = 0
     png: str | None = None
+    scenes: int = 1
+    moments: str | None = None
     limits: Limits = Limits()
 
 
@@ -224,10 +228,14 @@ def _sample(loaded: "Scenario", trial: Trial, made: _Answer) -> None:
         if isinstance(result, Exhausted):
             made.content["rejections"] = _rejections(result)
             made.diagnostics.append(_not_found(result))
-        else:
-            made.content["scene"] = scene_document(result)
-            if trial.png is not None:
-                _draw(result, trial.png)
+            return
+        document = scene_document(result)
+        if made.content["scene"] is None:
+            made.content["scene"] = document
+        if trial.scenes > 1:
+            made.content.setdefault("scenes", []).append(document)
+        if trial.png is not None:
+            _draw(result, trial.png if trial.scenes == 1 else f"{trial.png}/{result.k:03}.png")
 
 
 def _rejections(missing: "Exhausted") -> dict[str, Any]:
@@ -275,7 +283,27 @@ def _draw(scene: "Scene", path: str) -> None:
     from scenic.formats.png import png
     from scenic.formats.render import SIZE
 
-    write(Path(path), png(scene, SIZE, Outlook()))
+    file = Path(path)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    write(file, png(scene, SIZE, Outlook()))
+
+
+class _Moments:
+    """Draws moments of a simulation when it has run."""
+
+    def __init__(self, path: str) -> None:
+        self._path = path
+
+    def __call__(self, simulation: Any, tape: Any) -> None:
+        from scenic.formats.course_pictures import StatePictures, evenly, sheet
+        from scenic.formats.files import write
+
+        pictures = StatePictures.of_course(simulation, tape)
+        write(Path(self._path), sheet(pictures, evenly(len(pictures), _ON_A_SHEET), (1200, 800)))
+
+
+_ON_A_SHEET: Final = 6
+"""Moments on a picture of a simulation."""
 
 
 def _simulate(loaded: "Scenario", trial: Trial, made: _Answer) -> None:
@@ -284,7 +312,8 @@ def _simulate(loaded: "Scenario", trial: Trial, made: _Answer) -> None:
     running = Running(
         trial.seed, trial.steps, keep_violations=True, tries=5, stuck_after=trial.limits.seconds
     )
-    (row,) = Simulations(loaded, None, running).rows([0], None)
+    watcher = None if trial.moments is None else _Moments(trial.moments)
+    (row,) = Simulations(loaded, None, running, watcher=watcher).rows([0], None)
     if row.error is not None:
         made.diagnostics.append(row.error)
         return

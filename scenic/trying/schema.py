@@ -100,11 +100,12 @@ SCHEMA: Final[Mapping[str, Any]] = {
             "rejections": _or_null(_REJECTIONS),
             "map": _or_null(_MAP),
             "scene": {"type": ["object", "null"], "description": "A scene as in scene.schema.json."},
+            "scenes": _list({"type": "object", "description": "All scenes, if several are wanted."}),
             "simulation": _or_null(_SIMULATION),
             "time": {"type": "object", "additionalProperties": {"type": "number", "minimum": 0}},
             "output": {**_TEXT, "description": "The beginning of what the program printed."},
         },
-        optional=("output",),
+        optional=("output", "scenes"),
     ),
 }
 """The schema of one answer."""

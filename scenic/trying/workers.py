@@ -31,7 +31,7 @@ class _Worker:
     """A process that tries programs one after the other."""
 
     def __init__(self) -> None:
-        context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
+        context: Any = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
         self.connection, there = context.Pipe()
         self.process: BaseProcess = context.Process(target=_serve, args=(there, self.connection), daemon=True)
         self.process.start()

@@ -27,9 +27,8 @@ def map_counts(network: "Network") -> dict[str, int]:
 def map_features(network: "Network") -> dict[str, Any]:
     """Counts, kinds of intersections and maneuvers, speed limits, and examples of lanes with neighbours."""
     junctions = network.intersections
-    speeds = Counter(
-        round(lane.speedLimit, 1) for lane in network.lanes if getattr(lane, "speedLimit", None) is not None
-    )
+    limits = (lane.speedLimit for lane in network.lanes)
+    speeds = Counter(round(limit, 1) for limit in limits if limit is not None)
     maneuvers = Counter(
         maneuver.type.name for junction in junctions for maneuver in junction.maneuvers if maneuver.type
     )

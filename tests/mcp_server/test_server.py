@@ -1,0 +1,188 @@
+"""The MCP server with the official client: every tool, its schema, wrong requests, limits and cancellation."""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("mcp")
+
+import anyio
+import jsonschema
+from mcp import Client, StdioServerParameters
+
+from scenic.mcp_server.programs import LONGEST
+from scenic.mcp_server.server import build_server
+
+TOWN = Path(__file__).parents[2] / "examples" / "driving" / "crossing.xodr"
+READING = {"check", "fix", "format", "explain", "reference", "examples", "map_features"}
+RUNNING = {"try", "sample", "simulate", "analyze"}
+
+
+def session(folder: Path, talk: Callable[[Client], Awaitable[None]], *, run: bool = False) -> None:
+    """A session with a server in this process."""
+
+    async def talking() -> None:
+        async with Client(build_server(str(folder), run=run)) as client:
+            await talk(client)
+
+    anyio.run(talking)
+
+
+def over_stdio(folder: Path) -> StdioServerParameters:
+    command = ["-m", "scenic", "mcp", "--run", "--folder", str(folder)]
+    return StdioServerParameters(command=sys.executable, args=command, cwd=str(folder))
+
+
+def test_tools_that_read(tmp_path: Path) -> None:
+    (tmp_path / "town.xodr").write_bytes(TOWN.read_bytes())
+    calls: dict[str, dict[str, Any]] = {
+        "check": {"text": "ego = nw Object\n"},
+        "fix": {"text": "ego = nw Object\n"},
+        "format": {"text": "ego=new Object\n"},
+        "explain": {"code": "111"},
+        "reference": {"topic": "facing"},
+        "examples": {"query": "visible region"},
+        "map_features": {"map": "town.xodr"},
+    }
+
+    async def talk(client: Client) -> None:
+        tools = {each.name: each for each in (await client.list_tools()).tools}
+        assert set(tools) == READING
+        for name, arguments in calls.items():
+            result = await client.call_tool(name, arguments)
+            assert not result.is_error, (name, result)
+            schema = tools[name].output_schema
+            assert schema is not None
+            jsonschema.validate(result.structured_content, schema)
+            answers[name] = result.structured_content
+
+    answers: dict[str, Any] = {}
+    session(tmp_path, talk)
+    assert [each["code"] for each in answers["check"]["diagnostics"]] == ["SC118"]
+    assert answers["fix"]["text"] == "ego = new Object\n"
+    assert answers["format"] == {"text": "ego = new Object\n", "changed": True}
+    assert "SC111" in answers["explain"]["text"]
+    assert "facing direction" in answers["reference"]["text"]
+    assert any("visible" in each["program"] for each in answers["examples"]["examples"])
+    assert answers["map_features"]["counts"]["intersections"] == 1
+
+
+@pytest.mark.parametrize(
+    ("tool", "arguments", "reason"),
+    [
+        ("check", {"text": "x" * (LONGEST + 1)}, "at most"),
+        ("check", {"text": "x = 1", "filename": "../outside.scenic"}, "outside the folder"),
+        ("check", {}, "text"),
+        ("explain", {"code": "SC000"}, "no diagnostic"),
+        ("reference", {"topic": "specifers"}, "did you mean 'specifiers'"),
+        ("map_features", {"map": "/etc/passwd"}, "outside the folder"),
+        ("map_features", {"map": "none.xodr"}, "no file"),
+        ("try", {"text": "ego = new Object"}, "try"),
+    ],
+)
+def test_wrong_requests(tmp_path: Path, tool: str, arguments: dict[str, Any], reason: str) -> None:
+    async def talk(client: Client) -> None:
+        try:
+            result = await client.call_tool(tool, arguments)
+        except Exception as error:  # noqa: BLE001 - either form is an answer by the protocol
+            said.append(str(error))
+        else:
+            assert result.is_error
+            said.append(str(result.content))
+
+    said: list[str] = []
+    session(tmp_path, talk)
+    assert reason in said[0]
+
+
+def test_resources_and_prompts(tmp_path: Path) -> None:
+    async def talk(client: Client) -> None:
+        resources = (await client.list_resources()).resources
+        page = await client.read_resource(str(resources[0].uri))
+        assert "require" in str(page)
+        assert "Example" in str(await client.read_resource("scenic://diagnostics/SC111"))
+        prompts = {each.name for each in (await client.list_prompts()).prompts}
+        assert prompts == {"write_program", "mend_program", "move_program"}
+        assert "two cars" in str(await client.get_prompt("write_program", {"scene": "two cars"}))
+
+    session(tmp_path, talk)
+
+
+def test_programs_run_over_stdio(tmp_path: Path) -> None:
+    """Pictures, progress, printing programs, cancellation, and no process left behind."""
+    program = "print('{')\nego = new Object at (Range(0, 9), 0)\n"
+    endless = f"import os\nopen({str(tmp_path / 'pid')!r}, 'w').write(str(os.getpid()))\nwhile True: pass\n"
+
+    async def talk() -> None:
+        async with Client(over_stdio(tmp_path)) as client:
+            tools = {each.name: each for each in (await client.list_tools()).tools}
+            assert set(tools) == READING | RUNNING
+            sampled = await client.call_tool(
+                "sample", {"text": program, "n": 2, "picture": True}, progress_callback=progress
+            )
+            assert [each.type for each in sampled.content] == ["text", "image", "image"]
+            answer = sampled.structured_content
+            assert len(answer["scenes"]) == 2
+            assert answer["output"] == "{\n"
+            for name in ("try", "sample", "simulate"):
+                schema = tools[name].output_schema
+                assert schema is not None
+                jsonschema.validate(answer, schema)
+            with anyio.move_on_after(8):
+                await client.call_tool("try", {"text": endless, "seconds": 100})
+            with anyio.fail_after(10):
+                while Path(f"/proc/{(tmp_path / 'pid').read_text()}").exists():
+                    await anyio.sleep(0.1)
+            assert not (await client.call_tool("check", {"text": "ego = new Object\n"})).is_error
+
+    steps: list[float] = []
+
+    async def progress(done: float, _total: float | None, _message: str | None) -> None:
+        steps.append(done)
+
+    anyio.run(talk)
+    assert steps == sorted(steps)
+    assert steps
+
+
+def test_two_calls_at_once(tmp_path: Path) -> None:
+    async def talk(client: Client) -> None:
+        async def ask(number: int) -> None:
+            result = await client.call_tool("check", {"text": f"ego = new Object at name{number}\n"})
+            answers[number] = result.structured_content["diagnostics"][0]["message"]
+
+        async with anyio.create_task_group() as group:
+            for number in range(5):
+                group.start_soon(ask, number)
+
+    answers: dict[int, str] = {}
+    session(tmp_path, talk)
+    assert answers == {number: f"the name `name{number}` is not defined" for number in range(5)}
+
+
+def test_broken_json(tmp_path: Path) -> None:
+    """A line that is not JSON does not end the server."""
+    initialize = {
+        "jsonrpc": "2.0",
+        "id": 1,
+        "method": "initialize",
+        "params": {
+            "protocolVersion": "2025-06-18",
+            "capabilities": {},
+            "clientInfo": {"name": "test", "version": "1"},
+        },
+    }
+    text = "{this is no JSON\n" + json.dumps(initialize) + "\n"
+    command = [sys.executable, "-m", "scenic", "mcp", "--folder", str(tmp_path)]
+    done = subprocess.run(
+        command, input=text, capture_output=True, text=True, timeout=60, cwd=tmp_path, env=dict(os.environ)
+    )
+    answers = [json.loads(line) for line in done.stdout.splitlines()]
+    assert any(each.get("id") == 1 and "result" in each for each in answers)
+    assert done.returncode == 0
