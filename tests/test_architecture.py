@@ -215,7 +215,9 @@ def test_only_commands_and_the_api_call_the_pipeline() -> None:
     joins = [
         module
         for module, names in all_imports().items()
-        if (own := layer(module)) in LAYERS and own not in ("cli", "deep", "trying") and "scenic.pipeline" in names
+        if (own := layer(module)) in LAYERS
+        and own not in ("cli", "deep", "trying")
+        and "scenic.pipeline" in names
     ]
     assert not joins
 

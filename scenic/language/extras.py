@@ -33,6 +33,7 @@ EXTRAS: Final[Mapping[str, Extra]] = MappingProxyType(
             Extra("cluster", "sampling on a Dask cluster", ("distributed",)),
             Extra("openscenario", "OpenSCENARIO files", ("scenariogeneration",)),
             Extra("video", "films of recorded images", ("imageio_ffmpeg",)),
+            Extra("agent", "the server for language models", ("mcp",)),
             Extra("playground", "the playground in the browser", ("websockets",)),
         )
     }

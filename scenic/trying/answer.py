@@ -223,7 +223,9 @@ def _sample(loaded: "Scenario", trial: Trial, made: _Answer) -> None:
     from scenic.runtime.sampling.report import Exhausted
 
     limits = trial.limits
-    results = loaded.stream(1, seed=trial.seed, max_attempts=limits.candidates, time_limit=limits.seconds)
+    results = loaded.stream(
+        trial.scenes, seed=trial.seed, max_attempts=limits.candidates, time_limit=limits.seconds
+    )
     for result in results:
         if isinstance(result, Exhausted):
             made.content["rejections"] = _rejections(result)

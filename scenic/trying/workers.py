@@ -5,6 +5,7 @@ import os
 import signal
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -23,6 +24,8 @@ _GRACE: Final = 5.0
 """Seconds beyond the limit of a trial until its process is ended: it notices the limit itself between candidates."""
 _LONGEST_OUTPUT: Final = 4000
 """Characters of what a program prints that an answer contains."""
+_INTERVAL: Final = 0.5
+"""Seconds between looks for the parent of a process."""
 _FACTOR: Final = 3
 """A trial may take this many times its limit: for loading, sampling and simulating."""
 
@@ -114,6 +117,7 @@ def _serve(connection: Connection, other: Connection) -> None:
     other.close()
     with suppress(OSError):
         os.setsid()
+    threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     home = os.getcwd()
     with tempfile.TemporaryFile() as output:
@@ -132,6 +136,15 @@ def _serve(connection: Connection, other: Connection) -> None:
             output.truncate()
             connection.send(_answered(trial, output))
             os.chdir(home)
+
+
+def _end_with(parent: int) -> None:
+    """End this process, and all that it has started, soon after its parent has ended."""
+    while os.getppid() == parent:
+        time.sleep(_INTERVAL)
+    if hasattr(os, "killpg"):
+        os.killpg(os.getpid(), signal.SIGKILL)
+    os._exit(1)
 
 
 def _answered(trial: Trial, output: IO[bytes]) -> dict[str, Any]:
