@@ -67,7 +67,7 @@ def build_server(folder: str, *, run: bool = False) -> MCPServer:
 async def _answered(question: Callable[[], _Result]) -> _Result:
     """The answer to a question, beside the event loop; `ToolError` for those that have none."""
     try:
-        return await anyio.to_thread.run_sync(question)
+        return cast(_Result, await anyio.to_thread.run_sync(question))
     except RequestError as error:
         raise ToolError(str(error)) from error
 
