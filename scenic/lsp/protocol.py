@@ -32,6 +32,7 @@ from pygls.lsp.server import LanguageServer
 from pygls.protocol import LanguageServerProtocol, lsp_method
 
 from scenic.lsp.capabilities import COMMANDS
+from scenic.lsp.liberal import completed
 
 __all__ = ["Protocol", "Stage", "fault"]
 
@@ -197,7 +198,7 @@ class Protocol(LanguageServerProtocol):
         if kind is None:
             return params
         try:
-            return self._converter.structure(params, kind)
+            return self._converter.structure(completed(method, params), kind)
         except Exception as error:  # noqa: BLE001 - converters raise what they like
             reason = "; ".join(transform_error(error, path="params"))
             raise JsonRpcInvalidParams(f"wrong parameters: {reason}") from None

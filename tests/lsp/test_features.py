@@ -169,7 +169,7 @@ def test_signatures(project: Project) -> None:
     assert signature["label"] == "helper(first, second=1)"
     shown = [signature["label"][slice(*each["label"])] for each in signature["parameters"]]
     assert shown == ["first", "second=1"]
-    assert found["activeParameter"] == 1
+    assert found["activeParameter"] == signature["activeParameter"] == 1
     assert project.ask("signatureHelp", "helper(pl|ace, second=2)")["activeParameter"] == 0
     walk = project.ask("signatureHelp", "Walk(2, distance=|5)")
     assert (walk["signatures"][0]["label"], walk["activeParameter"]) == ("Walk(speed=1, distance=10)", 1)

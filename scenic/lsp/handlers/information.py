@@ -123,8 +123,9 @@ def _signature_help(session: Session, params: types.SignatureHelpParams) -> type
     documentation = None
     if found.documentation:
         documentation = markup(session, found.documentation, f"{path}.documentation_format")
-    signature = types.SignatureInformation(found.label, documentation, parameters)
     active = len(parameters) if found.active is None else found.active
+    # The signature repeats the number: without it, `null` would be sent, which clients read as no parameter.
+    signature = types.SignatureInformation(found.label, documentation, parameters, active)
     return types.SignatureHelp([signature], active_signature=0, active_parameter=active)
 
 
