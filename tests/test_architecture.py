@@ -31,7 +31,7 @@ LAYERS = {
     "playground": {"ide"},
     "templates": set(),
     "deep": {"analysis", "formats", "runtime", "graph", "language", "compiler"},
-    "mcp_server": {"domains", "ide", "language", "compiler", "project"},
+    "mcp_server": {"migration", "domains", "ide", "language", "compiler", "project"},
     "trying": {"batch", "domains", "formats", "runtime", "graph", "language", "compiler", "project"},
     "cli": {
         "templates",

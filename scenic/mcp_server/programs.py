@@ -92,3 +92,13 @@ class Programs:
         except (OSError, ValueError) as error:
             raise RequestError(f"'{filename}' is no OpenDRIVE map: {error}") from error
         return map_features(network)
+
+    def migrate(self, text: str, filename: str) -> dict[str, Any]:
+        """A program of Scenic 2 in Scenic 3, with notes about the changes and about what is left to do."""
+        from scenic.migration.files import convert_text
+
+        converted = convert_text(self.accept(text), self.place(filename))
+        if converted.problem is not None:
+            raise RequestError(converted.problem.message)
+        notes = [{"line": note.line, "rule": note.rule, "message": note.message} for note in converted.notes]
+        return {"text": converted.after, "changed": converted.changes, "notes": notes}

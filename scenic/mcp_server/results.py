@@ -15,6 +15,8 @@ __all__ = [
     "Fixed",
     "Formatted",
     "Label",
+    "Migrated",
+    "Note",
     "Span",
     "Text",
 ]
@@ -87,6 +89,22 @@ class Formatted(TypedDict):
 
     text: str
     changed: bool
+
+
+class Note(TypedDict):
+    """A change that a conversion makes, or leaves to be made by hand."""
+
+    line: int
+    rule: str
+    message: str
+
+
+class Migrated(TypedDict):
+    """A converted program."""
+
+    text: str
+    changed: bool
+    notes: list[Note]
 
 
 class Text(TypedDict):

@@ -27,7 +27,7 @@ from scenic.mcp_server.reference import (
     search_examples,
     similar_topic,
 )
-from scenic.mcp_server.results import Answer, Checked, Examples, Fixed, Formatted, Text
+from scenic.mcp_server.results import Answer, Checked, Examples, Fixed, Formatted, Migrated, Text
 from scenic.mcp_server.running import RunLimitError, run_command
 
 __all__ = ["build_server"]
@@ -87,6 +87,11 @@ def _add_checking(server: MCPServer, programs: Programs) -> None:
     async def format_program(text: str) -> Formatted:
         """Format a program in the usual style. Does not run it."""
         return cast(Formatted, await _answered(lambda: programs.format(text)))
+
+    @server.tool(annotations=_READS)
+    async def migrate(text: str, filename: str = "program.scenic") -> Migrated:
+        """Convert a program of Scenic 2 to Scenic 3, with notes about what is left to do by hand. Does not run it."""
+        return cast(Migrated, await _answered(lambda: programs.migrate(text, filename)))
 
 
 def _add_reference(server: MCPServer, programs: Programs) -> None:

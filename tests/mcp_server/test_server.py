@@ -20,7 +20,7 @@ from scenic.mcp_server.programs import LONGEST
 from scenic.mcp_server.server import build_server
 
 TOWN = Path(__file__).parents[2] / "examples" / "driving" / "crossing.xodr"
-READING = {"check", "fix", "format", "explain", "reference", "examples", "map_features"}
+READING = {"migrate", "check", "fix", "format", "explain", "reference", "examples", "map_features"}
 RUNNING = {"try", "sample", "simulate", "analyze"}
 
 
@@ -46,6 +46,7 @@ def test_tools_that_read(tmp_path: Path) -> None:
         "fix": {"text": "ego = nw Object\n"},
         "format": {"text": "ego=new Object\n"},
         "explain": {"code": "111"},
+        "migrate": {"text": "ego = Object at 3 @ 4, facing 30 deg\n"},
         "reference": {"topic": "facing"},
         "examples": {"query": "visible region"},
         "map_features": {"map": "town.xodr"},
