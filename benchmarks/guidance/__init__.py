@@ -129,6 +129,11 @@ def judge(mistakes: Sequence[Mistake]) -> Iterator[Judgement]:
 def _judge_repair(mistake: Mistake, repaired: str, diagnostics: Sequence[Diagnostic]) -> Repair:
     if repaired == mistake.text:
         return "none"
-    if any(repaired.split() == text.split() for text in mistake.meant):
+    if any(_bare(repaired) == _bare(text) for text in mistake.meant):
         return "meant"
     return "wrong" if diagnostics else "other"
+
+
+def _bare(text: str) -> list[tuple[int, str]]:
+    """The indentation of each line, and its text without blanks."""
+    return [(len(line) - len(line.lstrip()), "".join(line.split())) for line in text.splitlines()]

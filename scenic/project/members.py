@@ -65,7 +65,7 @@ def member_findings(
     module = Module(source, tree, resolution, is_scenic=True, broken=False)
     stored = {node.attr for node, _ in resolution.nodes(ast.Attribute) if isinstance(node.ctx, ast.Store)}
     stored |= {node.property for node, _ in resolution.nodes(scenic.SpecifierPhrase) if node.property}
-    seen: dict[tuple[str, str], tuple[str, str] | None] = {}
+    seen: dict[tuple[str, str], tuple[str, str | None, str] | None] = {}
     for node, _ in resolution.nodes(ast.Attribute):
         if node.attr in stored or node.attr.startswith("_"):
             continue
@@ -79,7 +79,7 @@ def member_findings(
             seen[key] = _slip(project, module, node)
         found = seen[key]
         if found is not None:
-            kind, meant = found
+            kind, meant, advice = found
             whole = source.span(node)
             place = Span(
                 whole.end_line, max(0, whole.end_column - len(node.attr)), whole.end_line, whole.end_column
@@ -90,8 +90,8 @@ def member_findings(
                 place,
                 Severity.WARNING,
                 source.filename,
-                f"did you mean `{meant}`?",
-                fix=Fix(f"Change to `{meant}`", (Edit(place, meant),)),
+                advice,
+                fix=Fix(f"Change to `{meant}`", (Edit(place, meant),)) if meant else None,
             )
 
 
@@ -165,14 +165,18 @@ def _kind_of_class(project: Project, symbol: Symbol | None) -> str | None:
     return None
 
 
-def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, str] | None:
-    """The class of the owner of an attribute and the name that was meant, if the class has no such attribute."""
+def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, str | None, str] | None:
+    """The class of the owner of an attribute, the name that was meant if it is known, and advice; if the class has no such attribute."""
     symbol = class_of(project, module, node.value)
     element = class_of_elements(project, module, node.value) if symbol is None else None
     if element is not None and node.attr not in _OF_SEQUENCES:
         known = class_of_symbol(project, element)
         meant = None if known is None else nearest(node.attr, {each.name for each in known.members})
-        return None if meant is None else (f"sequence of {element.name}", f"[0].{meant}")
+        return (
+            None
+            if meant is None
+            else (f"sequence of {element.name}", f"[0].{meant}", f"did you mean `[0].{meant}`?")
+        )
     if symbol is None:
         # An attribute of the class itself, such as a member of an enumeration.
         symbol = meaning(project, module, node.value) if isinstance(node.value, ast.Name) else None
@@ -183,4 +187,11 @@ def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, s
         return None
     names = {each.name for each in cls.members if not each.name.startswith("_")}
     meant = nearest(node.attr, names) or related(node.attr, names)
-    return None if meant is None else (symbol.name, meant)
+    if meant is None and not (cls.complete and names):
+        return None
+    shown = ", ".join(f"`{each}`" for each in sorted(names)[:_SHOWN])
+    return symbol.name, meant, f"did you mean `{meant}`?" if meant else f"it has {shown}, ..."
+
+
+_SHOWN: Final = 8
+"""Attributes that are listed where none is near."""

@@ -174,6 +174,7 @@ def _arguments(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Di
                 fix=context.renaming(place, keyword.arg, suggestion) if suggestion else None,
             )
     if isinstance(callee.definition, scenic.BehaviorDef) and not spread:
+        yield from _apart(node, positional, callee, context)
         yield from _unlike_default(node, callee, context)
     if wrong or spread or spread_names:
         return
@@ -193,6 +194,8 @@ _VECTORS: Final = frozenset(
     {"direction", "location", "offset", "place", "point", "pos", "position", "target", "vector", "velocity"}
 )
 """Names of parameters that take a vector."""
+_PLACES: Final = frozenset({"location", "place", "point", "pos", "position"})
+"""Those that can mean nothing else."""
 
 
 def _one_vector(node: ast.Call, title: str, parameter: str, callee: _Callee, context: Context) -> Diagnostic:
@@ -212,6 +215,17 @@ def _one_vector(node: ast.Call, title: str, parameter: str, callee: _Callee, con
         labels=callee.labels(context),
         fix=fix,
     )
+
+
+def _apart(
+    node: ast.Call, positional: list[ast.arg], callee: _Callee, context: Context
+) -> Iterator[Diagnostic]:
+    """SC211: ``WalkTo(3, 4)``, whose first parameter is a place."""
+    if len(node.args) not in (2, 3) or not positional or positional[0].arg not in _PLACES:
+        return
+    kinds = [context.kind_of(each) for each in node.args]
+    if all(kind is not None and kind.name == "number" for kind in kinds):
+        yield _one_vector(node, callee.title, positional[0].arg, callee, context)
 
 
 _NOT_NUMBERS: Final = frozenset(

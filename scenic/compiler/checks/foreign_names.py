@@ -1,16 +1,20 @@
 """Undefined names that have a meaning elsewhere: in other languages, in world models, or as a misspelt keyword."""
 
 import ast
+import re
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Final, NamedTuple
 
 from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.unfinished import text_before
 from scenic.compiler.generated import HARD_KEYWORDS, SOFT_KEYWORDS
 from scenic.compiler.mistakes.words import SYNONYMS
 from scenic.compiler.parser import parse
-from scenic.language.diagnostics import Fix
+from scenic.language.diagnostics import Edit, Fix
 from scenic.language.libraries import DRIVING_CLASSES, DRIVING_NAMES
+from scenic.language.properties import properties_of
+from scenic.language.spans import Span
 from scenic.language.spelling import distance
 
 __all__ = ["Meant", "keyword_meant", "known_elsewhere"]
@@ -71,6 +75,7 @@ _MODULES: Final[Mapping[str, str]] = MappingProxyType(
 _KEYWORDS: Final = tuple(
     word for table in (HARD_KEYWORDS, SOFT_KEYWORDS) for word in table if len(word) > 2 and word.islower()
 )
+_FOLLOWS_OBJECT: Final = re.compile(r"\bnew\b.*,$")
 _LONGEST: Final = 300
 """Lines with more characters are not tried with a keyword."""
 
@@ -78,6 +83,11 @@ _LONGEST: Final = 300
 def known_elsewhere(node: ast.Name, context: Context) -> Meant | None:
     """The meaning of an undefined name in other languages, in Python's library or in world models."""
     name = node.id
+    if name in properties_of("Object") and _FOLLOWS_OBJECT.search(text_before(context, node)):
+        start = context.source.span(node)
+        place = Span(start.line, start.column, start.line, start.column)
+        fix = Fix("Insert `with`", (Edit(place, "with "),))
+        return Meant(f"write `with {name} ...`: a property is set by `with`", fix)
     if name in DRIVING_NAMES:
         what = f"new {name}" if _is_alone(node, context) and name in DRIVING_CLASSES else name
         return Meant(

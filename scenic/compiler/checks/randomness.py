@@ -146,10 +146,12 @@ def _is_passed(node: ast.Call, scope: Scope, context: Context) -> Iterator[Diagn
     random = {name for name, value in given.items() if is_random(value, context)}
     if not random or not _is_asked_now(node, scope, context):
         return
+    stored = [
+        part for part in walk(function) if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
+    ]
     for part in walk(function):
-        if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store):
-            random.discard(part.id)
-    for part in walk(function):
+        if isinstance(part, ast.If | ast.While | ast.IfExp):
+            random.difference_update(each.id for each in stored if each.lineno < part.lineno)
         if not isinstance(part, ast.If | ast.While | ast.IfExp) or not isinstance(part.test, ast.Compare):
             continue
         sides = [part.test.left, *part.test.comparators]

@@ -107,7 +107,7 @@ def _coordinates(node: scenic.Operation, context: Context) -> Iterator[Diagnosti
 
 
 _NO_COORDINATES: Final = frozenset(
-    {"dictionary", "list", "object", "oriented point", "point", "region", "text", "tuple", "vector"}
+    {"dictionary", "list", "object", "oriented point", "point", "region", "tuple", "vector"}
 )
 
 

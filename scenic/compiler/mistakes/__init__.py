@@ -38,6 +38,7 @@ RULES: Final[tuple[Rule, ...]] = (
     # Forms that nothing else looks like.
     python.replacement_field,
     elsewhere.comment,
+    elsewhere.block_comment,
     elsewhere.else_if,
     elsewhere.unit,
     dialects.braces,

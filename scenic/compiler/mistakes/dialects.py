@@ -57,13 +57,16 @@ def setting_of_property(at: Situation) -> Problem | None:
     first = at.token - 1
     if not at.is_name(first) or at.tokens.kinds[first] in SPECIFIER_KINDS:
         return None
+    if at.is_plain_name(at.token) and at.word(at.token - 2) == "new" and not sign:
+        first = at.token
     makes = [index for index in range(at.first, first) if at.word(index) in ("new", "override")]
     begins = at.word(first - 1) == "," or at.word(first - 2) == "new" or first == at.first
     if not begins or not (makes or at.context() == "specifiers"):
         return None
     name = at.word(first)
     specifier = _OWN_SPECIFIERS.get(name)
-    change = Change(first, at.token + sign, ("with", name) if specifier is None else (specifier,))
+    end = first + 1 if first == at.token else at.token + sign
+    change = Change(first, end, ("with", name) if specifier is None else (specifier,))
     if not at.repairs(change):
         return None
     meant = f"with {name} ..." if specifier is None else f"{specifier} ..."
@@ -137,20 +140,30 @@ def duration_of_action(at: Situation) -> Problem | None:
 def bound_of_condition(at: Situation) -> Problem | None:
     """``require always c for 5 seconds``, ``require eventually within 5 seconds c``."""
     first = at.word(at.first)
-    temporal = any(
-        at.word(index) in ("always", "eventually", "until", "next") for index in range(at.first + 1, at.token)
-    )
+    temporal = any(at.word(index) in _TEMPORAL for index in range(at.first + 1, at.token))
     if first != "require" or not temporal:
         return None
+    bracket = next(
+        (i for i in range(at.first, at.token) if at.word(i) in _TEMPORAL and at.word(i + 1) == "["), None
+    )
+    if bracket is not None:
+        return _no_bound(at, bracket + 1)
     word = at.found if at.found in ("for", "within", "after", "during", "in") else at.before
     if word not in ("for", "within", "after", "during", "in", "[", "until"):
         return None
     if not any(at.word(index) in ("seconds", "steps", "s", "]", "sec") for index in range(at.token, at.end)):
         return None
     place = at.token if word == at.found else at.token - 1
+    return _no_bound(at, place)
+
+
+_TEMPORAL: Final = frozenset({"always", "eventually", "next", "until"})
+
+
+def _no_bound(at: Situation, token: int) -> Problem:
     return at.problem(
         "SC117",
-        at.place(place),
+        at.place(token),
         "temporal operators have no time bound: a condition is watched as long as the simulation lasts",
         "leave the bound out, and bound the simulation: `terminate after 5 seconds`; for a bound of this condition "
         "alone write a monitor that counts steps",

@@ -10,6 +10,7 @@ from scenic.compiler.tokens import NUMBER
 
 __all__ = [
     "OTHER_WORDS",
+    "block_comment",
     "comment",
     "declaration",
     "else_if",
@@ -132,6 +133,30 @@ def comment(at: Situation) -> Problem | None:
         "a comment begins with `#`, not with `//`",
         "write `#`",
         fix=("Write `#`", ((at.place(first), "#"),)),
+    )
+
+
+def block_comment(at: Situation) -> Problem | None:
+    """``x = 3 /* a note */``."""
+    first = next(
+        (
+            index
+            for index in range(at.first, min(at.token, at.end - 1) + 1)
+            if at.word(index) == "/" and at.word(index + 1) in ("*", "**") and at.adjacent(index)
+        ),
+        None,
+    )
+    if first is None or (first > at.first and not at.repairs(Change(first, at.end, ()))):
+        return None
+    closed = at.word(at.end - 1) == "/" and at.word(at.end - 2) in ("*", "**")
+    opening = (*at.place(first)[:2], *at.place(first + 1)[2:])
+    closing = (*at.gap(at.end - 2)[:2], *at.place(at.end - 1)[2:])
+    return Problem(
+        "SC129",
+        opening,
+        "a comment begins with `#` and ends with its line; `/*` begins none",
+        "write `#`, and leave `*/` out",
+        fix=("Write `#`", ((opening, "#"), (closing, ""))) if closed else None,
     )
 
 
