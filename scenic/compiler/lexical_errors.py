@@ -198,6 +198,9 @@ def invalid_character(character: str, span: Span) -> Diagnostic:
         advice = "use the plain quotes `\"` or `'`"
     elif character == "!":
         advice = "write `not` or `!=`"
+    elif character == "°":
+        fix = Fix("Write `deg`", (Edit(span, " deg"),))
+        return Diagnostic("SC100", message, span, help="write `deg` after a number of degrees", fix=fix)
     elif character in "−–—":
         advice = "use the plain hyphen `-`"
     elif character.isspace():

@@ -253,6 +253,7 @@ def _contained(
 
 def _arithmetic(node: ast.BinOp, scope: Scope, context: Context) -> Iterator[Diagnostic]:
     """``ego.width + "3"``, ``ego.position + 3``."""
+    yield from _counted(node, scope, context)
     if not isinstance(node.op, ast.Add | ast.Sub | ast.Div):
         return
     kinds = context.kind_of(node.left), context.kind_of(node.right)
@@ -276,6 +277,22 @@ def _arithmetic(node: ast.BinOp, scope: Scope, context: Context) -> Iterator[Dia
             node,
             "a vector is moved by a vector: write `position + (x, y)`, or `position offset by (x, y)`",
         )
+
+
+def _counted(node: ast.BinOp, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    """SC404: ``2 * range(0, 3)``."""
+    for side in (node.left, node.right):
+        if not isinstance(side, ast.Call) or context.provided(side.func) != "range":
+            continue
+        text = context.text(side)
+        if text is not None and not may_be_meant(node, scope, context):
+            yield context.error(
+                "SC404",
+                "`range` counts: its result is no number",
+                side,
+                f"a random number between two bounds is `Range{text[len('range') :]}`",
+                fix=context.renaming(side.func, "range", "Range"),
+            )
 
 
 _UNLIKE: Final = (

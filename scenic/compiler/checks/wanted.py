@@ -31,7 +31,7 @@ def wrong_kinds(
         message = f"{title}: a vector has 2 or 3 coordinates, not {kind.size}"
     else:
         message = f"{title}: expected {noun}, not {kind.phrase}"
-    ranges = [each for each in getattr(value, "elts", ()) if isinstance(each, ast.Call)]
+    ranges = [each for each in (value, *getattr(value, "elts", ())) if isinstance(each, ast.Call)]
     counted = next((each for each in ranges if context.provided(each.func) == "range"), None)
     if counted is not None and (text := context.text(counted)) is not None:
         yield context.error(
