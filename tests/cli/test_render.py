@@ -1,6 +1,8 @@
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import jsonschema
 import pytest
@@ -265,3 +267,22 @@ def test_any_text_in_any_format(text: str, filename: str) -> None:
     assert json.loads(render("json", report))["diagnostics"][0]["message"] == text
     assert render("github", report).count("\n") == 1
     check_structure(sarif(diagnostic))
+
+
+def test_gitlab() -> None:
+    moved = replace(ODD, span=Span(7, 0, 7, 1))
+    first, second, third = json.loads(render("gitlab", Report((ODD, moved, NOTED))))
+    assert first["check_name"] == ODD.code
+    assert first["location"]["path"] == ODD.filename
+    assert first["fingerprint"] != second["fingerprint"]
+    assert third["severity"] in ("info", "minor", "major")
+    again, *_ = json.loads(render("gitlab", Report((moved,))))
+    assert again["fingerprint"] == first["fingerprint"]
+
+
+def test_junit() -> None:
+    suite = ElementTree.fromstring(render("junit", Report((ODD, NOTED))))[0]
+    assert suite.get("tests") == "2"
+    assert [each.get("classname") for each in suite] == [f"scenic.{ODD.code}", f"scenic.{NOTED.code}"]
+    empty = ElementTree.fromstring(render("junit", Report(())))[0]
+    assert (empty.get("failures"), len(empty)) == ("0", 1)

@@ -16,6 +16,8 @@ FORMATS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
         "text": ("scenic.cli.render.text_format", "render_report"),
         "json": ("scenic.cli.render.json_format", "render_json"),
         "sarif": ("scenic.cli.render.sarif_format", "render_sarif"),
+        "gitlab": ("scenic.cli.render.gitlab_format", "render_gitlab"),
+        "junit": ("scenic.cli.render.junit_format", "render_junit"),
         "github": ("scenic.cli.render.github_format", "render_github"),
     }
 )
