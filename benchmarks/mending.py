@@ -116,7 +116,7 @@ def _edited(text: str, diagnostics: list[dict[str, Any]]) -> str:
 
 
 async def _mend(client: Any, text: str, mode_2d: bool) -> tuple[bool, int, dict[str, Any]]:
-    """Whether a program samples in the end, the number of rounds, and the last answer."""
+    """Follow the answers; return whether the program samples in the end, the number of rounds, and the last answer."""
     answer: dict[str, Any] = {}
     for number in range(_ROUNDS):
         checked = (await client.call_tool("check", {"text": text})).structured_content

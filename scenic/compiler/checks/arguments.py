@@ -195,7 +195,7 @@ _VECTORS: Final = frozenset(
 )
 """Names of parameters that take a vector."""
 _PLACES: Final = frozenset({"location", "place", "point", "pos", "position"})
-"""Those that can mean nothing else."""
+"""Names of parameters that always mean a place."""
 
 
 def _one_vector(node: ast.Call, title: str, parameter: str, callee: _Callee, context: Context) -> Diagnostic:
