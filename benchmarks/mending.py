@@ -177,7 +177,7 @@ def main() -> None:
 
     folder = Path(tempfile.mkdtemp(prefix="scenic-mending-"))
     for source in (ROOT / "examples").rglob("*"):
-        if source.suffix in (".xodr", ".obj") and source.is_file():
+        if source.suffix in (".xodr", ".obj", ".py") and source.is_file():
             (folder / source.name).write_bytes(source.read_bytes())
     for name in ("meshes", "driving"):
         (ROOT / "examples" / name).exists()
