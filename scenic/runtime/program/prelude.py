@@ -246,6 +246,10 @@ class Prelude(Symbolic, Dynamics):
         if isinstance(instance, Object):
             self._program.objects.append(instance)
         self._program.places[id(instance)] = (here(), self._module.filename)
+        assembled = getattr(cls, "_assembled", None)
+        if assembled is not None:
+            # The class makes further objects, which belong to this one.
+            assembled(instance)
         return instance
 
     def property(

@@ -361,6 +361,10 @@ def _collisions(program: Program) -> list[Check]:
     fixed = np.array([all(node.is_constant for node in item.all) for item in nodes], dtype=np.bool_)
     first, second = np.triu_indices(len(objects), 1)
     wanted = ~(never[first] | never[second])
+    if (assemblies := [item.__dict__.get("_assembly") for item in objects]).count(None) < len(objects):
+        # The parts of one thing touch each other at their joints.
+        owners = np.array([-1 if owner is None else id(owner) for owner in assemblies])
+        wanted &= (owners[first] != owners[second]) | (owners[first] == -1)
     settled = fixed[first] & fixed[second]
     _check_fixed(program, nodes, np.stack([first, second], axis=1)[wanted & settled])
     pairs = np.stack([first, second], axis=1)[wanted & ~settled]

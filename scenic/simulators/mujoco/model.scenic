@@ -1,6 +1,7 @@
 """World model of the MuJoCo simulator: kinds of bodies, and the actions that they take."""
 
 from scenic.simulators.mujoco import *
+from scenic.simulators.mujoco.articulated import assemble, base_shape, frame_of, link_of
 
 simulator MujocoSimulator()
 
@@ -17,6 +18,34 @@ class Fixture:
     dynamics: 'static'
     friction: 1
     collides: True
+
+class Link(Body):
+    """A part of an `Articulated`, which makes it."""
+    dynamics: 'link'
+    linkName: None
+
+class Articulated(Body):
+    """A thing with joints, as an MJCF or URDF file describes it: its base, which stands still, and its links.
+
+    `joints` are values by name, radians or metres, which may be random; the others are as in the file.
+    """
+    dynamics: 'articulated'
+    description: None
+    joints: {}
+    jointValues: {}
+    links: {}
+    shape: base_shape(self.description)
+
+    def _assembled(self):
+        assemble(self, Link)
+
+    def link(self, name):
+        """The object that is a link."""
+        return link_of(self, name)
+
+    def frame(self, name):
+        """The frame of a body or site, which follows from the joints, as an oriented point."""
+        return frame_of(self, name)
 
 class Robot(Body):
     """Drives on two wheels, whose speeds `SetWheelSpeeds` sets."""

@@ -1,0 +1,201 @@
+"""Objects with joints: a base that a program makes, and its links, which are objects whose poses follow from the joints."""
+
+import os
+import sys
+from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.dataclass import dataclass
+from scenic.graph import quaternions
+from scenic.graph.kinds import Column, Kind
+from scenic.graph.operation import Call, Operation, always
+from scenic.language.errors import ScenicTypeError
+from scenic.runtime.ground.context import current, here
+from scenic.runtime.instances.objects import OrientedPoint
+from scenic.runtime.program.veneer import At, With, new
+from scenic.runtime.shapes.shapes import BoxShape, MeshShape, Shape
+from scenic.runtime.values.generic import support_of
+from scenic.runtime.values.values import apply, operate, to_scalar
+from scenic.simulators.mujoco.descriptions import BASE, Description, DescriptionError, Link, read_description
+from scenic.simulators.mujoco.kinematics import Floats, Segment, forward
+
+__all__ = ["assemble", "base_shape", "description_of", "frame_of", "joint_values", "link_of"]
+
+_MARK: Final = 0.02
+"""Size of the box that stands for a base without geoms, metres."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Frame:
+    """A frame at the end of a chain: the payload of the operations on joint values.
+
+    ``offset`` is a point in the frame, ``(3,)``, and ``origin`` the place of the base's middle in the description, ``(3,)``, metres.
+    """
+
+    chain: tuple[Segment, ...]
+    offset: Floats
+    origin: Floats
+
+    def evaluate(self, values: tuple[Column, ...]) -> tuple[Floats, Floats]:
+        """Positions ``(n, 3)`` of the point in the base object's frame, and orientations ``(n, 4)`` in it."""
+        lanes = [np.atleast_1d(value) for value in np.broadcast_arrays(*values)] if values else []
+        position, turn = forward(self.chain, lanes)
+        return position + quaternions.rotate(turn, self.offset) - self.origin, turn
+
+
+def _place(call: Call, *values: Column) -> Column:
+    return call.payload.evaluate(values)[0]  # type: ignore[no-any-return] # an array
+
+
+def _turn(call: Call, *values: Column) -> Column:
+    return call.payload.evaluate(values)[1]  # type: ignore[no-any-return] # an array
+
+
+_PLACE: Final = Operation("place in a chain", always(Kind.VECTOR), _place, "A point on a link, from the joints of its chain.")
+_TURN: Final = Operation(
+    "orientation in a chain", always(Kind.ORIENTATION), _turn, "The orientation of a link, from the joints of its chain."
+)
+
+
+def description_of(path: Any) -> Description:
+    """The description at a path, which starts from the folder of the program; raises `DescriptionError`."""
+    if not isinstance(path, str | os.PathLike):
+        raise ScenicTypeError(
+            f"`description` needs the path of an MJCF or URDF file, not {path!r}",
+            span=here(),
+            help="for example: with description 'arm.xml'",
+        )
+    context = current.get()
+    name = None if context is None else context.file()
+    # While a program runs, its folder is the first on Python's path.
+    folders = [Path(sys.path[0]), *([] if name is None else [Path(name).parent]), Path()]
+    found = next((folder / path for folder in folders if (folder / path).is_file()), folders[0] / path)
+    return read_description(found)
+
+
+def base_shape(path: Any) -> Shape:
+    """The shape of the part of a description that does not move."""
+    return _formed(description_of(path).links[0])[0]
+
+
+@lru_cache(maxsize=1024)
+def _formed(link: Link) -> tuple[Shape, Floats]:
+    """The shape of a link, and the middle of its box in its frame ``(3,)``, metres; of the base without geoms a small box."""
+    if link.mesh is None:
+        return BoxShape((_MARK, _MARK, _MARK)), np.zeros(3)
+    vertices = link.mesh.vertices
+    return MeshShape(link.mesh), (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+
+
+def joint_values(description: Description, given: Any) -> dict[str, Any]:
+    """Values of all joints of a description: those given, else their home values.
+
+    Raises:
+        DescriptionError: there is no joint of a name, or a value is outside its limits.
+        ScenicTypeError: ``given`` is not a mapping of names to numbers.
+
+    """
+    if not isinstance(given, Mapping):
+        raise ScenicTypeError(
+            f"`joints` needs the values of joints by their names, not {given!r}",
+            span=here(),
+            help="for example: with joints {'elbow': Range(0, 90) deg}",
+        )
+    values: dict[str, Any] = {}
+    for name, value in given.items():
+        joint = description.joint(name)
+        number = to_scalar(value, f"the joint {name!r}")
+        low, high = (number, number) if isinstance(number, int | float) else support_of(number)
+        slack = 1e-9
+        for bound, is_outside in ((low, low is not None and low < joint.low - slack), (high, high is not None and high > joint.high + slack)):
+            if is_outside:
+                raise DescriptionError(
+                    f"the joint {name!r} goes from {joint.low:.6g} to {joint.high:.6g} and cannot be {bound:.6g}",
+                    help="angles are in radians (write `30 deg`), lengths in metres",
+                )
+        values[name] = number
+    for name, joint in description.joints.items():
+        values.setdefault(name, min(max(joint.home, joint.low), joint.high))
+    return values
+
+
+def assemble(thing: Any, part: type[Any]) -> None:
+    """Make the links of an object with joints, which has just been made, as objects of the class ``part``."""
+    try:
+        description = description_of(thing.description)
+        values = joint_values(description, thing.joints)
+    except DescriptionError as error:
+        raise error.at((here(), None)) from error.__cause__
+    thing.__dict__["description"] = str(description.path)
+    thing.__dict__["jointValues"] = values
+    thing.__dict__["_assembly"] = thing
+    origin = _formed(description.links[0])[1]
+    links: dict[str, Any] = {BASE: thing}
+    for link in description.links[1:]:
+        if link.mesh is None:
+            continue
+        shape, middle = _formed(link)
+        position, orientation = _pose(thing, values, link.chain, middle, origin)
+        made = new(
+            part,
+            [
+                At(position),
+                With("parentOrientation", orientation),
+                With("shape", shape),
+                With("linkName", link.name),
+                With("color", link.color[:3]),
+                With("density", thing.density),
+            ],
+        )
+        made.__dict__["_assembly"] = thing
+        links[link.name] = made
+    thing.__dict__["links"] = links
+
+
+def _pose(thing: Any, values: Mapping[str, Any], chain: tuple[Segment, ...], point: Floats, origin: Floats) -> tuple[Any, Any]:
+    """The place of a point of a frame, and the frame's orientation, in the world."""
+    frame = _Frame(chain, point, origin)
+    joints = [values[joint.name] for segment in chain for joint in segment.joints]
+    if joints:
+        place, turn = apply(_PLACE, *joints, payload=frame), apply(_TURN, *joints, payload=frame)
+    else:
+        place, turn = apply(_PLACE, 0.0, payload=_Still(frame)), apply(_TURN, 0.0, payload=_Still(frame))
+    position = operate("add", thing.position, operate("rotate", thing.orientation, place))
+    return position, operate("compose", thing.orientation, turn)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Still:
+    """A frame that no joint moves."""
+
+    frame: _Frame
+
+    def evaluate(self, _values: tuple[Column, ...]) -> tuple[Floats, Floats]:
+        """The same as of a `_Frame`."""
+        return self.frame.evaluate(())
+
+
+def frame_of(thing: Any, name: str) -> Any:
+    """The frame of a body or a site of an object with joints, as an oriented point."""
+    description = description_of(thing.description)
+    chain = description.frame(name)
+    origin = _formed(description.links[0])[1]
+    position, orientation = _pose(thing, thing.jointValues, chain, np.zeros(3), origin)
+    return new(OrientedPoint, [At(position), With("parentOrientation", orientation)])
+
+
+def link_of(thing: Any, name: str) -> Any:
+    """The object that is a link of an object with joints; raises `DescriptionError` if there is none of the name."""
+    if name not in thing.links:
+        from scenic.language.spelling import nearest
+
+        meant = nearest(name, thing.links)
+        raise DescriptionError(
+            f"there is no link {name!r}",
+            help=f"did you mean {meant!r}?" if meant else f"its links are {', '.join(thing.links)}",
+        ).at((here(), None))
+    return thing.links[name]
