@@ -171,7 +171,8 @@ def _solid(scene: Scene, number: int, thing: SceneObject, name: str, folder: Pat
         quaternion=quaternion_of(thing),
         size=size,
         form=_form(thing, size),
-        is_static=thing.properties.get("dynamics", "point") == "static",
+        # Things with joints are written as they stand.
+        is_static=thing.properties.get("dynamics", "point") in ("static", "articulated", "link"),
         inertia=inertia,
         friction=friction,
         restitution=restitution,

@@ -4,7 +4,16 @@ A program takes the names from here (``from scenic.simulators.mujoco import *``)
 """
 
 from scenic.simulators.commands import Fly, SetAcceleration, SetVelocity, SetWheelSpeeds
-from scenic.simulators.mujoco.actions import ApplyForce, Grasp, Release
+from scenic.simulators.mujoco.actions import (
+    ApplyForce,
+    Grasp,
+    MoveTo,
+    Release,
+    SetGripper,
+    SetJointPositions,
+    SetJointTorques,
+    SetJointVelocities,
+)
 from scenic.simulators.mujoco.simulation import MujocoSimulation
 from scenic.simulators.mujoco.simulator import MujocoSimulator
 
@@ -12,10 +21,15 @@ __all__ = [
     "ApplyForce",
     "Fly",
     "Grasp",
+    "MoveTo",
     "MujocoSimulation",
     "MujocoSimulator",
     "Release",
     "SetAcceleration",
+    "SetGripper",
+    "SetJointPositions",
+    "SetJointTorques",
+    "SetJointVelocities",
     "SetVelocity",
     "SetWheelSpeeds",
 ]

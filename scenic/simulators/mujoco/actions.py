@@ -3,6 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
+from scenic.language.errors import ScenicTypeError
 from scenic.language.types import OBJECT
 from scenic.runtime.instances.objects import Object
 from scenic.runtime.values.describing import wrong_type
@@ -10,7 +13,16 @@ from scenic.runtime.values.values import to_vector
 from scenic.simulators.actions import Action
 from scenic.simulators.commands import Command, model_of
 
-__all__ = ["ApplyForce", "Grasp", "Release"]
+__all__ = [
+    "ApplyForce",
+    "Grasp",
+    "MoveTo",
+    "Release",
+    "SetGripper",
+    "SetJointPositions",
+    "SetJointTorques",
+    "SetJointVelocities",
+]
 
 
 class ApplyForce(Command):
@@ -69,3 +81,101 @@ class Release(_Grip):
 
     def __repr__(self) -> str:
         return "Release()"
+
+
+class _JointAction(Action):
+    """An action for things with joints.
+
+    Args:
+        values: numbers by the names of joints.
+
+    """
+
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        if not isinstance(values, Mapping):
+            raise ScenicTypeError(
+                f"{type(self).__name__} needs numbers by the names of joints, not {values!r}",
+                help=f"for example: {type(self).__name__}({{'elbow': 0.5}})",
+            )
+        self.values = {str(name): float(value) for name, value in values.items()}
+
+    def canBeTakenBy(self, agent: Any) -> bool:
+        """Return whether the agent has joints."""
+        return model_of(agent) == "articulated"
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.values})"
+
+
+class SetJointPositions(_JointAction):
+    """Move joints to values (radians or metres) at the agent's ``jointSpeed``."""
+
+    def applyTo(self, agent: Any, simulation: Any) -> None:
+        """Set the targets of the servos."""
+        simulation.jointed(agent).aim(self.values)
+
+
+class SetJointVelocities(_JointAction):
+    """Move joints at speeds (radians or metres per second) until the next action on them."""
+
+    def applyTo(self, agent: Any, simulation: Any) -> None:
+        """Let the targets of the servos move."""
+        simulation.jointed(agent).run(self.values)
+
+
+class SetJointTorques(_JointAction):
+    """Let torques (newton metres) or forces (newtons) act on joints until the next action on them."""
+
+    def applyTo(self, agent: Any, simulation: Any) -> None:
+        """Apply the torques."""
+        simulation.jointed(agent).push(self.values)
+
+
+class SetGripper(Action):
+    """Open or close a gripper: move all joints of the agent's ``gripper`` to a share of their range, 0 closed, 1 open."""
+
+    def __init__(self, opening: float) -> None:
+        self.opening = min(max(float(opening), 0.0), 1.0)
+
+    def canBeTakenBy(self, agent: Any) -> bool:
+        """Return whether the agent has joints that are its gripper."""
+        return model_of(agent) == "articulated" and bool(agent.gripper)
+
+    def applyTo(self, agent: Any, simulation: Any) -> None:
+        """Set the targets of the gripper's servos."""
+        jointed = simulation.jointed(agent)
+        joints = [jointed.description.joint(name) for name in agent.gripper]
+        jointed.aim({joint.name: joint.low + self.opening * (joint.high - joint.low) for joint in joints})
+
+    def __repr__(self) -> str:
+        return f"SetGripper({self.opening:g})"
+
+
+class MoveTo(Action):
+    """Move a frame of the agent to a place, by inverse kinematics.
+
+    Args:
+        frame: name of a body or site.
+        position: the place, metres.
+        down: whether the frame's Z axis is to point downwards.
+
+    """
+
+    def __init__(self, frame: str, position: Any, down: bool = False) -> None:
+        self.frame = frame
+        self.position = to_vector(position, "MoveTo")
+        self.down = bool(down)
+
+    def canBeTakenBy(self, agent: Any) -> bool:
+        """Return whether the agent has joints."""
+        return model_of(agent) == "articulated"
+
+    def applyTo(self, agent: Any, simulation: Any) -> None:
+        """Set the targets of the servos to the nearest solution."""
+        jointed = simulation.jointed(agent)
+        place = np.array([float(part) for part in self.position])
+        down = np.array([0.0, 0.0, -1.0]) if self.down else None
+        jointed.aim(jointed.solve(self.frame, place, down)[0])
+
+    def __repr__(self) -> str:
+        return f"MoveTo({self.frame!r}, {self.position})"

@@ -23,7 +23,7 @@ from scenic.runtime.values.values import apply, operate, to_scalar
 from scenic.simulators.mujoco.descriptions import BASE, Description, DescriptionError, Link, read_description
 from scenic.simulators.mujoco.kinematics import Floats, Segment, forward
 
-__all__ = ["assemble", "base_shape", "description_of", "frame_of", "joint_values", "link_of"]
+__all__ = ["assemble", "base_shape", "description_of", "frame_of", "joint_values", "link_of", "middle_of", "origin_of"]
 
 _MARK: Final = 0.02
 """Size of the box that stands for a base without geoms, metres."""
@@ -80,6 +80,16 @@ def description_of(path: Any) -> Description:
 def base_shape(path: Any) -> Shape:
     """The shape of the part of a description that does not move."""
     return _formed(description_of(path).links[0])[0]
+
+
+def origin_of(description: Description) -> Floats:
+    """The middle of the base in the description's frame ``(3,)``, metres: where the object is."""
+    return _formed(description.links[0])[1]
+
+
+def middle_of(description: Description, name: str) -> Floats:
+    """The middle of a link's box in the link's frame ``(3,)``, metres: where its object is."""
+    return _formed(next(link for link in description.links if link.name == name))[1]
 
 
 @lru_cache(maxsize=1024)
@@ -147,6 +157,7 @@ def assemble(thing: Any, part: type[Any]) -> None:
                 With("parentOrientation", orientation),
                 With("shape", shape),
                 With("linkName", link.name),
+                With("base", thing),
                 With("color", link.color[:3]),
                 With("density", thing.density),
             ],

@@ -15,11 +15,12 @@ from scenic.language.errors import SimulationCreationError
 from scenic.runtime.geometry.meshes.convex_parts import convex_parts
 from scenic.simulators.cameras import carried
 from scenic.simulators.commands import model_of
+from scenic.simulators.mujoco.jointed import attach
 from scenic.simulators.mujoco.library import library
 
 __all__ = ["MODELS", "Builder", "Part"]
 
-MODELS: Final = ("point", "free", "static", "guided", "differential", "quadrotor")
+MODELS: Final = ("point", "free", "static", "guided", "differential", "quadrotor", "articulated", "link")
 DENSITY: Final = 1000.0
 """Of objects that say neither mass nor density, kilograms per cubic metre: that of water."""
 
@@ -63,8 +64,8 @@ class Part:
 
     @property
     def moves(self) -> bool:
-        """Return whether it is more than a part of the world."""
-        return self.model != "static"
+        """Return whether it is a body that moves freely in the world."""
+        return self.model not in ("static", "articulated", "link")
 
     @property
     def track(self) -> float:
@@ -123,6 +124,11 @@ class Builder:
                 f"MuJoCo has no dynamics {model!r}", help=f"use one of {', '.join(MODELS)}"
             )
         part = Part(thing, "free" if model == "point" else model, f"object {len(self.parts)}", 0.0)
+        if model in ("articulated", "link"):
+            if model == "articulated":
+                attach(self.spec, thing, f"{part.name} ")
+            self.parts.append(part)
+            return part
         body = self.spec.worldbody.add_body(name=part.name, pos=list(thing.position), quat=_quaternion(thing))
         if not part.moves:
             self._form(body, part, {"density": 0.0})

@@ -2,6 +2,7 @@
 
 from scenic.simulators.mujoco import *
 from scenic.simulators.mujoco.articulated import assemble, base_shape, frame_of, link_of
+from scenic.simulators.mujoco.reaching import reaches
 
 simulator MujocoSimulator()
 
@@ -23,16 +24,21 @@ class Link(Body):
     """A part of an `Articulated`, which makes it."""
     dynamics: 'link'
     linkName: None
+    base: None
 
 class Articulated(Body):
     """A thing with joints, as an MJCF or URDF file describes it: its base, which stands still, and its links.
 
-    `joints` are values by name, radians or metres, which may be random; the others are as in the file.
+    `joints` are values by name, radians or metres, which may be random; the others are as in the file. Servos move joints at
+    `jointSpeed` (radians per second, a fifth of it in metres per second). `gripper` are the names of the joints that open a gripper.
     """
     dynamics: 'articulated'
     description: None
     joints: {}
-    jointValues: {}
+    jointValues[dynamic]: {}
+    jointVelocities[dynamic]: {}
+    jointSpeed: 1.5
+    gripper: ()
     links: {}
     shape: base_shape(self.description)
 
@@ -46,6 +52,10 @@ class Articulated(Body):
     def frame(self, name):
         """The frame of a body or site, which follows from the joints, as an oriented point."""
         return frame_of(self, name)
+
+    def reaches(self, target, frame, down=False, tolerance=0.01):
+        """Whether the frame can be at an object or place without the links touching each other."""
+        return reaches(self, target, frame, down, tolerance)
 
 class Robot(Body):
     """Drives on two wheels, whose speeds `SetWheelSpeeds` sets."""
@@ -74,3 +84,34 @@ class Quadrotor(Body):
     length: 0.4
     height: 0.1
     mass: 1
+
+behavior Reach(frame, place, down=False, tolerance=0.01, patience=10):
+    """Move a frame of the agent to a place; ends when it is there, or after `patience` seconds."""
+    begun = simulation().currentTime
+    steps = patience / simulation().timestep
+    take MoveTo(frame, place, down)
+    while (distance from self.frame(frame) to place) > tolerance and simulation().currentTime - begun < steps:
+        wait
+
+behavior OpenGripper(opening=1, seconds=0.5):
+    """Open the gripper, 0 closed, 1 open."""
+    take SetGripper(opening)
+    do Stay() for seconds seconds
+
+behavior Stay():
+    """Keep the joints where they are."""
+    while True:
+        wait
+
+behavior PickAndPlace(thing, place, frame, above=0.12):
+    """Take a thing from above and put it at a place: open, reach, close, lift, carry, open."""
+    up = (0, 0, above)
+    do OpenGripper(1)
+    do Reach(frame, thing.position + up, True, 0.02)
+    do Reach(frame, thing.position, True, 0.008, 4)
+    do OpenGripper(0)
+    do Reach(frame, self.frame(frame).position + up, True, 0.02)
+    do Reach(frame, place + up, True, 0.02)
+    do Reach(frame, place, True, 0.015, 4)
+    do OpenGripper(1)
+    do Reach(frame, self.frame(frame).position + up, True, 0.02)

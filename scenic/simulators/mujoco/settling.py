@@ -9,6 +9,8 @@ import numpy as np
 from scenic.dataclass import dataclass
 from scenic.language.errors import ScenicValueError
 from scenic.simulators.commands import GRAVITY
+from scenic.simulators.mujoco.articulated import description_of
+from scenic.simulators.mujoco.jointed import Jointed
 from scenic.simulators.mujoco.library import library, quietly
 from scenic.simulators.mujoco.model import Builder, Part
 
@@ -89,6 +91,14 @@ class Settling:
         return steady
 
 
+@dataclass(frozen=True, slots=True)
+class _State:
+    """A model and its state, as `Jointed` reads them."""
+
+    model: Any
+    data: Any
+
+
 def _model(things: Sequence[Any]) -> tuple[Any, Any, list[Part]]:
     """The compiled model of objects, its state, and the parts that move."""
     builder = Builder(_STEP, GRAVITY)
@@ -99,6 +109,10 @@ def _model(things: Sequence[Any]) -> tuple[Any, Any, list[Part]]:
     with quietly():
         model = builder.spec.compile()
     data = mujoco.MjData(model)
+    state = _State(model, data)
+    for part in parts:
+        if part.model == "articulated":
+            Jointed(state, description_of(part.thing.description), part.thing, f"{part.name} ").start()
     mujoco.mj_forward(model, data)
     return model, data, [part for part in parts if part.moves]
 

@@ -12,7 +12,9 @@ from scenic.language.errors import SimulationCreationError, SimulationError
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.values.values import Orientation, Vector
 from scenic.simulators.commands import DRAG, GRAVITY
+from scenic.simulators.mujoco.articulated import description_of, middle_of
 from scenic.simulators.mujoco.images import Images
+from scenic.simulators.mujoco.jointed import Jointed
 from scenic.simulators.mujoco.library import library, quietly
 from scenic.simulators.mujoco.model import Builder, Part, grip_name
 from scenic.simulators.simulation import Simulation
@@ -57,6 +59,8 @@ class MujocoSimulation(Simulation):
         self._ground = ground
         self._images = Images(images)
         self._parts: dict[int, Part] = {}
+        self._jointed: dict[int, Jointed] = {}
+        """Things with joints, by the identity of their objects."""
         self._touches: dict[int, list[Vector]] = {}
         self.model: Any = None
         self.data: Any = None
@@ -78,6 +82,8 @@ class MujocoSimulation(Simulation):
         """A body for the object; in a simulation that runs the others stay as they are."""
         part = self._builder.add(obj)
         self._parts[id(obj)] = part
+        if part.model == "articulated":
+            self._jointed[id(obj)] = Jointed(self, description_of(obj.description), obj, f"{part.name} ")
         if self.model is not None:
             self._compile()
             self._start(part)
@@ -104,6 +110,8 @@ class MujocoSimulation(Simulation):
 
     def _start(self, part: Part) -> None:
         """Give a new body its velocity and first command."""
+        if part.model == "articulated":
+            self._jointed[id(part.thing)].start()
         if not part.moves:
             return
         if part.model != "differential":
@@ -203,14 +211,17 @@ class MujocoSimulation(Simulation):
     def step(self) -> None:
         """Advance by the steps of the physics that make a step of the simulation."""
         mujoco = library()
+        jointed = list(self._jointed.values())
         steered = [part for part in self._parts.values() if part.model in ("guided", "quadrotor")]
         feeling = [part for part in self._parts.values() if part.moves and hasattr(part.thing, "touches")]
         self._touches = {id(part.thing): [] for part in feeling}
         self._push()
         with quietly():
-            if steered:
+            if steered or jointed:
                 for _ in range(self._substeps):
                     self._steer(steered)
+                    for thing in jointed:
+                        thing.drive(self.model.opt.timestep)
                     mujoco.mj_step(self.model, self.data)
                     self._feel(feeling)
             elif feeling:
@@ -328,6 +339,8 @@ class MujocoSimulation(Simulation):
     def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
         """Read the body's state."""
         part, stored = self._parts[id(obj)], obj.__dict__
+        if part.model in ("articulated", "link"):
+            return self._jointed_properties(part, properties)
         if not part.moves:
             return {name: stored[name] for name in properties}
         position, velocity = self._joint(part)
@@ -353,6 +366,27 @@ class MujocoSimulation(Simulation):
         if "touches" in properties:
             values["touches"] = tuple(self._touches.get(id(obj), ()))
         return {name: values[name] if name in values else stored[name] for name in properties}
+
+
+    def _jointed_properties(self, part: Part, properties: Any) -> Mapping[str, Any]:
+        """Read the state of a thing with joints, or of one of its links."""
+        stored = part.thing.__dict__
+        values: dict[str, Any] = {}
+        if part.model == "articulated":
+            jointed = self._jointed[id(part.thing)]
+            values = {"jointValues": jointed.values(), "jointVelocities": jointed.velocities()}
+        elif (jointed := self._jointed.get(id(part.thing.base))) is not None:  # type: ignore[assignment] # or none
+            middle = middle_of(jointed.description, part.thing.linkName)
+            place, (x, y, z, w) = jointed.place(part.thing.linkName, middle)
+            parent = stored["parentOrientation"]
+            turn = parent.inverse * Orientation.of((float(x), float(y), float(z), float(w)))
+            yaw, pitch, roll = turn.eulerAngles
+            values = {"position": Vector.of(tuple(place.tolist())), "yaw": yaw, "pitch": pitch, "roll": roll}
+        return {name: values[name] if name in values else stored[name] for name in properties}
+
+    def jointed(self, agent: Any) -> Jointed:
+        """The joints of an agent."""
+        return self._jointed[id(agent)]
 
 
 def _matrix(turn: Any) -> Floats:
