@@ -18,7 +18,7 @@ shapes = (CylinderShape((0.04, 0.04, 0.07)), BoxShape((0.03, 0.06, 0.04)), ConeS
 clutter = [new Body at (Range(-0.5, 0.5), Range(-0.1, 0.45)), resting on table, with shape Uniform(*shapes)
            for i in range(6)]
 
-cabinet = new Articulated at (0.42, -0.05), on table, with description "drawer.xml", facing Range(80, 100) deg,
+cabinet = new Articulated at (0.46, -0.1), on table, with description "drawer.xml", facing Range(-100, -80) deg,
     with joints {'drawer': Range(0.12, 0.18)}, with servos False, with weightless False
 goal = cabinet.frame('inside')
 

@@ -23,7 +23,16 @@ from scenic.runtime.values.values import apply, operate, to_scalar
 from scenic.simulators.mujoco.descriptions import BASE, Description, DescriptionError, Link, read_description
 from scenic.simulators.mujoco.kinematics import Floats, Segment, forward
 
-__all__ = ["assemble", "base_shape", "description_of", "frame_of", "joint_values", "link_of", "middle_of", "origin_of"]
+__all__ = [
+    "assemble",
+    "base_shape",
+    "description_of",
+    "frame_of",
+    "joint_values",
+    "link_of",
+    "middle_of",
+    "origin_of",
+]
 
 _MARK: Final = 0.02
 """Size of the box that stands for a base without geoms, metres."""
@@ -55,9 +64,14 @@ def _turn(call: Call, *values: Column) -> Column:
     return call.payload.evaluate(values)[1]  # type: ignore[no-any-return] # an array
 
 
-_PLACE: Final = Operation("place in a chain", always(Kind.VECTOR), _place, "A point on a link, from the joints of its chain.")
+_PLACE: Final = Operation(
+    "place in a chain", always(Kind.VECTOR), _place, "A point on a link, from the joints of its chain."
+)
 _TURN: Final = Operation(
-    "orientation in a chain", always(Kind.ORIENTATION), _turn, "The orientation of a link, from the joints of its chain."
+    "orientation in a chain",
+    always(Kind.ORIENTATION),
+    _turn,
+    "The orientation of a link, from the joints of its chain.",
 )
 
 
@@ -121,7 +135,10 @@ def joint_values(description: Description, given: Any) -> dict[str, Any]:
         number = to_scalar(value, f"the joint {name!r}")
         low, high = (number, number) if isinstance(number, int | float) else support_of(number)
         slack = 1e-9
-        for bound, is_outside in ((low, low is not None and low < joint.low - slack), (high, high is not None and high > joint.high + slack)):
+        for bound, is_outside in (
+            (low, low is not None and low < joint.low - slack),
+            (high, high is not None and high > joint.high + slack),
+        ):
             if is_outside:
                 raise DescriptionError(
                     f"the joint {name!r} goes from {joint.low:.6g} to {joint.high:.6g} and cannot be {bound:.6g}",
@@ -167,7 +184,9 @@ def assemble(thing: Any, part: type[Any]) -> None:
     thing.__dict__["links"] = links
 
 
-def _pose(thing: Any, values: Mapping[str, Any], chain: tuple[Segment, ...], point: Floats, origin: Floats) -> tuple[Any, Any]:
+def _pose(
+    thing: Any, values: Mapping[str, Any], chain: tuple[Segment, ...], point: Floats, origin: Floats
+) -> tuple[Any, Any]:
     """The place of a point of a frame, and the frame's orientation, in the world."""
     frame = _Frame(chain, point, origin)
     joints = [values[joint.name] for segment in chain for joint in segment.joints]

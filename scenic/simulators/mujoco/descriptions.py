@@ -138,7 +138,12 @@ class _Reader:
         model = self._model
         chains = [self._chain(body) for body in range(model.nbody)]
         links = [
-            Link(BASE if root == 0 else model.body(root).name, chains[root], self._mesh(root), self._color(root))
+            Link(
+                BASE if root == 0 else model.body(root).name,
+                chains[root],
+                self._mesh(root),
+                self._color(root),
+            )
             for root in range(model.nbody)
             if model.body_weldid[root] == root
         ]

@@ -140,7 +140,9 @@ class Jointed:
                     data.ctrl[number] = target
                 else:
                     limit = most * (0.2 if joint.slides else 1.0)
-                    data.ctrl[number] = present + min(max(target - present, -limit), limit) if step else target
+                    data.ctrl[number] = (
+                        present + min(max(target - present, -limit), limit) if step else target
+                    )
 
     def _actuators(self, joint: str) -> list[int]:
         model = self._simulation.model
@@ -199,7 +201,10 @@ class Jointed:
                 tilt = np.cross(axis, down)
                 if axis @ down < -0.999:  # the other way: any way round
                     tilt = matrix.reshape(3, 3)[:, 0]
-                error, jacobian = np.concatenate([error, _TURN * tilt]), np.concatenate([jacobian, _TURN * turns[:, dofs]])
+                error, jacobian = (
+                    np.concatenate([error, _TURN * tilt]),
+                    np.concatenate([jacobian, _TURN * turns[:, dofs]]),
+                )
             size = float(np.linalg.norm(error))
             if size < least:
                 best, least = scratch.qpos[slots].copy(), size

@@ -367,7 +367,6 @@ class MujocoSimulation(Simulation):
             values["touches"] = tuple(self._touches.get(id(obj), ()))
         return {name: values[name] if name in values else stored[name] for name in properties}
 
-
     def _jointed_properties(self, part: Part, properties: Any) -> Mapping[str, Any]:
         """Read the state of a thing with joints, or of one of its links."""
         stored = part.thing.__dict__

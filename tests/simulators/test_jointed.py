@@ -1,0 +1,232 @@
+"""Things with joints: descriptions, forward and inverse kinematics, simulations."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import scenic
+from scenic.language.errors import Located
+from scenic.simulators.mujoco import MujocoSimulator
+from scenic.simulators.mujoco.articulated import description_of, origin_of
+from scenic.simulators.mujoco.descriptions import DescriptionError, read_description
+from scenic.simulators.mujoco.kinematics import forward
+
+mujoco = pytest.importorskip("mujoco")
+
+ARM = Path(__file__).parents[2] / "examples" / "arm" / "arm.xml"
+DRAWER = ARM.with_name("drawer.xml")
+MODEL = "model scenic.simulators.mujoco.model\n"
+
+
+def bullet_files() -> list[Path]:
+    """Descriptions of robots in the data of PyBullet, where it is installed."""
+    try:
+        import pybullet_data
+    except ImportError:
+        return []
+    names = ("kuka_iiwa/model.urdf", "a1/a1.urdf", "r2d2.urdf", "racecar/racecar.urdf", "pr2_gripper.urdf")
+    return [path for name in names if (path := Path(pybullet_data.getDataPath(), name)).is_file()]
+
+
+@pytest.mark.parametrize("path", [ARM, DRAWER, *bullet_files()], ids=lambda path: path.name)
+def test_forward_kinematics_are_those_of_mujoco(path: Path) -> None:
+    description = read_description(path)
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    generator, count = np.random.default_rng(1), 100
+    values = {
+        name: generator.uniform(max(joint.low, -3), min(joint.high, 3), count)
+        for name, joint in description.joints.items()
+    }
+    frames = {
+        link.name: forward(link.chain, [values[joint.name] for joint in link.joints])
+        for link in description.links[1:]
+    }
+    for number in range(count):
+        for name, column in values.items():
+            data.joint(name).qpos[0] = column[number]
+        mujoco.mj_kinematics(model, data)
+        for name, (places, turns) in frames.items():
+            lane = min(number, len(places) - 1)
+            x, y, z, w = turns[lane]
+            assert np.abs(places[lane] - data.body(name).xpos).max() < 1e-9
+            assert abs(data.body(name).xquat @ np.array([w, x, y, z])) == pytest.approx(1, abs=1e-9)
+
+
+def loaded(text: str, folder: Path) -> scenic.Scenario:
+    return scenic.scenarioFromString(MODEL + text, filename=str(folder / "program.scenic"))
+
+
+PROGRAM = f"""
+table = new Fixture at (0, 0, 0.35), with width 1.4, with length 1.4, with height 0.7
+ego = new Articulated on table, facing Range(0, 360) deg, with description r"{ARM}",
+    with joints {{'turn': Range(-90, 90) deg, 'lift': Range(-60, -10) deg, 'elbow': -0.5, 'left': 0.02}}
+tip = ego.frame('grip')
+param tip = tip.position
+new Body on table, with width 0.1, with length 0.1, with height 0.1
+"""
+
+
+def test_links_are_objects_where_mujoco_has_them(tmp_path: Path) -> None:
+    scenario = loaded(PROGRAM, tmp_path)
+    description = description_of(str(ARM))
+    model = mujoco.MjModel.from_xml_path(str(ARM))
+    data = mujoco.MjData(model)
+    for scene in scenario.sample(4, seed=1):
+        arm = scene.egoObject
+        for name, value in arm.jointValues.items():
+            data.joint(name).qpos[0] = value
+        mujoco.mj_kinematics(model, data)
+        turn = arm.orientation
+        matrix = np.empty(9)
+        mujoco.mju_quat2Mat(matrix, np.array([turn.w, turn.x, turn.y, turn.z]))
+        world = matrix.reshape(3, 3) @ (data.site("grip").xpos - origin_of(description)) + tuple(arm.position)
+        assert tuple(scene.params["tip"]) == pytest.approx(world.tolist(), abs=1e-9)
+        assert set(arm.links) == {
+            "base",
+            "shoulder",
+            "upper",
+            "fore",
+            "wrist",
+            "hand",
+            "left finger",
+            "right finger",
+        }
+        # No link is in the table, on which the base stands.
+        assert all(link.position.z > 0.7 for link in arm.links.values())
+
+
+def test_links_collide_with_others_but_not_with_each_other(tmp_path: Path) -> None:
+    text = f"""
+ego = new Articulated at (0, 0, 0.04), with description r"{ARM}"
+box = new Object at (0, 0, Range(0.1, 1.2)), with width 0.2, with length 0.2, with height 0.2
+"""
+    heights = [scene.objects[-1].position.z for scene in loaded(text, tmp_path).sample(20, seed=1)]
+    # The arm stands straight up, to a height of some 0.85 m.
+    assert min(heights) > 0.9
+
+
+@pytest.mark.parametrize(
+    ("text", "message", "hint"),
+    [
+        ("ego = new Articulated with description 'missing.xml'", "cannot read the description", "MJCF"),
+        ("ego = new Articulated with description 'broken.xml'", "MuJoCo cannot read", "repair"),
+        ("ego = new Articulated with description 'empty.xml'", "no body that touches others", "geoms"),
+        (
+            "ego = new Articulated with description 'arm.xml', with joints {'elbo': 1}",
+            "no joint 'elbo'",
+            "'elbow'",
+        ),
+        (
+            "ego = new Articulated with description 'arm.xml', with joints {'elbow': 4}",
+            "cannot be 4",
+            "radians",
+        ),
+        (
+            "ego = new Articulated with description 'arm.xml', with joints {'elbow': Range(0, 5)}",
+            "from -2.61799 to 2.61799",
+            "radians",
+        ),
+        (
+            "ego = new Articulated with description 'arm.xml', with joints 3",
+            "values of joints by their names",
+            "elbow",
+        ),
+        ("ego = new Articulated with description 7", "needs the path of an MJCF or URDF file", "arm.xml"),
+        (
+            "ego = new Articulated with description 'arm.xml'\nx = ego.frame('gripp')",
+            "no frame 'gripp'",
+            "'grip'",
+        ),
+        (
+            "ego = new Articulated with description 'arm.xml'\nx = ego.link('hant')",
+            "no link 'hant'",
+            "'hand'",
+        ),
+    ],
+)
+def test_mistakes_have_a_place_and_a_remedy(text: str, message: str, hint: str, tmp_path: Path) -> None:
+    (tmp_path / "broken.xml").write_text("<mujoco><worldbody><geom type='cube'/></worldbody></mujoco>")
+    (tmp_path / "empty.xml").write_text(
+        "<mujoco><worldbody><body><joint/><inertial mass='1' pos='0 0 0' diaginertia='1 1 1'/></body></worldbody></mujoco>"
+    )
+    (tmp_path / "arm.xml").write_bytes(ARM.read_bytes())
+    (tmp_path / "program.scenic").write_text(MODEL + text + "\n")
+    with pytest.raises(Located, match=message) as caught:
+        scenic.load(tmp_path / "program.scenic")
+    assert caught.value.code in ("SC614", "SC404")
+    assert hint in (caught.value.help or "")
+    assert caught.value.span is not None
+
+
+def test_reaching_agrees_with_a_search_by_brute_force() -> None:
+    from scenic.simulators.mujoco.reaching import _arm
+
+    arm = _arm(str(ARM))
+    chain = arm.description.frame("grip")
+    joints = [joint for segment in chain for joint in segment.joints]
+    generator = np.random.default_rng(5)
+    tried = forward(chain, [generator.uniform(joint.low, joint.high, 200_000) for joint in joints])[0]
+    decided = 0
+    for place in generator.uniform((-0.9, -0.9, 0.1), (0.9, 0.9, 1.1), (30, 3)):
+        nearest = np.linalg.norm(tried - place, axis=1).min()
+        if 0.02 < nearest < 0.06:
+            continue  # too near the border for so few tries
+        decided += 1
+        assert arm.solves("grip", place, down=None, tolerance=0.01) == (nearest <= 0.02)
+    assert decided > 20
+
+
+def simulated(behavior: str, tmp_path: Path, steps: int, **options: Any) -> Any:
+    text = f"""
+table = new Fixture at (0, 0, 0.35), with width 1.4, with length 1.4, with height 0.7
+cube = new Body at (0.1, 0.1, 0.7201), with width 0.04, with length 0.04, with height 0.04, with density 400, with friction 1.5
+goal = Vector(0.3, -0.1, 0.73)
+ego = new Articulated at (0, -0.3, 0.7401), with description r"{ARM}", with gripper ('left', 'right'),
+    with behavior {behavior}, with joints {{'lift': -20 deg, 'elbow': -60 deg, 'bend': -80 deg}}
+record final (distance from cube to goal) as gap
+record final ego.jointValues as values
+record final ego.jointVelocities as speeds
+record final (distance from cube to ego.frame('grip')) as reach
+record final ego.links['hand'].position as hand
+"""
+    scene = loaded(text, tmp_path).sample(1, seed=1)[0]
+    return MujocoSimulator(timestep=0.1, **options).simulate(scene, maxSteps=steps)
+
+
+def test_a_thing_is_picked_and_placed(tmp_path: Path) -> None:
+    records = simulated("PickAndPlace(cube, goal, 'grip')", tmp_path, 120).records
+    assert records["gap"] < 0.04
+    assert records["hand"].z > 0.8
+
+
+def test_actions_move_joints(tmp_path: Path) -> None:
+    behaviors = {
+        "SetJointPositions({'turn': 0.5})": ("turn", 0.5, 0.0),
+        "SetJointVelocities({'turn': 0.2})": ("turn", 0.4, 0.2),
+    }
+    for action, (joint, value, speed) in behaviors.items():
+        text = f"""
+behavior Act():
+    take {action}
+    while True:
+        wait
+ego = new Articulated at (0, 0, 0.04), with description r"{ARM}", with behavior Act()
+record final ego.jointValues as values
+record final ego.jointVelocities as speeds
+"""
+        scene = loaded(text, tmp_path).sample(1, seed=1)[0]
+        records = MujocoSimulator(timestep=0.1).simulate(scene, maxSteps=20).records
+        assert records["values"][joint] == pytest.approx(value, abs=0.03)
+        assert records["speeds"][joint] == pytest.approx(speed, abs=0.05)
+
+
+def test_an_unchanged_description_is_read_once(tmp_path: Path) -> None:
+    path = tmp_path / "arm.xml"
+    path.write_bytes(ARM.read_bytes())
+    first = read_description(path)
+    assert read_description(path) is first
+    with pytest.raises(DescriptionError, match="no joint 'knee'"):
+        first.joint("knee")
