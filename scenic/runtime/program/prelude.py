@@ -20,6 +20,7 @@ from typing import Any, Protocol
 
 from scenic.language.errors import (
     InvalidScenarioError,
+    Located,
     RejectionException,
     ScenicTypeError,
     UnsupportedError,
@@ -249,7 +250,11 @@ class Prelude(Symbolic, Dynamics):
         assembled = getattr(cls, "_assembled", None)
         if assembled is not None:
             # The class makes further objects, which belong to this one.
-            assembled(instance)
+            try:
+                assembled(instance)
+            except Located as error:
+                error.at(self._program.places[id(instance)])
+                raise
         return instance
 
     def property(

@@ -80,7 +80,6 @@ def description_of(path: Any) -> Description:
     if not isinstance(path, str | os.PathLike):
         raise ScenicTypeError(
             f"`description` needs the path of an MJCF or URDF file, not {path!r}",
-            span=here(),
             help="for example: with description 'arm.xml'",
         )
     context = current.get()
@@ -88,12 +87,15 @@ def description_of(path: Any) -> Description:
     # While a program runs, its folder is the first on Python's path.
     folders = [Path(sys.path[0]), *([] if name is None else [Path(name).parent]), Path()]
     found = next((folder / path for folder in folders if (folder / path).is_file()), folders[0] / path)
-    return read_description(found)
+    return read_description(found, str(path))
 
 
 def base_shape(path: Any) -> Shape:
-    """The shape of the part of a description that does not move."""
-    return _formed(description_of(path).links[0])[0]
+    """The shape of the part of a description that does not move; any for one that `assemble` refuses at its own place."""
+    try:
+        return _formed(description_of(path).links[0])[0]
+    except (DescriptionError, ScenicTypeError):
+        return BoxShape()
 
 
 def origin_of(description: Description) -> Floats:
@@ -126,7 +128,6 @@ def joint_values(description: Description, given: Any) -> dict[str, Any]:
     if not isinstance(given, Mapping):
         raise ScenicTypeError(
             f"`joints` needs the values of joints by their names, not {given!r}",
-            span=here(),
             help="for example: with joints {'elbow': Range(0, 90) deg}",
         )
     values: dict[str, Any] = {}
@@ -152,11 +153,8 @@ def joint_values(description: Description, given: Any) -> dict[str, Any]:
 
 def assemble(thing: Any, part: type[Any]) -> None:
     """Make the links of an object with joints, which has just been made, as objects of the class ``part``."""
-    try:
-        description = description_of(thing.description)
-        values = joint_values(description, thing.joints)
-    except DescriptionError as error:
-        raise error.at((here(), None)) from error.__cause__
+    description = description_of(thing.description)
+    values = joint_values(description, thing.joints)
     thing.__dict__["description"] = str(description.path)
     thing.__dict__["jointValues"] = values
     thing.__dict__["_assembly"] = thing

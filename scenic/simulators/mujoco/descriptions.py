@@ -91,8 +91,8 @@ class Description:
         )
 
 
-def read_description(path: str | Path) -> Description:
-    """Read an MJCF or URDF file; one that has not changed is not read again.
+def read_description(path: str | Path, name: str | None = None) -> Description:
+    """Read an MJCF or URDF file, which messages call ``name``; one that has not changed is not read again.
 
     Raises:
         DescriptionError: the file is missing, broken, or describes nothing that touches.
@@ -103,8 +103,8 @@ def read_description(path: str | Path) -> Description:
         stamp = file.stat().st_mtime_ns
     except OSError as error:
         raise DescriptionError(
-            f"cannot read the description '{path}': {(error.strerror or str(error)).lower()}",
-            help=f"give an MJCF (.xml) or URDF (.urdf) file; this one is '{file}'",
+            f"cannot read the description '{name or path}': {(error.strerror or str(error)).lower()}",
+            help="give an MJCF (.xml) or URDF (.urdf) file, by its path from the folder of the program",
         ) from error
     return _read(file, stamp)
 
