@@ -30,7 +30,7 @@ class DeclaredForm:
 
 
 def declared_forms() -> Iterator[DeclaredForm]:
-    """All of them, in the order of the declarations: specifiers, operators, temporal operators."""
+    """Return all forms in the order of the declarations: specifiers, operators, temporal operators."""
     for node, forms in (
         ("SpecifierPhrase", {name: each.forms for name, each in specifiers.SPECIFIERS.items()}),
         ("Operation", {name: each.forms for name, each in operators.OPERATORS.items()}),

@@ -188,7 +188,7 @@ class Recovery:
             self._explain(part, farthest, expected, None)
 
     def _statement(self, rule: str, start: int) -> tuple[Any, int]:
-        """One statement, by whichever means."""
+        """Parse one statement with the fast parser, or else with the recording one, or else skip it."""
         actions = self.actions
         outer_failure = actions.failure
         try:

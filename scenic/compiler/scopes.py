@@ -196,7 +196,7 @@ class Resolution:
         return not self._reflecting.isdisjoint(REBINDING)
 
     def with_findings(self, diagnostics: tuple[Diagnostic, ...] = (), *, wildcard: bool) -> "Resolution":
-        """The same names, with what was found out about them."""
+        """Return a copy of the resolution with the diagnostics of a check."""
         new = copy(self)
         new.diagnostics, new.wildcard = diagnostics, wildcard
         return new

@@ -108,7 +108,7 @@ def _after_text() -> re.Pattern[str]:
 
 @cache
 def _call() -> re.Pattern[str]:
-    """The same for a line in a bracket but not in a string: a call on a line of its own, a property."""
+    """Return the pattern of a line in a bracket, not in a string, that looks like a call on a line of its own or a property."""
     return re.compile(
         r"[A-Za-z_][\w.]*+\((?:[^\n]*+(?<=\)))?+[ \t]*+(?=\n)|[a-z]\w*+(?:\[[a-z, ]++\])?+:[ \t]++\S"
     )
@@ -136,7 +136,7 @@ _MARKS: Final = re.compile(r"\"[^\"\n]*+\"|'[^'\n]*+'|([()\[\]{}])|\#")
 
 
 def lex_tolerantly(text: str, words: Mapping[str, int]) -> Tokens:
-    """As `scenic.compiler.lexer.lex`, for a text with a mistake.
+    """Split a text with a mistake into tokens, as `scenic.compiler.lexer.lex` does for a right one.
 
     ``afresh`` is given the tokens before which nothing mattered any more (see `scenic.compiler.relexing`).
     """

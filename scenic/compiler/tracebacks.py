@@ -49,7 +49,7 @@ class Locator:
         self._names: dict[tuple[int, int], tuple[str, int]] = {}
 
     def place(self, where: TracebackType | FrameType, instruction: int | None = None) -> Place | None:
-        """As `locate`; of a frame of generated code at an earlier ``instruction``."""
+        """Locate a frame of generated code, as `locate` does, at an earlier ``instruction``."""
         found = (
             _innermost(where)
             if instruction is None or not isinstance(where, FrameType)

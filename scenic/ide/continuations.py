@@ -153,7 +153,7 @@ def _beginning(wanted: Wanted, phrase: _Phrase) -> frozenset[str]:
 
 
 def _directly(wanted: Wanted, phrase: _Phrase) -> frozenset[str]:
-    """In a condition the words of the temporal ladder are wanted by themselves."""
+    """Return the words that can stand alone in a condition, as those of the temporal ladder do."""
     return wanted.words if phrase.kind is PhraseKind.TEMPORAL else frozenset()
 
 

@@ -75,7 +75,7 @@ def header(project: Project, symbol: Symbol) -> str:
 
 
 def of_python(name: str) -> str | None:
-    """One of Python's own builtins."""
+    """Describe one of Python's own builtins."""
     value = getattr(builtins, name, None)
     text = inspect.getdoc(value) if value is not None else None
     if not text:

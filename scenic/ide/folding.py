@@ -60,7 +60,7 @@ def folds(snapshot: Snapshot) -> tuple[Fold, ...]:
 
 
 def _blocks(tokens: Tokens) -> Iterator[Fold]:
-    """Each block with its header."""
+    """Yield the lines of each block with its header."""
     starts: list[int] = []
     first = True
     line = header = 1

@@ -362,7 +362,7 @@ class _Layout:
             self._end = at
 
     def text(self) -> str:
-        """All that was written."""
+        """Return the text that was written."""
         return "\n".join([*self._lines, ""]) if self._lines else ""
 
     def _blank_lines(self, line: _Line, depth: int) -> None:

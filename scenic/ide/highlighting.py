@@ -201,7 +201,7 @@ class Pattern:
 
     @property
     def regex(self) -> str:
-        """One expression with a group for each piece that is shown as something."""
+        """The regular expression, with a group for each part that has a category."""
         pieces = "".join(f"({piece})" if category else piece for piece, category in self.pieces)
         before = f"(?<={self.before})" if self.before else ""
         return f"{'^' if self.is_line_start else ''}{before}{pieces}{self.after}"

@@ -38,7 +38,7 @@ class Document:
 
     @cached_property
     def lines(self) -> Lines:
-        """Its lines with their places in the protocol."""
+        """The lines of the document with their places in the protocol."""
         marks = len(self.text) - len(self.text.lstrip(_MARK))
         return Lines(self.snapshot.source, self.encoding, marks)
 

@@ -73,7 +73,7 @@ class Symbol:
 
     @property
     def documentation(self) -> str | None:
-        """Its docstring, or the language's documentation of it."""
+        """The docstring of the definition, or the language's documentation of the name."""
         return documentation_of(self)
 
 

@@ -124,7 +124,7 @@ class Context(Model):
 
     @cached_property
     def imports(self) -> Mapping[ast.AST, tuple[Any, bool, list[Any]]]:
-        """Of each imported name: the statement, whether it is an attempt that may fail, and the block it stands in."""
+        """For each imported name: its statement, whether that is an attempt that may fail, and the statements of its block."""
         return {
             alias: (statement, isinstance(block.owner, ast.Try | ast.ExceptHandler), block.statements)
             for block in self.blocks

@@ -232,7 +232,7 @@ def _only_one(candidates: Iterable[str]) -> str | None:
 
 
 def _skipped_words(context: Context) -> set[str]:
-    """All words in statements that could not be parsed: they may bind any of them."""
+    """Return the words in statements that could not be parsed, any of which these may bind."""
     words: set[str] = set()
     for node, _ in context.nodes(scenic.ErrorStatement):
         span = context.source.span(node)

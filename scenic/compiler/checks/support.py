@@ -35,7 +35,7 @@ _NAMES: Final = frozenset(name.name for name in NAMES.values() if not name.avail
 
 
 def _checked() -> frozenset[type[ast.AST]]:
-    """Of these, those of which there is any that may have to be refused."""
+    """Return the classes of nodes among `_FEATURES` that may have to be refused in this version."""
     tables = ((scenic.SpecifierPhrase, SPECIFIERS), (scenic.Temporal, TEMPORAL_OPERATORS))
     found = {cls for cls, table in tables if not all(each.available for each in table.values())}
     return frozenset({scenic.Operation, *_STATEMENTS, *found})

@@ -106,7 +106,7 @@ class _Program:
         return rebuilt(node, **changes) if changes else node
 
     def _list(self, values: list[Any]) -> list[Any]:
-        """The same list if nothing in it changes."""
+        """Lower each node of a list; return the list itself if nothing in it changes."""
         lowered: list[Any] = []
         same = True
         for value in values:
@@ -301,7 +301,7 @@ class _Program:
         return self._kept(node, lowered)
 
     def implication(self, node: scenic.Temporal) -> ast.expr:
-        """One that is part of a leaf of a condition. No other temporal operator can be: they are not available yet."""
+        """Lower an implication within a leaf of a condition; no other temporal operator can stand there."""
         if node.operator != "implies":
             raise InternalError(f"{node.operator} has no lowering")
         premise, conclusion = (self.expression(operand) for operand in node.operands)
@@ -412,7 +412,7 @@ class _Program:
         return rebuilt(lowered, body=body, guard=guard)
 
     def _store_now(self, site: ast.AST) -> ast.expr:
-        """As `_store`, in an expression."""
+        """Return an expression that stores a name on its instance, as the statement of `_store` does."""
         binding = self._bound_by[site]
         setter = start_of(instance_attribute(instance_name(binding.scope), "__setattr__", site), site)
         return at(ast.Call(setter, [constant(binding.name, site), name(binding.name, site)], []), site)

@@ -74,7 +74,7 @@ def _programs(project: Project) -> Iterator[str]:
 def _report(
     uri: str, version: int | None, found: Sequence[types.Diagnostic], previous: str | None
 ) -> types.WorkspaceDocumentDiagnosticReport:
-    """All that was found, or only that it is what the client knows already."""
+    """Report all diagnostics, or only that they are those that the client has already."""
     name = _name(found)
     if name == previous:
         return types.WorkspaceUnchangedDocumentDiagnosticReport(uri, name, version)
