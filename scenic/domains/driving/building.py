@@ -19,10 +19,11 @@ from scenic.domains.driving.elements import (
     RoadSection,
     Shoulder,
     Sidewalk,
-    Signal,
 )
 from scenic.domains.driving.kinds import VehicleType
 from scenic.domains.driving.network import RoadNetwork
+from scenic.domains.driving.signs import signal_of
+from scenic.domains.driving.speed_limits import lowest, ranges_of, road_speeds, section_speeds
 from scenic.formats.opendrive import records
 from scenic.formats.opendrive.records import MapRecords, Problem
 from scenic.formats.opendrive.shapes import RoadShape, SectionShape, joined, road_shape
@@ -238,9 +239,10 @@ class _RoadBuilder:
             polygon,
             id=number_or_text(record.id),
             name=record.name,
-            speed=record.speed,
+            speed=lowest(road_speeds(record)),
             tags=tags,
         )
+        road.speedLimitRanges = road_speeds(record)
         built = BuiltRoad(record, self._shape, road)
         sections = self._lane_sections(road, tags)
         self._lanes(built, road, sections, tags)
@@ -253,10 +255,16 @@ class _RoadBuilder:
         left = backward.right if backward is not None else forward.left if forward is not None else reference
         right = forward.right if forward is not None else backward.left if backward is not None else reference
         road.place(reference, left, right)
+        signs = [
+            signal_of(signal, self._uid) for signal in record.signals if isinstance(signal, records.Signal)
+        ]
+        self._network.signals += tuple(signs)
         road.signals = tuple(
-            Signal(f"signal{signal.id}", signal.id, signal.country, signal.type)
-            for signal in record.signals
-            if isinstance(signal, records.Signal) and signal.is_valid
+            sign
+            for sign, signal in zip(
+                signs, (item for item in record.signals if isinstance(item, records.Signal)), strict=True
+            )
+            if signal.is_valid
         )
         return built
 
@@ -297,11 +305,14 @@ class _RoadBuilder:
                     LaneSection,
                     f"{self._uid}_sec{number}_lane{strip.id}",
                     strip.polygon,
-                    speed=strip.lane.speed if strip.lane.speed is not None else self._record.speed,
+                    speed=lowest(
+                        ranges := section_speeds(self._record, strip.shape.record, strip.lane, forward)
+                    ),
                     vehicles=_vehicles(strip.lane),
                     tags=tags,
                 )
                 element.road = road
+                element.speedLimitRanges = ranges
                 element.openDriveID = strip.id
                 element.isForward = forward
                 element.place(*strip.lines(forward))
@@ -349,11 +360,12 @@ class _RoadBuilder:
                 Lane,
                 f"{self._uid}_lane{number}",
                 union_of(part.polygon for part in chain),
-                speed=parts[0].speedLimit,
+                speed=lowest(ranges := ranges_of(parts)),
                 vehicles=frozenset().union(*(part.vehicleTypes for part in chain)),
                 tags=tags,
             )
             lane.road = road
+            lane.speedLimitRanges = ranges
             lane.sections = tuple(parts)
             lane.place(
                 joined([part.line for part in parts]),

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from scenic.domains.driving.kinds import ManeuverType, VehicleType
 from scenic.domains.driving.levels import Ground
+from scenic.domains.driving.signs import Signal, halt_point_ahead
+from scenic.domains.driving.speed_limits import Ranges, limits_along
 from scenic.domains.driving.surfaces import GroundedLine, Surface, frames_of
 from scenic.graph.kinds import Column, Kind
 from scenic.language.errors import RejectionException
@@ -61,7 +63,8 @@ class NetworkElement(Frozen, Surface):
         network: the network.
         polygon: its area, shapely's.
         vehicleTypes: the road users that may be there.
-        speedLimit: in m/s, if the file says.
+        speedLimit: in m/s, the lowest of its length, if the file says.
+        speedLimitRanges: stretches along it (from, to, in metres) with their limits (m/s, or ``None``).
         tags: further words of the file.
 
     """
@@ -85,6 +88,7 @@ class NetworkElement(Frozen, Surface):
         self.name = name
         self.polygon = polygon
         self.speedLimit = speed
+        self.speedLimitRanges: Ranges = ()
         self.vehicleTypes = vehicles
         self.tags = tags
         self._z = 0.0
@@ -110,6 +114,13 @@ class NetworkElement(Frozen, Surface):
     def outline(self) -> Polygons:  # type: ignore[override] # made when somebody needs it
         """The polygons, for computations."""
         return Polygons(self.polygon)
+
+    def speedLimitAt(self, s: float) -> float | None:
+        """The speed limit in m/s at metres along the element; ``None`` where there is none."""
+        if not self.speedLimitRanges:
+            return self.speedLimit
+        limit = float(limits_along(self.speedLimitRanges, np.array([float(s)]))[0])
+        return limit if np.isfinite(limit) else None
 
     @property
     def elementType(self) -> str:
@@ -351,6 +362,33 @@ class Lane(LinearElement):
         """The lanes beside any of its sections."""
         found = [beside.lane for section in self.sections for beside in section.adjacentLanes]
         return tuple(dict.fromkeys(lane for lane in found if lane is not self))
+
+    @cached_property
+    def is_connecting(self) -> bool:
+        """Return whether it leads through an intersection."""
+        return any(self.road is road for road in self.network.connectingRoads)
+
+    @cached_property
+    def halting_signals(self) -> tuple[Signal, ...]:
+        """Lights and signs that hold for it, or for maneuvers at its end."""
+        own = [signal for signal in self.network.signals if signal.affects(self)]
+        ahead = [signal for maneuver in self.maneuvers for signal in maneuver.signals]
+        return tuple(
+            signal
+            for signal in dict.fromkeys((*own, *ahead))
+            if signal.isTrafficLight or signal.isStopSign or signal.isYieldSign or signal.isStopLine
+        )
+
+    def haltPointAhead(self, position: Any, lookahead: float = 80) -> Any:
+        """The point at which traffic may have to halt for the first signal ahead of a position; ``None`` if there is none.
+
+        Args:
+            position: on the lane.
+            lookahead: metres.
+
+        """
+        found = halt_point_ahead(self, getattr(position, "position", position), lookahead)
+        return None if found is None else self.centerline.pointAlongBy(found[1])
 
     def sectionAt(self, point: Any, reject: Any = False) -> LaneSection | None:
         """The section at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
@@ -630,6 +668,23 @@ class Maneuver(Frozen):
         )
 
     @cached_property
+    def signals(self) -> tuple[Signal, ...]:
+        """The lights and signs that hold for it: of the connecting lane if it has some, else of the lane before."""
+        if self.connectingLane is None:
+            return ()
+        network = self.startLane.network
+        on_way = tuple(signal for signal in network.signals if signal.affects(self.connectingLane))
+        if on_way:
+            return on_way
+        return tuple(signal for signal in network.signals if signal.affects(self.startLane))
+
+    @property
+    def signal(self) -> Signal | None:
+        """The light that holds for it, else the first sign that halts or slows traffic; ``None`` if there is none."""
+        order = ("isTrafficLight", "isStopSign", "isYieldSign")
+        return next((item for name in order for item in self.signals if getattr(item, name)), None)
+
+    @cached_property
     def reverseManeuvers(self) -> tuple["Maneuver", ...]:
         """Maneuvers of the intersection from the road where this one ends to the road where it begins."""
         if self.intersection is None:
@@ -642,24 +697,6 @@ class Maneuver(Frozen):
 
     def __repr__(self) -> str:
         return f"<Maneuver {self.type.name} {self.startLane.uid} -> {self.endLane.uid}>"
-
-
-class Signal(Frozen):
-    """A traffic sign or light."""
-
-    def __init__(self, uid: str, openDriveID: str, country: str, type: str) -> None:
-        self.uid = uid
-        self.openDriveID = openDriveID
-        self.country = country
-        self.type = type
-
-    @property
-    def isTrafficLight(self) -> bool:
-        """Return whether it is a traffic light, by its type in the file."""
-        return self.type in ("1000001", "1000011")
-
-    def __repr__(self) -> str:
-        return f"<Signal {self.uid} type={self.type}>"
 
 
 def share_along(line: Floats, point: Any) -> float:

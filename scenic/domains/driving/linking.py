@@ -2,6 +2,7 @@
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
@@ -14,8 +15,9 @@ from scenic.domains.driving.building import (
     number_or_text,
     union_of,
 )
-from scenic.domains.driving.elements import Intersection, Lane, LaneGroup, Maneuver, Road, Signal
+from scenic.domains.driving.elements import Intersection, Lane, LaneGroup, Maneuver, Road
 from scenic.domains.driving.network import RoadNetwork
+from scenic.domains.driving.signs import Signal, placement_of, signal_of
 from scenic.formats.opendrive import records
 from scenic.formats.opendrive.records import Link, MapRecords, Problem
 
@@ -390,27 +392,41 @@ class _Linker:
 
     def signals(self) -> None:
         """Resolve references to signals of other roads."""
-        known = {
-            signal.id: signal
-            for road in self._map.roads
-            for signal in road.signals
-            if isinstance(signal, records.Signal)
-        }
+        without_lanes = [road for road in self._map.roads if road.id not in self._built]
+        self._network.signals += tuple(
+            signal_of(record, f"road{road.id}")
+            for road in without_lanes
+            for record in road.signals
+            if isinstance(record, records.Signal)
+        )
+        known = {signal.openDriveID: signal for signal in self._network.signals}
+        for signal in self._network.signals:
+            signal.network = self._network
         for built in self._built.values():
             added = []
             for item in built.record.signals:
                 if not isinstance(item, records.SignalReference):
                     continue
-                signal = known.get(item.id)
-                if signal is None:
+                named = known.get(item.id)
+                if named is None:
                     message = (
                         f"road {built.record.id} refers to signal {item.id}, which is not there: dropped"
                     )
                     self._tell(Problem("SC623", message, item.line, "signal"))
                     continue
-                added.append(Signal(f"signal{signal.id}", signal.id, signal.country, signal.type))
+                named.placements = (*named.placements, placement_of(item, built.road.uid))
+                added.append(named)
             if added:
-                built.road.signals += tuple(added)
+                built.road.signals += tuple(dict.fromkeys(added))
+        invalid = {
+            record.id
+            for road in self._map.roads
+            for record in road.signals
+            if isinstance(record, records.Signal) and not record.is_valid
+        }
+        for signal in self._network.signals:
+            if signal.openDriveID in invalid and len(signal.placements) > 1:
+                signal.placements = (replace(signal.placements[0], holds=False), *signal.placements[1:])
         for name, intersection in self._intersections.items():
             signals = {signal.uid: signal for signal in intersection.signals}
             for road in (*(built.road for built in self._inside[name]), *intersection.roads):

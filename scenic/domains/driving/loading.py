@@ -180,6 +180,7 @@ def _build(content: bytes, filename: str, options: MapOptions, cls: type[RoadNet
     tell: Callable[[Problem], None] = problems.append
     left = sum(road.left_hand for road in records.roads) * 2 > len(records.roads)
     network = cls(tolerance=options.tolerance, driveOnLeft=left)
+    network.offset = records.offset
     built = build_roads(
         network,
         records,

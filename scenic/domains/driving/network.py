@@ -12,6 +12,7 @@ from scenic.domains.driving.elements import (
     Lane,
     LaneGroup,
     LaneSection,
+    Maneuver,
     NetworkElement,
     PedestrianCrossing,
     Road,
@@ -26,6 +27,7 @@ from scenic.domains.driving.lines import joined_ground
 from scenic.domains.driving.lookups import Finder, RoadDirection
 from scenic.domains.driving.paths import PathPieces
 from scenic.domains.driving.random_elements import NestedFinder, element_at
+from scenic.domains.driving.signs import Signal
 from scenic.domains.driving.surfaces import GroundedLine
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import RejectionException
@@ -52,7 +54,9 @@ class RoadNetwork(Frozen):
         crossings: the pedestrian crossings.
         sidewalks: the sidewalks.
         shoulders: the shoulders.
+        signals: the traffic lights and signs.
         driveOnLeft: whether traffic keeps left.
+        offset: metres along x, y and z, and radians, by which the coordinates of the map are moved.
         tolerance: metres within which an element counts as being at a place that none holds.
         problems: what is wrong with the map, and what was done instead.
         is_elevated: whether its elements are surfaces in space, and not of the plane.
@@ -69,6 +73,8 @@ class RoadNetwork(Frozen):
         self.crossings: tuple[PedestrianCrossing, ...] = ()
         self.sidewalks: tuple[Sidewalk, ...] = ()
         self.shoulders: tuple[Shoulder, ...] = ()
+        self.signals: tuple[Signal, ...] = ()
+        self.offset = (0.0, 0.0, 0.0, 0.0)
         self.problems: tuple[Diagnostic, ...] = ()
         self._fillings: tuple[Any, ...] = ()
         """Polygons that close gaps between the ends of linked lanes."""
@@ -103,6 +109,35 @@ class RoadNetwork(Frozen):
     def laneSections(self) -> tuple[LaneSection, ...]:
         """The sections of all lanes."""
         return tuple(section for lane in self.lanes for section in lane.sections)
+
+    @cached_property
+    def maneuvers(self) -> tuple[Maneuver, ...]:
+        """The maneuvers through all intersections."""
+        return tuple(maneuver for item in self.intersections for maneuver in item.maneuvers)
+
+    def maneuvers_of(self, signal: Signal) -> tuple[Maneuver, ...]:
+        """The maneuvers for which a signal holds."""
+        return self._controlled.get(signal.uid, ())
+
+    @cached_property
+    def _controlled(self) -> dict[str, tuple[Maneuver, ...]]:
+        found: dict[str, tuple[Maneuver, ...]] = {}
+        for maneuver in self.maneuvers:
+            for signal in maneuver.signals:
+                found[signal.uid] = (*found.get(signal.uid, ()), maneuver)
+        return found
+
+    def speedLimitAt(self, point: Any) -> float | None:
+        """The speed limit in m/s at a point: that of the lane there; ``None`` where there is none."""
+        lane = self.laneAt(point)
+        if lane is None:
+            return None
+        place = self.vector(point)
+        import shapely
+
+        return lane.speedLimitAt(
+            float(shapely.LineString(lane.line).project(shapely.Point(place.x, place.y)))
+        )  # type: ignore[no-any-return] # of a lane
 
     # Regions
 

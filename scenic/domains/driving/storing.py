@@ -25,11 +25,11 @@ from scenic.domains.driving.elements import (
     RoadSection,
     Shoulder,
     Sidewalk,
-    Signal,
 )
 from scenic.domains.driving.elevation import Elevation, RoadHeight
 from scenic.domains.driving.kinds import ManeuverType, VehicleType
 from scenic.domains.driving.network import RoadNetwork
+from scenic.domains.driving.signs import Placement, Signal
 from scenic.formats.opendrive.records import Cubic, LateralShape
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.spans import Span
@@ -37,7 +37,7 @@ from scenic.runtime.geometry.store import Arrays
 
 __all__ = ["KIND", "restored", "stored"]
 
-KIND: Final = "road network 5"
+KIND: Final = "road network 6"
 """Name and version of the form of the arrays."""
 
 _Network = TypeVar("_Network", bound=RoadNetwork)
@@ -97,12 +97,7 @@ def stored(network: RoadNetwork) -> Arrays:
         if isinstance(element, Lane | Intersection)
         for maneuver in element.maneuvers
     )
-    signals = _distinct(
-        signal
-        for element in elements
-        if isinstance(element, Road | Intersection)
-        for signal in element.signals
-    )
+    signals = list(network.signals)
     way = {id(item): index for index, item in enumerate(maneuvers)}
     sign = {id(item): index for index, item in enumerate(signals)}
     rows = []
@@ -121,6 +116,7 @@ def stored(network: RoadNetwork) -> Arrays:
             [[number[id(item)] for item in getattr(element, name)] for name in _MANY[cls]],
             [way[id(item)] for item in getattr(element, "maneuvers", ())],
             [sign[id(item)] for item in getattr(element, "signals", ())],
+            element.speedLimitRanges,
         ]
         if isinstance(element, RoadSection):
             row.append([number[id(item)] for item in element.lanesByOpenDriveID.values()])
@@ -142,7 +138,18 @@ def stored(network: RoadNetwork) -> Arrays:
             )
             for item in maneuvers
         ],
-        "signals": [(item.uid, item.openDriveID, item.country, item.type) for item in signals],
+        "signals": [
+            (
+                *(item.uid, item.openDriveID, item.country, item.type, item.subtype, item.t, item.height),
+                *(item.value, item.references, item.dependencies, item._priorities),
+                [
+                    (at.road, at.s, at.orientation, at.validity, at.is_reference, at.holds)
+                    for at in item.placements
+                ],
+            )
+            for item in signals
+        ],
+        "offset": network.offset,
         "lists": [[number[id(item)] for item in getattr(network, name)] for name in _LISTS],
         "heights": [
             (
@@ -191,7 +198,9 @@ def restored(arrays: Arrays, filename: str, tolerance: float, cls: type[_Network
         )
         for start, end, lane, inter, kind in text["maneuvers"]
     ]
-    signs = [Signal(*fields) for fields in text["signals"]]
+    signs = [_signal(network, *fields) for fields in text["signals"]]
+    network.signals = tuple(signs)
+    network.offset = tuple(text["offset"])
     for element, row in zip(elements, rows, strict=True):
         _link(element, row, elements, ways, signs, next_line)
     for name, items in zip(_LISTS, text["lists"], strict=True):
@@ -234,6 +243,29 @@ def _element(network: RoadNetwork, row: Sequence[Any], polygon: Any) -> NetworkE
     )
 
 
+def _signal(network: RoadNetwork, *fields: Any) -> Signal:
+    uid, key, country, kind, subtype, t, height, value, references, dependencies, priorities, places = fields
+    signal = Signal(
+        uid,
+        key,
+        country,
+        kind,
+        subtype=subtype,
+        t=t,
+        height=height,
+        value=value,
+        references=tuple(references),
+        dependencies=tuple(dependencies),
+        priorities=tuple(priorities),
+        placements=tuple(
+            Placement(road, s, orientation, tuple(map(tuple, validity)), is_reference, holds)
+            for road, s, orientation, validity, is_reference, holds in places
+        ),
+    )
+    signal.network = network
+    return signal
+
+
 def _link(
     element: Any,
     row: Sequence[Any],
@@ -244,7 +276,8 @@ def _link(
 ) -> None:
     """Give an element its attributes that name others, and its lines."""
     cls: Any = type(element)
-    plain, one, many, ways, signs = row[7:12]
+    plain, one, many, ways, signs, ranges = row[7:13]
+    element.speedLimitRanges = tuple(map(tuple, ranges))
     for name, value in zip(_PLAIN.get(cls, ()), plain, strict=True):
         setattr(element, name, value)
     for name, item in zip(_ONE[cls], one, strict=True):
@@ -260,7 +293,7 @@ def _link(
     if isinstance(element, LaneGroup):
         element._curb = next_line()
     if isinstance(element, RoadSection):
-        element.lanesByOpenDriveID = {elements[item].openDriveID: elements[item] for item in row[12]}
+        element.lanesByOpenDriveID = {elements[item].openDriveID: elements[item] for item in row[13]}
 
 
 def _lines(element: NetworkElement) -> Iterable[NDArray[np.float64]]:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise, zip_longest
 from types import MappingProxyType
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 from scenic.formats.opendrive.records import (
     Connection,
@@ -28,6 +28,7 @@ from scenic.formats.opendrive.records import (
     Shape,
     Signal,
     SignalReference,
+    Speed,
 )
 from scenic.formats.opendrive.schema import LARGEST, faults_of
 from scenic.formats.opendrive.xml_tree import Element, MapError, read_tree
@@ -157,6 +158,7 @@ class _Reader:
             version,
             header.attributes.get("vendor", ""),
             reference,
+            _offset(header),
             tuple(roads.values()),
             tuple(junctions.values()),
             tuple(self._told()),
@@ -195,7 +197,9 @@ class _Reader:
             raise _Wrong("it has no lanes", element, "lanes")
         self._within(name, element.all("type"), ends)
         type_ = element.first("type")
-        speed = None if type_ is None else _speed(type_.first("speed"))
+        speeds = tuple(
+            Speed(_number(item, "s", 0.0), _speed(item.first("speed"))) for item in element.all("type")
+        )
         junction = element.attributes.get("junction", "-1")
         return Road(
             name,
@@ -204,7 +208,7 @@ class _Reader:
             None if junction in ("-1", "") else junction,
             element.attributes.get("rule", "RHT").upper() == "LHT",
             "" if type_ is None else type_.attributes.get("type", ""),
-            speed,
+            tuple(sorted(speeds, key=lambda item: item.start)),
             self._link(element, "predecessor"),
             self._link(element, "successor"),
             geometry,
@@ -447,14 +451,20 @@ class _Reader:
             if element.tag not in ("signal", "signalReference") or "id" not in element.attributes:
                 continue
             given = element.attributes
-            lanes = [
-                (v.attributes.get("fromLane"), v.attributes.get("toLane")) for v in element.all("validity")
-            ]
-            is_valid = not lanes or any(pair != ("0", "0") for pair in lanes)
+            lanes = _validity(element)
+            # Some exporters write lanes 0 to 0 where they mean none of the own road.
+            is_valid = not lanes or any(pair != (0, 0) for pair in lanes)
+            lanes = tuple(pair for pair in lanes if pair != (0, 0))
             if element.tag == "signalReference":
                 if not is_valid:
                     continue
-                yield SignalReference(given["id"], given.get("orientation", "none"), element.line)
+                yield SignalReference(
+                    given["id"],
+                    given.get("orientation", "none"),
+                    _number_or(element, "s", 0.0),
+                    lanes,
+                    element.line,
+                )
                 continue
             try:
                 place = _number(element, "s", 0.0), _number(element, "t", 0.0)
@@ -468,6 +478,12 @@ class _Reader:
                 given.get("subtype", ""),
                 given.get("orientation", "none"),
                 *place,
+                _number_or(element, "zOffset", 0.0),
+                _number_or(element, "value", None),
+                lanes,
+                _priorities(element),
+                tuple(_ids(element, "reference", "elementId")),
+                tuple(_ids(element, "dependency", "id")),
                 is_valid,
                 element.line,
             )
@@ -594,6 +610,48 @@ def _speed(element: Element | None) -> float | None:
     return value * factor if math.isfinite(value) and value > 0 else None
 
 
+def _offset(header: Element) -> tuple[float, float, float, float]:
+    """Metres along x, y and z, and radians, by which the coordinates of the file are moved."""
+    offset = header.first("offset")
+    if offset is None:
+        return 0.0, 0.0, 0.0, 0.0
+    x, y, z, heading = (_number_or(offset, name, 0.0) for name in ("x", "y", "z", "hdg"))
+    return x, y, z, heading
+
+
+def _validity(element: Element) -> tuple[tuple[int, int], ...]:
+    """First and last ids of lanes for which something is valid."""
+    found = []
+    for item in element.all("validity"):
+        try:
+            found.append((int(item.attributes.get("fromLane", "")), int(item.attributes.get("toLane", ""))))
+        except ValueError:  # a finding of the schema
+            continue
+    return tuple((min(pair), max(pair)) for pair in found)
+
+
+def _priorities(element: Element) -> tuple[str, ...]:
+    semantics = element.first("semantics")
+    if semantics is None:
+        return ()
+    return tuple(item.attributes.get("type", "") for item in semantics.all("priority"))
+
+
+def _ids(element: Element, tag: str, attribute: str) -> Iterator[str]:
+    for item in element.all(tag):
+        if attribute in item.attributes:
+            yield item.attributes[attribute]
+
+
+def _number_or(element: Element, name: str, default: Any) -> Any:
+    """A number of an element; the default where it is none."""
+    try:
+        value = float(element.attributes[name])
+    except (KeyError, ValueError):
+        return default
+    return value if math.isfinite(value) else default
+
+
 def _cubics(element: Element, tag: str, start: str) -> Iterator[Cubic]:
     found = {}
     for item in element.all(tag):
@@ -656,7 +714,7 @@ def _lane(element: Element) -> Lane:
         f"{item.attributes.get('rule', 'allow')} {item.attributes.get('restriction', '')}"
         for item in element.all("access")
     )
-    speeds = [speed for item in element.all("speed") if (speed := _speed(item)) is not None]
+    speeds = tuple(Speed(_number(item, "sOffset", 0.0), _speed(item)) for item in element.all("speed"))
     return Lane(
         _integer(element, "id"),
         element.attributes.get("type", "none"),
@@ -664,7 +722,7 @@ def _lane(element: Element) -> Lane:
         neighbour("successor"),
         tuple(_cubics(element, "width", "sOffset")),
         tuple(_cubics(element, "border", "sOffset")),
-        speeds[0] if speeds else None,
+        tuple(sorted(speeds, key=lambda item: item.start)),
         access,
         element.line,
         frozenset(lost),

@@ -100,6 +100,15 @@ class Geometry:
 
 
 @dataclass(frozen=True, slots=True)
+class Speed:
+    """A speed limit from a place on: ``start`` in metres from the beginning of the road, or of the lane section."""
+
+    start: float
+    limit: float | None
+    """In m/s; ``None`` where there is none."""
+
+
+@dataclass(frozen=True, slots=True)
 class Lane:
     """A lane of a lane section; ``id`` is positive on the left of the reference line, negative on the right."""
 
@@ -109,8 +118,8 @@ class Lane:
     successor: int | None
     widths: tuple[Cubic, ...]
     borders: tuple[Cubic, ...]
-    speed: float | None
-    """Speed limit in m/s, if the lane has its own."""
+    speeds: tuple[Speed, ...]
+    """Speed limits of its own."""
     access: frozenset[str]
     """Kinds of road users that the file allows or denies, as ``allow bicycle``."""
     line: int
@@ -150,6 +159,17 @@ class Signal:
     orientation: str
     s: float
     t: float
+    height: float
+    """Metres above the road."""
+    value: float | None
+    validity: tuple[tuple[int, int], ...]
+    """First and last ids of the lanes for which it is valid; none for all lanes of its direction."""
+    priorities: tuple[str, ...]
+    """Types of priority, of its semantics."""
+    references: tuple[str, ...]
+    """Ids of signals and objects that belong to it."""
+    dependencies: tuple[str, ...]
+    """Ids of signals that it controls."""
     is_valid: bool
     """Valid for some lane of its own road, not only through references of others."""
     line: int
@@ -161,6 +181,8 @@ class SignalReference:
 
     id: str
     orientation: str
+    s: float
+    validity: tuple[tuple[int, int], ...]
     line: int
 
 
@@ -187,8 +209,7 @@ class Road:
     junction: str | None
     left_hand: bool
     type: str
-    speed: float | None
-    """Speed limit in m/s."""
+    speeds: tuple[Speed, ...]
     predecessor: Link | None
     successor: Link | None
     geometry: tuple[Geometry, ...]
@@ -247,6 +268,8 @@ class MapRecords:
     version: str
     vendor: str
     georeference: str
+    offset: tuple[float, float, float, float]
+    """Metres by which the coordinates of the file lie beside those of ``georeference``, and radians by which they are turned."""
     roads: tuple[Road, ...]
     junctions: tuple[Junction, ...]
     problems: tuple[Problem, ...] = field(default=())
