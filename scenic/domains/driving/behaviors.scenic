@@ -5,6 +5,7 @@ from scenic.domains.driving.car_following import Gap
 from scenic.domains.driving.lane_driving import LaneChanger, LaneDriver, RouteDriver
 from scenic.domains.driving.lines import concatenateCenterlines
 from scenic.domains.driving.maneuvering import nearest_end, sidewalk_under
+from scenic.domains.driving.rules import RulesDriver
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import Route, Trajectory
 from scenic.domains.driving.walking import arrived, heading_to, places_of, walking_step
@@ -174,5 +175,22 @@ behavior DriveAvoidingCollisions(target_speed=25, avoidance_threshold=10):
     while not driver.is_over():
         while driver.must_choose():
             driver.choose(Uniform(*driver.choices))
+        take driver.action()
+    take SetThrottleAction(0), SetBrakeAction(1.0)
+
+
+behavior DriveByRulesBehavior(target_speed=None, ignore=(), follow_gap=1.5, comfort=None):
+    """Drive by the rules of the road: speed limits, lights, stop signs, priority, pedestrians on crossings, gaps.
+
+    Arguments:
+        target_speed: m/s; by default what limits allow.
+        ignore: names of rules that are not obeyed: 'speed_limits', 'signals', 'signs', 'priority', 'pedestrians', 'gaps'.
+        follow_gap: seconds that the car keeps behind others.
+        comfort: limits of accelerations, a `Comfort`.
+    """
+    driver = RulesDriver(self, target_speed, ignore, comfort, Gap(follow_gap))
+    while not driver.is_over():
+        while driver.must_choose():
+            driver.choose(Uniform(*driver.ways))
         take driver.action()
     take SetThrottleAction(0), SetBrakeAction(1.0)

@@ -195,6 +195,9 @@ class Driver:
         acceleration = along + _SETTLING * (wanted - speed)
         if self._gap is not None:
             acceleration = min(acceleration, self._behind(speed, share))
+        lengths, index = self._path.along, self._index
+        own = lengths[index] + share * (lengths[index + 1] - lengths[index])
+        acceleration = min(acceleration, self.extra_acceleration(speed, own))
         comfort, timestep = self.comfort, self._simulation.timestep
         if acceleration > -_HARD:
             # Jolts are limited; the profile keeps to that, so that this is for what no profile foresees.
@@ -205,6 +208,10 @@ class Driver:
             acceleration = min(acceleration, -1.0)
         self._acceleration = max(acceleration, -speed / timestep)
         return float(self._simulation.pedal_for(agent, acceleration))
+
+    def extra_acceleration(self, speed: float, own: float) -> float:
+        """The largest acceleration (m/s^2) that further rules allow at metres along the path; infinite for no rules."""
+        return math.inf
 
     def _behind(self, speed: float, share: float) -> float:
         """The acceleration that keeps the gap to the car ahead; infinite if there is none."""

@@ -135,9 +135,13 @@ class RoadNetwork(Frozen):
         place = self.vector(point)
         import shapely
 
-        return lane.speedLimitAt(
-            float(shapely.LineString(lane.line).project(shapely.Point(place.x, place.y)))
-        )  # type: ignore[no-any-return] # of a lane
+        along = float(shapely.LineString(lane.line).project(shapely.Point(place.x, place.y)))
+        limit: float | None = lane.speedLimitAt(along)
+        return limit
+
+    def crossings_near(self, element: NetworkElement) -> tuple[PedestrianCrossing, ...]:
+        """The pedestrian crossings that touch an element."""
+        return tuple(crossing for crossing in self.crossings if crossing.polygon.intersects(element.polygon))
 
     # Regions
 

@@ -61,6 +61,11 @@ class Plan:
         self.is_complete = True
 
     @property
+    def last_lane(self) -> Lane:
+        """The lane after which the plan goes on."""
+        return self._pending[-1]
+
+    @property
     def choices(self) -> tuple[Any, ...]:
         """The ways to go on after the last lane: maneuvers straight ahead if there are any, else all; backward, a lane."""
         last = self._pending[-1]

@@ -1,9 +1,14 @@
 """Bases of simulators for the driving domain."""
 
 import math
+from functools import cached_property
 from typing import Any, ClassVar
 
 from scenic.domains.driving.controllers import PIDLateralController, PIDLongitudinalController
+from scenic.domains.driving.network import RoadNetwork
+from scenic.domains.driving.right_of_way import RightOfWay
+from scenic.domains.driving.signals import LightTimes, TrafficLights
+from scenic.domains.driving.signs import Signal
 from scenic.simulators.simulation import Simulation
 from scenic.simulators.simulator import Simulator
 
@@ -29,6 +34,70 @@ class DrivingSimulation(Simulation):
         "turn": (0.8, 0.2, 0.0),
         "change": (0.08, 0.3, 0.0),
     }
+
+    @cached_property
+    def traffic_lights(self) -> Any:
+        """The traffic lights of the map, by the program's parameter ``traffic_lights``."""
+        network = getattr(self.scene.workspace, "network", None)
+        times = LightTimes.of(self.scene.params.get("traffic_lights") or {})
+        return TrafficLights(RoadNetwork() if network is None else network, times)
+
+    @cached_property
+    def right_of_way(self) -> RightOfWay:
+        """The ways through intersections that cars have taken."""
+        return RightOfWay()
+
+    @cached_property
+    def _law_abiding(self) -> set[int]:
+        return set()
+
+    def obeys_rules(self, agent: Any) -> bool:
+        """Return whether a car takes its way through intersections by `right_of_way`."""
+        return id(agent) in self._law_abiding
+
+    def note_rules(self, agent: Any, obeys: bool) -> None:
+        """Note whether a car takes its way through intersections by `right_of_way`."""
+        if obeys:
+            self._law_abiding.add(id(agent))
+        else:
+            self._law_abiding.discard(id(agent))
+
+    def signalState(self, signal: Signal) -> str:
+        """The colour of a traffic light now: ``red``, ``yellow``, ``green`` or ``off``."""
+        lights = self.traffic_lights
+        lights.time = self.currentTime * float(self.timestep)
+        color: str = lights.get(signal)
+        return color
+
+    def _light_ahead(self, vehicle: Any, distance: float) -> Signal | None:
+        """The first traffic light ahead of a vehicle within a distance in metres."""
+        lane = vehicle._lane
+        if lane is None:
+            return None
+        x, y, *_ = vehicle.position
+        best: tuple[float, Signal] | None = None
+        for signal in lane.halting_signals:
+            point = signal.stoppingPointOn(lane)
+            if not signal.isTrafficLight or point is None:
+                continue
+            a, b = point[0] - x, point[1] - y
+            away = math.hypot(a, b)
+            ahead = b * math.cos(vehicle.heading) - a * math.sin(vehicle.heading) > 0
+            if ahead and away < distance and (best is None or away < best[0]):
+                best = away, signal
+        return None if best is None else best[1]
+
+    def closest_traffic_light(self, vehicle: Any, distance: float) -> str:
+        """The colour of the traffic light ahead of a vehicle within a distance in metres; ``none`` if there is none."""
+        signal = self._light_ahead(vehicle, distance)
+        return "none" if signal is None else self.signalState(signal)
+
+    def set_closest_traffic_light(self, vehicle: Any, color: str, distance: float) -> None:
+        """Set the traffic light ahead of a vehicle within a distance in metres, if there is one."""
+        signal = self._light_ahead(vehicle, distance)
+        if signal is not None:
+            self.signalState(signal)
+            self.traffic_lights.set(signal, color)
 
     def has_own_controllers(self, name: str) -> bool:
         """Return whether the simulation overrides a method for controllers."""

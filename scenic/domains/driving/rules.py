@@ -1,0 +1,316 @@
+"""Drivers that obey the rules of the road: speed limits, lights, signs, priority, pedestrians on crossings, gaps."""
+
+import math
+from collections.abc import Iterable
+from itertools import pairwise
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.dataclass import dataclass
+from scenic.domains.driving.car_following import Gap, following_acceleration
+from scenic.domains.driving.elements import Lane, Maneuver
+from scenic.domains.driving.lane_driving import LaneDriver
+from scenic.domains.driving.right_of_way import Claim
+from scenic.domains.driving.speed_limits import limits_along
+from scenic.domains.driving.speed_profiles import Comfort
+from scenic.language.errors import InvalidScenarioError
+from scenic.language.spelling import nearest
+
+__all__ = ["RULES", "RulesDriver"]
+
+RULES: Final = ("speed_limits", "signals", "signs", "priority", "pedestrians", "gaps")
+"""Names of rules that a driver can be told to ignore."""
+_UNLIMITED: Final = 13.9
+"""Speed (m/s) where a map has no limit: 50 km/h."""
+_FASTEST: Final = 40.0
+_BEFORE: Final = 1.0
+"""Metres between the front of a car that halts and the line."""
+_APPROACH: Final = Gap(0.4, 0.5)
+"""The gap kept to a line at which a car halts."""
+_TOO_HARD: Final = 3.5
+"""Deceleration (m/s^2) that a light that turns yellow, or a way that is taken, does not ask for."""
+_CHECKS: Final = 0.2
+"""Seconds between two looks at rules."""
+_ON: Final = 1.5
+"""Metres from a crossing within which a pedestrian counts as on it."""
+
+
+@dataclass(slots=True, eq=False)
+class _Halt:
+    """A line on the path at which a car may have to halt; ``along`` and ``end`` are metres along the path.
+
+    Attributes:
+        along: to the line.
+        end: to the end of the intersection after it.
+        maneuver: through the intersection, if any.
+        signals: that hold.
+        crossing: a pedestrian crossing.
+        is_stopped_for: the car has stood at the line.
+
+    """
+
+    along: float
+    end: float
+    maneuver: Maneuver | None = None
+    signals: tuple[Any, ...] = ()
+    crossing: Any = None
+    is_stopped_for: bool = False
+
+
+class RulesDriver(LaneDriver):
+    """Follows lanes by the rules of the road.
+
+    Args:
+        agent: the car.
+        target: speed to reach, m/s; ``None`` for what limits allow.
+        ignore: names of `RULES` that the driver does not obey.
+        comfort: limits of accelerations.
+        gap: kept behind others.
+
+    Raises:
+        InvalidScenarioError: a name in ``ignore`` is not that of a rule.
+
+    """
+
+    def __init__(
+        self,
+        agent: Any,
+        target: float | None = None,
+        ignore: Iterable[str] = (),
+        comfort: Comfort | None = None,
+        gap: Gap | None = None,
+    ) -> None:
+        self._ignored = frozenset([ignore] if isinstance(ignore, str) else ignore)
+        for name in sorted(map(str, self._ignored)):
+            if name not in RULES:
+                near = nearest(name, list(RULES))
+                raise InvalidScenarioError(
+                    f"there is no rule {name!r} to ignore",
+                    help=f"did you mean {near!r}?" if near else f"the rules are {', '.join(RULES)}",
+                )
+        self._halts: list[_Halt] = []
+        self._marks = 0
+        self._waiting = math.inf
+        self._next_check = 0.0
+        self._bound = math.inf
+        kept = None if "gaps" in self._ignored else gap or Gap()
+        super().__init__(agent, _FASTEST if target is None else target, None, comfort, kept)
+        self._simulation.note_rules(agent, "priority" not in self._ignored)
+
+    @property
+    def ways(self) -> tuple[Any, ...]:
+        """The ways to go on at the end of the last lane: all maneuvers, not only those straight ahead."""
+        lane = self._plan.last_lane
+        return self.choices if self._backward else lane.maneuvers
+
+    # What lies along the path
+
+    def _limits(self) -> Any:
+        path = self._plan.path
+        self._find_halts()
+        if "speed_limits" in self._ignored:
+            return None
+        along = np.array(path.along)
+        limits = np.full(len(along), np.inf)
+        known = _UNLIMITED
+        marks = [*path.lanes, (len(along), None)]
+        for (begin, lane), (end, _) in pairwise(marks):
+            if end <= begin:
+                continue
+            own = limits_along(lane.speedLimitRanges, along[begin:end] - along[begin])
+            own = np.where(np.isfinite(own), own, known)
+            limits[begin:end] = own
+            known = float(own[-1]) if len(own) else known
+        return limits
+
+    def _find_halts(self) -> None:
+        """Note lights, signs and crossings on the lanes that have been added to the path."""
+        path = self._plan.path
+        lanes = path.lanes
+        for number in range(self._marks, len(lanes)):
+            begin, lane = lanes[number]
+            start = path.along[min(begin, len(path.along) - 1)]
+            if number and lanes[number - 1][1] is lane:
+                continue
+            before = next((item for _, item in reversed(lanes[:number]) if item is not lane), None)
+            if lane.is_connecting:
+                maneuver = _maneuver_of(before, lane)
+                if maneuver is not None:
+                    end = start + _length(lane)
+                    self._halts.append(_Halt(start, end, maneuver, maneuver.signals))
+            self._halts += self._crossings_on(lane, start)
+        self._marks = len(lanes)
+        self._halts.sort(key=lambda halt: halt.along)
+
+    def _crossings_on(self, lane: Lane, start: float) -> Iterable[_Halt]:
+        import shapely
+
+        line = shapely.LineString(lane.line)
+        network = lane.network
+        for crossing in network.crossings_near(lane):
+            part = line.intersection(crossing.polygon)
+            if part.is_empty:
+                continue
+            places = [line.project(shapely.Point(place)) for place in shapely.get_coordinates(part)]
+            yield _Halt(start + min(places), start + max(places), crossing=crossing)
+
+    # What they ask for now
+
+    def extra_acceleration(self, speed: float, own: float) -> float:
+        """The largest acceleration (m/s^2) that the rules allow at metres along the path."""
+        simulation = self._simulation
+        now = simulation.currentTime * simulation.timestep
+        if now >= self._next_check:
+            self._next_check = now + _CHECKS
+            self._line = self._first_line(speed, own, now)
+        if self._line is None:
+            return math.inf
+        distance = self._line - own - self._agent.length / 2 - _BEFORE
+        if distance < -1.0:
+            return math.inf
+        comfort = self.comfort
+        return following_acceleration(
+            speed, distance + _APPROACH.standing, 0.0, _APPROACH, comfort.acceleration, comfort.deceleration
+        )
+
+    _line: float | None = None
+
+    def _first_line(self, speed: float, own: float, now: float) -> float | None:
+        """Metres along the path to the first line at which the car has to halt now; ``None`` if it may go on."""
+        agent = self._agent
+        front = own + agent.length / 2
+        stands = speed < 0.3
+        if not stands:
+            self._waiting = math.inf
+        elif self._waiting == math.inf:
+            self._waiting = now
+        reach = 1.3 * speed * speed / (2 * self.comfort.deceleration) + 2 * speed + 12.0
+        remaining = []
+        found: float | None = None
+        for halt in self._halts:
+            if own - agent.length / 2 > halt.end:
+                if halt.maneuver is not None:
+                    self._simulation.right_of_way.leave(agent, halt.maneuver)
+                continue
+            remaining.append(halt)
+            if found is not None or halt.along - front > reach or front > halt.along + 1.0:
+                continue
+            if self._must_halt(halt, speed, halt.along - front, now):
+                found = halt.along
+        self._halts = remaining
+        return found
+
+    def _must_halt(self, halt: _Halt, speed: float, distance: float, now: float) -> bool:
+        if halt.crossing is not None:
+            return self._is_crossed(halt, speed, distance)
+        maneuver = halt.maneuver
+        assert maneuver is not None
+        if "signals" not in self._ignored and self._is_red(halt, speed, distance):
+            self._claim(maneuver, speed, distance, now, must_wait=True)
+            return True
+        if "signs" not in self._ignored and any(signal.isStopSign for signal in halt.signals):
+            halt.is_stopped_for |= speed < 0.1 and distance < _BEFORE + 1.5
+            if not halt.is_stopped_for:
+                self._claim(maneuver, speed, distance, now, must_wait=True)
+                return True
+        if "priority" in self._ignored:
+            return False
+        right = self._simulation.right_of_way
+        if right.holds(agent := self._agent, maneuver):
+            return False
+        claim = self._claim(maneuver, speed, distance, now, must_wait=False)
+        # A way is asked for where the car would have to brake for it.
+        if distance > 1.2 * speed * speed / (2 * self.comfort.deceleration) + speed + 6.0:
+            return False
+        if not self._has_room(halt) or self._is_blocked(maneuver) or not right.take(claim):
+            return distance > 0 and (
+                speed * speed / (2 * max(distance, 0.1)) < _TOO_HARD or agent.speed < 1.0
+            )
+        return False
+
+    def _claim(
+        self, maneuver: Maneuver, speed: float, distance: float, now: float, *, must_wait: bool
+    ) -> Claim:
+        eta = max(distance, 0.0) / max(speed, 1.5)
+        claim = Claim(self._agent, maneuver, eta, self._waiting, now, must_wait)
+        self._simulation.right_of_way.announce(claim)
+        return claim
+
+    def _is_red(self, halt: _Halt, speed: float, distance: float) -> bool:
+        for signal in halt.signals:
+            if not signal.isTrafficLight:
+                continue
+            color = self._simulation.signalState(signal)
+            needed = speed * speed / (2 * max(distance - _BEFORE / 2, 0.1))
+            if color == "red":
+                return distance > -0.5
+            if color == "yellow" and needed < _TOO_HARD:
+                return True
+        return False
+
+    def _has_room(self, halt: _Halt) -> bool:
+        """Return whether the car would not have to stop within the intersection, behind another car."""
+        leader = self._leader
+        if leader is None or "gaps" in self._ignored:
+            return True
+        behind = leader.along - leader.reach
+        if behind - halt.end > self._agent.length + 3.0:
+            return True
+        return bool(leader.speed_along(leader.item.heading) > 2.0)
+
+    def _is_blocked(self, maneuver: Maneuver) -> bool:
+        """Return whether somebody who does not keep to these rules is in the way within the intersection, or comes fast."""
+        import shapely
+
+        line = shapely.linestrings(maneuver.connectingLane.line)  # type: ignore[union-attr] # of intersections
+        intersection = maneuver.intersection
+        for other in self._simulation.objects:
+            if other is self._agent or not getattr(other, "isVehicle", False):
+                continue
+            if self._simulation.obeys_rules(other):
+                continue
+            x, y, *_ = other.position
+            if not _near(self._agent, other, 60.0):
+                continue
+            # Half a second ahead, too.
+            vx, vy, *_ = other.velocity
+            ways = [(x + k * vx, y + k * vy) for k in (0.0, 0.7, 1.4, 2.1)]
+            if shapely.contains_xy(intersection.polygon, *ways[0]) or other.speed > 1.0:  # type: ignore[union-attr] # as above
+                course = shapely.linestrings(ways) if other.speed > 0.1 else shapely.Point(x, y)
+                same = shapely.contains_xy(maneuver.startLane.polygon, x, y)
+                if not same and shapely.distance(line, course) < 2.2:
+                    return True
+        return False
+
+    def _is_crossed(self, halt: _Halt, speed: float, distance: float) -> bool:
+        if "pedestrians" in self._ignored or speed * speed / (2 * max(distance, 0.1)) > 2 * _TOO_HARD:
+            return False
+        import shapely
+
+        polygon = halt.crossing.polygon
+        for other in self._simulation.objects:
+            if not getattr(other, "isPedestrian", False):
+                continue
+            x, y, *_ = other.position
+            vx, vy, *_ = other.velocity
+            here = shapely.distance(polygon, shapely.Point(x, y))
+            soon = shapely.distance(polygon, shapely.Point(x + vx, y + vy))
+            if here < 0.1 or (soon < here and here < _ON):
+                return True
+        return False
+
+
+def _near(one: Any, other: Any, limit: float) -> bool:
+    return bool(math.hypot(one.position[0] - other.position[0], one.position[1] - other.position[1]) < limit)
+
+
+def _length(lane: Lane) -> float:
+    return float(np.hypot(*np.diff(lane.line, axis=0).T).sum())
+
+
+def _maneuver_of(before: Lane | None, connecting: Lane) -> Maneuver | None:
+    """The maneuver from a lane through a connecting lane."""
+    if before is None:
+        return None
+    return next((item for item in before.maneuvers if item.connectingLane is connecting), None)
