@@ -9,6 +9,7 @@ from scenic.domains.driving.roads import (
     Intersection, Lane, LaneGroup, LaneSection, ManeuverType, Network, NetworkElement, PedestrianCrossing, Road,
     RoadSection, Shoulder, Sidewalk,
 )
+from scenic.domains.driving.signals import FreezeTrafficLightsAction, SetTrafficLightAction
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.sensors import RGBSensor, SSSensor
 from scenic.domains.driving.setting import is2DMode, nearer, network_of_program, standing
@@ -18,6 +19,7 @@ from scenic.core.distributions import RejectionException
 
 param use2DMap = is2DMode()
 param map_options = {}
+param traffic_lights = {}
 
 network = network_of_program(globalParameters)
 workspace = DrivingWorkspace(network)

@@ -12,8 +12,8 @@ __all__ = ["Claim", "RightOfWay", "comes_first", "ways_meet"]
 
 _WIDTH: Final = 2.4
 """Metres between the middles of two ways below which cars on them may touch."""
-_TIME: Final = 4.0
-"""Seconds to an intersection from which on a car with priority is let through."""
+_TIME: Final = 3.5
+"""Seconds after the own arrival within which a car with priority arrives that is let through."""
 _PATIENCE: Final = 6.0
 """Seconds after which a car that waits goes before others that stand."""
 _STALE: Final = 1.0
@@ -126,7 +126,7 @@ class RightOfWay:
         return True
 
     def _goes_before(self, other: Claim, own: Claim) -> bool:
-        if other.must_wait or other.at < own.at - _STALE or other.eta > _TIME:
+        if other.must_wait or other.at < own.at - _STALE or other.eta > own.eta + _TIME:
             return False
         if not ways_meet(own.maneuver, other.maneuver) or not comes_first(other.maneuver, own.maneuver):
             return False

@@ -207,6 +207,8 @@ class RulesDriver(LaneDriver):
         maneuver = halt.maneuver
         assert maneuver is not None
         if "signals" not in self._ignored and self._is_red(halt, speed, distance):
+            # A way that was taken while the light was green is free for others again.
+            self._simulation.right_of_way.leave(self._agent, maneuver)
             self._claim(maneuver, speed, distance, now, must_wait=True)
             return True
         if "signs" not in self._ignored and any(signal.isStopSign for signal in halt.signals):

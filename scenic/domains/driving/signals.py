@@ -38,9 +38,9 @@ class LightTimes:
 
     """
 
-    green: float = 20.0
+    green: float = 10.0
     yellow: float = 3.0
-    all_red: float = 2.0
+    all_red: float = 1.5
     offset: float = 0.0
     states: Mapping[str, str] | None = None
 

@@ -40,7 +40,9 @@ class DrivingSimulation(Simulation):
         """The traffic lights of the map, by the program's parameter ``traffic_lights``."""
         network = getattr(self.scene.workspace, "network", None)
         times = LightTimes.of(self.scene.params.get("traffic_lights") or {})
-        return TrafficLights(RoadNetwork() if network is None else network, times)
+        lights = TrafficLights(RoadNetwork() if network is None else network, times)
+        lights.time = self.currentTime * float(self.timestep)
+        return lights
 
     @cached_property
     def right_of_way(self) -> RightOfWay:

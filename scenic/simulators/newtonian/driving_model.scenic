@@ -1,6 +1,11 @@
 """The driving world model, simulated by the built-in simulator."""
 
 from scenic.domains.driving.model import *
+from scenic.simulators.carla.lights import (
+    freezeTrafficLights, getClosestTrafficLightStatus, getTrafficLightStatus, setAllIntersectionTrafficLightsStatus,
+    setClosestTrafficLightStatus, setTrafficLightStatus, unfreezeTrafficLights, withinDistanceToRedYellowTrafficLight,
+    withinDistanceToTrafficLight,
+)
 from scenic.simulators.newtonian.controls import Driven, Walking
 from scenic.simulators.newtonian.simulator import NewtonianSimulator
 

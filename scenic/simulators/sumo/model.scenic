@@ -1,6 +1,11 @@
 """The driving world model, simulated by SUMO."""
 
 from scenic.domains.driving.model import *
+from scenic.simulators.carla.lights import (
+    freezeTrafficLights, getClosestTrafficLightStatus, getTrafficLightStatus, setAllIntersectionTrafficLightsStatus,
+    setClosestTrafficLightStatus, setTrafficLightStatus, unfreezeTrafficLights, withinDistanceToRedYellowTrafficLight,
+    withinDistanceToTrafficLight,
+)
 from scenic.simulators.newtonian.controls import Driven, Walking
 from scenic.simulators.sumo.actions import *
 from scenic.simulators.sumo.behaviors import *
