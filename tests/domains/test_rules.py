@@ -1,5 +1,6 @@
 """Drivers that obey the rules of the road, and drivers that ignore some of them."""
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -7,6 +8,8 @@ import numpy as np
 import pytest
 
 import scenic
+from scenic.domains.driving.kinds import ManeuverType
+from scenic.domains.driving.right_of_way import Claim, RightOfWay, comes_first
 from scenic.domains.driving.roads import Network
 from scenic.domains.driving.signals import LightTimes, TrafficLights, phases_of
 from scenic.language.errors import InvalidScenarioError
@@ -82,18 +85,57 @@ def test_a_stop_sign_is_a_full_stop(folder: Path) -> None:
     assert np.hypot(*np.diff(ignoring, axis=0).T).min() > 0.1
 
 
-def test_priority_is_given_at_a_sign_and_to_the_right(folder: Path) -> None:
-    # From the north, so from the right of a car to the west.
-    other = (
-        "start = network.laneAt((-1.75, 60))\nm = [m for m in start.maneuvers if m.type is ManeuverType.STRAIGHT][0]\n"
-        "new Car at (-1.75, {y}), facing 180 deg, with speed 10, with behavior DriveByRulesBehavior(10)\n"
+def ways(town: Any) -> dict[tuple[int, ManeuverType], Any]:
+    return {(way.startLane.road.id, way.type): way for way in town.maneuvers}
+
+
+def test_priority_by_signs_turns_and_from_the_right(folder: Path) -> None:
+    straight, left = ManeuverType.STRAIGHT, ManeuverType.LEFT_TURN
+    # Road 1 comes from the east, 2 from the north, 3 from the west, 4 from the south.
+    found = ways(Network.fromFile(folder / "cross.xodr"))
+    own = found[1, straight]
+    assert comes_first(found[2, straight], own)
+    assert not comes_first(found[4, straight], own)
+    assert comes_first(found[3, straight], found[1, left])
+    assert not comes_first(found[3, left], own)
+    for sign in ("yield", "stop"):
+        found = ways(Network.fromFile(folder / f"{sign}.xodr"))
+        assert comes_first(found[4, straight], found[1, straight])
+        assert not comes_first(found[1, straight], found[2, straight])
+
+
+def test_ways_are_taken_in_order(folder: Path) -> None:
+    found = ways(Network.fromFile(folder / "cross.xodr"))
+    own, right = found[1, ManeuverType.STRAIGHT], found[2, ManeuverType.STRAIGHT]
+    cars = object(), object()
+
+    def claim(number: int, way: Any, eta: float, since: float = math.inf, at: float = 10.0) -> Claim:
+        return Claim(cars[number], way, eta, since, at, must_wait=False)
+
+    rights = RightOfWay()
+    rights.announce(claim(1, right, 4.0))
+    assert not rights.take(claim(0, own, 3.0)), "somebody comes from the right"
+    assert rights.take(claim(0, own, 0.4)), "but not soon"
+    assert not rights.take(claim(1, right, 1.0)), "the way is taken"
+    rights.leave(cars[0], own)
+    assert rights.take(claim(1, right, 1.0))
+    rights.leave(cars[1], right)
+    # All wait for each other: the one that has waited longest goes.
+    rights.announce(claim(1, right, 0.5, since=5.0))
+    assert not rights.take(claim(0, own, 0.5, since=6.0))
+    assert rights.take(claim(0, own, 0.5, since=2.0))
+
+
+def test_cars_that_meet_at_a_crossing_do_not_touch(folder: Path) -> None:
+    text = WEST.format(more="") + "".join(
+        f"new Car at ({x}, {y}), facing {turn} deg, with speed 10, with behavior DriveByRulesBehavior(10)\n"
+        for x, y, turn in ((-1.75, 82, 180), (1.75, -80, 0), (-79, -1.75, -90))
     )
-    for town in ("yield", "cross"):
-        done = simulated(folder, WEST.format(more="") + other.format(y=82), town, 220)
-        ego, right = places(done), places(done, 1)
-        inside = [np.flatnonzero(np.abs(way).max(axis=1) < 13) for way in (ego, right)]
-        assert inside[1][0] < inside[0][0]
-        assert np.hypot(*(ego - right).T).min() > 3.4, "they pass on neighbouring lanes"
+    done = simulated(folder, text, "cross", 300)
+    courses = [places(done, number) for number in range(4)]
+    assert all(np.abs(course[-1]).max() > 20 for course in courses)
+    apart = min(np.hypot(*(a - b).T).min() for number, a in enumerate(courses) for b in courses[:number])
+    assert apart > 3.3, "they pass on neighbouring lanes"
 
 
 def test_pedestrians_are_let_across_and_others_are_not_waited_for(folder: Path) -> None:
