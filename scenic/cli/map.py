@@ -65,6 +65,8 @@ def map_command(file: Path, output: Path | None, width: int) -> int:
         ),
         ("lanes", f"{len(network.lanes)}, {drivable:,.0f} m2 for traffic"),
         ("intersections", str(len(network.intersections))),
+        ("speeds", _speeds(network)),
+        ("signals", _signals(network)),
         ("sidewalks", f"{len(network.sidewalks)}, and {len(network.crossings)} crossings"),
         ("shoulders", str(len(network.shoulders))),
         ("traffic", "keeps left" if network.driveOnLeft else "keeps right"),
@@ -73,6 +75,36 @@ def map_command(file: Path, output: Path | None, width: int) -> int:
         table.add_row(*row)
     Console(no_color=not has_colours(sys.stdout), highlight=False).print(table)
     return CLEAN
+
+
+def _speeds(network: "Network") -> str:
+    """The speed limits of ordinary roads, and the length of road with each of them."""
+    lengths: dict[float | None, float] = {}
+    for road in network.roads:
+        for start, stop, limit in road.speedLimitRanges:
+            lengths[limit] = lengths.get(limit, 0.0) + stop - start
+    ordered = sorted(lengths.items(), key=lambda item: (item[0] is None, item[0] or 0.0))
+    return ", ".join(
+        f"{'no limit' if limit is None else f'{3.6 * limit:.0f} km/h'} on {length / 1000:.1f} km"
+        for limit, length in ordered
+    )
+
+
+def _signals(network: "Network") -> str:
+    """Numbers of lights and signs, and of the maneuvers that they hold for."""
+    kinds = {
+        "traffic lights": "isTrafficLight",
+        "stop signs": "isStopSign",
+        "signs to give way": "isYieldSign",
+        "speed limits": "isSpeedLimit",
+    }
+    counts = {name: sum(getattr(item, kind) for item in network.signals) for name, kind in kinds.items()}
+    others = len(network.signals) - sum(counts.values())
+    shown = [f"{count} {name}" for name, count in (*counts.items(), ("others", others)) if count]
+    if not shown:
+        return "none"
+    held = sum(maneuver.signal is not None for maneuver in network.maneuvers)
+    return f"{', '.join(shown)}; they hold for {held} of {len(network.maneuvers)} maneuvers"
 
 
 def _loaded(file: Path) -> "Network":

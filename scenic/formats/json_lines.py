@@ -207,6 +207,10 @@ def plain(value: object, numbers: Mapping[int, int], within: tuple[int, ...] = (
         return [number(part) for part in parts if isinstance(part, float)]
     if isinstance(value, Sequence) and not isinstance(value, (bytes, bytearray, memoryview, range)):
         return [plain(item, numbers, inner) for item in value]
+    if callable(getattr(value, "applyTo", None)):
+        # An action: its numbers are what matters.
+        parts_of_action = {key: item for key, item in vars(value).items() if not key.startswith("_")}
+        return {"action": type(value).__name__, **plain(parts_of_action, numbers, inner)}
     return _text(value)
 
 

@@ -7,6 +7,7 @@ base; so the centre of a bounding box lies ahead of it and above it.
 
 import json
 import math
+import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -22,10 +23,12 @@ from scenic.runtime.values.values import Orientation, Vector
 
 __all__ = [
     "OpenScenarioFile",
+    "map_beside",
     "openscenario_about",
     "openscenario_document",
     "openscenario_support",
     "stands_on_ground",
+    "variables_of",
 ]
 
 Floats = NDArray[np.float64]
@@ -77,6 +80,7 @@ def openscenario_document(
     map_path: str,
     name: str,
     flat: bool,
+    names: Sequence[str | None] = (),
     properties: Mapping[str, str] | None = None,
 ) -> Any:
     """A ``scenariogeneration.xosc.Scenario`` of a simulation.
@@ -88,6 +92,7 @@ def openscenario_document(
         map_path: of the OpenDRIVE file.
         name: of the scenario.
         flat: whether positions are on the ground rather than in the middle of the objects.
+        names: of the variables of the objects, where they have some.
         properties: of the file header.
 
     Raises:
@@ -95,7 +100,7 @@ def openscenario_document(
 
     """
     xosc = openscenario_support()
-    entities = _entities(things, flat=flat)
+    entities = _entities(things, names or [None] * len(things), flat=flat)
     listed, init = xosc.Entities(), xosc.Init()
     act = xosc.Act("Simulation", _when(xosc, "begins", 0.0))
     times = [float(step * timestep) for step in range(len(poses))]
@@ -133,16 +138,32 @@ def stands_on_ground(scene: Any) -> bool:
     return bool(scene.program.context.mode_2d or scene.params.get("use2DMap"))
 
 
-def _entities(things: Sequence[Any], *, flat: bool) -> list[_Entity]:
+def variables_of(scene: Any) -> list[str | None]:
+    """The names of the variables of a scene's objects; ``None`` for objects without one."""
+    return [scene.names.get(thing) for thing in scene.objects]
+
+
+def map_beside(path: Any, folder: Path) -> str:
+    """The path of a map as a file in a folder names it: relative to the folder, if both are on one drive."""
+    file = Path(path)
+    if not file.is_file() and file.with_suffix(".xodr").is_file():
+        file = file.with_suffix(".xodr")
+    try:
+        return Path(os.path.relpath(file.resolve(), folder.resolve())).as_posix()
+    except ValueError:  # another drive
+        return str(file.resolve())
+
+
+def _entities(things: Sequence[Any], names: Sequence[str | None], *, flat: bool) -> list[_Entity]:
     taken: set[str] = set()
     found: list[_Entity] = []
-    for index, thing in enumerate(things):
+    for index, (thing, variable) in enumerate(zip(things, names, strict=True)):
         is_vehicle = bool(getattr(thing, "isVehicle", False))
         kind = (
             "Vehicle" if is_vehicle else "Pedestrian" if getattr(thing, "isPedestrian", False) else "Object"
         )
         given = getattr(thing, "name", None)
-        wanted = given if isinstance(given, str) and given else f"{kind}{index}"
+        wanted = given if isinstance(given, str) and given else variable or f"{kind}{index}"
         name, number = wanted, 2
         while name in taken:
             name, number = f"{wanted}_{number}", number + 1
@@ -282,9 +303,10 @@ class OpenScenarioFile:
             scene.objects,
             self._poses,
             timestep=simulation.timestep,
-            map_path=str(scene.params["map"]),
+            map_path=map_beside(scene.params["map"], self._path.parent),
             name=self._path.stem,
             flat=stands_on_ground(scene),
+            names=variables_of(scene),
             properties={_PROPERTY: json.dumps(about, allow_nan=False, separators=(",", ":"))},
         )
         tree = document.get_element()

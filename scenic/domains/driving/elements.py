@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from scenic.domains.driving.kinds import ManeuverType, VehicleType
 from scenic.domains.driving.levels import Ground
+from scenic.domains.driving.line_directions import Segments, share_along
 from scenic.domains.driving.signs import Signal, halt_point_ahead
 from scenic.domains.driving.speed_limits import Ranges, limits_along
 from scenic.domains.driving.surfaces import GroundedLine, Surface, frames_of
@@ -270,33 +271,6 @@ class LinearElement(NetworkElement):
     def flowFrom(self, point: Any, distance: Any, steps: int | None = None, stepSize: float = 5) -> Any:
         """The point reached by following the element's direction from a point for a distance in metres."""
         return self.orientation.followFrom(point, distance, steps=steps, stepSize=stepSize)
-
-
-class Segments:
-    """The segments of a line ``(n, 2)``, and which is nearest to a place."""
-
-    __slots__ = ("delta", "heading", "square", "starts")
-
-    def __init__(self, line: Floats) -> None:
-        self.starts = line[:-1]
-        self.delta = np.diff(line, axis=0)
-        self.square = np.maximum((self.delta**2).sum(axis=1), 1e-18)
-        self.heading = np.arctan2(-self.delta[:, 0], self.delta[:, 1])
-
-    def nearest(self, places: Floats) -> NDArray[np.intp]:
-        """Index of the nearest segment of each place, ``(n,)``."""
-        result = np.empty(len(places), dtype=np.intp)
-        block = max(1, 1_000_000 // len(self.starts))
-        for start in range(0, len(places), block):
-            some = places[start : start + block, None] - self.starts
-            share = np.clip((some * self.delta).sum(axis=-1) / self.square, 0, 1)
-            away = some - share[..., None] * self.delta
-            result[start : start + block] = (away**2).sum(axis=-1).argmin(axis=1)
-        return result
-
-    def headings(self, places: Floats) -> Floats:
-        """Heading of the nearest segment of each place, ``(n,)``."""
-        return np.asarray(self.heading[self.nearest(places)])
 
 
 class ElementLine(Frozen, PolylineRegion):
@@ -697,12 +671,3 @@ class Maneuver(Frozen):
 
     def __repr__(self) -> str:
         return f"<Maneuver {self.type.name} {self.startLane.uid} -> {self.endLane.uid}>"
-
-
-def share_along(line: Floats, point: Any) -> float:
-    """The share of a line's length at the place nearest to a point."""
-    import shapely
-
-    string = shapely.linestrings(line)
-    x, y, *_ = point.position if hasattr(point, "position") else point
-    return float(string.project(shapely.Point(x, y), normalized=True))

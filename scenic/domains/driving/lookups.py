@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.domains.driving.elements import LinearElement, NetworkElement, Segments
+from scenic.domains.driving.elements import LinearElement, NetworkElement
 from scenic.domains.driving.levels import Levels
+from scenic.domains.driving.line_directions import Segments
 from scenic.domains.driving.surfaces import frames_of
 from scenic.graph import quaternions
 from scenic.graph.kinds import Column, Kind

@@ -145,6 +145,7 @@ class Vehicle(DrivingObject):
     viewAngle: 90 deg
     width: 2
     length: 4.5
+    height: 1.5
     color: Color.defaultCarColor()
     wheelbase: 0.6 * self.length
     maxSteeringAngle: 35 deg
@@ -180,6 +181,57 @@ class Car(Vehicle):
 
 class NPCCar(Car):
     """A car that may be simulated coarsely."""
+
+
+class Bicycle(Vehicle):
+    """A bicycle with its rider."""
+
+    width: 0.6
+    length: 1.8
+    height: 1.7
+    maxSteeringAngle: 45 deg
+    maxSpeed: 12
+    maxAcceleration: 1.5
+    maxDeceleration: 4
+
+
+class Motorcycle(Vehicle):
+    """A motorcycle with its rider."""
+
+    width: 0.8
+    length: 2.2
+    height: 1.6
+    wheelbase: 0.65 * self.length
+    maxSteeringAngle: 40 deg
+    maxSpeed: 55
+    maxAcceleration: 6
+
+
+class Truck(Vehicle):
+    """A truck."""
+
+    width: 2.5
+    length: 7.5
+    height: 3.2
+    maxSteeringAngle: 40 deg
+    wheelDiameter: 1.0
+    maxSpeed: 30
+    maxAcceleration: 1.5
+    maxDeceleration: 7
+
+
+class Bus(Vehicle):
+    """A bus."""
+
+    width: 2.5
+    length: 11
+    height: 3.1
+    wheelbase: 0.52 * self.length
+    maxSteeringAngle: 45 deg
+    wheelDiameter: 1.0
+    maxSpeed: 28
+    maxAcceleration: 1.5
+    maxDeceleration: 7
 
 
 class Pedestrian(DrivingObject):

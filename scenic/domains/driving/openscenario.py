@@ -1,8 +1,9 @@
 """Export of simulations as OpenSCENARIO XML (section 5.6 of the driving specification)."""
 
+from pathlib import Path
 from typing import Any
 
-from scenic.formats.openscenario import openscenario_document, stands_on_ground
+from scenic.formats.openscenario import openscenario_document, stands_on_ground, variables_of
 from scenic.language.errors import UnsupportedError
 from scenic.language.extras import installation
 
@@ -44,9 +45,10 @@ def toOpenScenario(simulation: Any, mapPath: Any = None, scenarioName: str = "Sc
             scene.objects,
             [list(zip(state.positions, state.orientations, strict=True)) for state in states],
             timestep=simulation.timestep,
-            map_path=str(path),
+            map_path=str(Path(path).resolve()) if mapPath is None else str(path),
             name=scenarioName,
             flat=stands_on_ground(scene),
+            names=variables_of(scene),
         )
     except UnsupportedError as error:
         raise ModuleNotFoundError(

@@ -1,4 +1,4 @@
-"""Who may enter an intersection: ways that are taken, and ways that come first by the rules."""
+"""Right of way at intersections: ways that are taken, and ways that come first by the rules."""
 
 import math
 from functools import lru_cache

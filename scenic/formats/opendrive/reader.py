@@ -9,8 +9,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise, zip_longest
 from types import MappingProxyType
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
+from scenic.formats.opendrive.attributes import ids, number_or, offset, priorities, speed, validity
 from scenic.formats.opendrive.records import (
     Connection,
     Crosswalk,
@@ -36,7 +37,6 @@ from scenic.language.spans import Span
 
 __all__ = ["read_map"]
 
-_SPEEDS: Final = {"m/s": 1.0, "km/h": 1 / 3.6, "kmh": 1 / 3.6, "mph": 0.44704, "": 1.0}
 _SHORTEST: Final = 1e-6
 """Metres; shorter pieces of a reference line are skipped."""
 _SHARPEST: Final = 50.0
@@ -158,7 +158,7 @@ class _Reader:
             version,
             header.attributes.get("vendor", ""),
             reference,
-            _offset(header),
+            offset(header),
             tuple(roads.values()),
             tuple(junctions.values()),
             tuple(self._told()),
@@ -198,7 +198,7 @@ class _Reader:
         self._within(name, element.all("type"), ends)
         type_ = element.first("type")
         speeds = tuple(
-            Speed(_number(item, "s", 0.0), _speed(item.first("speed"))) for item in element.all("type")
+            Speed(_number(item, "s", 0.0), speed(item.first("speed"))) for item in element.all("type")
         )
         junction = element.attributes.get("junction", "-1")
         return Road(
@@ -451,7 +451,7 @@ class _Reader:
             if element.tag not in ("signal", "signalReference") or "id" not in element.attributes:
                 continue
             given = element.attributes
-            lanes = _validity(element)
+            lanes = validity(element)
             # Some exporters write lanes 0 to 0 where they mean none of the own road.
             is_valid = not lanes or any(pair != (0, 0) for pair in lanes)
             lanes = tuple(pair for pair in lanes if pair != (0, 0))
@@ -461,7 +461,7 @@ class _Reader:
                 yield SignalReference(
                     given["id"],
                     given.get("orientation", "none"),
-                    _number_or(element, "s", 0.0),
+                    number_or(element, "s", 0.0),
                     lanes,
                     element.line,
                 )
@@ -478,12 +478,12 @@ class _Reader:
                 given.get("subtype", ""),
                 given.get("orientation", "none"),
                 *place,
-                _number_or(element, "zOffset", 0.0),
-                _number_or(element, "value", None),
+                number_or(element, "zOffset", 0.0),
+                number_or(element, "value", None),
                 lanes,
-                _priorities(element),
-                tuple(_ids(element, "reference", "elementId")),
-                tuple(_ids(element, "dependency", "id")),
+                priorities(element),
+                tuple(ids(element, "reference", "elementId")),
+                tuple(ids(element, "dependency", "id")),
                 is_valid,
                 element.line,
             )
@@ -599,59 +599,6 @@ def _contact(text: str | None) -> Literal["start", "end"] | None:
     return "start" if text == "start" else "end" if text == "end" else None
 
 
-def _speed(element: Element | None) -> float | None:
-    if element is None:
-        return None
-    try:
-        value = float(element.attributes.get("max", ""))
-    except ValueError:  # "no limit", "undefined"
-        return None
-    factor = _SPEEDS.get(element.attributes.get("unit", ""), 1.0)
-    return value * factor if math.isfinite(value) and value > 0 else None
-
-
-def _offset(header: Element) -> tuple[float, float, float, float]:
-    """Metres along x, y and z, and radians, by which the coordinates of the file are moved."""
-    offset = header.first("offset")
-    if offset is None:
-        return 0.0, 0.0, 0.0, 0.0
-    x, y, z, heading = (_number_or(offset, name, 0.0) for name in ("x", "y", "z", "hdg"))
-    return x, y, z, heading
-
-
-def _validity(element: Element) -> tuple[tuple[int, int], ...]:
-    """First and last ids of lanes for which something is valid."""
-    found = []
-    for item in element.all("validity"):
-        try:
-            found.append((int(item.attributes.get("fromLane", "")), int(item.attributes.get("toLane", ""))))
-        except ValueError:  # a finding of the schema
-            continue
-    return tuple((min(pair), max(pair)) for pair in found)
-
-
-def _priorities(element: Element) -> tuple[str, ...]:
-    semantics = element.first("semantics")
-    if semantics is None:
-        return ()
-    return tuple(item.attributes.get("type", "") for item in semantics.all("priority"))
-
-
-def _ids(element: Element, tag: str, attribute: str) -> Iterator[str]:
-    for item in element.all(tag):
-        if attribute in item.attributes:
-            yield item.attributes[attribute]
-
-
-def _number_or(element: Element, name: str, default: Any) -> Any:
-    """A number of an element; the default where it is none."""
-    try:
-        value = float(element.attributes[name])
-    except (KeyError, ValueError):
-        return default
-    return value if math.isfinite(value) else default
-
-
 def _cubics(element: Element, tag: str, start: str) -> Iterator[Cubic]:
     found = {}
     for item in element.all(tag):
@@ -714,7 +661,7 @@ def _lane(element: Element) -> Lane:
         f"{item.attributes.get('rule', 'allow')} {item.attributes.get('restriction', '')}"
         for item in element.all("access")
     )
-    speeds = tuple(Speed(_number(item, "sOffset", 0.0), _speed(item)) for item in element.all("speed"))
+    speeds = tuple(Speed(_number(item, "sOffset", 0.0), speed(item)) for item in element.all("speed"))
     return Lane(
         _integer(element, "id"),
         element.attributes.get("type", "none"),

@@ -101,21 +101,21 @@ class NPCCar(Car):
     """A car that the traffic manager may drive."""
 
 
-class Bicycle(Vehicle):
+class Bicycle(Vehicle, Bicycle):
     blueprint: Uniform(*ids('bicycle'))
     defaultWidth: 1
     defaultLength: 2
     defaultHeight: 1.5
 
 
-class Motorcycle(Vehicle):
+class Motorcycle(Vehicle, Motorcycle):
     blueprint: Uniform(*ids('motorcycle'))
     defaultWidth: 1
     defaultLength: 2
     defaultHeight: 1.5
 
 
-class Truck(Vehicle):
+class Truck(Vehicle, Truck):
     blueprint: Uniform(*ids('truck'))
     defaultWidth: 2.5
     defaultLength: 7.5
@@ -129,7 +129,7 @@ class Van(Vehicle):
     defaultHeight: 2
 
 
-class Bus(Vehicle):
+class Bus(Vehicle, Bus):
     blueprint: Uniform(*ids('bus'))
     defaultWidth: 4
     defaultLength: 10

@@ -44,6 +44,22 @@ class NPCCar(Car):
     """A car."""
 
 
+class Bicycle(Vehicle, Bicycle):
+    pass
+
+
+class Motorcycle(Vehicle, Motorcycle):
+    pass
+
+
+class Truck(Vehicle, Truck):
+    pass
+
+
+class Bus(Vehicle, Bus):
+    pass
+
+
 class Pedestrian(Walking, Pedestrian, MetaDriveActor):
     """A pedestrian."""
 

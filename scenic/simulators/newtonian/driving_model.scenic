@@ -32,6 +32,22 @@ class NPCCar(Car):
     pass
 
 
+class Bicycle(Vehicle, Bicycle):
+    pass
+
+
+class Motorcycle(Vehicle, Motorcycle):
+    pass
+
+
+class Truck(Vehicle, Truck):
+    pass
+
+
+class Bus(Vehicle, Bus):
+    pass
+
+
 class Pedestrian(Walking, Pedestrian, NewtonianActor):
     pass
 

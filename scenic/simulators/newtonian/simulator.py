@@ -12,7 +12,7 @@ from scenic.domains.driving.simulators import DrivingSimulation, DrivingSimulato
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.values.values import Orientation, Vector, operate
 from scenic.simulators.cameras import Cameras
-from scenic.simulators.newtonian.controls import Walking
+from scenic.simulators.newtonian.controls import Driven, Walking
 from scenic.simulators.newtonian.terrain import Terrain
 
 __all__ = ["NewtonianSimulation", "NewtonianSimulator", "State"]
@@ -37,7 +37,7 @@ class State:
         """Metres between the road and its middle, where roads have heights."""
         self.frame: Sequence[float] | None = None
         """Its orientation, where that is more than its heading: on a road that is not level."""
-        self.is_car = bool(getattr(obj, "isCar", False))
+        self.is_car = isinstance(obj, Driven) or bool(getattr(obj, "isCar", False))
         self.length = float(obj.length)
         self.rate = 0.0
         x, y, _ = self.velocity
@@ -69,7 +69,7 @@ class NewtonianSimulation(DrivingSimulation):
         self._states[id(obj)] = State(obj)
         if self._terrain is not None:
             self._terrain.stand([self._states[id(obj)]])
-        if getattr(obj, "isCar", False):
+        if self._states[id(obj)].is_car:
             obj.resetControls()
         if isinstance(obj, Walking):
             obj.resetGait()

@@ -36,6 +36,22 @@ class NPCCar(Car):
     behavior: SumoDriver()
 
 
+class Bicycle(Vehicle, Bicycle):
+    pass
+
+
+class Motorcycle(Vehicle, Motorcycle):
+    pass
+
+
+class Truck(Vehicle, Truck):
+    pass
+
+
+class Bus(Vehicle, Bus):
+    pass
+
+
 class Pedestrian(Walking, Pedestrian, SumoActor):
     pass
 
