@@ -105,7 +105,7 @@ def test_entities_have_the_sizes_of_the_objects(town: Path) -> None:
     assert kinds == ["Vehicle", "Vehicle", "Pedestrian", "MiscObject"]
     vehicle = next(root.iter("Vehicle"))
     center = {key: float(value) for key, value in vehicle.find("BoundingBox/Center").attrib.items()}  # type: ignore[union-attr]
-    assert center == pytest.approx({"x": 0.3 * 4.5, "y": 0, "z": 2.25})
+    assert center == pytest.approx({"x": 0.3 * 4.5, "y": 0, "z": 0.75})
     front = vehicle.find("Axles/FrontAxle")
     assert front is not None
     assert float(front.attrib["positionX"]) == pytest.approx(2.7)
@@ -189,3 +189,23 @@ def test_the_command_writes_and_goes_on(town: Path, tmp_path: Path) -> None:
     assert openscenario_about(file)["steps"] == 5
     [(times, _)] = polylines(ElementTree.parse(file).getroot()).values()
     assert len(times) == 6
+
+
+def test_files_name_the_map_from_where_they_are(
+    town: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from scenic.formats.openscenario import map_beside
+
+    (tmp_path / "maps").mkdir()
+    (tmp_path / "maps" / "town.xodr").write_text("")
+    (tmp_path / "out").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert map_beside("maps/town.xodr", Path("out")) == "../maps/town.xodr"
+    assert map_beside(tmp_path / "maps" / "town", Path()) == "maps/town.xodr"
+    done = simulated(town, "ego = new Car\nlead = new Car\nnew Car\n", steps=2)
+    document = toOpenScenario(done).get_element()
+    names = [item.attrib["name"] for item in document.iter("ScenarioObject")]
+    assert names == ["ego", "lead", "Vehicle2"]
+    file = document.find("RoadNetwork/LogicFile")
+    assert file is not None
+    assert Path(file.attrib["filepath"]).is_file()
