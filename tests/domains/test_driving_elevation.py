@@ -195,8 +195,8 @@ def test_a_bridge_and_the_road_below_are_two_places(tmp_path):
         assert scene.params["lane"] == level
         assert ego.lane.road.uid == level
         assert (low.position.z, high.position.z) == (
-            pytest.approx(0.5, abs=1e-3),
-            pytest.approx(6.5, abs=1e-3),
+            pytest.approx(0.75, abs=1e-3),
+            pytest.approx(6.75, abs=1e-3),
         )
         assert (one.containsPoint(low.position), two.containsPoint(low.position)) == (True, False)
         assert (one.containsPoint(high.position), two.containsPoint(high.position)) == (False, True)
@@ -261,7 +261,7 @@ def test_a_car_drives_up_a_hill(tmp_path):
     for state in simulation.trajectory:
         x, _, z = state.positions[0]
         # The middle is half a metre off the road along its normal when it starts; it keeps its height.
-        assert z == pytest.approx(0.0005 * x**2 + 0.5, abs=5e-3)
+        assert z == pytest.approx(0.0005 * x**2 + 0.75, abs=5e-3)
     assert simulation.trajectory[-1].orientations[0].pitch == pytest.approx(math.atan(0.001 * x), abs=1e-2)
     assert x > 60
 

@@ -80,7 +80,7 @@ def test_objects_of_two_dimensions_are_no_towers(tmp_path):
     """Their height is that of their longest side; on a map they are shown as cars, and on the ground."""
     found = compiled(tmp_path, straight(100.0), mode2D=True)
     (scene,) = found.sample(1, seed=1)
-    assert scene.egoObject.height == 4.5
+    assert scene.egoObject.height == 1.5
     made = Page("flat")
     made.add(scene)
     (shown,) = made.data()["scenes"][0]["objects"]

@@ -65,7 +65,7 @@ def test_files_that_are_no_maps_are_wrong_in_the_file(folder: Path) -> None:
 def test_three_dimensions_have_roads_with_heights_unless_the_map_is_to_be_flat(folder: Path) -> None:
     text = f"param map = localPath('road.xodr')\n{MODEL}"
     [scene] = compiled(folder, text, flat=False).sample(1, seed=0)
-    assert scene.egoObject.position.z == pytest.approx(0.5, abs=1e-4)
+    assert scene.egoObject.position.z == pytest.approx(0.75, abs=1e-4)
     [scene] = compiled(folder, text, flat=False, use2DMap=True).sample(1, seed=0)
     car = scene.egoObject
     assert car.height == 1

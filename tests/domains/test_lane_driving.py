@@ -135,3 +135,47 @@ ego = new Car at (60, -1.75), facing -90 deg, with speed 12, with behavior Swerv
     assert np.abs(motion.accelerations[0]).max() < 3.5
     assert motion.places[:, 1].max() > -1
     assert abs(abs(motion.places[-1, 1]) - 1.75) < 0.05
+
+
+@pytest.mark.parametrize(("width", "moves"), [("3.5", 5), ("9", 1)])
+def test_u_turns_use_the_width_of_the_road(folder: Path, width: str, moves: int) -> None:
+    (folder / "wide.xodr").write_text(straight(200).replace('a="3.5"', f'a="{width}"'))
+    half = float(width) / 2
+    text = f"""
+behavior Turn():
+    do UTurnBehavior()
+    terminate
+ego = new Car at (100, {-half}), facing -90 deg, with speed 3, with behavior Turn
+"""
+    done = simulated(folder, text, "wide", steps=400)
+    motion = course(done)
+    assert np.abs(motion.corners()[:, :, 1]).max() < float(width) + 0.05, "it stays on the road"
+    assert motion.headings[-1] - motion.headings[0] == pytest.approx(np.pi, abs=0.02)
+    assert motion.places[-1, 1] == pytest.approx(half, abs=0.1)
+    along = np.einsum(
+        "ij,ij->i",
+        motion.velocities,
+        np.column_stack([-np.sin(motion.headings), np.cos(motion.headings)])[1:],
+    )
+    signs = np.sign(along[np.abs(along) > 0.05])
+    assert 1 + int((np.diff(signs) != 0).sum()) == moves
+
+
+def test_u_turns_need_lanes_of_the_other_direction(folder: Path) -> None:
+    content = straight(200)
+    begin, end = content.index("<left>"), content.index("</left>") + len("</left>")
+    (folder / "one_way.xodr").write_text(content[:begin] + content[end:])
+    with pytest.raises(InvalidScenarioError, match="no lanes of the other direction"):
+        simulated(
+            folder,
+            "ego = new Car at (100, -1.75), facing -90 deg, with behavior UTurnBehavior()\n",
+            "one_way",
+        )
+
+
+@pytest.mark.parametrize("kind", ["Bicycle", "Motorcycle", "Truck", "Bus"])
+def test_other_vehicles_are_driven_by_the_same_behaviors(folder: Path, kind: str) -> None:
+    text = f"ego = new {kind} at (100, -1.75), facing -90 deg, with behavior FollowLaneBehavior(8)\nrecord ego.height as height\n"
+    done = simulated(folder, text)
+    assert speeds(course(done))[-1] == pytest.approx(8, abs=0.1)
+    assert 1.5 < done.result.records["height"][0][1] < 3.5

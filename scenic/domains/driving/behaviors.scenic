@@ -8,6 +8,7 @@ from scenic.domains.driving.maneuvering import nearest_end, sidewalk_under
 from scenic.domains.driving.rules import RulesDriver
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import Route, Trajectory
+from scenic.domains.driving.u_turns import UTurner
 from scenic.domains.driving.walking import arrived, heading_to, places_of, walking_step
 from scenic.domains.driving.watching import InsideWatch, Nearness
 
@@ -144,6 +145,20 @@ behavior LaneChangeBehavior(
         while driver.must_choose():
             driver.choose(Uniform(*driver.choices))
         take driver.action()
+
+
+behavior UTurnBehavior(target_speed=5, comfort=None):
+    """Turn round into a lane of the other direction: in one arc where the road is wide enough, else forward and backward.
+
+    Arguments:
+        target_speed: m/s after the turn.
+        comfort: limits of accelerations, a `Comfort`.
+    """
+    turner = UTurner(self)
+    while not turner.is_done():
+        drive, gear = turner.actions()
+        take drive, gear
+    do LaneChangeBehavior(turner.lane(), target_speed=target_speed, duration=1, comfort=comfort)
 
 
 behavior FollowVehicleBehavior(other, time_headway=1.5, target_speed=25, comfort=None):

@@ -98,6 +98,10 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
         done.add(step)
         if step.builtin is not None:
             (name,) = step.names
+            # A lazy value may need this default before its turn.
+            for needed in cls.scenic_properties[name].dependencies:
+                if needed not in values and needed in resolution.providers:
+                    evaluate(resolution.providers[needed])
             values[name] = normalised(name, step.builtin(instance))
             return
         specifier = step.specifier(specifiers)

@@ -1,0 +1,147 @@
+"""U-turns in the free width of a road: as one arc, or forward and backward where there is less room."""
+
+import math
+from typing import Any, Final
+
+import numpy as np
+
+from scenic.domains.driving.actions import RegulatedControlAction, SetReverseAction
+from scenic.domains.driving.elements import Lane
+from scenic.domains.driving.lane_driving import lane_under
+from scenic.language.errors import InvalidScenarioError, SimulationError
+from scenic.runtime.program.builtins import running_simulation
+
+__all__ = ["UTurner"]
+
+_SPEED: Final = 2.5
+"""Speed (m/s) of the turn."""
+_BRAKING: Final = 1.5
+"""Deceleration (m/s^2) before the edge of the road."""
+_LOOK: Final = 8.0
+"""Metres ahead that are looked at for the edge of the road."""
+_GRAIN: Final = 0.04
+_CLOSE: Final = 0.06
+"""Metres before the edge at which the car stops."""
+_STEERING: Final = 0.95
+"""Share of the lock of the steering wheel that is used."""
+_HANDED_OVER: Final = math.radians(35)
+"""Angle from the direction of the other lanes at which a car goes on along them."""
+_MOST: Final = 12
+"""Changes of direction after which a turn is given up."""
+
+
+class UTurner:
+    """Turns a car round, step by step.
+
+    Args:
+        agent: the car.
+
+    Raises:
+        InvalidScenarioError: the road has no lanes of the other direction beside it.
+
+    """
+
+    def __init__(self, agent: Any) -> None:
+        import shapely
+
+        self._agent = agent
+        self._simulation = running_simulation()
+        network = agent.roadNetwork
+        lane = lane_under(agent)
+        opposite = lane.group._opposite
+        if opposite is None:
+            raise InvalidScenarioError(
+                f"{lane.uid} has no lanes of the other direction beside it to turn into",
+                help="turn round on a road with lanes of both directions",
+            )
+        self._lanes: tuple[Lane, ...] = opposite.lanes
+        self._room = shapely.buffer(shapely.union_all([network.drivableRegion.polygons]), 0.02)
+        shapely.prepare(self._room)
+        along = float(lane.along(np.array([agent.position[:2]]))[0])
+        self._goal = along + math.pi
+        self._side = -1.0 if network.driveOnLeft else 1.0
+        self._gear = 1.0
+        self._changes = 0
+        self._braked = False
+
+    def lane(self) -> Lane:
+        """The lane of the other direction that is nearest to the car."""
+        import shapely
+
+        spot = shapely.Point(self._agent.position[0], self._agent.position[1])
+        nearest: Lane = min(self._lanes, key=lambda lane: shapely.LineString(lane.line).distance(spot))
+        return nearest
+
+    @property
+    def _left(self) -> float:
+        """The angle by which the car has still to turn, positive anticlockwise, -pi to pi."""
+        return float((self._goal - self._agent.heading + math.pi) % (2 * math.pi) - math.pi)
+
+    def is_done(self) -> bool:
+        """Return whether the car faces along the other lanes, and drives forward."""
+        return self._gear > 0 and abs(self._left) < _HANDED_OVER
+
+    def actions(self) -> tuple[RegulatedControlAction, SetReverseAction]:
+        """The actions of one step.
+
+        Raises:
+            SimulationError: there is not enough room to turn.
+
+        """
+        agent, simulation = self._agent, self._simulation
+        speed = float(agent.speed)
+        if self._braked and speed < 0.02:
+            self._gear = -self._gear
+            self._braked = False
+            self._changes += 1
+            if self._changes > _MOST:
+                raise SimulationError(
+                    f"there is no room for a U-turn at ({agent.position[0]:.1f}, {agent.position[1]:.1f})",
+                    help="turn round where the road is wider",
+                )
+        if abs(self._left) < math.pi / 2:
+            self._side = math.copysign(1.0, self._left)
+        # Where going forward ends the turn, the car reverses no farther.
+        self._braked |= self._gear < 0 and abs(self._left) < 0.9 * _HANDED_OVER
+        lock = abs(simulation.curvature_of(agent, 1.0)) * _STEERING
+        curvature = self._side * self._gear * lock
+        free = self._free_distance(lock) - 1.5 * speed * simulation.timestep
+        self._braked |= free < _CLOSE
+        wanted = 0.0 if self._braked else min(_SPEED, math.sqrt(2 * _BRAKING * free))
+        acceleration = min(max((wanted - speed) / (2 * simulation.timestep), -2 * _BRAKING), 1.5)
+        if self._braked and speed < 0.3:
+            acceleration = -speed / simulation.timestep - 0.1
+        pedal = simulation.pedal_for(agent, acceleration)
+        steering = simulation.steering_for(agent, curvature)
+        return (
+            RegulatedControlAction(pedal, steering, steering, 1.0, 1.0, 1.0),
+            SetReverseAction(self._gear < 0),
+        )
+
+    def _free_distance(self, lock: float) -> float:
+        """Metres that the car can drive with its wheels at the lock before a corner leaves the road; at most `_LOOK`."""
+        x, y, *_ = self._agent.position
+        heading = self._agent.heading
+        back = self._simulation.pivot_of(self._agent)
+        x, y = x + back * math.sin(heading), y - back * math.cos(heading)
+        reach = np.arange(0.0, _LOOK, _GRAIN)
+        turned = self._side * lock * reach
+        chord = self._gear * reach * np.sinc(turned / (2 * np.pi))
+        middle, after = heading + turned / 2, heading + turned
+        xs = x - chord * np.sin(middle) - back * np.sin(after)
+        ys = y + chord * np.cos(middle) + back * np.cos(after)
+        outside = self._outside(xs, ys, after)
+        # A car that begins across the edge may go on where that does not make it worse.
+        blocked = np.flatnonzero((outside & ~outside[0]).any(axis=1))
+        return float(reach[blocked[0]]) if len(blocked) else _LOOK
+
+    def _outside(self, x: Any, y: Any, heading: Any) -> Any:
+        """Which of the corners of the car are off the road, ``(n, 4)``, at poses ``(n,)``."""
+        import shapely
+
+        sine, cosine = np.sin(heading), np.cos(heading)
+        a, b = self._agent.width / 2, self._agent.length / 2
+        corners = [(u, v) for u in (-a, a) for v in (-b, b)]
+        xs = np.stack([x + u * cosine - v * sine for u, v in corners], axis=1)
+        ys = np.stack([y + u * sine + v * cosine for u, v in corners], axis=1)
+        return ~shapely.contains_xy(self._room, xs, ys)
