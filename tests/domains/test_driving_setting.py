@@ -68,6 +68,6 @@ def test_three_dimensions_have_roads_with_heights_unless_the_map_is_to_be_flat(f
     assert scene.egoObject.position.z == pytest.approx(0.75, abs=1e-4)
     [scene] = compiled(folder, text, flat=False, use2DMap=True).sample(1, seed=0)
     car = scene.egoObject
-    assert car.height == 1
+    assert car.height == 1.5
     assert car.elevation == car.position.z
     assert car.position.z == 0
