@@ -3,8 +3,8 @@
 Sixteen cars a map (they pass through each other) drive for a minute from random places on centerlines. A line for each map, speed
 and time step shows: states with the centre off the drivable region; states with a corner off it, and the 99th percentile of the
 distance from the centerline (both where no lane within 12 m bends by less than 6.5 m), overall and on straights; the largest lateral acceleration and jerk; changes
-of sign of the yaw rate (beyond 0.3 m/s² to either side) besides those of the lanes' curvature, a minute; and processor time of a step of a car. Run by hand; nothing
-here is a test.
+of sign of the yaw rate (beyond 0.3 m/s² to either side) besides those of the lanes' curvature, a minute; and processor time of a step of a car. With ``--turns``,
+every maneuver of every intersection is driven once at 10 and at 15 m/s. Run by hand; nothing here is a test.
 """
 
 import argparse
@@ -172,6 +172,75 @@ def simulated(
     return courses, spent / (len(places) - 1) / cars
 
 
+def lanes_before(lane: Any, length: float) -> list[Any]:
+    """A lane, after lanes before it that are together at least ``length`` metres long, as far as there are some."""
+    lanes = [lane]
+    while sum(item.centerline.length for item in lanes) < length and len(lanes) < 8:
+        before = lanes[0]._predecessor
+        if before is None or not hasattr(before, "maneuvers"):
+            break
+        lanes.insert(0, before)
+    return lanes
+
+
+def turns(network: Any, road_map: Path, lanes: Lanes, region: Any, speed: float, step: float) -> str:
+    """A line about all maneuvers of all intersections, driven once each from 40 m before the intersection."""
+    ways = [
+        way
+        for way in network.maneuvers
+        if way.connectingLane is not None and way.startLane.centerline.length > 5
+    ]
+    cars = []
+    for way in ways:
+        before = lanes_before(way.startLane, 45.0)
+        line = shapely.LineString(np.concatenate([lane.line for lane in before]))
+        along = max(1.0, line.length - 40)
+        place, after = (line.interpolate(item).coords[0] for item in (along, along + 0.2))
+        heading = math.atan2(place[0] - after[0], after[1] - place[1])
+        uids = [lane.uid for lane in (*before, way.connectingLane, way.endLane)]
+        cars.append(
+            f"w = [network.elements[u] for u in {uids}]\n{'ego = ' if not cars else ''}new Car at {place}, "
+            f"facing {heading!r}, with speed {speed}, with regionContainedIn None, "
+            f"with allowCollisions True, with requireVisible False, "
+            f"with behavior FollowTrajectoryBehavior({speed}, w, turn_speed={speed})\n"
+        )
+    text = f"param map = {str(road_map)!r}\nmodel scenic.simulators.newtonian.driving_model\n" + "".join(cars)
+    scenario = scenic.scenarioFromString(text, mode2D=True)
+    scene = scenario.sample(1, seed=1)[0]
+    done = scenario.getSimulator().simulate(scene, maxSteps=round(14 / step), timestep=step)
+    assert done is not None
+    places = np.array([[tuple(position)[:2] for position in state.positions] for state in done.trajectory])
+    headings = np.array([[turn.yaw for turn in state.orientations] for state in done.trajectory])
+    centre = corner = tight = braking = 0
+    worst = 0.0
+    for number, way in enumerate(ways):
+        track = places[:, number]
+        end = shapely.LineString(way.endLane.line)
+        inside = shapely.contains_xy(way.connectingLane.polygon.buffer(1.5), *track.T)
+        gone = np.flatnonzero(inside)
+        last = min(len(track), int(gone[-1]) + round(2 / step)) if len(gone) else len(track)
+        # The behavior ends before the end of its last lane, from where on the car only rolls.
+        left = end.length - shapely.line_locate_point(end, shapely.points(track))
+        rolling = np.flatnonzero((left < 6) & (np.arange(len(track)) > (gone[-1] if len(gone) else 0)))
+        last = min(last, int(rolling[0])) if len(rolling) else last
+        course = Course(track[: max(last, 4)], headings[: max(last, 4), number], step)
+        off = ~shapely.contains_xy(region, *course.corners().reshape(-1, 2).T).reshape(-1, 4).all(axis=1)
+        excused = lanes.tight.query(course.places)[0] < 12
+        centre += bool((~shapely.contains_xy(region, *course.places.T)).any())
+        corner += bool((off & ~excused).any())
+        tight += bool((off & excused).any())
+        side, along = course.accelerations
+        within = inside[: len(course.places)][1:-1]
+        # Ways straight ahead are braked on only for bends after them.
+        if way.type.name != "STRAIGHT" and within.any():
+            braking += bool((along[within][round(0.5 / step) :] < -1.5).any())
+        worst = max(worst, float(np.abs(side).max()))
+    return (
+        f"{road_map.stem:10} {speed:5g} {step:5g} {len(ways)} maneuvers: centre off {centre}, corner off {corner} "
+        f"(and {tight} where a lane bends by less than 6.5 m), braking inside {braking}, lateral {worst:.2f}"
+    )
+
+
 def plot(courses: Sequence[Course], lanes: Lanes, file: Path) -> None:
     """Draw speed, distance from the centerline and lateral acceleration over time."""
     import matplotlib
@@ -206,6 +275,9 @@ def main() -> None:
     parser.add_argument("--cars", type=int, default=16)
     parser.add_argument("--seconds", type=float, default=60)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument(
+        "--turns", action="store_true", help="drive every maneuver of the intersections instead"
+    )
     parser.add_argument("--plots", type=Path, help="folder for plots of ten cars each")
     given = parser.parse_args()
     head = ("centre", "corner", "d99", "d99str", "a_lat", "jerk", "flips", "us")
@@ -216,7 +288,9 @@ def main() -> None:
         lanes = Lanes(network)
         region = network.drivableRegion.polygons.buffer(0.02)
         shapely.prepare(region)
-        for speed in given.speeds:
+        for speed in (10.0, 15.0) if given.turns else ():
+            print(turns(network, road_map, lanes, region, speed, given.steps[-1]), flush=True)
+        for speed in () if given.turns else given.speeds:
             for step in given.steps:
                 courses, spent = simulated(road_map, speed, step, given.cars, given.seconds, given.seed)
                 figures = [*measured(courses, lanes, region), spent * 1e6]

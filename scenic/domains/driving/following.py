@@ -26,8 +26,8 @@ _TURNING: Final = 0.35
 _DAMPING: Final = 0.8
 _SETTLING: Final = 1.5
 """Gain (1/s) of the error of speed."""
-_HARD: Final = 3.5
-"""Deceleration (m/s^2) from which a driver brakes without regard for comfort."""
+_HARD: Final = 1.25
+"""Times the comfortable deceleration from which a driver brakes without regard for jolts."""
 _LOOKS: Final = 0.3
 """Seconds between two looks for who is ahead."""
 
@@ -199,7 +199,7 @@ class Driver:
         own = lengths[index] + share * (lengths[index + 1] - lengths[index])
         acceleration = min(acceleration, self.extra_acceleration(speed, own))
         comfort, timestep = self.comfort, self._simulation.timestep
-        if acceleration > -_HARD:
+        if acceleration > -_HARD * comfort.deceleration:
             # Jolts are limited; the profile keeps to that, so that this is for what no profile foresees.
             change = 1.5 * comfort.jerk * timestep
             acceleration = min(max(acceleration, self._acceleration - change), self._acceleration + change)

@@ -17,6 +17,14 @@ Floats = NDArray[np.float64]
 
 _EMERGENCY: Final = 6.0
 """Deceleration (m/s^2) of a car that is too fast for what lies ahead."""
+_BEND: Final = 0.015
+"""Curvature (1/m) from which on a path is in a bend."""
+_AHEAD: Final = 18.0
+"""Metres of a bend that count from its beginning on."""
+_HARDER: Final = 1.25
+"""Times the comfortable deceleration from which on a car brakes at once."""
+_AT_ONCE: Final = 0.3
+"""Seconds over which acceleration changes of a car that is too fast."""
 _CLASSES: Final = (3.0, 6.0, 12.0, 24.0, 60.0)
 """Classes of speeds (m/s) by their upper bounds."""
 _CREEP: Final = 0.05
@@ -57,7 +65,13 @@ def speeds_in_bends(along: Floats, curvatures: Floats, comfort: Comfort) -> Floa
         return bent
     change = np.abs(np.gradient(curvatures, along))
     tightening = np.cbrt(_LATERAL_JERK / np.maximum(change, 1e-7))
-    return np.minimum(bent, tightening)
+    limits = np.minimum(bent, tightening)
+    # Braking ends before a bend: within it, what comes next counts already.
+    from scipy.ndimage import minimum_filter1d
+
+    size = max(3, round(_AHEAD / max((along[-1] - along[0]) / (len(along) - 1), 1e-3)))
+    coming = minimum_filter1d(limits, size, mode="nearest", origin=-(size // 2))
+    return np.where(np.abs(curvatures) > _BEND, np.minimum(limits, coming), limits)
 
 
 def speeds_along(
@@ -77,7 +91,16 @@ def speeds_along(
     squares = _eroded(along, limits, window / 2) ** 2
     if stops:
         squares[-1] = 0.0
-    down, up = 2 * comfort.deceleration * along, 2 * comfort.acceleration * along
+    deceleration = comfort.deceleration
+    needed = _needed(along, squares, speed)
+    if needed > _HARDER * deceleration:
+        # Too fast for what lies ahead: an even, harder braking that begins at once.
+        window = _AT_ONCE
+        squares = _eroded(along, limits, window / 2) ** 2
+        if stops:
+            squares[-1] = 0.0
+        deceleration = min(1.1 * _needed(along, squares, speed), _EMERGENCY)
+    down, up = 2 * deceleration * along, 2 * comfort.acceleration * along
     # v(s)^2 <= v(t)^2 + 2 b (t - s) for every t ahead, and likewise for acceleration from every place behind.
     squares = np.minimum.accumulate((squares + down)[::-1])[::-1] - down
     hardest = speed * speed - 2 * _EMERGENCY * (along - along[0])
@@ -85,6 +108,12 @@ def speeds_along(
     squares = np.minimum.accumulate(squares - up) + up
     squares = np.maximum(squares, np.maximum(hardest, 0.0))
     return _averaged(along, np.sqrt(np.maximum(squares, 0.0)), window, stops=stops)
+
+
+def _needed(along: Floats, squares: Floats, speed: float) -> float:
+    """The constant deceleration by which a car meets all squared speed limits ahead, m/s^2."""
+    ahead = along[1:] - along[0]
+    return float(((speed * speed - squares[1:]) / (2 * np.maximum(ahead, 0.5))).max())
 
 
 def _eroded(along: Floats, limits: Floats, time: float) -> Floats:
