@@ -23,7 +23,9 @@ from scipy.spatial import KDTree
 
 import scenic
 from scenic.domains.driving.path_smoothing import curvatures_of, headings_of, resampled
+from scenic.domains.driving.planning import path_of_lines
 from scenic.domains.driving.roads import Network
+from scenic.domains.driving.speed_profiles import Comfort, speeds_in_bends
 
 Floats = NDArray[np.float64]
 
@@ -183,6 +185,18 @@ def lanes_before(lane: Any, length: float) -> list[Any]:
     return lanes
 
 
+def as_fast_as_possible(before: Sequence[Any], way: Any, along: float, speed: float) -> float:
+    """The speed, up to the one that is wanted, from which a car at a place can brake comfortably for all bends ahead."""
+    path = path_of_lines([lane.line for lane in (*before, way.connectingLane, way.endLane)])
+    lengths = np.array(path.along)
+    comfort = Comfort()
+    limits = speeds_in_bends(lengths, np.array(path.curvatures), comfort)
+    ahead = lengths >= along - 2
+    # Half a second at the speed goes by before a car brakes fully.
+    free = np.maximum(lengths[ahead] - along - 0.55 * speed, 0.0)
+    return float(min(speed, np.sqrt(limits[ahead] ** 2 + 2 * comfort.deceleration * free).min()))
+
+
 def turns(network: Any, road_map: Path, lanes: Lanes, region: Any, speed: float, step: float) -> str:
     """A line about all maneuvers of all intersections, driven once each from 40 m before the intersection."""
     ways = [
@@ -197,10 +211,11 @@ def turns(network: Any, road_map: Path, lanes: Lanes, region: Any, speed: float,
         along = max(1.0, line.length - 40)
         place, after = (line.interpolate(item).coords[0] for item in (along, along + 0.2))
         heading = math.atan2(place[0] - after[0], after[1] - place[1])
+        start = as_fast_as_possible(before, way, along, speed)
         uids = [lane.uid for lane in (*before, way.connectingLane, way.endLane)]
         cars.append(
             f"w = [network.elements[u] for u in {uids}]\n{'ego = ' if not cars else ''}new Car at {place}, "
-            f"facing {heading!r}, with speed {speed}, with regionContainedIn None, "
+            f"facing {heading!r}, with speed {start}, with regionContainedIn None, "
             f"with allowCollisions True, with requireVisible False, "
             f"with behavior FollowTrajectoryBehavior({speed}, w, turn_speed={speed})\n"
         )

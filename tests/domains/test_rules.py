@@ -131,7 +131,7 @@ def test_cars_that_meet_at_a_crossing_do_not_touch(folder: Path) -> None:
         f"new Car at ({x}, {y}), facing {turn} deg, with speed 10, with behavior DriveByRulesBehavior(10)\n"
         for x, y, turn in ((-1.75, 82, 180), (1.75, -80, 0), (-79, -1.75, -90))
     )
-    done = simulated(folder, text, "cross", 300)
+    done = simulated(folder, text, "cross", 450)
     courses = [places(done, number) for number in range(4)]
     assert all(np.abs(course[-1]).max() > 20 for course in courses)
     apart = min(np.hypot(*(a - b).T).min() for number, a in enumerate(courses) for b in courses[:number])
