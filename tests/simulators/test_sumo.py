@@ -109,6 +109,23 @@ record follower.speed as speed
 
 
 @needs_sumo
+@pytest.mark.parametrize("speed", [0, 6])
+def test_sumo_takes_cars_over_at_their_own_speed(crossing: Path, speed: int) -> None:
+    text = f"""
+param map = localPath('cross.xodr')
+model scenic.simulators.sumo.model
+ego = new Car at (-90, -1.75), facing -90 deg, with speed {speed}, with behavior SumoDriver
+record ego.speed as speed
+"""
+    _, done = simulated(text, 40, folder=crossing)
+    speeds = [value for _, value in done.result.records["speed"]]
+    assert speeds[1] == pytest.approx(speed)
+    # SUMO's cars accelerate by 2.6 m/s^2.
+    assert max(after - before for before, after in pairwise(speeds)) < 0.35
+    assert speeds[-1] > speed + 5
+
+
+@needs_sumo
 def test_what_cannot_be_simulated_says_why(crossing: Path) -> None:
     lost = """
 param map = localPath('cross.xodr')

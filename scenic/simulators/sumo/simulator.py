@@ -107,7 +107,7 @@ class SumoSimulation(NewtonianSimulation):
             if factor is None:
                 traffic.put(body, x, y, state.heading)
             else:
-                traffic.release(body, x, y, state.heading, factor)
+                traffic.release(body, x, y, state.heading, state.speed, factor)
         traffic.step(list(self._bodies.values()))
 
     def _read(self, obj: Any) -> None:

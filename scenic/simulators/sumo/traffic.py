@@ -38,6 +38,7 @@ class Body:
         entered: it has been put on a lane, where SUMO needs it first, so that it may go anywhere.
         edges: of its route, while SUMO drives it.
         speed_factor: of the speed limit, while SUMO drives it.
+        own_speed: with which SUMO is to begin to drive it, in m/s, until it has been told.
 
     """
 
@@ -46,6 +47,7 @@ class Body:
     entered: bool = False
     edges: int = 0
     speed_factor: float | None = None
+    own_speed: float | None = None
     last: Mapping[int, Any] = field(default_factory=dict)
 
 
@@ -100,8 +102,10 @@ class Traffic:
             self._move(body, x - front * math.sin(heading), y + front * math.cos(heading), heading, _FREELY)
         body.edges, body.speed_factor = 0, None
 
-    def release(self, body: Body, x: float, y: float, heading: float, speed_factor: float) -> None:
-        """Put a body onto the nearest lane in its direction, and let SUMO drive it from there on.
+    def release(
+        self, body: Body, x: float, y: float, heading: float, speed: float, speed_factor: float
+    ) -> None:
+        """Put a body onto the nearest lane in its direction, and let SUMO drive it from there on, at its present speed (m/s).
 
         Raises:
             SimulationError: there is no lane near.
@@ -117,6 +121,7 @@ class Traffic:
                     f"SUMO has no lane for a vehicle at ({x:.2f}, {y:.2f}) to drive on",
                     help="leave vehicles to SUMO where they are on a lane for cars",
                 ) from error
+            body.own_speed = max(0.0, speed)
         if body.speed_factor != speed_factor:
             self._sumo.vehicle.setSpeedFactor(body.name, speed_factor)
             body.speed_factor = speed_factor
@@ -127,6 +132,11 @@ class Traffic:
         found = self._sumo.vehicle.getAllSubscriptionResults()
         for body in bodies:
             body.last = found.get(body.name, {})
+            if body.own_speed is not None and body.last:
+                # SUMO takes the speed of a body that was put somewhere for that of the move.
+                self._sumo.vehicle.setPreviousSpeed(body.name, body.own_speed)
+                body.last = {**body.last, self._speed: body.own_speed}
+                body.own_speed = None
             if body.speed_factor is not None and body.last:
                 self._go_on(body, body.last[self._route_index])
 
