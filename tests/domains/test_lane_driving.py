@@ -179,3 +179,9 @@ def test_other_vehicles_are_driven_by_the_same_behaviors(folder: Path, kind: str
     done = simulated(folder, text)
     assert speeds(course(done))[-1] == pytest.approx(8, abs=0.1)
     assert 1.5 < done.result.records["height"][0][1] < 3.5
+
+
+def test_what_has_no_steering_wheel_cannot_be_driven(folder: Path) -> None:
+    text = "ego = new Pedestrian at (100, -1.75), with regionContainedIn None, with behavior FollowLaneBehavior\n"
+    with pytest.raises(InvalidScenarioError, match="cannot be driven"):
+        simulated(folder, text)

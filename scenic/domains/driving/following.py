@@ -4,12 +4,13 @@ import math
 from copy import deepcopy
 from typing import Any, Final
 
-from scenic.domains.driving.actions import RegulatedControlAction, SetSteerAction
+from scenic.domains.driving.actions import RegulatedControlAction, SetSteerAction, Steers
 from scenic.domains.driving.car_following import Gap, Leader, following_acceleration, leader_on
 from scenic.domains.driving.paths import Path
 from scenic.domains.driving.planning import speeds_of
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.watching import InsideWatch
+from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.program.builtins import running_simulation
 
 __all__ = ["Driver"]
@@ -47,9 +48,17 @@ class Driver:
         comfort: limits of accelerations.
         gap: the distance kept behind others; ``None`` for no regard of them.
 
+    Raises:
+        InvalidScenarioError: the agent has no steering wheel.
+
     """
 
     def __init__(self, agent: Any, comfort: Comfort | None = None, gap: Gap | None = None) -> None:
+        if not isinstance(agent, Steers):
+            raise InvalidScenarioError(
+                f"{agent!r} cannot be driven: it has no throttle, brakes and steering wheel",
+                help="give behaviors of cars to vehicles of the simulator's model; pedestrians have `WalkTo` and `Walk`",
+            )
         self._agent = agent
         self._simulation = running_simulation()
         self.comfort = Comfort() if comfort is None else comfort
