@@ -136,7 +136,7 @@ class UTurner:
         return float(reach[blocked[0]]) if len(blocked) else _LOOK
 
     def _outside(self, x: Any, y: Any, heading: Any) -> Any:
-        """Which of the corners of the car are off the road, ``(n, 4)``, at poses ``(n,)``."""
+        """Return for each corner of the car if it is off the road, ``(n, 4)``, at poses ``(n,)``."""
         import shapely
 
         sine, cosine = np.sin(heading), np.cos(heading)
