@@ -59,7 +59,7 @@ class Driver:
                 f"{agent!r} cannot be driven: it has no throttle, brakes and steering wheel",
                 help="give behaviors of cars to vehicles of the simulator's model; pedestrians have `WalkTo` and `Walk`",
             )
-        self._agent = agent
+        self._agent: Any = agent
         self._simulation = running_simulation()
         self.comfort = Comfort() if comfort is None else comfort
         self._gap = gap
