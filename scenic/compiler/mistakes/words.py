@@ -10,6 +10,7 @@ from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
 from scenic.compiler.phrases import BEFORE_CONNECTORS, CONNECTORS
 from scenic.compiler.tokens import NAME
+from scenic.language.properties import properties_of
 from scenic.language.spelling import distance
 
 __all__ = [
@@ -112,10 +113,16 @@ def misspelt(at: Situation) -> Problem | None:
     return None
 
 
+_PROPERTIES: Final = frozenset(properties_of("Object"))
+"""Names that are right as they are: `width` is no misspelt `with`."""
+
+
 def perhaps_misspelt(at: Situation) -> Problem | None:
     """The same in a line that has a further mistake."""
     for index in (at.token, at.token - 1, at.first):
         if not at.is_plain_name(index) or at.word(index - 1) == "." or len(at.word(index)) < 4:
+            continue
+        if at.word(index) in _PROPERTIES:
             continue
         for keyword in (*_synonyms(at.word(index)), *_near(at.word(index))):
             if at.reads([Change(index, index + 1, (keyword,))]).reached > at.token:
