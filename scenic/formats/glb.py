@@ -5,7 +5,9 @@ above them turns Scenic's Z up into glTF's Y up. Class, name and index of each o
 """
 
 import json
+import math
 import struct
+from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -13,13 +15,21 @@ import numpy.typing as npt
 
 from scenic.formats.instances import Instance, Surface, distinct_labels, picture
 from scenic.formats.poses import Four
+from scenic.formats.scenery import scenery_of
 from scenic.formats.scenes import Scene
+from scenic.formats.sensors import viewpoints
+from scenic.graph import quaternions
 
 _FLOAT: Final = 5126
 _UINT16: Final = 5123
 _UINT32: Final = 5125
 _ARRAY_BUFFER: Final = 34962
 _ELEMENT_BUFFER: Final = 34963
+_LIGHTS: Final = "KHR_lights_punctual"
+_SUNLIGHT: Final = 3.0
+"""Strength of the usual sun; viewers take glTF's lux for brightness."""
+_QUARTER: Final = (0.5**0.5, 0.0, 0.0, 0.5**0.5)
+"""A quarter turn about X."""
 
 
 def glb(scene: Scene) -> bytes:
@@ -39,6 +49,7 @@ def glb(scene: Scene) -> bytes:
             material = materials.setdefault(instance.color, len(materials))
             mesh_list.append({"primitives": [{**primitives[instance.surface], "material": material}]})
         nodes.append(_node(instance, index, meshes[key], names[index]))
+    cameras, lights = _cameras(scene, nodes), _sun(scene, nodes)
     root = {
         "name": "scene",
         # A quarter turn about X: Z up becomes Y up, and north (Y) becomes -Z, which is ahead in glTF.
@@ -60,7 +71,49 @@ def glb(scene: Scene) -> bytes:
             "bufferViews": buffers.views,
             "buffers": [{"byteLength": len(buffers.data)}],
         }
+    if cameras:
+        document["cameras"] = cameras
+    if lights:
+        document["extensionsUsed"] = [_LIGHTS]
+        document["extensions"] = {_LIGHTS: {"lights": lights}}
     return _container(json.dumps(document, separators=(",", ":")).encode(), bytes(buffers.data))
+
+
+def _cameras(scene: Scene, nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The cameras of a scene, whose nodes are added; they look along -Z of their nodes, with +Y up."""
+    cameras: list[dict[str, Any]] = []
+    for viewpoint in viewpoints(scene):
+        across, upward = viewpoint.camera.tangents
+        lens = {"yfov": 2 * math.atan(upward), "aspectRatio": across / upward, "znear": 0.01}
+        nodes.append(
+            {
+                "name": viewpoint.name,
+                "camera": len(cameras),
+                "translation": viewpoint.camera.eye.tolist(),
+                "rotation": _normalized(tuple(_product(viewpoint.quaternion, _QUARTER))),
+                "extras": {"width": viewpoint.size[0], "height": viewpoint.size[1]},
+            }
+        )
+        cameras.append({"name": viewpoint.name, "type": "perspective", "perspective": lens})
+    return cameras
+
+
+def _sun(scene: Scene, nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The sun of a scene whose parameters tell of it, whose node is added; it shines along -Z of its node."""
+    if not isinstance(scene.params.get("lighting"), Mapping):
+        return []
+    scenery = scenery_of(scene.params)
+    x, y, z = (float(part) for part in scenery.sun)
+    # The shortest rotation that takes +Z to the direction towards the sun, which is above the ground.
+    turn = _normalized((-y, x, 0.0, 1.0 + z))
+    nodes.append({"name": "sun", "rotation": turn, "extensions": {_LIGHTS: {"light": 0}}})
+    lux = _SUNLIGHT * scenery.sunlight * scenery.exposure
+    return [{"name": "sun", "type": "directional", "intensity": lux, "color": [1.0, 0.96, 0.9]}]
+
+
+def _product(p: Any, q: Any) -> npt.NDArray[np.float64]:
+    """The product of two quaternions ``(x, y, z, w)``."""
+    return np.asarray(quaternions.multiply(np.asarray(p, np.float64), np.asarray(q, np.float64)))
 
 
 def _node(instance: Instance, index: int, mesh: int, name: str) -> dict[str, Any]:

@@ -104,6 +104,11 @@ def _sensors(scene: Scene) -> dict[str, tuple[SceneObject, CameraSensor]]:
     return found
 
 
+def viewpoints(scene: Scene) -> list[Viewpoint]:
+    """All cameras of a scene that are sensors, each of their own size; of one name the first."""
+    return [sensor_viewpoint(name, owner, sensor) for name, (owner, sensor) in _sensors(scene).items()]
+
+
 def sensor_viewpoint(
     name: str, owner: SceneObject, sensor: CameraSensor, size: tuple[int, int] | None = None
 ) -> Viewpoint:

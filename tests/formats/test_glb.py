@@ -1,11 +1,13 @@
 import io
 import json
+import math
 import struct
 from typing import Any
 
 import numpy as np
 import pytest
 import trimesh
+from scipy.spatial.transform import Rotation
 
 from scenic.formats.glb import glb
 from tests.formats.stand_ins import BALL, Chair, Object, Scene, Turn
@@ -90,3 +92,30 @@ def test_colours_are_linear_light() -> None:
         back = 12.92 * red if red <= 0.0031308 else 1.055 * red ** (1 / 2.4) - 0.055
         assert back == pytest.approx(tone, abs=2e-5)
         assert (green, blue, alpha) == (0, 1, 1)
+
+
+def test_cameras_and_the_sun_are_in_the_file() -> None:
+    import scenic
+
+    scenario = scenic.scenarioFromString(
+        "from scenic import RGBSensor\n"
+        "param lighting = {'sun': (0, 45 deg), 'sunlight': 0.5}\n"
+        "ego = new Object at (1, 2, 3), facing 90 deg,\n"
+        "    with sensors {'eye': RGBSensor(offset=(0, 0, 0), width=640, height=480, attributes={'fov': 60})}\n"
+    )
+    content = glb(next(iter(scenario.sample(1, seed=1))))
+    document = json.loads(content[20 : 20 + struct.unpack("<I", content[12:16])[0]])
+    eye, sun = document["nodes"][1], document["nodes"][2]
+    assert eye["translation"] == [1, 2, 3]
+    lens = document["cameras"][eye["camera"]]["perspective"]
+    assert lens["aspectRatio"] == pytest.approx(4 / 3)
+    assert math.tan(lens["yfov"] / 2) == pytest.approx(0.75 * math.tan(math.radians(30)))
+
+    def backwards(node: dict[str, Any]) -> Any:
+        return Rotation.from_quat(node["rotation"]).apply([0, 0, 1])
+
+    # The camera looks west; the sun stands in the north, and shines to the south.
+    assert backwards(eye) == pytest.approx([1, 0, 0], abs=1e-9)
+    assert backwards(sun) == pytest.approx([0, 0.5**0.5, 0.5**0.5], abs=1e-9)
+    assert document["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] == pytest.approx(1.5)
+    assert document["nodes"][-1]["children"] == [0, 1, 2]
