@@ -47,7 +47,7 @@ from scenic.runtime.values.values import is_random
 if TYPE_CHECKING:
     from scenic.assessment.assessment import Assessment
     from scenic.batch.simulations import SimulationRow
-    from scenic.falsification.external import ExternalSampler
+    from scenic.runtime.scenes.external_candidates import ExternalPoints
 
 PROGRAM_SEED = 0
 """Seed of Python's and NumPy's global generators while a program runs, so that it builds the same graph each time."""
@@ -275,7 +275,7 @@ def _scenario(text: str, filename: str, options: _Options) -> Scenario:
             options.given(),
             _sample,
             _simulate,
-            _external_sampler,
+            _external_points,
             lambda given: _scenario(text, filename, replace(options, params={**options.params, **given})),
         ),
     )
@@ -353,10 +353,10 @@ def _simulate(scenario: Scenario, n: int, **options: Any) -> "list[SimulationRow
     return simulated(scenario, n, **options)
 
 
-def _external_sampler(scenario: Scenario) -> "ExternalSampler":
-    from scenic.falsification.external import external_sampler
+def _external_points(scenario: Scenario) -> "ExternalPoints":
+    from scenic.falsification.external import external_points
 
-    return external_sampler(scenario)
+    return external_points(scenario)
 
 
 def _bundle(scene: Scene) -> Mapping[str, str]:

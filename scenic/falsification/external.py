@@ -4,19 +4,22 @@ import math
 import random
 import warnings
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from scenic.falsification.samplers import make_sampler
+from scenic.falsification.samplers import RESTORABLE, SEQUENCES, make_sampler
 from scenic.falsification.samplers.protocol import Exhausted, Sampler
 from scenic.falsification.space import Coordinate, Floats, Space, space_of
 from scenic.language.errors import InvalidScenarioError, ScenicWarning
+from scenic.runtime.python.random_state import preserved
+from scenic.runtime.scenes.external_candidates import ExternalPoints
 
 if TYPE_CHECKING:
     from scenic.runtime.scenes.scenario import Scenario
 
-__all__ = ["ExternalSampler", "VerifaiSampler", "external_sampler"]
+__all__ = ["ExternalSampler", "VerifaiSampler", "external_points"]
 
 _REJECTED: Final = 1.0
 """Feedback on a rejected candidate."""
@@ -76,25 +79,29 @@ class VerifaiSampler(ExternalSampler):
 
     def __init__(self, params: Sequence[Coordinate], globalParams: Mapping[str, Any]) -> None:
         super().__init__(params, globalParams)
-        self.sampler: Sampler = make_sampler(
-            str(self.globalParams.get("verifaiSamplerType", "halton")),
-            Space(self.params),
-            random.getrandbits(63),
-            self.globalParams.get("verifaiSamplerParams"),
-        )
+        seed = random.getrandbits(63)
+        with preserved():  # libraries draw while they are imported
+            self.sampler: Sampler = make_sampler(
+                str(self.globalParams.get("verifaiSamplerType", "halton")),
+                Space(self.params),
+                seed,
+                self.globalParams.get("verifaiSamplerParams"),
+            )
         self._told = False
         self._warned = False
 
     def nextSample(self, feedback: Any) -> Floats:
         """The next point ``(1, d)``."""
-        if self.cachedSample is not None:
-            self.sampler.tell(self.cachedSample, np.array([self._value(feedback)]))
-        found = self.sampler.ask(1)
+        with preserved():
+            if self.cachedSample is not None:
+                self.sampler.tell(self.cachedSample, np.array([self.value_of(feedback)]))
+            found = self.sampler.ask(1)
         if not len(found):
             raise Exhausted("the sampler has no more points")
         return found
 
-    def _value(self, feedback: Any) -> float:
+    def value_of(self, feedback: Any) -> float:
+        """Feedback as the value of a point; NaN for none."""
         if feedback is None:
             return math.nan
         try:
@@ -122,12 +129,103 @@ class VerifaiSampler(ExternalSampler):
 
     def numbers(self) -> dict[int, Floats]:
         """The numbers of the parameters' draws ``(1,)``, by address."""
-        found = Space(self.params).numbers(self.cachedSample)
-        return {item.address: found[:, place] for place, item in enumerate(self.params)}
+        return _columns(Space(self.params), self.cachedSample)
 
 
-def external_sampler(scenario: "Scenario") -> ExternalSampler:
-    """The sampler that a program selects.
+class _OneByOne:
+    """The points of a sampler of the program's own, or of a library, which is asked for one at a time."""
+
+    answerless = False
+
+    def __init__(self, sampler: ExternalSampler) -> None:
+        self.sampler = sampler
+
+    def ahead(self, feedback: Any, count: int) -> dict[int, Floats]:
+        """See `ExternalPoints.ahead`."""
+        self.sampler.sample(feedback)
+        return self.sampler.numbers()
+
+    def use(self, count: int) -> None:
+        """Nothing to do: the point is the sampler's present sample."""
+
+
+class _Queue:
+    """The points of a sampler that does not learn; those taken ahead and not used stay first."""
+
+    answerless = True
+
+    def __init__(self, sampler: VerifaiSampler) -> None:
+        self.sampler = sampler
+        self._space = Space(sampler.params)
+        self._points = np.zeros((0, len(self._space)))
+
+    def ahead(self, feedback: Any, count: int) -> dict[int, Floats]:
+        """See `ExternalPoints.ahead`."""
+        self.sampler.value_of(feedback)
+        missing = count - len(self._points)
+        if missing > 0:
+            try:
+                self._points = np.concatenate([self._points, self.sampler.sampler.ask(missing)])
+            except Exhausted:
+                if not len(self._points):
+                    raise
+        return _columns(self._space, self._points[:count])
+
+    def use(self, count: int) -> None:
+        """See `ExternalPoints.use`."""
+        if count:
+            self.sampler.cachedSample = self._points[count - 1 : count]
+            self._points = self._points[count:]
+
+
+class _Supposed:
+    """The points of a sampler that learns, each supposing that those before it are rejected; where one was not, it is set back."""
+
+    answerless = False
+
+    def __init__(self, sampler: VerifaiSampler) -> None:
+        self.sampler = sampler
+        self._space = Space(sampler.params)
+        self._before: Sampler = sampler.sampler
+        self._points = np.zeros((0, len(self._space)))
+
+    def ahead(self, feedback: Any, count: int) -> dict[int, Floats]:
+        """See `ExternalPoints.ahead`."""
+        outer = self.sampler
+        if outer.cachedSample is not None:
+            outer.sampler.tell(outer.cachedSample, np.array([outer.value_of(feedback)]))
+            outer.cachedSample = None
+        self._before = deepcopy(outer.sampler)
+        self._points = self._taken(count)
+        return _columns(self._space, self._points)
+
+    def use(self, count: int) -> None:
+        """See `ExternalPoints.use`."""
+        if count < len(self._points):
+            self.sampler.sampler = self._before
+            self._taken(count)
+        if count:
+            self.sampler.cachedSample = self._points[count - 1 : count]
+
+    def _taken(self, count: int) -> Floats:
+        sampler = self.sampler.sampler
+        rejected = np.array([self.sampler.value_of(self.sampler.rejectionFeedback)])
+        points: list[Floats] = []
+        while len(points) < count:
+            if points:
+                sampler.tell(points[-1], rejected)
+            points.append(sampler.ask(1))
+        return np.concatenate(points) if points else np.zeros((0, len(self._space)))
+
+
+def _columns(space: Space, points: Floats) -> dict[int, Floats]:
+    """The numbers of points ``(n, d)``, by address."""
+    numbers = space.numbers(points)
+    return {item.address: numbers[:, place] for place, item in enumerate(space.coordinates)}
+
+
+def external_points(scenario: "Scenario") -> ExternalPoints:
+    """The points of the sampler that a program selects.
 
     Raises `InvalidScenarioError` if ``externalSampler`` is no class of samplers.
     """
@@ -138,4 +236,10 @@ def external_sampler(scenario: "Scenario") -> ExternalSampler:
             f"the parameter `externalSampler` is {wanted!r}, which is no class of samplers",
             help="derive a class from `scenic.core.external_params.ExternalSampler`",
         )
-    return wanted(space_of(scenario, "external").coordinates, parameters)
+    sampler = wanted(space_of(scenario, "external").coordinates, parameters)
+    if type(sampler) is VerifaiSampler:
+        if isinstance(sampler.sampler, SEQUENCES):
+            return _Queue(sampler)
+        if isinstance(sampler.sampler, RESTORABLE):
+            return _Supposed(sampler)
+    return _OneByOne(sampler)

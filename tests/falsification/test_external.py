@@ -10,7 +10,7 @@ from scenic.core.external_params import ExternalSampler, VerifaiSampler
 from scipy.stats import qmc
 
 import scenic
-from scenic.language.errors import InvalidScenarioError, Located, ScenicWarning
+from scenic.language.errors import InvalidScenarioError, Located, RejectionException, ScenicWarning
 from scenic.simulators.dummy import DummySimulator
 
 EVERY_KIND = """
@@ -186,3 +186,76 @@ def test_generate_depends_on_the_state_of_random_alone() -> None:
         return [scenario.generate()[0].params["x"] for _ in range(4)]
 
     assert run() == run()
+
+
+class OneByOne(VerifaiSampler):
+    """The same samplers, each of whose points waits for the answer about the one before."""
+
+
+CHOICES = """
+param x = VerifaiRange(0, 1), d = VerifaiDiscreteRange(1, 4), y = VerifaiRange(0, 1)
+ego = new Object at Range(0, 10) @ 0
+require (globalParameters.x + globalParameters.y) % 0.5 > 0.3
+require ego.position.x < 5
+"""
+
+
+@pytest.mark.parametrize("feedback", [None, -0.5], ids=["silent", "told"])
+@pytest.mark.parametrize(
+    "kind", ["random", "halton", "sobol", "grid", "ce", "mab", "eg", "sa", "bo", "cma", "tpe"]
+)
+def test_candidates_of_batches_are_those_of_one_at_a_time(kind: str, feedback: float | None) -> None:
+    if library := {"bo": "sklearn", "cma": "cma", "tpe": "optuna"}.get(kind):
+        pytest.importorskip(library)
+    outcomes = []
+    for given in ({}, {"externalSampler": OneByOne}):
+        random.seed(6)
+        scenario = scenic.scenarioFromString(CHOICES, params={"verifaiSamplerType": kind, **given})
+        drawn = [scenario.generate(feedback=feedback) for _ in range(5)]
+        outcomes.append(
+            [(*(scene.params[key] for key in "xdy"), scene.egoObject.x, tried) for scene, tried in drawn]
+        )
+    assert outcomes[0] == outcomes[1]
+    assert any(tried > 1 for *_, tried in outcomes[0])
+
+
+def test_no_candidate_is_evaluated_twice() -> None:
+    seen: list[float] = []
+    scenario = scenic.scenarioFromString(
+        "param x = VerifaiRange(0, 1)\nego = new Object\nx = globalParameters.x\nseen = globalParameters.seen\n"
+        "require seen(x) or x < 0.3",
+        params={"seen": seen.append},
+    )
+    tried = [scenario.generate()[1] for _ in range(20)]
+    expected = qmc.Halton(1, scramble=False).random(len(seen) + 1)[1:, 0]
+    assert sum(tried) <= len(seen)
+    assert seen == expected.tolist()
+
+
+def test_points_that_were_not_used_come_first() -> None:
+    scenario = scenic.scenarioFromString(
+        "param x = VerifaiRange(0, 1)\nego = new Object\nrequire globalParameters.x < 0.3"
+    )
+    points = iter(qmc.Halton(1, scramble=False).random(200)[1:, 0].tolist())
+    for turn in range(12):
+        if turn % 3 == 0:
+            random.random()  # other seeds follow, so that what is evaluated ahead is given up
+        if turn == 7:
+            with pytest.raises(RejectionException):
+                scenario.generate(maxIterations=1)
+            assert next(points) >= 0.3
+        scene, tried = scenario.generate()
+        assert scene.params["x"] == [next(points) for _ in range(tried)][-1] < 0.3
+
+
+def test_an_error_ahead_waits_for_its_candidate() -> None:
+    scenario = scenic.scenarioFromString(
+        "x = VerifaiRange(0, 1)\nparam x = x\nego = new Object with width 1 / max(0, 0.8 - x)"
+    )
+    points = qmc.Halton(1, scramble=False).random(40)[1:, 0].tolist()
+    for point in points[:9]:
+        if point < 0.8:
+            assert scenario.generate()[0].params["x"] == point
+        else:
+            with pytest.raises(Exception, match=r"width|zero"):
+                scenario.generate()

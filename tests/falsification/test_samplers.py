@@ -2,11 +2,15 @@
 
 import itertools
 import math
+import subprocess
 import sys
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.special import ndtr
+from scipy.stats import qmc
 
 import scenic
 from scenic.falsification.samplers import SAMPLERS, make_sampler
@@ -204,3 +208,22 @@ def test_priors_have_buckets_and_weights_of_zero_take_no_room() -> None:
     assert len(make_sampler("grid", Space((y, p)), 0, {"N": 3}).ask(100)) == 15
     halton = make_sampler("halton", Space((p, y)), 0).ask(3)
     assert halton[:, 1].tolist() == [0.5, 0.25, 0.75]
+
+
+def test_halton_imports_no_statistics() -> None:
+    text = (
+        "import sys\nfrom scenic.falsification.samplers import make_sampler\n"
+        "from scenic.falsification.space import Coordinate, Space\n"
+        "make_sampler('halton', Space((Coordinate(1, 'x'),)), 0).ask(3)\nprint('scipy.stats' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
+
+
+@given(st.integers(0, 10**6), st.integers(0, 30))
+def test_halton_is_the_sequence_of_scipy(start: int, skipped: int) -> None:
+    space = Space(tuple(Coordinate(place, f"x{place}") for place in range(3)))
+    points = make_sampler("halton", space, 0, {"sample_index": start, "bases_skipped": skipped}).ask(5)
+    sequence = qmc.Halton(3 + skipped, scramble=False)
+    sequence.fast_forward(start + 1)
+    assert np.abs(points - sequence.random(5)[:, skipped:]).max() < 1e-12

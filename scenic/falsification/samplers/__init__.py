@@ -14,7 +14,7 @@ from scenic.falsification.samplers.sequences import Grid, Halton, Random, Sobol
 from scenic.falsification.space import Space
 from scenic.language.spelling import nearest_option
 
-__all__ = ["SAMPLERS", "make_sampler"]
+__all__ = ["RESTORABLE", "SAMPLERS", "SEQUENCES", "make_sampler"]
 
 SAMPLERS: Final[Mapping[str, Callable[[Space, int, Any], Sampler]]] = MappingProxyType(
     {
@@ -32,6 +32,12 @@ SAMPLERS: Final[Mapping[str, Callable[[Space, int, Any], Sampler]]] = MappingPro
     }
 )
 """Functions that make samplers from a space, a seed and options."""
+
+SEQUENCES: Final = (Random, Halton, Sobol, Grid)
+"""Samplers that do not learn."""
+
+RESTORABLE: Final = (CrossEntropy, Bandit, EpsilonGreedy, Annealing)
+"""Samplers that learn, and can be set back: a copy goes on as they do."""
 
 
 def make_sampler(name: str, space: Space, seed: int, given: Any = None) -> Sampler:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from scenic.falsification.samplers.protocol import Exhausted, SamplerError, options
 from scenic.falsification.space import Floats, Space
@@ -36,26 +37,47 @@ class Halton:
     batch = None
 
     def __init__(self, space: Space, seed: int, given: Any = None) -> None:
-        from scipy.stats import qmc
-
         chosen = options(given, {"sample_index": 0, "bases_skipped": 0}, "halton")
         self._continuous = [place for place, item in enumerate(space.coordinates) if item.is_continuous]
         self._dimension = len(space)
-        self._skipped = int(chosen["bases_skipped"])
+        skipped = int(chosen["bases_skipped"])
         self._generator = np.random.default_rng(seed)
-        axes = len(self._continuous) + self._skipped
-        self._sequence: Any = qmc.Halton(max(axes, 1), scramble=False)
-        self._sequence.fast_forward(int(chosen["sample_index"]) + 1)
+        self._bases = _primes(skipped + len(self._continuous))[skipped:]
+        self._next = int(chosen["sample_index"]) + 1
 
     def ask(self, count: int) -> Floats:
         """See `Sampler.ask`."""
         points = self._generator.random((count, self._dimension))
-        if self._continuous:
-            points[:, self._continuous] = self._sequence.random(count)[:, self._skipped :]
+        numbers = np.arange(self._next, self._next + count)
+        self._next += count
+        for place, base in zip(self._continuous, self._bases, strict=True):
+            points[:, place] = _reflected(numbers, base)
         return points
 
     def tell(self, points: Floats, values: Floats) -> None:
         """Nothing to learn."""
+
+
+def _primes(count: int) -> list[int]:
+    """The first primes."""
+    found: list[int] = []
+    candidates = itertools.count(2)
+    while len(found) < count:
+        number = next(candidates)
+        if all(number % prime for prime in found):
+            found.append(number)
+    return found
+
+
+def _reflected(numbers: NDArray[np.int64], base: int) -> Floats:
+    """The numbers ``(n,)`` with their digits reflected at the point (van der Corput, 1935)."""
+    result = np.zeros(len(numbers))
+    place = 1.0
+    while numbers.any():
+        numbers, digits = np.divmod(numbers, base)
+        place /= base
+        result += digits * place
+    return result
 
 
 class Sobol:

@@ -389,21 +389,8 @@ class Engine:
             check = self.plan.checks[int(failures[row])]
             done[int(pending.number[scene])] = self._error(check, pending.task(scene), int(attempts[row]))
         good = first[failed[first] < 0]
-        if len(good):
-            batch.keep(good)
-            batch.follow(last.schedule, last.nodes)
-            batch.settle(last.nodes)
-            rows = rows[good]
-            scenes = owner[rows]
-            found = self._found(
-                pending.given[scenes].tolist(),
-                pending.k[scenes].tolist(),
-                (attempts[rows] + 1).tolist(),
-                batch,
-            )
-            done.update(
-                zip(pending.number[scenes].tolist(), zip(repeat(found), range(len(scenes))), strict=True)
-            )
+        accepted = self._completed(batch, last, good, pending, owner, attempts)
+        done.update(zip(pending.number[owner[rows[good]]].tolist(), accepted, strict=True))
         hopeless = ~finished & (pending.attempts >= max_attempts)
         self._give_up(pending, hopeless, "attempts", done)
         pending.leave(finished | hopeless)
@@ -412,6 +399,59 @@ class Engine:
         self._pace.add(len(owner), passed, seconds)
         if self._meter is not None:
             self._meter.round(len(owner), passed, seconds)
+
+    def _completed(
+        self,
+        batch: Batch,
+        last: Stage,
+        good: NDArray[np.intp],
+        pending: Pending,
+        owner: NDArray[np.intp],
+        attempts: NDArray[np.int64],
+    ) -> list[Accepted]:
+        """Complete the scenes of the accepted lanes, ``good`` among those that are left in the batch."""
+        if not len(good):
+            return []
+        rows = batch.rows[good]
+        batch.keep(good)
+        batch.follow(last.schedule, last.nodes)
+        batch.settle(last.nodes)
+        scenes = owner[rows]
+        found = self._found(
+            pending.given[scenes].tolist(), pending.k[scenes].tolist(), (attempts[rows] + 1).tolist(), batch
+        )
+        return list(zip(repeat(found), range(len(scenes))))
+
+    def first_candidates(
+        self, tasks: Sequence[tuple[int, int]]
+    ) -> list[tuple[int, Accepted | CandidateError]]:
+        """The first candidates for some scenes, each evaluated once: those that nothing rejects, with their places, in order."""
+        begun = time.thread_time()
+        pending = self.pending(tasks)
+        owner = np.arange(len(tasks))
+        batch = self.attempts_at(pending, owner, pending.attempts)
+        *stages, last = self._stages.order(len(batch))
+        failures = self._judge(batch, stages, pending.inactive if self._soft else None)
+        rows = batch.rows
+        failed = failures[rows] >= 0
+        results: dict[int, Accepted | CandidateError] = {
+            row: self._error(self.plan.checks[int(failures[row])], pending.task(row), 0)
+            for row in rows[failed].tolist()
+        }
+        good = np.flatnonzero(~failed)
+        accepted = self._completed(batch, last, good, pending, owner, pending.attempts)
+        results.update(zip(rows[good].tolist(), accepted, strict=True))
+        seconds = time.thread_time() - begun
+        self.candidates += len(owner)
+        self.passed += len(rows)
+        self.seconds += seconds
+        self._pace.add(len(owner), len(rows), seconds)
+        return sorted(results.items())
+
+    def lanes_for(self, scenes: int) -> int:
+        """The number of candidates that are best evaluated together where so many scenes are wanted."""
+        chosen = self._pace.choose(scenes, self._pace.most, more=False)
+        return chosen.scenes * chosen.ahead
 
     def replay(self, source: Source, task: Task, attempts: int) -> Accepted:
         """The scene of given draws, one lane of points of the cube; no check is made again."""

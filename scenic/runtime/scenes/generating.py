@@ -14,7 +14,9 @@ from scenic.runtime.ground.choosable import Choosable
 from scenic.runtime.instances.objects import Object
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Workspace
+from scenic.runtime.sampling.engine import Accepted, CandidateError
 from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.scenes.external_candidates import ExternalCandidates
 from scenic.runtime.scenes.prefetching import SEED_BITS, Foreseen
 from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS
 from scenic.runtime.scenes.scene import Scene
@@ -29,7 +31,7 @@ class Generating(ABC):
     workspace: Workspace
     _services: Services
     _foreseen: Foreseen
-    _external_sampler: Any
+    _external_candidates: ExternalCandidates | None
 
     @property
     @abstractmethod
@@ -60,6 +62,20 @@ class Generating(ABC):
         """Scenes in which some draws are given."""
 
     @abstractmethod
+    def _first_candidates(
+        self, numbers: Mapping[int, NDArray[np.float64]], count: int, seed: int, first: int
+    ) -> list[tuple[int, Accepted | CandidateError]]:
+        """The candidates that nothing rejects, one for each scene of a range, with their places."""
+
+    @abstractmethod
+    def _lanes_for(self, scenes: int) -> int:
+        """Number of candidates that are best evaluated together where so many scenes are wanted."""
+
+    @abstractmethod
+    def _scene_of(self, result: Accepted | CandidateError) -> Scene:
+        """The scene of a candidate; raises the program's error of one that failed."""
+
+    @abstractmethod
     def sceneToBytes(self, scene: Scene, allowPickle: bool = False) -> bytes:
         """A scene as data."""
 
@@ -87,7 +103,7 @@ class Generating(ABC):
             RejectionException: if none of ``maxIterations`` candidates meets the requirements.
 
         """
-        if seed is None and self.externals and self._services.external_sampler is not None:
+        if seed is None and self.externals and self._services.external_points is not None:
             return self._generate_chosen(maxIterations, feedback)
         if seed is None:
             result = self._foreseen.take(random.getrandbits(SEED_BITS), maxIterations)
@@ -99,20 +115,17 @@ class Generating(ABC):
 
     def _generate_chosen(self, most: int, feedback: object) -> tuple[Scene, int]:
         """One scene whose external parameters their sampler chooses."""
-        assert self._services.external_sampler is not None
-        if self._external_sampler is None:
-            self._external_sampler = self._services.external_sampler(self)
-        sampler = self._external_sampler
-        seed = random.getrandbits(SEED_BITS)
-        for attempt in range(most):
-            sampler.sample(feedback)
-            (result,) = self.chosen(sampler.numbers(), 1, seed=seed, first=attempt)
-            if not isinstance(result, Exhausted):
-                return result, attempt + 1
-            feedback = sampler.rejectionFeedback
-        raise RejectionException(
-            f"no scene was found within {most} candidates whose external parameters the sampler chose"
-        )
+        assert self._services.external_points is not None
+        if self._external_candidates is None:
+            self._external_candidates = ExternalCandidates(
+                self._services.external_points(self), self._first_candidates, self._lanes_for
+            )
+        result, tried = self._external_candidates.take(random.getrandbits(SEED_BITS), most, feedback)
+        if result is None:
+            raise RejectionException(
+                f"no scene was found within {most} candidates whose external parameters the sampler chose"
+            )
+        return self._scene_of(result), tried
 
     def generateBatch(
         self,
@@ -234,12 +247,13 @@ class Generating(ABC):
 
     def resetExternalSampler(self) -> None:
         """Restart the sampler of the external parameters."""
-        self._external_sampler = None
+        self._external_candidates = None
 
     @property
     def externalSampler(self) -> Any:
         """The sampler of the external parameters once a scene has been generated, if there are any."""
-        return self._external_sampler
+        candidates = self._external_candidates
+        return None if candidates is None else candidates.points.sampler
 
     def simulationToBytes(self, simulation: Any, allowPickle: bool = False) -> bytes:
         """A simulation as data: its scene, and what has been drawn in it. `simulationFromBytes` runs it again."""

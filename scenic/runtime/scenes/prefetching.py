@@ -66,7 +66,7 @@ class Foreseen:
         more = self._given != 1
         self._given = 0
         self._limit = limit
-        self._seeds = _seeds_after(random.getstate())
+        self._seeds = seeds_after(random.getstate())
         self._expected, self._peeked = deque([seed]), deque([seed])
         self._stream = self._find(self._tasks(), limit, more)
 
@@ -88,7 +88,7 @@ class Foreseen:
                 yield Task(seed, 0)
 
 
-def _seeds_after(state: tuple[object, ...]) -> Iterator[int]:
+def seeds_after(state: tuple[object, ...]) -> Iterator[int]:
     """The seeds that ``random`` gives from a state on."""
     copy = random.Random()
     copy.setstate(state)

@@ -12,7 +12,7 @@ from scenic.graph.node import Node
 from scenic.graph.points import PointSet
 from scenic.runtime.sampling.checks import NodeCheck
 from scenic.runtime.sampling.components import Components, components_of, divided
-from scenic.runtime.sampling.engine import Accepted, Engine, Plan
+from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Plan
 from scenic.runtime.sampling.halving import SELDOM
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.piecewise import PiecewiseEngine
@@ -199,14 +199,20 @@ class Sampler:
         if self.impossible:
             return self._not_found((seed, k) for k in range(first, first + count))
 
-        def source(lanes: Lanes) -> Source:
-            rows = lanes.scenes - first
-            return Points({place: column[rows] for place, column in numbers.items()}, Counter(lanes.keys))
-
         self._divide()
-        engine = self._finder.driven(self._fixing(source))
+        engine = self._finder.driven(self._fixing(_given(numbers, first)))
         tasks = ((seed, k) for k in range(first, first + count))
         return engine.scenes(tasks, max_attempts=max_attempts)
+
+    def first_candidates(
+        self, numbers: Mapping[int, NDArray[np.float64]], count: int, *, seed: int, first: int
+    ) -> list[tuple[int, Accepted | CandidateError]]:
+        """One candidate for each of scenes ``first`` to ``first + count`` of a seed, with given draws ``(count,)`` by address.
+
+        Returns those that nothing rejects, with their places from 0 on.
+        """
+        source = self._fixing(_given(numbers, first))
+        return self.engine.driven(source).first_candidates([(seed, first + place) for place in range(count)])
 
     def _divide(self) -> None:
         """Divide components of which hardly any candidate passes, when the first scene is wanted."""
@@ -253,6 +259,16 @@ class Sampler:
         if points is None:
             return self._finder
         return self._finder.driven(self._fixing(driven(points, self.plan.graph)))
+
+
+def _given(numbers: Mapping[int, NDArray[np.float64]], first: int) -> Callable[[Lanes], Source]:
+    """Return a function that makes the sources of lanes whose scenes, from ``first`` on, have these numbers."""
+
+    def source(lanes: Lanes) -> Source:
+        rows = lanes.scenes - first
+        return Points({place: column[rows] for place, column in numbers.items()}, Counter(lanes.keys))
+
+    return source
 
 
 __all__ = ["DEFAULT_ATTEMPTS", "Sampler"]

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import chain, repeat
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +36,7 @@ from scenic.runtime.sampling.estimating import ComponentEstimate, estimate
 from scenic.runtime.sampling.planning import Outline
 from scenic.runtime.sampling.profiling import Profile
 from scenic.runtime.sampling.report import Approximation, Exhausted
+from scenic.runtime.scenes.external_candidates import ExternalCandidates
 from scenic.runtime.scenes.fingerprint import fingerprint
 from scenic.runtime.scenes.generating import Generating
 from scenic.runtime.scenes.population import Populations
@@ -72,7 +73,7 @@ def _plain(options: Mapping[str, Any]) -> dict[str, Any]:
     return {**known, "params": params} if params else known
 
 
-_KEPT: Final = frozenset({"_foreseen", "_external_sampler"})
+_KEPT: Final = frozenset({"_foreseen", "_external_candidates"})
 """Attributes of a scenario that conditions do not replace."""
 
 
@@ -118,7 +119,7 @@ class Scenario(Generating):
         self._sampler = sampler
         self._foreseen = Foreseen(self._foresee)
         self._choosing: Sampler | None = None
-        self._external_sampler: Any = None
+        self._external_candidates: ExternalCandidates | None = None
         self._draw_names: dict[int, DrawName] | None = None
         self._approximation: Approximation | None = None
         self._family = Family(
@@ -222,11 +223,17 @@ class Scenario(Generating):
             max_attempts: candidates tried for one scene, all with the given numbers.
 
         """
+        sampler = self._without_narrowing
+        yield from self._scenes(
+            sampler.chosen(numbers, count, seed=seed, first=first, max_attempts=max_attempts)
+        )
+
+    @property
+    def _without_narrowing(self) -> Sampler:
+        """The sampler for external parameters that are chosen, whose axes it leaves whole."""
         if self._choosing is None:
             self._choosing = self._sampler.without_narrowing(self.externals)
-        yield from self._scenes(
-            self._choosing.chosen(numbers, count, seed=seed, first=first, max_attempts=max_attempts)
-        )
+        return self._choosing
 
     @property
     def program(self) -> Program:
@@ -335,6 +342,23 @@ class Scenario(Generating):
                     yield Scene(found, lane, family)
         except CandidateError as error:
             failure = error
+        self._raise(failure)
+
+    def _first_candidates(
+        self, numbers: Mapping[int, NDArray[np.float64]], count: int, seed: int, first: int
+    ) -> list[tuple[int, Accepted | CandidateError]]:
+        with self._program.undisturbed():
+            return self._without_narrowing.first_candidates(numbers, count, seed=seed, first=first)
+
+    def _lanes_for(self, scenes: int) -> int:
+        return self._without_narrowing.engine.lanes_for(scenes)
+
+    def _scene_of(self, result: Accepted | CandidateError) -> Scene:
+        if isinstance(result, CandidateError):
+            self._raise(result)
+        return Scene(*result, self._family)
+
+    def _raise(self, failure: CandidateError) -> NoReturn:
         problem = self._sampling_error(failure)
         if problem is failure.__cause__:
             raise problem  # which may have a cause of its own
@@ -608,6 +632,8 @@ class Scenario(Generating):
         if given:
             self._take_parameters(given)
         self._choosing = None
+        if self._external_candidates is not None:
+            self._external_candidates.forget()
         self._foreseen = Foreseen(self._foresee)
 
     def _take_parameters(self, given: Mapping[str, Any]) -> None:
@@ -617,7 +643,7 @@ class Scenario(Generating):
         other = self._services.given(given)
         other._sampler = self._sampler.on(other._sampler)
         vars(self).update({name: vars(other)[name] for name in self._unconditioned})
-        self._external_sampler = None
+        self._external_candidates = None
 
     def _number(self, item: object) -> int:
         """The place of an object, which is given by itself or by its place."""

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from scenic.dataclass import dataclass
+from scenic.runtime.scenes.external_candidates import ExternalPoints
 from scenic.runtime.scenes.scene import Scene
 
 __all__ = ["Services"]
@@ -29,7 +30,7 @@ class Services:
     """Samples in several processes: ``(scenario, n, processes=, **limits)``."""
     simulate: Callable[..., Any] | None = None
     """Simulates scenes: ``(scenario, n, **options)``."""
-    external_sampler: Callable[[Any], Any] | None = None
-    """The sampler of the program's external parameters."""
+    external_points: Callable[[Any], ExternalPoints] | None = None
+    """The points of the program's external parameters, by the sampler that it names."""
     given: Callable[[Mapping[str, Any]], Any] | None = None
     """Compiles the program once more with values of global parameters."""
