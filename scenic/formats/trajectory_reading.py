@@ -43,22 +43,27 @@ class Trajectory:
     orientations: Array
     actions: Sequence[Mapping[int, Any]]
 
-    def index(self, name: str) -> int:
-        """The number of the object that a variable of the program holds; raises ``KeyError`` if there is none."""
+    def index(self, name: str | int) -> int:
+        """The number of the object that a variable of the program holds, or that is given by its number.
+
+        Raises ``KeyError`` for an unknown name, ``IndexError`` for a number beyond the last object.
+        """
+        if not isinstance(name, str):
+            return range(len(self.about["objects"]))[name]
         for number, thing in enumerate(self.about["objects"]):
             if thing["name"] == name:
                 return number
         raise KeyError(name)
 
-    def position(self, name: str) -> Array:
-        """Return the positions ``(s, 3)`` over time, in metres, of the object with a name."""
+    def position(self, name: str | int) -> Array:
+        """Return the positions ``(s, 3)`` over time, in metres, of the object with a name or number."""
         return self.positions[:, self.index(name)]
 
-    def orientation(self, name: str) -> Array:
+    def orientation(self, name: str | int) -> Array:
         """The orientations of the object, ``(s, 4)``: quaternions x, y, z, w."""
         return self.orientations[:, self.index(name)]
 
-    def size(self, name: str) -> tuple[float, float, float]:
+    def size(self, name: str | int) -> tuple[float, float, float]:
         """Its width, length and height, metres."""
         width, length, height = self.about["objects"][self.index(name)]["size"]
         return width, length, height

@@ -82,6 +82,10 @@ def test_arrays_are_what_the_lines_say(folder: Path) -> None:
     assert read.record("y") == read.position("ego")[:, 1].tolist()
     assert read.record("end") == read.positions[-1, 1].tolist()
     assert read.size("ego") == (0.5, 1, 1)
+    np.testing.assert_array_equal(read.position(0), read.position("ego"))
+    np.testing.assert_array_equal(read.orientation(0), read.orientation("ego"))
+    with pytest.raises(IndexError):
+        read.position(3)
     assert read.orientations[0, 1].tolist() == pytest.approx([0, 0, math.sin(0.2), math.cos(0.2)])
     assert set(read.actions[0]) == {0, 1}
     assert read.actions[6] == {}

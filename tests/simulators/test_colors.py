@@ -45,7 +45,7 @@ def test_random_parts_need_no_call_of_python(monkeypatch: pytest.MonkeyPatch) ->
 def test_colours_of_objects_are_checked_together_as_one_by_one() -> None:
     fine = [Color(0.0, 0.5, 1.0), (1, 0, 1), (np.float64(0.25), 0.5, True)]
     assert _colours(fine) == [_colour("color", value) for value in fine]
-    assert [type(value) for value in _colours(fine) or ()] == [tuple] * 3
+    assert [type(value) for value in _colours(fine) or ()] == [Color, tuple, tuple]
     faulty = [
         (0.1, 0.2, 1.5),
         (0.1, 0.2),
@@ -58,3 +58,11 @@ def test_colours_of_objects_are_checked_together_as_one_by_one() -> None:
     for value in faulty:
         assert _colours([fine[0], value]) is None
     assert _colours([(0.1, 0.2, 0.3), (0.1, 0.2, 0.3, 0.4)]) is None
+
+
+@pytest.mark.parametrize("made", ["Color.defaultCarColor()", "Color.uniformColor()", "Color(0.5, 0, 1)"])
+def test_a_colour_of_the_class_stays_one(made: str) -> None:
+    text = f"from scenic.simulators.utils.colors import Color\nego = new Object with color {made}\n"
+    (scene,) = scenic.scenarioFromString(text).sample(1, seed=1)
+    assert type(scene.egoObject.color) is Color
+    assert scene.egoObject.color.b == scene.egoObject.color[2]

@@ -1095,3 +1095,11 @@ scenario Part():
     done = simulate(text, 9)
     assert done.records["each"] == [(1, 1), (2, 2)]
     assert done.records["last"] == 3
+
+
+def test_a_limit_of_the_top_level_scenario_completes_it() -> None:
+    done = simulate(
+        "scenario Main():\n    setup:\n        ego = new Object\n        terminate after 2 steps\n", 9
+    )
+    assert len(done.result.trajectory) == 3
+    assert done.result.terminationType is TerminationType.scenarioComplete

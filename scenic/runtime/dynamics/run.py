@@ -342,7 +342,9 @@ class Run:
         while True:
             # 1. Scenarios
             if top.running and top.resume() is None:
-                self._remember("timeLimit" if top.timed_out else "scenarioComplete", top.reason or "")
+                # A limit of a scenario ends that scenario; one of a file alone ends the simulation by time.
+                by_time = top.timed_out and top.instance is None
+                self._remember("timeLimit" if by_time else "scenarioComplete", top.reason or "")
             if self.unmet is not None:
                 raise self.unmet
             # 2. Sensors

@@ -316,7 +316,7 @@ def _colour(_name: str, value: object) -> Any:
             span=here(),
             help="for example `with color (0.8, 0.2, 0.2)`",
         )
-    return parts
+    return value if isinstance(value, tuple) else parts  # a `Color` stays one
 
 
 def _colours(values: list[Any]) -> list[Any] | None:
@@ -329,7 +329,7 @@ def _colours(values: list[Any]) -> list[Any] | None:
     except (TypeError, OverflowError):  # not numbers, or none of these
         return None
     fine = len(sizes) == 1 and sizes <= {3, 4} and ((parts >= 0) & (parts <= 1)).all()
-    return list(map(tuple, values)) if fine else None
+    return values if fine else None
 
 
 def update(instance: Any, changes: Mapping[str, Any]) -> None:

@@ -46,6 +46,36 @@ class Driven(_Moved, Steers):
         """Release everything."""
         self.__dict__["controls"] = Controls()
 
+    @property
+    def throttle(self) -> float:
+        """The present throttle, from 0 to 1."""
+        return self._present.throttle
+
+    @property
+    def steer(self) -> float:
+        """The present steering, from -1 (left) to 1 (right)."""
+        return self._present.steering
+
+    @property
+    def brake(self) -> float:
+        """The present brake, from 0 to 1."""
+        return self._present.brake
+
+    @property
+    def hand_brake(self) -> bool:
+        """Whether the hand brake is pulled."""
+        return self._present.handbrake > 0
+
+    @property
+    def reverse(self) -> bool:
+        """Whether the car is in reverse gear."""
+        return self._present.reverse
+
+    @property
+    def _present(self) -> Controls:
+        """The controls; of a car that no simulation has moved yet, released."""
+        return self.__dict__.get("controls") or Controls()
+
     def setThrottle(self, throttle: float) -> None:
         """Set the throttle."""
         self.controls.throttle = throttle
