@@ -63,12 +63,12 @@ class Driven(_Moved, Steers):
 
     @property
     def hand_brake(self) -> bool:
-        """Whether the hand brake is pulled."""
+        """True if the hand brake is pulled."""
         return self._present.handbrake > 0
 
     @property
     def reverse(self) -> bool:
-        """Whether the car is in reverse gear."""
+        """True if the car is in reverse gear."""
         return self._present.reverse
 
     @property
