@@ -16,6 +16,7 @@ from scenic.formats.camera import corners, ground_height
 from scenic.formats.files import make_folder, write
 from scenic.formats.instances import Instance, distinct_labels, picture
 from scenic.formats.scenes import Scene
+from scenic.formats.webots_reading import WORLD_PARAMETER, WorldFile, read_world
 from scenic.language.errors import ScenicValueError
 
 __all__ = ["World", "def_names", "mesh_file", "solid", "webots_world", "write_world"]
@@ -31,6 +32,25 @@ _SUPERVISOR_NAME: Final = "scenic"
 _DEF: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _RESERVED: Final = frozenset({"FLOOR", "SCENIC"})
 """DEF names of nodes that a written world has beside its objects."""
+
+_ADDRESSES: Final = MappingProxyType(
+    {
+        PurePosixPath(path).name: f"webots://projects/{path}.proto"
+        for path in (
+            "vehicles/protos/bmw/BmwX5",
+            "vehicles/protos/citroen/CitroenCZero",
+            "vehicles/protos/lincoln/LincolnMKZ",
+            "vehicles/protos/range_rover/RangeRoverSportSVR",
+            "vehicles/protos/toyota/ToyotaPrius",
+            "humans/pedestrian/protos/Pedestrian",
+            "objects/barrels/protos/OilBarrel",
+            "objects/solids/protos/SolidBox",
+            "objects/traffic/protos/TrafficCone",
+            "objects/traffic/protos/WorkBarrier",
+        )
+    }
+)
+"""Addresses of PROTO files that come with Webots, by the names of their nodes."""
 
 Array = npt.NDArray[np.float64]
 
@@ -60,7 +80,8 @@ def webots_world(
 
     Objects with a property ``webotsProto`` become nodes of that PROTO (a name, found in ``../protos``, or an address that ends
     in ``NAME.proto``) with their ``controller``, ``customData`` and ``battery``. All others are a ``Solid`` of their shape and
-    colour, which has physics if they have a ``density`` or a ``mass``. Objects that are not drawn are left out.
+    colour, which has physics if they have a ``density`` or a ``mass``. Objects that are not drawn are left out. The objects of a
+    program that uses the roads of a world are added to that world, in its axes; nodes that it has already stay.
 
     Args:
         scene: the scene.
@@ -78,24 +99,42 @@ def webots_world(
     files: dict[str, bytes] = {}
     protos: list[str] = []
     nodes: list[str] = []
+    given = scene.params.get(WORLD_PARAMETER)
+    world = None if given is None else read_world(str(given))
+    frame = None if world is None else world.matrix
     for instance, label in zip(instances, _labels(instances), strict=True):
         thing: Any = instance.thing
         name = names[id(thing)]
         if program is not None and getattr(thing, "webotsAdhoc", None) is not None:
             continue
+        if world is not None and name in world.names:
+            continue
         proto = getattr(thing, "webotsProto", None)
         if proto is not None:
-            address = str(proto) if str(proto).endswith(".proto") else f"../protos/{proto}.proto"
+            address = _ADDRESSES.get(str(proto), str(proto))
+            address = address if address.endswith(".proto") else f"../protos/{proto}.proto"
             if address not in protos:
                 protos.append(address)
-            nodes.append(_robot(thing, PurePosixPath(address).stem, name, label))
+            nodes.append(_robot(thing, PurePosixPath(address).stem, name, label, frame))
             continue
-        nodes.append(solid(thing, stem, files, name, label, instance.color))
+        nodes.append(solid(thing, stem, files, name, label, instance.color, frame=frame))
     externals = "".join(f"EXTERNPROTO {_text(address)}\n" for address in protos)
     supervisor = "" if program is None else _supervisor(scene, Path(program).absolute(), params, files)
+    if world is not None:
+        return World(_extended(world, protos, "".join(nodes) + supervisor), files)
     return World(
         f"{_HEADER}\n{externals}\n{_surroundings(scene, instances)}{''.join(nodes)}{supervisor}", files
     )
+
+
+def _extended(world: WorldFile, protos: Sequence[str], nodes: str) -> str:
+    """The text of a world with more nodes at its end, and the PROTOs that they need declared if its version wants that."""
+    text = world.text if world.text.endswith("\n") else f"{world.text}\n"
+    if world.declares_protos:
+        head, _, rest = text.partition("\n")
+        missing = [address for address in protos if f"/{PurePosixPath(address).name}" not in text]
+        text = head + "".join(f"\nEXTERNPROTO {_text(address)}" for address in missing) + f"\n{rest}"
+    return f"{text}{nodes}"
 
 
 def def_names(objects: Sequence[Any]) -> dict[int, str]:
@@ -172,6 +211,7 @@ def solid(
     color: Sequence[float] = _GRAY,
     *,
     physics: bool | None = None,
+    frame: Array | None = None,
 ) -> str:
     """A ``Solid`` of an object.
 
@@ -183,6 +223,7 @@ def solid(
         label: the node's field ``name``.
         color: red, green, blue and perhaps opacity, from 0 to 1.
         physics: whether it moves; by default if it has a density or a mass.
+        frame: the matrix ``(3, 3)`` that takes vectors of ours to those of the world, if it has other axes.
 
     """
     geometry = _geometry(thing, stem, files, name)
@@ -201,7 +242,7 @@ def solid(
         lines.append(
             f"physics Physics {{ density {_number(1000.0 if density is None else density)} mass -1 }}"
         )
-    return _node("Solid", thing, name, lines)
+    return _node("Solid", thing, name, lines, frame)
 
 
 def mesh_file(thing: Any) -> bytes:
@@ -237,8 +278,18 @@ def _geometry(thing: Any, stem: str, files: dict[str, bytes], name: str) -> str:
     return f"Mesh {{ url [ {_text(file)} ] }}"
 
 
-def _robot(thing: object, proto: str, name: str, label: str) -> str:
+def _robot(thing: object, proto: str, name: str, label: str, frame: Array | None = None) -> str:
     lines = [f"name {_text(label)}"]
+    colors = ["primaryColor", "secondaryColor"] if hasattr(thing, "primaryColor") else ["color"]
+    for given in (
+        "shirtColor",
+        "pantsColor",
+        "shoesColor",
+        *(colors if hasattr(thing, "roadDeviation") else ()),
+    ):
+        value = getattr(thing, given, None)
+        if value is not None:
+            lines.append(f"{given} {_numbers(value[:3])}")
     for given in ("controller", "customData"):
         value = getattr(thing, given, None)
         if value is not None:
@@ -246,20 +297,24 @@ def _robot(thing: object, proto: str, name: str, label: str) -> str:
     battery = getattr(thing, "battery", None)
     if battery is not None:
         lines.append(f"battery {_numbers(battery, listed=True)}")
-    return _node(proto, thing, name, lines)
+    return _node(proto, thing, name, lines, frame)
 
 
-def _node(kind: str, thing: Any, name: str, lines: Sequence[str]) -> str:
+def _node(kind: str, thing: Any, name: str, lines: Sequence[str], frame: Array | None = None) -> str:
     from scipy.spatial.transform import Rotation  # slow to import
 
     turn = thing.orientation
     rotation = Rotation.from_quat([turn.x, turn.y, turn.z, turn.w])
     rotation = rotation * Rotation.from_euler("ZXY", getattr(thing, "rotationOffset", (0, 0, 0)))
+    if frame is not None:
+        rotation = Rotation.from_matrix(frame @ rotation.as_matrix() @ frame.T)
     vector = rotation.as_rotvec()
     angle = float(np.linalg.norm(vector))
     axis = vector / angle if angle else np.array([0.0, 0.0, 1.0])
     shift = np.array(tuple(getattr(thing, "positionOffset", (0, 0, 0))), dtype=np.float64)
     place = np.array(tuple(thing.position), dtype=np.float64) + shift
+    if frame is not None:
+        place = frame @ place
     body = [f"translation {_numbers(place)}", f"rotation {_numbers((*axis, angle))}", *lines]
     return f"DEF {name} {kind} {{\n" + "".join(f"  {line}\n" for line in body) + "}\n"
 

@@ -1,0 +1,1 @@
+"""Intersections by their guideways, for traffic in Webots."""
