@@ -89,7 +89,8 @@ _RULES: Final = (
     Rule(
         "visibility",
         "visibility is decided in another way",
-        "`visible` and `can see` know occlusion now, and test the whole body and not only its centre and corners",
+        "`visible`, `can see` and `requireVisible` know occlusion now, and test the whole body and not only its centre and "
+        "corners",
         "keep it, or write `with occluding False` for what must not hide others",
     ),
     Rule("position-deviation", "`positionStdDev` has three components"),

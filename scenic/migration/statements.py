@@ -97,6 +97,7 @@ def _visibility(piece: Piece) -> None:
             line = piece.source.span(node.body[0]).end_line + 1
             while not piece.source.line(line).strip():
                 line += 1
+        piece.decide_once("visibility", node)
         indent = piece.indentation(piece.line(first))
         if is_text:
             piece.statement_after("require-visible", first, "requireVisible: True")
@@ -170,11 +171,13 @@ def _moved(piece: Piece, node: ast.AST, names: tuple[str, ...]) -> None:
 def _parameters(piece: Piece) -> None:
     """Parameters with another name, and the 2D map of driving programs."""
     has_map: scenic.Param | None = None
+    # LGSVL's own model calls it by the old name.
+    renames = piece.is_old and "simulators.lgsvl" not in piece.source.text
     is_pinned = False
     for node in piece.of(scenic.Param):
         assert isinstance(node, scenic.Param)
         for item in node.items:
-            today = PARAMETERS.get(item.name)
+            today = PARAMETERS.get(item.name) if renames else None
             start, end = piece.place(item)
             if today is not None:
                 found = re.compile(rf"\b{re.escape(item.name)}\b").search(piece.source.text, start, end)

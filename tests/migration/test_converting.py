@@ -116,3 +116,12 @@ def test_every_rule_has_a_case(project: Path) -> None:
     }
     of_files = {"python-api", "formatted-string"}
     assert rules == set(RULES) - of_files
+
+
+def test_programs_of_scenic_3_stay() -> None:
+    """Of the examples and libraries of this package nothing changes."""
+    folders = [Path(__file__).parent.parent.parent / name for name in ("examples", "scenic")]
+    for path in sorted(path for folder in folders for path in folder.rglob("*.scenic")):
+        text = path.read_text()
+        converted = Converter((str(path.parent),)).convert(text, str(path))
+        assert (converted.text, converted.notes, converted.problem) == (text, (), None), path
