@@ -15,7 +15,7 @@ import numpy.typing as npt
 from scenic.dataclass import dataclass
 from scenic.language.errors import Located
 
-__all__ = ["WORLD_PARAMETER", "WorldError", "WorldFile", "WorldNode", "read_world"]
+__all__ = ["WORLD_PARAMETER", "WorldError", "WorldFile", "WorldNode", "parse_nodes", "read_world"]
 
 WORLD_PARAMETER: Final = "webotsWorld"
 """The parameter of a program that names the world to which its objects belong."""
@@ -119,7 +119,7 @@ def read_world(path: str | Path) -> WorldFile:
     header = _HEADER.match(text)
     if header is None:
         raise WorldError(f"'{name}' is not a world of Webots", help="its first line begins with `#VRML_SIM`")
-    nodes = tuple(_Reader(text[header.end() :], name).nodes())
+    nodes = parse_nodes(text[header.end() :], name)
     info = next((node for node in nodes if node.kind == "WorldInfo"), None)
     version = (0, "a") if header["year"] is None else (int(header["year"]), header["part"] or "a")
     axes = "NUE" if version < _CHANGED else "ENU"
@@ -131,6 +131,11 @@ def read_world(path: str | Path) -> WorldFile:
             help="WorldInfo.coordinateSystem is ENU, NUE or EUN, or three such letters in another order",
         )
     return WorldFile(name, text, nodes, axes, version >= _DECLARING)
+
+
+def parse_nodes(text: str, path: str = "") -> tuple[WorldNode, ...]:
+    """The nodes of a text without its header; ``path`` is for messages."""
+    return tuple(_Reader(text, path).nodes())
 
 
 class _Reader:
@@ -185,6 +190,8 @@ class _Reader:
         while (field := self._take()) != "}":
             if field in "{[]":
                 raise self._error(f"expected a field of {word}, found {field!r}")
+            if field in fields:
+                raise self._error(f"the field {field} of {word} is given twice")
             fields[field] = self._value()
         node = WorldNode(word, name, fields)
         if name is not None:

@@ -63,6 +63,18 @@ def test_the_hand_brake_stops(programs: Programs) -> None:  # noqa: F811
     assert speeds(programs, "[SetThrottleAction(1), SetHandBrakeAction(True)]")[-1] == pytest.approx(0)
 
 
+@pytest.mark.parametrize(
+    "simulator", ["newtonian.driving_model", "carla.model", "metadrive.model", "sumo.model"]
+)
+def test_cars_of_every_simulator_take_the_actions(programs: Programs, simulator: str) -> None:  # noqa: F811
+    """None is left to the domain's own methods, which refuse."""
+    scenario = programs.compiled("ego = new Car\n", map="street", model=f"scenic.simulators.{simulator}")
+    car = type(scenario.sample(1, seed=1)[0].egoObject)
+    for name in ("setReverse", "setHandbrake", "setThrottle", "setBraking", "setSteering"):
+        assert getattr(car, name).__module__ != "scenic.domains.driving.actions", name
+    assert getattr(car, "setVelocity").__module__ != "scenic.domains.driving.model"  # noqa: B009 - by name, as above
+
+
 def test_missing_opposite_lanes_give_a_reason(programs: Programs) -> None:  # noqa: F811
     with pytest.raises(InvalidScenarioError) as caught:
         programs.compiled("ego = new Car on network.lanes[0].group.opposite\n", map="one_way")

@@ -1,4 +1,4 @@
-"""A strict reader of Webots worlds: every field is read by the type that the reference manual of R2023 gives it.
+"""Strict checks of Webots worlds: every field has a value of the type that the reference manual of R2023 gives it.
 
 https://cyberbotics.com/doc/reference/nodes-and-api-functions, and VRML97 (ISO/IEC 14772-1, annex A) for the syntax.
 """
@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 import trimesh
+
+from scenic.formats.webots_reading import WorldNode, parse_nodes
 
 POSE = {"translation": "SFVec3f", "rotation": "SFRotation", "children": "MFNode"}
 SOLID = {
@@ -141,8 +143,6 @@ RANGES: dict[tuple[str, str], Callable[[Any], bool]] = {
     ("ElevationGrid", "ySpacing"): lambda value: value > 0,
     ("ElevationGrid", "thickness"): lambda value: value >= 0,
 }
-WORDS = re.compile(r'\s*(?:#[^\n]*\n\s*)*("(?:[^"\\]|\\.)*"|[{}\[\]]|[^\s{}\[\]",]+)')
-NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
@@ -150,96 +150,66 @@ class Node(dict[str, Any]):
     """A node: its fields, its ``type``, and ``DEF`` if it has such a name."""
 
 
-class Reader:
-    def __init__(self, text: str, protos: set[str]) -> None:
-        self.words = []
-        place, text = 0, text.rstrip()
-        while place < len(text):
-            found = WORDS.match(text, place)
-            assert found is not None, text[place : place + 40]
-            self.words.append(found[1])
-            place = found.end()
-        self.words.reverse()
-        self.protos = protos
-        self.names: set[str] = set()
+def strict(node: WorldNode, protos: set[str], names: set[str]) -> Node:
+    """A node with the values of its fields by their types; ``names`` are the DEF names so far."""
+    found = Node(type=node.kind)
+    if node.name is not None:
+        assert NAME.fullmatch(node.name), node.name
+        assert node.name not in names, f"{node.name} twice"
+        names.add(node.name)
+        found["DEF"] = node.name
+    known = ROBOT if node.kind in protos else FIELDS[node.kind]
+    for field, raw in node.fields.items():
+        assert field in known, f"{node.kind} has no field {field}"
+        value = typed(known[field], raw, protos, names)
+        assert RANGES.get((node.kind, field), lambda _: True)(value), (node.kind, field, value)
+        if field in CHILDREN and value is not None:
+            assert value["type"] in CHILDREN[field], (node.kind, field, value["type"])
+        found[field] = value
+    return found
 
-    def take(self) -> str:
-        assert self.words, "the file ends early"
-        return self.words.pop()
 
-    def node(self) -> Node | None:
-        word = self.take()
-        if word == "NULL":
-            return None
-        node = Node()
-        if word == "DEF":
-            name = self.take()
-            assert NAME.fullmatch(name), name
-            assert name not in self.names, f"{name} twice"
-            self.names.add(name)
-            node["DEF"] = name
-            word = self.take()
-        node["type"] = word
-        known = ROBOT if word in self.protos else FIELDS[word]
-        assert self.take() == "{"
-        while (field := self.take()) != "}":
-            assert field in known, f"{word} has no field {field}"
-            assert field not in node, f"{field} twice"
-            value = self.value(known[field])
-            assert RANGES.get((word, field), lambda _: True)(value), (word, field, value)
-            if field in CHILDREN and value is not None:
-                assert value["type"] in CHILDREN[field], (word, field, value["type"])
-            node[field] = value
-        return node
+SIZES = {"Float": 1, "Int32": 1, "Vec2f": 2, "Vec3f": 3, "Color": 3, "Rotation": 4}
+"""Numbers of a value."""
 
-    def value(self, kind: str) -> Any:
-        single = "SF" + kind[2:]
-        if kind == single:
-            return self.single(kind)
-        if self.words[-1] != "[":
-            return [self.single(single)]
-        self.take()
-        items = []
-        while self.words[-1] != "]":
-            items.append(self.single(single))
-        self.take()
-        return items
 
-    def single(self, kind: str) -> Any:
-        if kind == "SFNode":
-            return self.node()
-        if kind == "SFString":
-            word = self.take()
-            assert word[0] == '"', word
-            return re.sub(r"\\(.)", r"\1", word[1:-1])
-        if kind == "SFBool":
-            return {"TRUE": True, "FALSE": False}[self.take()]
-        if kind == "SFInt32":
-            return int(self.take())
-        count = {"SFFloat": 1, "SFVec2f": 2, "SFVec3f": 3, "SFColor": 3, "SFRotation": 4}[kind]
-        values = [self.number() for _ in range(count)]
-        if kind == "SFColor":
-            assert all(0 <= value <= 1 for value in values), values
-        if kind == "SFRotation":
-            assert abs(np.linalg.norm(values[:3]) - 1) < 1e-12, values
-            assert 0 <= values[3] <= np.pi + 1e-12, values
-        return values[0] if count == 1 else values
+def typed(kind: str, raw: Any, protos: set[str], names: set[str]) -> Any:
+    """A value of a type, ``SF`` for one and ``MF`` for several."""
+    several, kind = kind.startswith("MF"), kind[2:]
+    if kind in SIZES:
+        size, numbers = SIZES[kind], raw if isinstance(raw, list) else [raw]
+        assert all(isinstance(number, float) for number in numbers), raw
+        assert len(numbers) % size == 0
+        rows = [numbers[start : start + size] for start in range(0, len(numbers), size)]
+        values: list[Any] = [checked(kind, row[0] if size == 1 else row) for row in rows]
+    else:
+        items = raw if isinstance(raw, list) else [raw]
+        values = [strict(item, protos, names) if isinstance(item, WorldNode) else item for item in items]
+        wanted: tuple[type, ...] = {"Node": (Node, type(None)), "String": (str,), "Bool": (bool,)}[kind]
+        assert all(isinstance(value, wanted) for value in values), raw
+    if several:
+        return values
+    (value,) = values
+    return value
 
-    def number(self) -> float:
-        word = self.take()
-        assert NUMBER.fullmatch(word), word
-        return float(word)
+
+def checked(kind: str, value: Any) -> Any:
+    """A value of numbers, if it is one of its type."""
+    if kind == "Int32":
+        assert value.is_integer(), value
+        return int(value)
+    if kind == "Color":
+        assert all(0 <= part <= 1 for part in value), value
+    if kind == "Rotation":
+        assert abs(np.linalg.norm(value[:3]) - 1) < 1e-12, value
+        assert 0 <= value[3] <= np.pi + 1e-12, value
+    return value
 
 
 def read_nodes(text: str, protos: set[str] = frozenset()) -> list[Node]:  # type: ignore[assignment] # it is not changed
     """The nodes of a text without a header."""
-    reader = Reader(text, protos)
-    nodes = []
-    while reader.words:
-        node = reader.node()
-        assert node is not None
-        nodes.append(node)
-    return nodes
+    names: set[str] = set()
+    return [strict(node, protos, names) for node in parse_nodes(text)]
 
 
 def read_world(file: Path) -> list[Node]:

@@ -111,7 +111,7 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
             for name in sorted(_reads(offered, step.names)):
                 # A default that is lazy, which shows only when it is evaluated.
                 provider = resolution.provider(name, specifier)
-                evaluate(provider)
+                demand(provider)
                 if name not in values:
                     raise _circle([specifier, provider.specifier(specifiers)])
             for name in step.names:
@@ -128,6 +128,15 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
             if not specifier.is_default:
                 error.span = specifier.span or error.span
             raise
+
+    def demand(step: Step) -> None:
+        """Evaluate a step before its turn, after those that it depends on."""
+        if step in done:
+            return
+        for name in sorted(step.specifier(specifiers).dependencies):
+            if name not in values and name in resolution.providers:
+                demand(resolution.providers[name])
+        evaluate(step)
 
     for step in resolution.steps:
         evaluate(step)
