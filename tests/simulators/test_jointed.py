@@ -230,3 +230,15 @@ def test_an_unchanged_description_is_read_once(tmp_path: Path) -> None:
     assert read_description(path) is first
     with pytest.raises(DescriptionError, match="no joint 'knee'"):
         first.joint("knee")
+
+
+def test_the_example_stands_as_it_says() -> None:
+    """The cup and the open drawer are within reach, and the links of the arm are above the table."""
+    (scene,) = scenic.load(ARM.with_name("tidy.scenic")).sample(1, seed=1)
+    arm = scene.egoObject
+    assert (
+        0.12
+        <= next(thing for thing in scene.objects if scene.names.get(thing) == "cabinet").jointValues["drawer"]
+        <= 0.18
+    )
+    assert all(link.position.z > 0.7 for link in arm.links.values())
