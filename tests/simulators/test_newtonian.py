@@ -1,5 +1,6 @@
 """Cars of the built-in traffic simulator."""
 
+import math
 import os
 from pathlib import Path
 
@@ -33,3 +34,14 @@ def test_cars_tell_their_present_controls() -> None:
         (0.25, -0.5, 0.0, False, True),
         (0.0, -0.5, 0.75, True, True),
     ]
+
+
+@pytest.mark.skipif(not (MAPS / "Town01.xodr").exists(), reason="needs the road maps")
+def test_the_driving_model_brings_names_of_python() -> None:
+    text = (
+        f"param map = localPath({str(MAPS / 'Town01.xodr')!r})\nmodel scenic.domains.driving.model\n"
+        "ego = new Car\nparam half = math.pi / 2, kinds = (issubclass(SetBrakeAction, Action), Sensor, Optional[int])\n"
+    )
+    (scene,) = scenic.scenarioFromString(text, mode2D=True).sample(1, seed=1)
+    assert scene.params["half"] == math.pi / 2
+    assert scene.params["kinds"][0]

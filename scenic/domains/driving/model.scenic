@@ -1,5 +1,9 @@
 """The world model of the driving domain: a road network, cars and pedestrians on it, and what they do."""
 
+import math
+from typing import Optional
+from scenic.core.sensors import Sensor
+from scenic.core.simulators import Action
 from scenic.domains.driving.actions import *
 from scenic.domains.driving.behaviors import *
 from scenic.domains.driving.controllers import (
