@@ -150,4 +150,18 @@ def _explain(shell: Any, kind: type, error: Exception, traceback: Any, tb_offset
             shell.showtraceback((kind, error, traceback), tb_offset=tb_offset)
             return
         found = [diagnose()]
-    _display(_diagnostics_html(found))
+    lines = _diagnostics_text(found)
+    shown: Any = import_module("IPython.display")  # has no types
+    shown.display({"text/html": _diagnostics_html(found), "text/plain": "\n".join(lines)}, raw=True)
+    # Tools that run notebooks take the error of a cell from here.
+    shell._showtraceback(kind, error, lines)
+
+
+def _diagnostics_text(diagnostics: Sequence[Diagnostic]) -> list[str]:
+    """Diagnostics as lines of text."""
+    lines = []
+    for item in diagnostics:
+        place = f", line {item.span.line}" if item.span else ""
+        lines.append(f"{item.severity}[{item.code}]{place}: {item.message}")
+        lines += [f"  help: {item.help}"] if item.help else []
+    return lines

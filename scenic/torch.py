@@ -16,6 +16,7 @@ from typing import Any
 
 from scenic.language.errors import RejectionException, UnsupportedError
 from scenic.pipeline import load
+from scenic.runtime.ground.arguments import whole_number
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 
@@ -65,6 +66,12 @@ class SceneStream(IterableDataset):  # type: ignore[misc] # PyTorch is not there
     ) -> None:
         if block < 1 or not 0 <= rank < world_size:
             raise ValueError(f"no blocks of {block} scenes for process {rank} of {world_size}")
+        for name, value, least in (
+            ("seed", seed, None),
+            ("first", first, 0),
+            ("count", 0 if count is None else count, 0),
+        ):
+            whole_number(value, name, least)
         self.scenario = scenario if isinstance(scenario, Scenario) else load(scenario)
         self._seed = seed
         self._count = count
@@ -84,7 +91,7 @@ class SceneStream(IterableDataset):  # type: ignore[misc] # PyTorch is not there
         """
         if self._count is None:
             raise ValueError("a stream without end has no epochs: give it a `count`")
-        self._epoch.fill_(epoch)
+        self._epoch.fill_(whole_number(epoch, "epoch", 0))
 
     def __iter__(self) -> Iterator[Any]:
         """The share of this worker.

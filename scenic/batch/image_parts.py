@@ -21,6 +21,7 @@ from scenic.formats.coco import INDEX, Photographer, index_of
 from scenic.formats.files import Waiting, write, writing
 from scenic.formats.instances import Surfaces
 from scenic.formats.mesh_files import digest_of
+from scenic.formats.sensors import AbsentCameraError
 from scenic.formats.shards import END, member, members
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
@@ -31,6 +32,7 @@ __all__ = [
     "ImageSink",
     "copy_images",
     "damaged_files",
+    "image_files",
     "image_rows",
     "join_indices",
 ]
@@ -78,7 +80,10 @@ class ImageRows:
         annotations: list[dict[str, Any]] = []
         for place, photographer in enumerate(self._photographers):
             number = scene.k * len(self._photographers) + place
-            shot = photographer.shoot(scene)
+            try:
+                shot = photographer.shoot(scene)
+            except AbsentCameraError:
+                continue  # the scene has no image of this camera
             contents.append(b"".join(member(name, data) for name, data in shot.files.items()))
             images.append(
                 {"id": number + 1, **shot.image, "files": list(shot.files), "sha256": _digest(contents[-1])}
@@ -131,6 +136,8 @@ class ImageSink:
         self._shard = Waiting(path) if manifest.form == "tar" else None
         self._images: list[dict[str, Any]] = []
         self._annotations: list[dict[str, Any]] = []
+        self.skipped = 0
+        """Number of images that there are not, since the camera's object does not take part in its scene."""
 
     def add(self, rows: memoryview) -> None:
         """The next rows."""
@@ -141,6 +148,7 @@ class ImageSink:
                 for name, content in members(row.content):
                     write(self._path.parent / name, content)
             self._images += row.images
+            self.skipped += len(self._cameras) - len(row.images)
             self._annotations += row.annotations
 
     def finish(self) -> None:
@@ -162,7 +170,8 @@ def image_rows(source: Path | bytes, form: str) -> Iterator[dict[str, Any]]:
     """The scenes of a part, or of encoded rows: ``k``, ``images`` and ``annotations`` of the index, and ``content``."""
     if isinstance(source, bytes):
         for row in _rows_of(memoryview(source)):
-            yield _plain(row.images, row.annotations, row.content)
+            if row.images:
+                yield _plain(row.images, row.annotations, row.content)
         return
     index = _index(source.with_suffix(".json"))
     archive = dict(members(source.read_bytes())) if form == "tar" else {}
@@ -196,6 +205,11 @@ def _index(path: Path) -> dict[str, Any]:
     except (OSError, ValueError) as error:
         raise DatasetError(f"'{path}' cannot be read: {error}") from error
     return found
+
+
+def image_files(index: Path) -> list[str]:
+    """The names of the files that an index names."""
+    return [name for image in _index(index)["images"] for name in image["files"]]
 
 
 def damaged_files(folder: Path, part: Part, form: str) -> Iterator[tuple[str, str]]:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from scenic.formats.trajectories import TrajectoryFile
     from scenic.simulators.simulation import OnState, Poses, Simulation
 
-__all__ = ["Form", "Kept", "Watcher", "about_file"]
+__all__ = ["Form", "Kept", "Watcher", "about_file", "is_whole"]
 
 Form = Literal["jsonl", "parquet", "xosc"]
 """The format of a trajectory's file, which is also its suffix."""
@@ -38,6 +38,14 @@ def about_file(path: Path, form: Form) -> Any:
         return openscenario_about(path)
     with path.open(encoding="utf-8") as stream:
         return json.loads(stream.readline(_FIRST_LINE))
+
+
+def is_whole(path: Path, steps: int) -> bool:
+    """Return whether a trajectory's JSON Lines have the states of a number of steps; raises as `about_file` does."""
+    with path.open("rb") as stream:
+        stream.readline(_FIRST_LINE)
+        lines = stream.readlines()
+    return len(lines) == steps + 1 and all(line.endswith(b"\n") for line in lines[-1:])
 
 
 class Kept:

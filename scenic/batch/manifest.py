@@ -2,24 +2,20 @@
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, field, replace
 from pathlib import Path
 from typing import Any, Final, Self
 
+from scenic.batch.folders.fingerprint import file_digests
+from scenic.batch.folders.folder import NAME, FolderKind
+from scenic.batch.folders.ranges import Range, part_name, ranges_to_make
 from scenic.batch.portable import versions
-from scenic.batch.source_files import mesh_digests, texture_digests
 from scenic.dataclass import dataclass
-from scenic.formats.files import write
 from scenic.language.errors import Located
 from scenic.runtime.scenes.scenario import Scenario
 
-__all__ = ["FORMAT", "NAME", "VERSION", "DatasetError", "Manifest", "Part"]
-
-FORMAT: Final = "scenic-dataset"
-VERSION: Final = 2
-NAME: Final = "manifest.json"
-"""Name of the manifest in the folder of its data set."""
+__all__ = ["DATASET", "NAME", "DatasetError", "Manifest", "NoDatasetError", "Part"]
 
 
 class DatasetError(Located):
@@ -34,6 +30,12 @@ class NoDatasetError(DatasetError):
     code = "SC600"
 
 
+DATASET: Final = FolderKind(
+    "scenic-dataset", 3, "data set", "`scenic sample -o FOLDER/`", DatasetError, NoDatasetError
+)
+"""Folders of data sets."""
+
+
 @dataclass(frozen=True, slots=True)
 class Part:
     """A complete file of a data set.
@@ -46,7 +48,9 @@ class Part:
         attempts: candidates tried for them, and for those that were not found.
         missing: the numbers of the scenes that were not found.
         sha256: digest of its bytes.
+        size: number of its bytes.
         index: digest of the index beside a shard of images.
+        skipped: images that are not there, since the object of the camera does not take part in the scene.
 
     """
 
@@ -57,7 +61,14 @@ class Part:
     attempts: int
     missing: tuple[int, ...]
     sha256: str
+    size: int
     index: str = ""
+    skipped: int = 0
+
+    @property
+    def numbers(self) -> Range:
+        """The range of its scenes."""
+        return self.first, self.last
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,8 +90,9 @@ class Manifest:
         max_attempts: candidates tried for one scene, at most.
         properties: which properties of objects are told, ``all`` or ``changed``.
         images: of labelled images, the ``cameras``, their ``size`` (each its own if ``None``), and whether there is an ``overlay``.
-        meshes: digests of the mesh files that the program names.
-        textures: digests of the image files that objects may have as textures.
+        files: digests of the files that decide the scenes beside the program's text, by their paths from it: modules, meshes, textures,
+            maps, and other files that it names by ``localPath``.
+        accepted: changes of ``files`` that were accepted, each with the first ``scene`` that was not complete then, and the ``changes`` in words.
         versions: versions of Python and of libraries that may change a scene.
         command: the command line or call, for people.
         seconds: time spent so far.
@@ -101,8 +113,8 @@ class Manifest:
     max_attempts: int | None = None
     properties: str = "changed"
     images: Mapping[str, Any] | None = None
-    meshes: Mapping[str, str] = field(default_factory=dict)
-    textures: Mapping[str, str] = field(default_factory=dict)
+    files: Mapping[str, str] = field(default_factory=dict)
+    accepted: tuple[Mapping[str, Any], ...] = ()
     versions: Mapping[str, str] = field(default_factory=versions)
     options: Mapping[str, Any] = field(default_factory=dict)
     source: str = ""
@@ -123,8 +135,7 @@ class Manifest:
             count,
             settings.pop("form", "parquet"),
             settings.pop("part_size", 65536),
-            meshes=mesh_digests(scenario),
-            textures=texture_digests(scenario),
+            files=file_digests(scenario),
             options=json.loads(json.dumps(dict(scenario.options), default=repr)),
             **settings,
         )
@@ -139,22 +150,32 @@ class Manifest:
         """Number of scenes in the parts."""
         return sum(part.rows for part in self.parts)
 
-    def ranges(self) -> list[tuple[int, int]]:
-        """The numbers of the first scene of each part, and of the scene after its last."""
-        end = self.first + self.count
-        return [(k, min(k + self.part_size, end)) for k in range(self.first, end, self.part_size)]
+    @property
+    def numbers(self) -> Range:
+        """The range of the scenes that were wanted."""
+        return self.first, self.first + self.count
 
-    def file_of(self, first: int) -> str:
-        """The name of the part that begins with a scene."""
-        return self.file_name((first - self.first) // self.part_size)
+    def ranges(self) -> list[Range]:
+        """The ranges of scenes that no part holds for good, as the parts to be made."""
+        lasting = [part.numbers for part in self.parts if not self.is_cut_short(part)]
+        return ranges_to_make(self.numbers, self.part_size, lasting)
 
-    def file_name(self, number: int) -> str:
-        """The name of a part; that of images and files in the folder is the index of its scenes."""
+    def is_cut_short(self, part: Part) -> bool:
+        """Return whether a part ended where the data set did before more scenes were wanted: then it is made again, longer."""
+        start = part.first - (part.first - self.first) % self.part_size
+        end = min(start + self.part_size, self.numbers[1])
+        others = (item for item in self.parts if item is not part)
+        return (
+            start == part.first and part.last < end and not any(start <= item.first < end for item in others)
+        )
+
+    def file_of(self, numbers: Range) -> str:
+        """The name of the part of a range of scenes; that of images and files in the folder is the index of its scenes."""
         is_index = self.form not in ("parquet", "jsonl", "tar")
-        return f"part-{number:05d}.{'json' if is_index else self.form}"
+        return f"{part_name(numbers)}.{'json' if is_index else self.form}"
 
     def difference(self, other: "Manifest") -> str | None:
-        """The first setting in which data sets differ that cannot be continued by each other; their counts may differ."""
+        """The first setting in which data sets differ that cannot be continued by each other; their counts and files may differ."""
         for name in _SETTINGS:
             if getattr(self, name) != getattr(other, name):
                 return f"{name} {getattr(self, name)!r}, not {getattr(other, name)!r}"
@@ -168,43 +189,140 @@ class Manifest:
             source = str(Path(program).absolute())
         return replace(self, source=Path(source).as_posix())
 
+    def table_part(self, file: str, rows: int) -> Part:
+        """The part that a single file of the whole is: its candidates and digest are not known."""
+        return Part(file, *self.numbers, rows, 0, (), "", 0)
+
     def with_part(self, part: Part, seconds: float) -> "Manifest":
-        """The manifest with one more complete part."""
-        parts = sorted([*self.parts, part], key=lambda item: item.first)
+        """The manifest with one more complete part, in place of a shorter one."""
+        others = (item for item in self.parts if item.last <= part.first or item.first >= part.last)
+        parts = sorted([*others, part], key=lambda item: item.first)
         return replace(self, parts=tuple(parts), seconds=round(self.seconds + seconds, 3))
 
-    def save(self, folder: Path) -> None:
-        """Write it into the folder of its data set; raises ``OutputError``."""
-        write(folder / NAME, (json.dumps(self.document(), indent=1) + "\n").encode())
-
     def document(self) -> dict[str, Any]:
-        """The manifest as plain data."""
-        return {"format": FORMAT, "version": VERSION, **asdict(self)}
+        """The manifest as plain data, with its format."""
+        return {"format": DATASET.format, "version": DATASET.version, **asdict(self)}
 
     @classmethod
     def load(cls, folder: Path) -> Self:
         """The manifest of a data set; raises `DatasetError` where there is none, or it is damaged."""
-        path = folder / NAME
-        try:
-            content = json.loads(path.read_text(encoding="utf-8"))
-            if content.pop("format") != FORMAT:
-                raise ValueError("it is not the manifest of a data set")
-            if content.pop("version") > VERSION:
-                raise ValueError("a later version of scenic wrote it")
-            if content.get("images") and "camera" in content["images"]:  # of version 1
-                content["images"] = {"cameras": [content["images"].pop("camera")], **content["images"]}
-            parts = [Part(**{**part, "missing": tuple(part["missing"])}) for part in content.pop("parts")]
-            return cls(**content, parts=tuple(parts))
-        except FileNotFoundError:
-            raise NoDatasetError(
-                f"there is no data set in '{folder}': it has no {NAME}",
-                help="give the folder that `scenic sample -o FOLDER/` has made",
-            ) from None
-        except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
-            raise DatasetError(f"'{path}' cannot be read: {error}") from error
+        return cls.from_document(DATASET.document(folder), folder / NAME)
+
+    @classmethod
+    def from_document(cls, content: Mapping[str, Any], path: Path) -> Self:
+        """The manifest in plain data, read from a file; raises `DatasetError` where it is damaged."""
+        values = {name: content[name] for name in _FIELDS if name in content}
+        _check(values, _FIELDS, path, "")
+        parts = []
+        for place, part in enumerate(values["parts"]):
+            _check(part, _PART_FIELDS, path, f"parts[{place}].")
+            parts.append(
+                Part(
+                    **{
+                        **{name: part[name] for name in _PART_FIELDS if name in part},
+                        "missing": tuple(part["missing"]),
+                    }
+                )
+            )
+        return cls(**{**values, "parts": tuple(parts), "accepted": tuple(values.get("accepted", ()))})
+
+
+def _check(content: Any, fields: "Mapping[str, _FieldRule]", path: Path, where: str) -> None:
+    """Raise `DatasetError` for a field that is missing or of the wrong kind."""
+    if not isinstance(content, dict):
+        raise DatasetError(
+            f"the manifest '{path}' is damaged: `{where.rstrip('.')}` is not an object", help=_MEND
+        )
+    for name, (is_right, words, is_needed) in fields.items():
+        if name not in content:
+            if is_needed:
+                raise DatasetError(f"the manifest '{path}' is damaged: it has no `{where}{name}`", help=_MEND)
+        elif not is_right(content[name]):
+            shown = json.dumps(content[name])
+            shown = shown if len(shown) <= _SHOWN else f"{shown[:_SHOWN]}..."
+            raise DatasetError(
+                f"the manifest '{path}' is damaged: `{where}{name}` is {shown}, not {words}", help=_MEND
+            )
+
+
+_MEND: Final = "put the file back as it was written, or make the data set again in another folder"
+_SHOWN: Final = 60
+"""Characters of a wrong value that a message shows."""
+
+_FieldRule = tuple[Callable[[Any], bool], str, bool]
+"""A test of a value, words for the values that pass it, and whether there has to be one."""
+
+
+def _is_count(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+
+
+def _is_name(value: Any) -> bool:
+    return isinstance(value, str) and value not in ("", ".", "..") and not set(value) & {"/", "\\"}
+
+
+_TEXT: Final = (lambda value: isinstance(value, str), "text")
+_COUNT: Final = (_is_count, "a number of things")
+_OBJECT: Final = (lambda value: isinstance(value, dict), "an object")
+_INTEGER: Final = (lambda value: isinstance(value, int) and not isinstance(value, bool), "an integer")
+_LIST: Final = (lambda value: isinstance(value, list), "a list")
+_NATURAL: Final = (lambda value: _is_count(value) and value > 0, "a positive integer")
+
+_PART_FIELDS: Final[Mapping[str, _FieldRule]] = {
+    "file": (_is_name, "the name of a file", True),
+    "first": (*_COUNT, True),
+    "last": (*_NATURAL, True),
+    "rows": (*_COUNT, True),
+    "attempts": (*_COUNT, True),
+    "missing": (
+        lambda value: isinstance(value, list) and all(map(_is_count, value)),
+        "a list of numbers",
+        True,
+    ),
+    "sha256": (*_TEXT, True),
+    "size": (*_COUNT, True),
+    "index": (*_TEXT, False),
+    "skipped": (*_COUNT, False),
+}
+
+_FIELDS: Final[Mapping[str, _FieldRule]] = {
+    "program": (*_TEXT, True),
+    "digest": (*_TEXT, True),
+    "fingerprint": (*_TEXT, True),
+    "seed": (*_INTEGER, True),
+    "first": (*_COUNT, True),
+    "count": (*_COUNT, True),
+    "form": (*_TEXT, True),
+    "part_size": (*_NATURAL, True),
+    "points": (lambda value: value is None or isinstance(value, str), "text or null", True),
+    "max_attempts": (
+        lambda value: value is None or (_is_count(value) and value > 0),
+        "a positive integer or null",
+        True,
+    ),
+    "properties": (*_TEXT, True),
+    "images": (
+        lambda value: value is None or (isinstance(value, dict) and "cameras" in value),
+        "an object with `cameras`, or null",
+        True,
+    ),
+    "files": (*_OBJECT, True),
+    "accepted": (*_LIST, False),
+    "versions": (*_OBJECT, True),
+    "options": (*_OBJECT, True),
+    "source": (*_TEXT, True),
+    "command": (*_TEXT, True),
+    "seconds": (
+        lambda value: isinstance(value, (int, float)) and not isinstance(value, bool),
+        "a number",
+        True,
+    ),
+    "approximation": (*_TEXT, True),
+    "parts": (*_LIST, True),
+}
 
 
 _SETTINGS: Final = (
     "program", "digest", "fingerprint", "seed", "first", "form", "part_size", "points", "max_attempts", "properties",
-    "images", "meshes", "textures", "versions",
+    "images", "versions",
 )  # fmt: skip

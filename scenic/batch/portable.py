@@ -16,7 +16,7 @@ from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, Final
 
-from scenic.batch.source_files import mesh_digests, texture_digests
+from scenic.batch.folders.fingerprint import file_digests
 from scenic.language.errors import Located
 from scenic.runtime.scenes.scenario import Scenario
 
@@ -103,9 +103,8 @@ def _same(
 
 
 def _marks(scenario: Scenario) -> dict[str, str]:
-    """Digests of the scenario's meshes and textures, of the modules beside it that are loaded, and of its graph."""
-    files = {f"mesh '{name}'": digest for name, digest in mesh_digests(scenario).items()}
-    files |= {f"texture '{name}'": digest for name, digest in texture_digests(scenario).items()}
+    """Digests of the scenario's files, of the modules beside it that are loaded, and of its graph."""
+    files = {f"file '{name}'": digest for name, digest in file_digests(scenario, modules=False).items()}
     folder = Path(scenario.filename).absolute().parent
     modules = {f"module '{module.__name__}'": _module_digest(module) for module in _modules_in(folder)}
     return {**files, **modules, "graph": scenario.fingerprint}

@@ -25,6 +25,7 @@ __all__ = [
     "SceneFileSink",
     "copy_scene_files",
     "damaged_scene_files",
+    "scene_file_names",
     "scene_file_rows",
 ]
 
@@ -55,7 +56,7 @@ class SceneFileRows:
         content = b"".join(member(name, data) for name, data in files.items() if name not in self._sent)
         self._sent |= files.keys() - own.keys()
         entry = {
-            "seed": str(scene.seed),
+            "seed": scene.seed,
             "k": scene.k,
             "files": {name: _digest(data) for name, data in own.items()},
             "shared": {name: _digest(data) for name, data in files.items() if name not in own},
@@ -66,6 +67,8 @@ class SceneFileRows:
 
 class SceneFileSink:
     """The part that is being made: files are written at once, the index when it is complete."""
+
+    skipped = 0
 
     def __init__(self, path: Path, _scenario: Scenario, _manifest: Manifest) -> None:
         self._path = path
@@ -108,6 +111,14 @@ def scene_file_rows(source: Path | bytes) -> Iterator[dict[str, Any]]:
         yield from json.loads(source.read_bytes())["scenes"]
     except (OSError, ValueError, KeyError) as error:
         raise DatasetError(f"'{source}' cannot be read: {error}") from error
+
+
+def scene_file_names(index: Path) -> list[str]:
+    """The names of the files that an index names."""
+    names = dict.fromkeys(
+        name for entry in scene_file_rows(index) for name in (*entry["files"], *entry["shared"])
+    )
+    return list(names)
 
 
 def damaged_scene_files(folder: Path, part: Part) -> Iterator[tuple[str, str]]:

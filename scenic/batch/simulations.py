@@ -2,16 +2,19 @@
 
 import random
 from collections.abc import Generator, Iterator, Mapping, Sequence
-from contextlib import closing
+from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from scenic.batch.engines import Engine, OverExecutor, Processes
-from scenic.batch.keeping import Form, Kept, Watcher, about_file
+from scenic.batch.folders.fingerprint import files_of_origin
+from scenic.batch.keeping import Form, Kept, Watcher, about_file, is_whole
+from scenic.batch.simulation_folders import SimulationFolder
 from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic
+from scenic.runtime.ground.arguments import whole_number
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -133,6 +136,8 @@ class Simulations:
         self._shown = shown
         self._simulator: Simulator | None = None
         self._looking_back: bool | None = None
+        self.origin = {**scenario.origin, "simulator": self.named, **files_of_origin(scenario)}
+        """The way to load the program again, and the digests of the files that decide what comes out."""
         self.simulator  # noqa: B018 - raises at once what is wrong with it
 
     def __getstate__(self) -> dict[str, Any]:
@@ -200,16 +205,31 @@ class Simulations:
             if not left:
                 return
 
+    def opened(self, *, resume: bool, accept_changes: bool = False) -> AbstractContextManager[object]:
+        """The folder, locked within a ``with`` block; nothing where simulations are not kept. See `SimulationFolder`."""
+        if self._folder is None:
+            return nullcontext()
+        settings = {
+            **self._settings(),
+            "form": self._form,
+            "kept": "violations" if self._only_violations else "all",
+        }
+        return SimulationFolder(
+            self._folder, settings, self.origin, resume=resume, accept_changes=accept_changes
+        )
+
     def known(self, k: int) -> SimulationRow | None:
-        """Simulation ``k`` as an earlier run has kept it, if that was of the same program, seed and settings."""
+        """Simulation ``k`` as an earlier run has kept it whole, if that was of the same program, seed and settings."""
         path = self._file(k)
         if path is None or self._shown:
             return None
         try:
             found = about_file(path, self._form)
-        except (OSError, ValueError):
-            return None
-        if not isinstance(found, dict) or found.get("settings") != self._settings():
+            if not isinstance(found, dict) or found.get("settings") != self._settings():
+                return None
+            if self._form == "jsonl" and not is_whole(path, found["steps"]):
+                return None
+        except (OSError, ValueError, KeyError):
             return None
         return SimulationRow(k, about=found)
 
@@ -249,7 +269,7 @@ class Simulations:
             about = {
                 **course_document(done, k=k, tries=numbered.tries),
                 "settings": self._settings(),
-                "origin": {**self._scenario.origin, "simulator": self.named},
+                "origin": self.origin,
             }
             wanted = not self._only_violations or is_violated(about)
             return SimulationRow(k, about=about, page=kept.finish(done, about) if wanted else None)
@@ -311,6 +331,7 @@ def simulated(
     keep_violations: bool = False,
     shown: bool = False,
     folder: str | Path | None = None,
+    resume: bool = False,
     processes: int = 1,
     executor: "Executor | None" = None,
 ) -> list[SimulationRow]:
@@ -327,7 +348,8 @@ def simulated(
         tries: simulations tried of one scene before it is given up as rejected.
         keep_violations: let simulations that violate a requirement run to their end, rather than reject them.
         shown: let each row carry what a page needs to play it, so that notebooks do.
-        folder: where trajectories are kept; those that are there already are not made again.
+        folder: where trajectories are kept: a new folder, or one without simulations.
+        resume: whether to go on with the simulations that the folder holds, which must be of the same program, seed and settings.
         processes: how many processes simulate. Changes speed, never what comes out.
         executor: runs the simulations in place of processes of our own, ``processes`` at a time.
 
@@ -337,13 +359,13 @@ def simulated(
     Raises:
         SimulationError: if the program or the simulator fails in one of them.
         SimulatorChoiceError: if there is no such simulator.
+        SimulationFolderError: if the folder holds other simulations, or some that are not to be gone on with.
 
     """
-    from scenic.formats.files import make_folder
-
+    n, first = whole_number(n, "n", 0), whole_number(first, "first", 0)
+    seed = None if seed is None else whole_number(seed, "seed")
+    processes, tries = whole_number(processes, "processes", 1), whole_number(tries, "tries", 1)
     place = None if folder is None else Path(folder)
-    if place is not None:
-        make_folder(place)
     running = Running(
         random.getrandbits(63) if seed is None else seed,
         max_steps,
@@ -353,17 +375,18 @@ def simulated(
     )
     batch = Simulations(scenario, simulator, running, folder=place, shown=shown)
     numbers = range(first, first + n)
-    found = {row.k: row for row in _known(batch, numbers)}
     engine: Engine | None = None
     if executor is not None:
         engine = OverExecutor(executor, max(2, processes))
     elif processes > 1:
         engine = Processes(processes)
-    with closing(batch.rows([k for k in numbers if k not in found], engine)) as rows:
-        for row in rows:
-            if row.error is not None:
-                raise SimulationError(row)
-            found[row.k] = row
+    with batch.opened(resume=resume):
+        found = {row.k: row for row in _known(batch, numbers)}
+        with closing(batch.rows([k for k in numbers if k not in found], engine)) as rows:
+            for row in rows:
+                if row.error is not None:
+                    raise SimulationError(row)
+                found[row.k] = row
     return [found[k] for k in numbers]
 
 

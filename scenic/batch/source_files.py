@@ -1,27 +1,23 @@
-"""Files beside a program on which its scenes and their images depend: meshes and textures, with digests of their content."""
+"""Files beside a program on which its scenes and their images depend: meshes and textures."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from scenic.formats.mesh_files import digest_of
 from scenic.formats.textures import ImageTexture, TextureError, image_name, texture_of
 from scenic.runtime.ground.context import warn
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.values.choices import options_of
 from scenic.runtime.values.nodes import as_node
 
-__all__ = ["check_textures", "mesh_digests", "texts_of", "texture_digests", "warn_of_textures"]
+__all__ = ["check_textures", "mesh_files", "texts_of", "texture_files", "warn_of_textures"]
 
 
-def texture_digests(scenario: Scenario) -> dict[str, str]:
-    """Digests of the image files that objects may have as textures, by the names that the program gives them.
-
-    Files that cannot be read are left out.
-    """
+def texture_files(scenario: Scenario) -> list[Path]:
+    """The image files that objects may have as textures."""
     folder = _folder(scenario)
     names = {name for thing in scenario.objects for name in _image_names(thing.__dict__.get("texture"))}
-    return {name: digest_of(folder / name) for name in sorted(names) if (folder / name).is_file()}
+    return [path for name in sorted(names) if (path := folder / name).is_file()]
 
 
 def check_textures(scenario: Scenario) -> None:
@@ -90,24 +86,14 @@ def _folder(scenario: Scenario) -> Path:
     return Path(scenario.filename).absolute().parent
 
 
-def mesh_digests(scenario: Scenario) -> dict[str, str]:
-    """Digests of the mesh files of a scenario's shapes, by their paths relative to the program."""
-    folder = Path(scenario.filename).absolute().parent
-    found = {}
-    for path in _mesh_files(scenario):
-        try:
-            name = path.relative_to(folder).as_posix()
-        except ValueError:
-            name = path.name
-        found[name] = digest_of(path)
-    return dict(sorted(found.items()))
-
-
-def _mesh_files(scenario: Scenario) -> Iterable[Path]:
+def mesh_files(scenario: Scenario) -> list[Path]:
+    """The mesh files of a scenario's shapes."""
+    paths: dict[Path, None] = {}
     for thing in scenario.objects:
         shape = thing.__dict__.get("shape")
         for option in options_of(shape) or (shape,):
             source = getattr(option, "source", None)
             path = source.as_dict().get("path") if source is not None else None
-            if path is not None and Path(path).is_file():
-                yield Path(path).absolute()
+            if isinstance(path, str | Path) and Path(path).is_file():
+                paths[Path(path).absolute()] = None
+    return list(paths)

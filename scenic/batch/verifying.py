@@ -1,36 +1,32 @@
 """Checks of data sets: every part against its digest, and a share of the scenes against the program."""
 
-import json
 import math
+import os
 import random
+import secrets
+import shutil
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
-from scenic.batch.datasets import Encoder
-from scenic.batch.image_parts import IMAGE_FORMS, copy_images, damaged_files, image_rows, join_indices
-from scenic.batch.manifest import DatasetError, Manifest, Part
-from scenic.batch.scene_file_parts import FORMS, copy_scene_files, damaged_scene_files, scene_file_rows
+from scenic.batch.encoding import Encoder
+from scenic.batch.folders.fingerprint import file_digests
+from scenic.batch.folders.folder import WrittenFolder, check_files
+from scenic.batch.folders.ranges import gaps
+from scenic.batch.image_parts import copy_images, join_indices
+from scenic.batch.manifest import DATASET, DatasetError, Manifest, Part
+from scenic.batch.part_contents import Damage, damages_of, encoded_rows, part_rows, strangers
+from scenic.batch.scene_file_parts import FORMS, copy_scene_files
 from scenic.batch.scenes import Job, method_of, results_of
-from scenic.batch.source_files import mesh_digests, texture_digests
-from scenic.dataclass import dataclass
-from scenic.formats.files import make_folder, write
+from scenic.formats.files import OutputError, make_folder, write
 from scenic.formats.mesh_files import digest_of
-from scenic.formats.trajectory_tables import parquet_support
+from scenic.runtime.ground.context import warn
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 
 __all__ = ["Damage", "merge", "part_rows", "verify"]
-
-
-@dataclass(frozen=True, slots=True)
-class Damage:
-    """A part that is missing or changed, or a scene that its program does not give."""
-
-    file: str
-    what: str
 
 
 def verify(
@@ -53,42 +49,20 @@ def verify(
 
     """
     manifest = Manifest.load(folder)
-    if scenario is not None and (scenario.digest, scenario.fingerprint) != (
-        manifest.digest,
-        manifest.fingerprint,
-    ):
+    if scenario is not None and scenario.digest != manifest.digest:
         raise DatasetError(
-            f"the data set in '{folder}' is of another program, or of the same with other options or meshes",
+            f"the data set in '{folder}' is of another program, or of the same with other options",
             help="give the program as it was when the data set was made",
         )
     if scenario is not None:
-        found = {**mesh_digests(scenario), **texture_digests(scenario)}
-        for name, digest in {**manifest.meshes, **manifest.textures}.items():
-            if found.get(name) != digest:
-                raise DatasetError(
-                    f"the data set in '{folder}' was made with another file '{name}'",
-                    help="put the file back that it was made with",
-                )
+        check_files(folder, DatasetError, manifest.files, file_digests(scenario), accepted=False)
     for part in manifest.parts:
-        path = folder / part.file
-        if not path.is_file():
-            yield Damage(part.file, "the file is missing")
-            continue
-        if digest_of(path) != part.sha256:
-            yield Damage(part.file, "the content has changed since it was written")
-            continue
-        if manifest.images is not None or manifest.form in FORMS:
-            found_damages = (
-                damaged_scene_files(folder, part)
-                if manifest.form in FORMS
-                else damaged_files(folder, part, manifest.form)
-            )
-            damages = [Damage(*item) for item in found_damages]
-            yield from damages
-            if damages:
-                continue
-        if scenario is not None and share > 0:
-            yield from _compared(scenario, manifest, part, path, share, advance)
+        damages = list(damages_of(folder, part, manifest))
+        yield from damages
+        if not damages and scenario is not None and share > 0:
+            yield from _compared(scenario, manifest, part, folder / part.file, share, advance)
+    for path in strangers(folder, manifest):
+        yield Damage(path.relative_to(folder).as_posix(), "the file does not belong to the data set")
 
 
 def _compared(
@@ -113,89 +87,116 @@ def _compared(
             if k in kept:
                 yield Damage(part.file, f"scene {k} is there, and the program does not find it")
             continue
-        (again,) = _rows(encoder.rows(scenario, [result]), manifest.form)
-        if k not in kept:
-            yield Damage(part.file, f"scene {k} is missing")
-        elif kept[k] != again:
+        again = next(iter(encoded_rows(encoder.rows(scenario, [result]), manifest.form)), None)
+        # Scenes in which no camera takes part have no row.
+        if (again is None) != (k not in kept):
+            yield Damage(
+                part.file, f"scene {k} is {'there, without a camera' if again is None else 'missing'}"
+            )
+        elif again is not None and not is_same(kept[k], again):
             yield Damage(part.file, f"scene {k} differs from that of the program")
 
 
-def part_rows(path: Path, form: str) -> Iterator[dict[str, Any]]:
-    """The rows of a part, as plain data."""
-    if form in IMAGE_FORMS:
-        yield from image_rows(path, form)
-        return
-    if form in FORMS:
-        yield from scene_file_rows(path)
-        return
-    if form == "jsonl":
-        with path.open("rb") as stream:
-            for line in stream:
-                yield json.loads(line)
-        return
-    _, parquet = parquet_support()
-    with parquet.ParquetFile(path) as file:
-        for batch in file.iter_batches(batch_size=1024, use_threads=False):
-            yield from batch.to_pylist()
-
-
-def _rows(encoded: bytes, form: str) -> list[dict[str, Any]]:
-    if form in IMAGE_FORMS:
-        return list(image_rows(encoded, form))
-    if form in FORMS:
-        return list(scene_file_rows(encoded))
-    if form == "jsonl":
-        return [json.loads(line) for line in encoded.splitlines()]
-    arrow, _ = parquet_support()
-    with arrow.ipc.open_stream(encoded) as stream:
-        rows: list[dict[str, Any]] = stream.read_all().to_pylist()
-    return rows
+def is_same(one: Any, other: Any) -> bool:
+    """Return whether two rows are equal; NaN equals NaN."""
+    if isinstance(one, float) and isinstance(other, float) and math.isnan(one):
+        return math.isnan(other)
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(is_same(one[key], other[key]) for key in one)
+    if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):
+        return len(one) == len(other) and all(map(is_same, one, other))
+    return bool(one == other)
 
 
 def merge(folders: Sequence[Path], target: Path) -> Manifest:
     """Join data sets of one program and seed whose scenes have different numbers; the parts are copied.
 
+    The joined data set appears whole, in a folder that is new or empty, or not at all. Scenes between those of the data sets may be
+    missing: then a warning says so, and ``--resume`` makes them.
+
     Raises:
-        DatasetError: if they do not fit together, or a part is damaged.
+        DatasetError: if they do not fit together, a part is damaged, or the target holds something.
         OutputError: if files cannot be written.
 
     """
+    pieces, merged = _joined(folders)
+    if target.exists() and (not target.is_dir() or any(target.iterdir())):
+        raise DatasetError(
+            f"'{target}' is there already: data sets are joined in a new folder",
+            help="name another folder; nothing has been changed",
+        )
+    home = target.absolute().parent
+    make_folder(home)
+    unfinished = home / f".{target.absolute().name[:100]}.{secrets.token_hex(6)}.part"
+    try:
+        with WrittenFolder(unfinished, DATASET) as place:
+            for path, part in pieces:
+                _copy_part(path, part, merged, unfinished / part.file)
+            merged = merged.beside(target, str((folders[0] / merged.source).resolve()))
+            place.save(asdict(merged))
+            if merged.form == "images":
+                join_indices(unfinished, merged)
+        try:
+            os.replace(unfinished, target)
+        except OSError as error:
+            reason = (error.strerror or str(error)).lower()
+            raise OutputError(f"cannot make the folder '{target}': {reason}") from error
+    finally:
+        shutil.rmtree(unfinished, ignore_errors=True)
+    lost = gaps(merged.numbers, [part.numbers for part in merged.parts])
+    if lost:
+        shown = ", ".join(f"{first} to {last - 1}" for first, last in lost[:_SHOWN])
+        more = f", and {len(lost) - _SHOWN} more ranges" if len(lost) > _SHOWN else ""
+        warn(
+            f"'{target}' lacks the scenes {shown}{more}",
+            code="SC612",
+            help=f"make them: scenic sample {merged.program} -n {merged.count}"
+            + (f" --first {merged.first}" if merged.first else "")
+            + f" -o {target} --resume",
+        )
+    return merged
+
+
+_SHOWN: Final = 3
+"""Gaps that a warning names, at most."""
+
+
+def _joined(folders: Sequence[Path]) -> tuple[list[tuple[Path, Part]], Manifest]:
+    """The files of all parts of data sets with the parts that they become, and the manifest of all; raises `DatasetError`."""
     manifests = [(folder, Manifest.load(folder)) for folder in folders]
     _, head = manifests[0]
     pieces: list[tuple[Path, Part]] = []
     for folder, manifest in manifests:
+        check_files(folder, DatasetError, head.files, manifest.files, accepted=False)
         differs = replace(manifest, first=head.first, part_size=head.part_size).difference(head)
         if differs is not None:
-            raise DatasetError(f"'{folder}' does not fit '{folders[0]}': it has {differs}")
+            raise DatasetError(f"'{folder}' and '{folders[0]}' were made otherwise: {differs}")
         pieces += [(folder / part.file, part) for part in manifest.parts]
     pieces.sort(key=lambda piece: piece[1].first)
     for (_, before), (path, after) in pairwise(pieces):
         if after.first < before.last:
             raise DatasetError(f"'{path}' holds scenes that another part holds, too: {after.first} and more")
-    make_folder(target)
-    parts = []
-    for index, (path, part) in enumerate(pieces):
-        if not path.is_file():
-            raise DatasetError(f"'{path}' is missing", help="make this part again")
-        content = path.read_bytes()
-        if digest_of(path) != part.sha256:
-            raise DatasetError(f"'{path}' has changed since it was written", help="make this part again")
-        name = head.file_name(index)
-        write(target / name, content)
-        if head.images is not None:
-            copy_images(path.parent, part, head.form, target / name)
-        elif head.form in FORMS:
-            copy_scene_files(path.parent, part, target / name)
-        parts.append(replace(part, file=name))
-    first, last = (parts[0].first, parts[-1].last) if parts else (head.first, head.first)
-    merged = replace(
-        head,
-        first=first,
-        count=last - first,
-        parts=tuple(parts),
-        seconds=sum(item.seconds for _, item in manifests),
-    ).beside(target, str((folders[0] / head.source).resolve()))
-    merged.save(target)
-    if merged.form == "images":
-        join_indices(target, merged)
-    return merged
+    first = min(manifest.first for _, manifest in manifests)
+    last = max(manifest.numbers[1] for _, manifest in manifests)
+    parts = tuple(replace(part, file=head.file_of(part.numbers)) for _, part in pieces)
+    accepted = tuple(change for _, manifest in manifests for change in manifest.accepted)
+    seconds = sum(manifest.seconds for _, manifest in manifests)
+    merged = replace(head, first=first, count=last - first, parts=parts, seconds=seconds, accepted=accepted)
+    return [(path, part) for (path, _), part in zip(pieces, parts, strict=True)], merged
+
+
+def _copy_part(path: Path, part: Part, manifest: Manifest, target: Path) -> None:
+    """Copy a part with the files that belong to it; raises `DatasetError` where one is damaged."""
+    if not path.is_file():
+        raise DatasetError(f"'{path}' is missing", help=_MEND)
+    if digest_of(path) != part.sha256:
+        raise DatasetError(f"'{path}' has changed since it was written", help=_MEND)
+    write(target, path.read_bytes())
+    source = replace(part, file=path.name)
+    if manifest.images is not None:
+        copy_images(path.parent, source, manifest.form, target)
+    elif manifest.form in FORMS:
+        copy_scene_files(path.parent, source, target)
+
+
+_MEND: Final = "make this part again: scenic sample ... -o FOLDER --resume --verify"

@@ -28,9 +28,7 @@ def info(folder: Path) -> int:
     from rich.console import Console
     from rich.table import Table
 
-    from scenic.batch.manifest import Manifest
-
-    manifest = Manifest.load(folder)
+    manifest = _manifest_at(folder)
     attempts = sum(part.attempts for part in manifest.parts)
     missing = sum(len(part.missing) for part in manifest.parts)
     table = Table.grid(padding=(0, 2))
@@ -44,8 +42,11 @@ def info(folder: Path) -> int:
         ("format", f"{manifest.form}, {_parts(manifest)} of {manifest.part_size:,}"),
         ("acceptance", f"{manifest.rows / attempts:.3g}" if attempts else "unknown"),
         ("time", f"{manifest.seconds:.1f} s"),
-        ("meshes", ", ".join(manifest.meshes) or "none"),
-        ("textures", ", ".join(manifest.textures) or "none"),
+        ("files", ", ".join(manifest.files) or "none"),
+        *(
+            ("accepted", f"from scene {item['scene']} on: {', '.join(item['changes'])}")
+            for item in manifest.accepted
+        ),
         ("versions", ", ".join(f"{name} {version}" for name, version in manifest.versions.items())),
         ("command", manifest.command or "unknown"),
     ]
@@ -53,6 +54,21 @@ def info(folder: Path) -> int:
         table.add_row(*row)
     Console(no_color=not has_colours(sys.stdout), highlight=False, soft_wrap=True).print(table)
     return CLEAN
+
+
+def _manifest_at(place: Path) -> "Manifest":
+    """The manifest of a folder, or of a Parquet file that `scenic sample -o FILE.parquet` has written."""
+    from scenic.batch.manifest import DatasetError, Manifest
+    from scenic.batch.part_files import manifest_of_table
+
+    if not place.is_file():
+        return Manifest.load(place)
+    if place.suffix != ".parquet":
+        raise DatasetError(
+            f"'{place}' is a file: a data set is a folder, or a Parquet file of scenes",
+            help="name the folder",
+        )
+    return manifest_of_table(place)
 
 
 @dataset.command()
@@ -67,6 +83,8 @@ def info(folder: Path) -> int:
 )
 def verify(folder: Path, program: str | None, share: str) -> int:
     """Check that a data set is undamaged, and that the program gives the same scenes.
+
+    `scenic sample PROGRAM -n N -o FOLDER --resume --verify` makes damaged parts again.
 
     Exit codes: 0 all is well, 1 something is damaged, 2 wrong usage.
     """
@@ -93,7 +111,28 @@ def verify(folder: Path, program: str | None, share: str) -> int:
     if not manifest.is_complete:
         print(f"{folder}: not complete: {manifest.rows:,} of {manifest.count:,} scenes")
     print(f"{_parts(manifest)}, {compared:,} scenes compared, {len(found)} damaged")
+    if found:
+        print(f"mend it: {_mending(folder, manifest)}")
     return FINDINGS if found else CLEAN
+
+
+def _mending(folder: Path, manifest: "Manifest") -> str:
+    """The command that makes damaged parts of a data set again."""
+    import shlex
+
+    program = os.path.relpath(folder / manifest.source)
+    words = [
+        "scenic",
+        "sample",
+        program,
+        "-n",
+        str(manifest.count),
+        "-o",
+        str(folder),
+        "--resume",
+        "--verify",
+    ]
+    return shlex.join(words)
 
 
 def _parts(manifest: "Manifest") -> str:

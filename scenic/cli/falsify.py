@@ -12,11 +12,13 @@ import click
 
 from scenic.cli.options import (
     OneOf,
+    accept_changes_option,
     count_option,
     dask_option,
     jobs_option,
     named_values,
     program_argument,
+    resume_option,
     seconds,
     seed_option,
     settings_of,
@@ -120,7 +122,8 @@ _STATIC: Final = "search the scenes alone: --static with --objective PARAMETER o
     type=click.Path(path_type=Path),
     help="Keep runs and counterexamples in this folder.",
 )
-@click.option("--resume", is_flag=True, help="Continue the search in the folder.")
+@resume_option
+@accept_changes_option
 @click.option(
     "--report", metavar="PAGE.html", type=click.Path(path_type=Path), help="Make a page about the search."
 )
@@ -149,6 +152,7 @@ def falsify(
     dask: str | None,
     output: Path | None,
     resume: bool,
+    accept_changes: bool,
     report: Path | None,
 ) -> int:
     """Search for scenes and simulations in which requirements fail.
@@ -175,6 +179,7 @@ def falsify(
     from scenic.falsification.objectives import Objective
     from scenic.falsification.search import Limits, Plan, search
     from scenic.falsification.store import SearchFolder, folders_of, manifest_of
+    from scenic.formats.files import safe_name
     from scenic.pipeline import load
 
     if resume and seed is None and output is not None:
@@ -215,8 +220,12 @@ def falsify(
         limits = Limits(count, stop_after, time_limit, lambda _row: advance(1, 1))
         for loaded, (_, different) in zip(programs, settings, strict=True):
             label = ", ".join(f"{name}={value}" for name, value in different.items())
-            place = output if output is None or not label else output / label.replace("/", "_")
-            folder = None if place is None else SearchFolder(place, plan.settings(loaded), resume=resume)
+            place = output if output is None or not label else output / safe_name(label)
+            folder = (
+                None
+                if place is None
+                else SearchFolder(place, plan.settings(loaded), resume=resume, accept_changes=accept_changes)
+            )
             results[label] = search(loaded, plan, limits, engine=engine, folder=folder)
             _show(label, results[label])
     if report is not None:

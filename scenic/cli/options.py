@@ -15,6 +15,7 @@ from scenic.language.spelling import nearest_option
 
 __all__ = [
     "OneOf",
+    "accept_changes_option",
     "count_option",
     "dask_option",
     "extra_params_option",
@@ -27,6 +28,7 @@ __all__ = [
     "parameter_value",
     "program_argument",
     "program_options",
+    "resume_option",
     "seconds",
     "seed_option",
     "settings_of",
@@ -263,6 +265,17 @@ timestep_option = click.option(
     help="Seconds in a step.  [default: the simulator's]",
 )
 
+
+resume_option = click.option(
+    "--resume",
+    is_flag=True,
+    help="Go on with what an earlier run of the same command has left in the folder.",
+)
+accept_changes_option = click.option(
+    "--accept-changes",
+    is_flag=True,
+    help="Go on although modules or files of the program have changed since; the manifest notes it.",
+)
 
 extra_params_option = click.option(
     "--extra-params",

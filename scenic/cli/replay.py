@@ -82,6 +82,11 @@ _FILMS: Final = (".gif", ".mp4", ".mov", ".mkv")
 )
 @look_from_option()
 @click.option("--show-records", is_flag=True, help="Print what the simulation records.")
+@click.option(
+    "--accept-changes",
+    is_flag=True,
+    help="Make the run although modules or files of the program have changed since; the changes are printed.",
+)
 def replay(
     path: Path,
     number: int | None,
@@ -97,6 +102,7 @@ def replay(
     image_size: tuple[int, int] | None,
     outlook: Mapping[str, Any],
     show_records: bool,
+    accept_changes: bool,
 ) -> int:
     """Make a run again that `falsify -o` or `simulate -o` has kept, compare it with what was kept, and show it.
 
@@ -120,7 +126,13 @@ def replay(
     if parameters:
         options["params"] = {**(options.get("params") or {}), **parameters}
     scenario = load(program or program_of(run), **options)
-    found = made_again(run, scenario, simulator, shown=any(item is not None for item in (view, png, film)))
+    found = made_again(
+        run,
+        scenario,
+        simulator,
+        shown=any(item is not None for item in (view, png, film)),
+        accept_changes=accept_changes,
+    )
     _show(run.number, found.about)
     if show_records:
         for name, value in found.about.get("records", {}).items():

@@ -5,7 +5,7 @@ import json
 import secrets
 import sys
 from collections.abc import Mapping, Sequence
-from contextlib import closing
+from contextlib import ExitStack, closing
 from itertools import chain
 from pathlib import Path
 from types import MappingProxyType
@@ -15,12 +15,14 @@ import click
 
 from scenic.cli.options import (
     OneOf,
+    accept_changes_option,
     count_option,
     dask_option,
     extra_params_option,
     first_option,
     jobs_option,
     program_argument,
+    resume_option,
     seconds,
     seed_option,
     settings_of,
@@ -98,8 +100,10 @@ __all__ = ["simulate"]
     "--output",
     metavar="DIR",
     type=click.Path(path_type=Path),
-    help="Keep the trajectories in this folder; existing ones are not made again.",
+    help="Keep the trajectories in this folder, which must be new or without simulations.",
 )
+@resume_option
+@accept_changes_option
 @click.option(
     "--format",
     "form",
@@ -139,22 +143,25 @@ def simulate(
     jobs: int,
     dask: str | None,
     output: Path | None,
+    resume: bool,
+    accept_changes: bool,
     form: str,
     view: Path | None,
 ) -> int:
     """Simulate scenes of a program.
 
     Simulation K of a seed is always the same, whatever the number of processes. Files are complete or absent, so that
-    an interrupted run continues when it is called again.
+    an interrupted run continues with --resume.
 
     Exit codes: 0 success, 1 the program has errors, 2 wrong usage, 3 some simulations were rejected (the others were
     made), 130 interrupted.
     """
     # These bring in NumPy and the geometry libraries.
     import_lasting("scenic.pipeline")
+    from scenic.batch.simulation_folders import seed_of_simulations
     from scenic.batch.simulations import Running, Simulations
     from scenic.batch.summaries import Setting, csv_of, plot, summary
-    from scenic.formats.files import make_folder, write
+    from scenic.formats.files import safe_name, write
     from scenic.pipeline import load
 
     # What a library of a simulator does may end the process without a word.
@@ -170,8 +177,10 @@ def simulate(
         from scenic.formats.openscenario import openscenario_support
 
         openscenario_support()
-    if output is not None:
-        make_folder(output)
+    if (resume or accept_changes) and output is None:
+        raise click.UsageError("--resume needs the folder of the simulations: -o DIR")
+    if resume and seed is None and output is not None:
+        seed = seed_of_simulations(output)
     is_drawn = seed is None
     seed = secrets.randbits(32) if seed is None else seed
     running = Running(
@@ -189,9 +198,7 @@ def simulate(
             mode2D=mode_2d,
             extra_params=extra_params,
         )
-        place = output if output is None or not different else output / setting.label.replace("/", "_")
-        if place is not None:
-            make_folder(place)
+        place = output if output is None or not different else output / safe_name(setting.label)
         batch = Simulations(
             loaded,
             simulator,
@@ -201,13 +208,18 @@ def simulate(
             shown=view is not None,
             only_violations=keep == "violations",
         )
-        setting.rows.update({k: row for k in numbers if (row := batch.known(k)) is not None})
         batches.append((setting, batch))
+    code = CLEAN
+    with ExitStack() as folders:
+        for setting, batch in batches:
+            folders.enter_context(batch.opened(resume=resume, accept_changes=accept_changes))
+            setting.rows.update({k: row for k in numbers if (row := batch.known(k)) is not None})
+        opened = folders.pop_all()
     if is_drawn:
         sys.stderr.write(f"seed {seed} (the same simulations again: --seed {seed})\n")
     missing = len(batches) * count - sum(len(setting.rows) for setting, _ in batches)
-    code = CLEAN
     with (
+        opened,
         ended_by_signals(),
         progress_bar(missing, "simulating", shown=not sys.stdout.isatty()) as advance,
         engine_of(jobs, dask) as engine,

@@ -6,6 +6,8 @@ from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
+from scenic.batch.folders.fingerprint import file_digests
+from scenic.batch.folders.folder import check_files
 from scenic.batch.keeping import Form, about_file
 from scenic.batch.simulations import Running, Simulations
 from scenic.dataclass import dataclass
@@ -13,7 +15,7 @@ from scenic.falsification.comparing import file_departures, row_departures
 from scenic.falsification.evaluating import Evaluation, Task
 from scenic.falsification.objectives import Objective, ObjectiveError
 from scenic.falsification.space import space_of
-from scenic.falsification.store import folders_of, manifest_of, read_rows
+from scenic.falsification.store import folders_of, is_search, manifest_of, read_rows
 from scenic.language.errors import Located, MissingFileError
 
 if TYPE_CHECKING:
@@ -95,15 +97,15 @@ def kept_run(path: Path, number: int | None = None, *, worst: int | None = None)
     """
     if not path.exists():
         raise MissingFileError(f"cannot read '{path}': there is no such file or folder")
-    is_search = path.is_dir() and (path / "manifest.json").exists()
-    if worst is not None and not is_search:
+    searched = path.is_dir() and is_search(path)
+    if worst is not None and not searched:
         raise ReplayError(
             f"'{path}' is no folder of a search, so that none of its runs is the worst",
             help="name the folder that `scenic falsify -o` has written, or a run by its number",
         )
     if path.is_file():
         return _simulation(path)
-    if is_search:
+    if searched:
         return _searched(path, number, worst)
     if path.parent.name == "counterexamples" and path.name.isdigit() and number is None:
         return _searched(path.parent.parent, int(path.name), None)
@@ -195,6 +197,7 @@ def replay(
     *,
     objectives: Sequence[Objective] | None = None,
     shown: bool = False,
+    accept_changes: bool = False,
 ) -> Replay:
     """Make a run again, and compare it with what was kept.
 
@@ -204,17 +207,23 @@ def replay(
         simulator: a simulator in place of that of the run.
         objectives: those of the search, where functions of Python are among them; without them, its values are not compared.
         shown: whether there will be a page and pictures.
+        accept_changes: whether files that decide the scenes may have changed since; the changes are among the departures then.
 
     Raises:
         ObjectiveError: the objective cannot be evaluated.
         ReplayError: the run cannot be made again.
 
     """
+    before = run.origin.get("files", {})
+    changes = check_files(
+        Path(run.origin["file"]), ReplayError, before, file_digests(scenario), accepted=accept_changes
+    )
     with tempfile.TemporaryDirectory() as folder:
         if run.row is None:
             found = _simulate_again(run, scenario, simulator, shown, Path(folder))
         else:
             found = _search_again(run, run.row, scenario, simulator, objectives, shown, Path(folder))
+    found.departures[:0] = changes
     if run.settings.get("program") != scenario.digest:
         found.departures.insert(0, "the program or its parameters have changed since")
     return found

@@ -4,7 +4,7 @@ import math
 import random
 import time
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, nullcontext
 from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from scenic.batch.engines import Engine, Processes
+from scenic.batch.folders.fingerprint import files_of_origin
 from scenic.batch.simulations import Running, Simulations
 from scenic.dataclass import dataclass
 from scenic.falsification.evaluating import Evaluation, Task
@@ -84,6 +85,7 @@ class Plan:
             "units": space_of(scenario, self.space).units,
             "origin": {
                 **scenario.origin,
+                **files_of_origin(scenario),
                 "objectives": self._goals(),
                 "simulator": self.simulator if isinstance(self.simulator, str) else None,
             },
@@ -194,8 +196,16 @@ def search(
         OutputError: the folder cannot be written; what has finished is kept.
         SamplerError: there is no such sampler.
         SearchError: ten runs in a row failed.
+        SearchFolderError: the folder holds another search.
 
     """
+    with nullcontext() if folder is None else folder:
+        return _search(scenario, plan, limits, engine, folder)
+
+
+def _search(
+    scenario: "Scenario", plan: Plan, limits: Limits, engine: Engine | None, folder: SearchFolder | None
+) -> FalsificationResult:
     space = space_of(scenario, plan.space)
     if not len(space):
         raise InvalidScenarioError(

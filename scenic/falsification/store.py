@@ -5,15 +5,23 @@ import math
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Self
 
-from scenic.formats.files import make_folder, refusing, write
+from scenic.batch.folders.folder import NAME, FolderKind, WrittenFolder, check_files
+from scenic.batch.folders.lock import LOCK
+from scenic.formats.files import refusing, write
 from scenic.language.errors import Located
 
-__all__ = ["SearchFolder", "SearchFolderError", "folders_of", "manifest_of", "number", "read_rows"]
+__all__ = [
+    "SearchFolder",
+    "SearchFolderError",
+    "folders_of",
+    "is_search",
+    "manifest_of",
+    "number",
+    "read_rows",
+]
 
-_FORMAT: Final = "scenic-falsification"
-_VERSION: Final = 1
 _DESCRIBING: Final = ("units", "origin")
 """Settings that decide nothing: they may be others when a search goes on."""
 
@@ -24,47 +32,81 @@ class SearchFolderError(Located):
     code = "SC609"
 
 
-class SearchFolder:
+class NoSearchError(SearchFolderError):
+    """The error for a folder without a search."""
+
+
+SEARCH: Final = FolderKind(
+    "scenic-falsification", 1, "search", "`scenic falsify -o FOLDER`", SearchFolderError, NoSearchError
+)
+"""Folders of searches."""
+
+
+class SearchFolder(WrittenFolder):
     """Keeps the runs of a search. Each generation is on the disk before the next one begins.
 
     Args:
         path: the folder, made if it is not there.
         settings: everything that decides what comes out.
         resume: whether to go on with what is there.
+        accept_changes: whether to go on although files that decide the scenes have changed.
 
     Raises:
         SearchFolderError: the folder holds another search, or one that is not to be gone on with.
 
     """
 
-    def __init__(self, path: Path, settings: Mapping[str, Any], *, resume: bool) -> None:
-        make_folder(path)
-        self.path = path
-        manifest = path / "manifest.json"
-        wanted = {"format": _FORMAT, "version": _VERSION, **json.loads(json.dumps(settings))}
-        found = _manifest(manifest) if manifest.exists() else None
-        if found is not None and not resume and read_rows(path):
-            raise SearchFolderError(
-                f"'{path}' holds a search already",
-                help="go on with it by --resume, or name another folder",
-            )
-        if found is not None and resume:
+    def __init__(
+        self, path: Path, settings: Mapping[str, Any], *, resume: bool, accept_changes: bool = False
+    ) -> None:
+        super().__init__(path, SEARCH)
+        self._settings: dict[str, Any] = json.loads(json.dumps(settings))
+        self._resume = resume
+        self._accept_changes = accept_changes
+        self.rows: list[dict[str, Any]] = []
+        """The runs that are finished."""
+
+    def __enter__(self) -> Self:
+        super().__enter__()
+        try:
+            self._begin()
+        except BaseException as error:
+            self.__exit__(type(error))
+            raise
+        return self
+
+    def _begin(self) -> None:
+        """Compare the search with that of the folder, and take up its runs."""
+        wanted = self._settings
+        if self.has_manifest and self._resume:
+            earlier = self.document()
             different = [
-                name for name in wanted if name not in _DESCRIBING and found.get(name) != wanted[name]
+                name for name in wanted if name not in _DESCRIBING and earlier.get(name) != wanted[name]
             ]
             if different:
                 raise SearchFolderError(
-                    f"'{path}' holds another search: its {different[0]} differs",
+                    f"'{self.path}' holds another search: its {different[0]} differs",
                     help="give the same program and options, or name another folder",
                 )
-        elif resume and any(path.iterdir()):
+            before, now = (item.get("origin", {}).get("files", {}) for item in (earlier, wanted))
+            changes = check_files(self.path, SearchFolderError, before, now, accepted=self._accept_changes)
+            if changes:
+                change = {"run": len(read_rows(self.path)), "changes": changes}
+                self.save({**wanted, "accepted": [*earlier.get("accepted", []), change]})
+        elif self.has_manifest and read_rows(self.path):
             raise SearchFolderError(
-                f"'{path}' holds no search", help="name the folder of one, or an empty one"
+                f"'{self.path}' holds a search already",
+                help="go on with it by --resume, or name another folder",
+            )
+        elif self._resume and any(item.name != LOCK for item in self.path.iterdir()):
+            raise SearchFolderError(
+                f"'{self.path}' holds no search", help="name the folder of one, or an empty one"
             )
         else:
-            write(manifest, json.dumps(wanted, indent=1).encode())
-        self.rows: list[dict[str, Any]] = read_rows(path)
-        """The runs that are finished."""
+            if self.has_manifest:
+                self.document()  # raises for that of something else
+            self.save(wanted)
+        self.rows = read_rows(self.path)
         self._keep()
 
     def _keep(self) -> None:
@@ -83,32 +125,31 @@ class SearchFolder:
             os.fsync(stream.fileno())
 
 
-def _manifest(path: Path) -> dict[str, Any]:
+def is_search(folder: Path) -> bool:
+    """Return whether a folder holds a search."""
     try:
-        found = json.loads(path.read_bytes())
-    except (OSError, ValueError):
-        found = None
-    if not isinstance(found, dict) or found.get("format") != _FORMAT:
-        raise SearchFolderError(f"'{path}' is no manifest of a search", help="name the folder of a search")
-    return found
+        SEARCH.document(folder)
+    except SearchFolderError:
+        return False
+    return True
 
 
 def manifest_of(folder: Path) -> dict[str, Any]:
     """The manifest of a search; raises `SearchFolderError` if there is none."""
-    if not (folder / "manifest.json").exists():
+    if not (folder / NAME).exists():
         raise SearchFolderError(
             f"'{folder}' holds no search", help="name the folder that `scenic falsify -o` has written"
         )
-    return _manifest(folder / "manifest.json")
+    return SEARCH.document(folder)
 
 
 def folders_of(folder: Path) -> list[Path]:
     """The folder of a search itself, or those of the searches of a sweep that it holds."""
-    if (folder / "manifest.json").exists():
+    if is_search(folder):
         return [folder]
-    found = [manifest.parent for manifest in folder.glob("*/manifest.json")]
+    searches = [manifest.parent for manifest in folder.glob(f"*/{NAME}") if is_search(manifest.parent)]
     # So that n=9 comes before n=16.
-    return sorted(found, key=lambda item: (len(item.name), item.name))
+    return sorted(searches, key=lambda item: (len(item.name), item.name))
 
 
 def read_rows(folder: Path) -> list[dict[str, Any]]:

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.dataclass import dataclass
-from scenic.formats.files import write
+from scenic.formats.files import safe_name, write
 from scenic.formats.instances import Gallery, Surfaces
 from scenic.formats.labels import Observation, document, observe
 from scenic.formats.overlay import overlay
@@ -88,7 +88,7 @@ class Photographer:
         self._classes = gallery.classes
         for label in found.labels:
             self.categories.setdefault(label.instance.category, len(self.categories) + 1)
-        stem = f"{self._camera}-{scene.k:06d}"
+        stem = f"{safe_name(self._camera)}-{scene.k:06d}"
         names = {output: f"{stem}{self._joint}{output}.png" for output in point.outputs}
         files = {names[output]: self._picture(found, output) for output in point.outputs}
         if self._previewed:
@@ -103,7 +103,7 @@ class Photographer:
             "file_name": names.get("rgb") or next(iter(names.values())),
             "width": width,
             "height": height,
-            "seed": str(scene.seed),
+            "seed": scene.seed,
             "k": scene.k,
             "camera": self._camera,
         }

@@ -5,6 +5,7 @@ any error, Ctrl-C included, the temporary file is removed and what had the name 
 """
 
 import contextlib
+import hashlib
 import os
 import re
 import secrets
@@ -194,3 +195,15 @@ def numbered(path: Path, k: int, count: int) -> Path:
         return path
     digits = max(3, len(str(count - 1)))
     return path.with_name(f"{path.stem}-{k:0{digits}d}{path.suffix}")
+
+
+def safe_name(text: str) -> str:
+    """A name of a file or folder that stands for a text: the text itself where it can be, else with a digest, so that texts stay different."""
+    plain = _UNSAFE.sub("_", text).strip(". ")
+    if plain == text and text:
+        return text
+    return f"{plain[:80]}-{hashlib.sha256(text.encode('utf-8', 'surrogatepass')).hexdigest()[:8]}"
+
+
+_UNSAFE: Final = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*\ud800-\udfff]')
+"""Characters that names of files may not have on some system."""

@@ -12,6 +12,7 @@ import numpy as np
 from scenic.formats.mesh_files import MeshPaths
 from scenic.formats.poses import euler_angles, quaternion_of
 from scenic.formats.scenes import Origin, Scene, SceneObject
+from scenic.runtime.instances.objects import Object
 
 FORMAT = "scenic-scene"
 VERSION = 1
@@ -44,6 +45,7 @@ class SceneLines:
         changed: whether to tell only properties that the program gives, not those at the defaults of the language.
         points: how the scenes are made, if not by rejection of random numbers: ``sobol``, ``approximate N``.
         folder: the folder that paths of mesh files are relative to; they are absolute if there is none.
+        files: a digest of all files that decide the scenes beside the program's text, if there are any.
 
     """
 
@@ -54,12 +56,15 @@ class SceneLines:
         changed: bool = False,
         points: str | None = None,
         folder: Path | None = None,
+        files: str = "",
     ) -> None:
         self._changed = changed
         self._meshes = MeshPaths(folder)
         self._head = {"format": FORMAT, "version": VERSION}
         if program is not None:
             self._head["program"], self._head["digest"] = program
+        if files:
+            self._head["files"] = files
         if points is not None:
             self._head["points"] = points
         self._templates: dict[int, _Template] = {}
@@ -191,6 +196,8 @@ def plain(value: object, numbers: Mapping[int, int], within: tuple[int, ...] = (
             return plain(value.tolist(), numbers, within)
     if id(value) in numbers:
         return {"$object": numbers[id(value)]}
+    if isinstance(value, Object):
+        return None  # it does not take part in this scene
     if len(within) >= DEPTH or id(value) in within:
         return _text(value)
     inner = (*within, id(value))

@@ -15,11 +15,19 @@ class ResumeError(Located):
 
 
 def continued(
-    grown: GrowingFile, digest: str, seed: int | None, first: int, count: int, *, points: str | None = None
+    grown: GrowingFile,
+    digest: str,
+    seed: int | None,
+    first: int,
+    count: int,
+    *,
+    points: str | None = None,
+    files: str | None = "",
 ) -> tuple[int | None, int]:
     """The seed of the run that is resumed, and how many of its scenes are done.
 
-    ``points`` is what scenes are made of, if not of random numbers. Raises `ResumeError` where the lines are of another program, of other options or of another run.
+    ``points`` is what scenes are made of, if not of random numbers. ``files`` is a digest of the files that decide the scenes, which
+    is not compared if ``None``. Raises `ResumeError` where the lines are of another program, of other options or of another run.
     """
     kept = grown.kept()
     if not kept:
@@ -29,12 +37,18 @@ def continued(
         made, begun, reached = (head["digest"], int(head["seed"])), int(head["k"]), int(last["k"])
         same = made == (last["digest"], int(last["seed"]))
         alike = head.get("points") == last.get("points") == points
+        unchanged = files is None or last.get("files", "") == files
     except (ValueError, KeyError, TypeError) as error:
         raise ResumeError(f"'{grown.path}' does not hold scenes of an earlier run ({error})") from error
     if made[0] != digest:
         raise ResumeError(
             f"'{grown.path}' holds scenes of another program, or of the same with other options",
             help="the program has changed since: sample to a new file",
+        )
+    if not unchanged:
+        raise ResumeError(
+            f"'{grown.path}' holds scenes of the same program with other modules, meshes or other files that it uses",
+            help="put the files back, or sample to a new file; --accept-changes goes on, and each line tells by `files` which it is of",
         )
     if not alike:
         raise ResumeError(

@@ -5,6 +5,7 @@ graph, too, are read scene by scene.
 """
 
 import json
+import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO, Final
@@ -16,6 +17,7 @@ from scenic.formats.json_lines import plain
 from scenic.formats.mesh_files import MeshPaths
 from scenic.formats.trajectory_tables import parquet_support
 from scenic.graph.kinds import Kind
+from scenic.runtime.instances.objects import Object
 from scenic.runtime.scenes.columns import ObjectColumns, SceneColumns, ValueColumn
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
@@ -103,9 +105,9 @@ class SceneTable:
         metadata = {FORMAT: str(VERSION)}
         if manifest is not None:
             metadata["manifest"] = _json(manifest)
-        return self._parquet.ParquetWriter(
-            stream, self.schema.with_metadata(metadata), compression="zstd", store_schema=False
-        )
+        writer = self._parquet.ParquetWriter(stream, self.schema, compression="zstd", store_schema=False)
+        writer.add_key_value_metadata(metadata)
+        return writer
 
     def _all_objects(self, scenes: Sequence[Scene]) -> Any:
         arrow, things, count = self._arrow, self._objects, len(scenes)
@@ -220,17 +222,32 @@ class _Field:
                 continue
             column = next(columns)
             if self._word == _TEXT:
-                rows.append(column.values(scenes))
-            elif column.is_fixed:
+                rows.append(
+                    [None if text is None else _LONE.sub("\ufffd", text) for text in column.values(scenes)]
+                )
+            elif column.is_fixed and not _names_objects(column.value):
                 rows.append([_json(plain(column.value, {}))] * count)
             else:
                 if numbers is None:
                     numbers = [
                         {id(thing): index for index, thing in enumerate(scene.objects)} for scene in scenes
                     ]
-                values = column.values(scenes)
+                values = [column.read(scene) for scene in scenes]
                 rows.append([_json(plain(*pair)) for pair in zip(values, numbers, strict=True)])
         return self._arrow.array([text for row in zip(*rows, strict=True) for text in row], self.type)
+
+
+_LONE: Final = re.compile("[\ud800-\udfff]")
+"""Lone halves of characters, which UTF-8 cannot hold."""
+
+
+def _names_objects(value: Any) -> bool:
+    """Return whether a fixed value has objects in it, whose numbers are those of a scene."""
+    if isinstance(value, Mapping):
+        value = (*value, *value.values())
+    if isinstance(value, (list, tuple, set, frozenset)):
+        return any(map(_names_objects, value))
+    return isinstance(value, Object)
 
 
 def _word(column: ValueColumn) -> str:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -23,6 +24,10 @@ class CameraError(Located):
     """A camera that a scene does not have."""
 
     code = "SC604"
+
+
+class AbsentCameraError(CameraError):
+    """The camera of an object that does not take part in a scene."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,17 +85,48 @@ def viewpoint(scene: Scene, name: str, size: tuple[int, int] | None) -> Viewpoin
     sensors = _sensors(scene)
     if name in sensors:
         owner, sensor = sensors[name]
+        _check_one(scene, name, owner)
         return sensor_viewpoint(name, owner, sensor, size)
     objects = {label: thing for thing, label in scene.names.items()}
     if scene.egoObject is not None:
         objects.setdefault("ego", scene.egoObject)
     if name in objects:
         return _of_object(name, objects[name], size or (640, 480))
+    if name in _of_program(scene):
+        raise AbsentCameraError(f"the camera {name!r} does not take part in scene {scene.k}")
     known = ", ".join(repr(item) for item in [*sensors, *objects]) or "none"
     raise CameraError(
         f"the scene has no camera {name!r}",
         help=f"cameras are sensors and objects by the names of their variables; here: {known}",
     )
+
+
+def _check_one(scene: Scene, name: str, owner: SceneObject) -> None:
+    """Raise `CameraError` if the name of a sensor is that of an object, too."""
+    thing = next((thing for thing, label in scene.names.items() if label == name), None)
+    if thing is None and name == "ego":
+        thing = scene.egoObject
+    if thing is not None:
+        carrier = scene.names.get(owner) or f"an object of the class {type(owner).__name__}"
+        raise CameraError(
+            f"two cameras are called {name!r}: the object {name!r}, and a sensor of {carrier}",
+            help="give the sensor another name in `sensors`, or the object another variable",
+        )
+
+
+def _of_program(scene: Scene) -> set[str]:
+    """The names of cameras of all objects that the program creates, in whichever scenes they take part."""
+    names: set[str] = set()
+    scenario: Any = getattr(scene, "scenario", None)  # the states of a simulation have none
+    if scenario is None:
+        return set()
+    for thing in scenario.objects:
+        variable = scenario.variable(thing)
+        names.update([variable] if variable is not None else [])
+        sensors = thing.__dict__.get("sensors")
+        if isinstance(sensors, Mapping):
+            names.update(map(str, sensors))
+    return names
 
 
 def _sensors(scene: Scene) -> dict[str, tuple[SceneObject, CameraSensor]]:

@@ -33,8 +33,8 @@ def test_simulations_do_not_depend_on_the_number_of_processes(tmp_path: Path) ->
 def test_kept_simulations_are_not_made_again(tmp_path: Path) -> None:
     scenario = scenic.scenarioFromString(PROGRAM)
     first = scenario.simulate(2, seed=3, folder=tmp_path)
-    times = {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
-    again = scenario.simulate(3, seed=3, folder=tmp_path)
+    times = {path: path.stat().st_mtime_ns for path in tmp_path.glob("*.jsonl")}
+    again = scenario.simulate(3, seed=3, folder=tmp_path, resume=True)
     assert [row.about for row in again[:2]] == [row.about for row in first]
     assert {path: path.stat().st_mtime_ns for path in times} == times
 

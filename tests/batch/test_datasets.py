@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import scenic
-from scenic.batch import datasets
+from scenic.batch import encoding
 from scenic.batch.datasets import Run, make_dataset, write_table
 from scenic.batch.engines import OverExecutor, Processes
 from scenic.batch.manifest import NAME, DatasetError, Manifest
@@ -52,7 +52,10 @@ def test_parts_do_not_depend_on_what_makes_them(scenario: scenic.Scenario, tmp_p
     wanted = manifest(scenario, form=form)
     alone = make_dataset(scenario, tmp_path / "alone", wanted)
     assert alone.manifest.is_complete
-    assert [part.file for part in alone.manifest.parts] == [f"part-0000{i}.{form}" for i in range(3)]
+    assert [part.file for part in alone.manifest.parts] == [
+        f"part-{numbers}.{form}"
+        for numbers in ("00000000-00000019", "00000020-00000039", "00000040-00000049")
+    ]
     expected = contents(tmp_path / "alone")
     make_dataset(scenario, tmp_path / "shared", wanted, Run(Processes(2)))
     assert contents(tmp_path / "shared") == expected
@@ -97,7 +100,7 @@ def test_other_libraries_read_the_parts(scenario: scenic.Scenario, tmp_path: Pat
         from datasets import load_dataset
     except ImportError as error:
         pytest.skip(f"{error.name} is not installed")
-    part = tmp_path / "part-00000.parquet"
+    part = tmp_path / "part-00000000-00000019.parquet"
     assert pandas.read_parquet(part)["k"].tolist() == list(range(20))
     frame = polars.read_parquet(tmp_path / "part-*.parquet")
     assert frame["k"].to_list() == list(range(50))
@@ -145,15 +148,15 @@ def test_a_journal_saves_looking_again(
         if seen > 10:
             raise Ended
 
-    monkeypatch.setattr(datasets, "LONGEST", 4)
+    monkeypatch.setattr(encoding, "LONGEST", 4)
     with pytest.raises(Ended):
         make_dataset(scenario, tmp_path / "ended", wanted, Run(advance=advance))
     names = sorted(path.name for path in (tmp_path / "ended").iterdir())
-    assert names == [NAME, "part-00000.journal"]
-    journal = np.fromfile(tmp_path / "ended" / "part-00000.journal", dtype=np.int64).reshape(-1, 2)
+    assert names == [NAME, "part-00000000.journal"]
+    journal = np.fromfile(tmp_path / "ended" / "part-00000000.journal", dtype=np.int64).reshape(-1, 2)
     assert journal[:, 0].tolist() == list(range(len(journal)))
     assert 8 <= len(journal) < 50
-    with (tmp_path / "ended" / "part-00000.journal").open("ab") as stream:
+    with (tmp_path / "ended" / "part-00000000.journal").open("ab") as stream:
         stream.write(b"torn")  # the process was killed while it wrote
     told: list[int] = []
     make_dataset(
@@ -218,7 +221,7 @@ def test_every_damage_is_named(scenario: scenic.Scenario, tmp_path: Path, form: 
         )
         assert [item.file for item in verify(tmp_path, None)] == [path.name]
         path.write_bytes(content)
-    (tmp_path / f"part-00001.{form}").unlink()
+    (tmp_path / f"part-00000020-00000039.{form}").unlink()
     assert [item.what for item in verify(tmp_path, None)] == ["the file is missing"]
 
 
@@ -227,10 +230,11 @@ def test_a_scene_of_another_program_is_noticed(scenario: scenic.Scenario, tmp_pa
     from scenic.formats.mesh_files import digest_of
 
     finished = make_dataset(scenario, tmp_path, manifest(scenario, form="jsonl"))
-    path = tmp_path / "part-00000.jsonl"
+    path = tmp_path / "part-00000000-00000019.jsonl"
     path.write_bytes(path.read_bytes().replace(b'"word":"a"', b'"word":"b"', 1))
     part = replace(finished.manifest.parts[0], sha256=digest_of(path))
-    replace(finished.manifest, parts=(part, *finished.manifest.parts[1:])).save(tmp_path)
+    changed = replace(finished.manifest, parts=(part, *finished.manifest.parts[1:]))
+    (tmp_path / NAME).write_text(json.dumps(changed.document()))
     [found] = verify(tmp_path, scenario, share=1)
     assert "differs from that of the program" in found.what
     other = scenic.scenarioFromString(PROGRAM + "x = 1\n")
@@ -254,8 +258,8 @@ def test_data_sets_are_merged(scenario: scenic.Scenario, tmp_path: Path) -> None
 def test_a_folder_without_a_manifest_is_no_data_set(tmp_path: Path) -> None:
     with pytest.raises(DatasetError, match="no data set"):
         Manifest.load(tmp_path)
-    (tmp_path / NAME).write_text('{"format": "scenic-dataset", "version": 1}')
-    with pytest.raises(DatasetError, match="cannot be read"):
+    (tmp_path / NAME).write_text('{"format": "scenic-dataset", "version": 3}')
+    with pytest.raises(DatasetError, match="it has no `program`"):
         Manifest.load(tmp_path)
 
 

@@ -79,7 +79,7 @@ def test_a_worker_with_another_program_is_refused(tmp_path: Path) -> None:
         later(0)
     write_module(text)
     trimesh.creation.box((1, 1, 2)).export(mesh)
-    with pytest.raises(ClusterError, match=r"its mesh 'box.obj' is \w+, in this"):
+    with pytest.raises(ClusterError, match=r"its file 'box.obj' is \w+, in this"):
         larger(0)
     mesh.unlink()
     with pytest.raises(ClusterError, match=r"a worker cannot load 'one.scenic': .*box.obj"):

@@ -73,4 +73,6 @@ def test_a_sweep_has_one_table_and_one_plot(tmp_path: Path) -> None:
     assert sum(item.tag.endswith("circle") for item in plot.iter()) == 6
     assert len(list((tmp_path / "runs" / "gap=40").glob("*.jsonl"))) == 3
     # What is there already is not simulated again.
-    assert run_here(["simulate", program, *options, *swept], folder=tmp_path).stdout == done.stdout
+    assert (
+        run_here(["simulate", program, *options, *swept, "--resume"], folder=tmp_path).stdout == done.stdout
+    )

@@ -88,20 +88,35 @@ def test_all_calls_of_an_exception_are_shown_where_that_is_wanted(tmp_path: Path
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--resume"], "--resume needs a file or a data set to go on with"),
-        (["--resume", "-o", "-"], "--resume needs a file or a data set to go on with"),
+        (["--resume"], "--resume does not go with standard output; it goes with JSON Lines"),
+        (["--resume", "-o", "-"], "--resume does not go with standard output; it goes with JSON Lines"),
         *(
-            ([*given, *sink], "go without --view, --png and 3D files")
+            ([*given, *sink], f"{given[0]} does not go with {name}")
             for given in (
                 ["--resume"],
                 ["-j", 2],
                 ["--resume", "-o", "out.jsonl"],
                 ["-j", 2, "-o", "out.jsonl"],
             )
-            for sink in (["--view", "page.html"], ["--png", "images"])
+            for *sink, name in (
+                ["--view", "page.html", "a page (--view)"],
+                ["--png", "images", "images (--png)"],
+            )
         ),
-        (["--resume", "-o", "out.glb"], "go without --view, --png and 3D files"),
-        (["-j", 2, "-o", "out.glb"], "go without --view, --png and 3D files"),
+        (["--resume", "-o", "out.glb"], "--resume does not go with 3D files"),
+        (["-j", 2, "-o", "out.glb"], "-j does not go with 3D files"),
+        (["--overlay"], "--overlay is for labelled images (--camera NAME)"),
+        (["--minimize", "1"], "--minimize is for --sampler"),
+        (
+            ["--format", "tar", "-o", "out/"],
+            "--format tar does not go with data sets (-o FOLDER/): give parquet or jsonl",
+        ),
+        (["--sampler", "halton", "-j", 2], "-j does not go with --sampler"),
+        (["--approximate", 4, "--sobol"], "--sobol does not go with --approximate"),
+        (["--show-params", "-j", 2], "--show-params does not go with several processes"),
+        (["--profile", "-o", "x.jsonl"], "--profile makes no files"),
+        (["--verify"], "--verify does not go with standard output"),
+        (["--verify", "-o", "out/"], "--verify and --accept-changes go with --resume"),
         (["--camera", "ego"], "--camera needs a folder"),
     ],
 )

@@ -128,6 +128,8 @@ def _file(path: Path) -> list[str]:
     if path.name == "manifest.json":
         # Digests of parts are those of their content, which may differ by the version of a library.
         about = json.loads(path.read_text(encoding="utf-8"))
+        if "form" not in about:
+            return [json.dumps(about.get("settings"))]
         return [json.dumps({key: about[key] for key in ("form", "count", "part_size", "images")})]
     match path.suffix.lower():
         case ".png":

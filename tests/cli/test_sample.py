@@ -67,6 +67,11 @@ class Stub:
         self.sampled = 0
         self.interrupt_at = -1
         self.approximation = None
+        record = SimpleNamespace(files={}, imports={})
+        tally = SimpleNamespace(scenes=0)
+        self.program = SimpleNamespace(
+            context=SimpleNamespace(record=record), settling=SimpleNamespace(tally=tally)
+        )
         self.interrupt: Callable[[], None] = lambda: None
 
     def load(self, path: Path, **options: Any) -> "Stub":
@@ -125,6 +130,8 @@ def test_options_reach_the_pipeline(stub: Stub) -> None:
         "mode2D": True,
         "prune": False,
         "extra_params": False,
+        "settle": None,
+        "settle_tolerance": 0.01,
         "max_attempts": 7,
         "source": None,
     }

@@ -178,7 +178,7 @@ def test_the_command_writes_and_goes_on(town: Path, tmp_path: Path) -> None:
         "ego = new Car at (50, 1.75), facing 90 deg, with speed 5\n"
     )
     command: list[object] = ["simulate", "--2d", "--seed", "1", "--time", "5", str(program)]
-    command += ["-o", str(tmp_path / "out"), "--format", "openscenario"]
+    command += ["-o", str(tmp_path / "out"), "--resume", "--format", "openscenario"]
     file = tmp_path / "out" / "simulation-0000.xosc"
     for _ in range(2):
         done = run_here(command)

@@ -53,7 +53,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def simulated(folder: Path, form: str, *arguments: object) -> list[Path]:
-    options = ["-n", 2, "--seed", 1, "--time", 6, "--format", form, "-o", form, *arguments]
+    options = ["-n", 2, "--seed", 1, "--time", 6, "--format", form, "-o", form, "--resume", *arguments]
     done = run_here(["simulate", "program.scenic", *options], folder=folder)
     assert done.returncode == 0, done.stderr
     return sorted((folder / form).glob(f"*.{form}"))

@@ -23,6 +23,7 @@ from scenic.language.garbage import no_garbage_collection
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest
 from scenic.runtime.geometry.store import Arrays, kept
+from scenic.runtime.ground.used_files import note_file
 
 __all__ = ["MapOptions", "load_network", "map_file", "network_of"]
 
@@ -96,6 +97,7 @@ def load_network(
     """The network of a map file, of a class; see `Network.fromFile`."""
     options = MapOptions.of(given)
     file = map_file(path)
+    note_file(file)
     with no_garbage_collection():
         network = network_of(file.read_bytes(), str(file), options, cls, elevated)  # type: ignore[arg-type] # classes can be hashed
     assert isinstance(network, cls)

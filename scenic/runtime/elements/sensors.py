@@ -124,9 +124,11 @@ class CallbackSensor(Sensor):
 def _three(value: Any, name: str) -> tuple[float, float, float]:
     try:
         x, y, z = (float(item) for item in value)
+        if not all(map(math.isfinite, (x, y, z))):
+            raise ValueError("a number is not finite")
     except (TypeError, ValueError, Located) as error:
         raise InvalidScenarioError(
-            f"the {name} of a sensor must be three numbers, not {value!r}",
+            f"the {name} of a sensor must be three finite numbers, not {value!r}",
             help="sensors are fixed on their objects: their places and sizes are not random",
         ) from error
     return x, y, z

@@ -77,6 +77,10 @@ class Record:
     """Sequences that conditions were unrolled over, with the elements that they had."""
     emptied: list[tuple[Any, int, Span | None]] = field(default_factory=list)
     """Results of filters in which nothing is left: the result, of how many elements, and where."""
+    files: dict[Path, None] = field(default_factory=dict)
+    """Files whose content decides the scenes, in the order in which they are named."""
+    imports: dict[str, None] = field(default_factory=dict)
+    """Full names of Python's modules, and of what is imported from them."""
     looks: bool = False
     """True if some condition depends on visibility: it must be made again when all objects exist."""
     awaits: bool = False

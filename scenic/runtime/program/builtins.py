@@ -12,6 +12,7 @@ from scenic.language.names import NAMES
 from scenic.runtime.description.outcome import Program
 from scenic.runtime.dynamics.run import RunContext
 from scenic.runtime.ground.context import current, here
+from scenic.runtime.ground.used_files import note_file
 from scenic.runtime.regions import algebra as algebra  # registers what regions do together
 
 
@@ -93,7 +94,9 @@ def builtin_names(program: Program, filename: str, importer: Callable[..., Any])
 
     def local_path(relative: str) -> Path:
         """A path relative to the file that the program is in."""
-        return folder / relative
+        path = folder / relative
+        note_file(path)
+        return path
 
     return {
         **vars(builtins),

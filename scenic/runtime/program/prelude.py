@@ -43,6 +43,7 @@ from scenic.runtime.elements.specifiers import (
     specify,
 )
 from scenic.runtime.ground.context import Context, Site, current, here
+from scenic.runtime.ground.used_files import note_file, note_import
 from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.instances.placeholders import may_mutate, stand_in
 from scenic.runtime.instances.properties import ATTRIBUTES, PropertyDefinition
@@ -534,6 +535,8 @@ class Loader:
         others = [item for item in fromlist if item not in parts]
         if not parts or others:
             forget_stranger(name, folder)
+            for item in (name, *(f"{name}.{part}" for part in others)):
+                note_import(item)
             with beside(folder):
                 found = builtins.__import__(
                     name, globals, locals, others, 0 if importer.package or not level else level
@@ -558,6 +561,7 @@ class Loader:
         loaded = self._loaded
         if isinstance(active, RunContext) and path not in loaded:
             loaded = active.run.modules
+        note_file(path)
         if path not in loaded:
             module = ModuleType(name)
             loaded[path] = module

@@ -14,6 +14,7 @@ from scenic.runtime.geometry.meshes.solids import proper_volume
 from scenic.runtime.geometry.meshes.surface import side_contains
 from scenic.runtime.geometry.meshes.topology import without_unused
 from scenic.runtime.ground.context import here
+from scenic.runtime.ground.used_files import note_file
 from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Mask, Points, Region
 from scenic.runtime.regions.body_regions import Facing, OccupiedSpace, SideSurface
@@ -87,6 +88,7 @@ def _loaded(cls: type[Region], path: object, unit: str, scale: float, **how: boo
     if not isinstance(path, str | Path):
         raise ScenicTypeError(f"{what} needs a fixed path, not {path!r}", span=here())
     factor = factor_of(unit, scale, what)
+    note_file(path)
     mesh = load_mesh(path, **how)
     return mesh if factor == 1 else Mesh(mesh.vertices * factor, mesh.faces)
 

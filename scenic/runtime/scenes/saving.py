@@ -19,7 +19,7 @@ from scenic.runtime.sampling.engine import Found
 from scenic.runtime.sampling.pending import Task
 
 FORMAT: Final = "scenic scene"
-VERSION: Final = 1
+VERSION: Final = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,15 +48,21 @@ class SavedScene:
             "numbers": {f"{name:016x}": number.hex() for name, number in sorted(self.numbers.items())},
             "words": {f"{name:016x}": f"{word:016x}" for name, word in sorted(self.words.items())},
         }
-        return json.dumps(data, separators=(",", ":")).encode()
+        body = json.dumps(data, separators=(",", ":")).encode()[:-1]
+        return body + _SUM + _sum(body) + b'"}'
 
     @classmethod
     def from_bytes(cls, data: bytes) -> "SavedScene":
         """The scene in the data; raises `SerializationError` for anything that `to_bytes` does not write."""
         try:
+            body, mark, rest = bytes(data).rpartition(_SUM)
+            if mark and rest != _sum(body) + b'"}':
+                raise _broken("its content has changed since it was written")
             content = json.loads(data)
             if content["format"] != FORMAT or content["version"] != VERSION:
                 raise _broken("it is of another kind, or another version of the format")
+            if not mark:
+                raise _broken("it has no checksum")
             numbers = {int(name, 16): float.fromhex(number) for name, number in content["numbers"].items()}
             if not all(0 < number < 1 for number in numbers.values()):
                 raise _broken("a draw lies outside of the unit interval")
@@ -69,6 +75,14 @@ class SavedScene:
             )
         except (ValueError, KeyError, TypeError, AttributeError, UnicodeDecodeError) as error:
             raise _broken(f"it is damaged, or not the data of a scene ({error})") from error
+
+
+_SUM: Final = b',"sum":"'
+"""The field that ends the data: a checksum of everything before it."""
+
+
+def _sum(body: bytes) -> bytes:
+    return hashlib.sha256(body).hexdigest()[:32].encode()
 
 
 def _broken(why: str) -> SerializationError:

@@ -1,9 +1,11 @@
 """Scenes: one sample of a scenario."""
 
+import pickle
 import sys
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, Final, TextIO
 
 from scenic.dataclass import dataclass
 from scenic.graph.node import Node
@@ -80,6 +82,7 @@ class Scene:
     _cast: tuple[Any, ...] | None = None
     _objects: tuple[Any, ...] | None = None
     _params: dict[str, Any] | None = None
+    _pickled: tuple[bytes, bytes] | None = None
 
     def __init__(self, found: Found, lane: int, family: Family) -> None:
         self.found = found
@@ -265,8 +268,21 @@ class Scene:
         return self.show()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """A scene is pickled as its scenario and its draws."""
-        return _taken_up, (self._family.scenario, self._family.keep(self))
+        """A scene is pickled as its program, which a process compiles once for all of its scenes, and its draws."""
+        if self._pickled is not None:
+            return _taken_up, self._pickled
+        return _taken_up, (self._family.scenario.recipe_bytes, self._family.keep(self))
+
+    def __getattr__(self, name: str) -> Any:
+        """Evaluate a scene that was unpickled, when it is first looked at."""
+        if name not in _EVALUATED or self._pickled is None:
+            raise AttributeError(
+                f"'{type(self).__name__}' object has no attribute {name!r}", name=name, obj=self
+            )
+        recipe, data = self._pickled
+        scene = _compiled(recipe).sceneFromBytes(data)
+        self.found, self.lane, self._family = scene.found, scene.lane, scene._family
+        return self.__dict__[name]
 
     def __copy__(self) -> "Scene":
         scene = object.__new__(type(self))
@@ -308,7 +324,19 @@ def _always(requirement: Requirement) -> bool:
     return requirement.condition.is_constant and bool(requirement.condition.value)
 
 
-def _taken_up(scenario: Any, data: bytes) -> Scene:
-    """The scene of its draws, with objects of its own."""
-    scene: Scene = scenario.sceneFromBytes(data)
+def _taken_up(recipe: bytes, data: bytes) -> Scene:
+    """The scene of its draws, with objects of its own; it is evaluated when it is first looked at."""
+    scene = object.__new__(Scene)
+    scene._pickled = recipe, data
     return scene
+
+
+_EVALUATED: Final = frozenset({"found", "lane", "_family"})
+"""Attributes that an unpickled scene gets when it is evaluated."""
+
+
+@lru_cache(maxsize=16)
+def _compiled(recipe: bytes) -> Any:
+    """The scenario of a pickled recipe, for all scenes of it that this process takes up."""
+    make, arguments = pickle.loads(recipe)
+    return make(*arguments)

@@ -23,6 +23,7 @@ from scenic.runtime.geometry.meshes.loading import factor_of, load_mesh
 from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.meshes.solids import proper_volume
 from scenic.runtime.geometry.poses import Floats, Poses
+from scenic.runtime.ground.used_files import note_file
 from scenic.runtime.values.random_base import RandomBase
 
 Triple: TypeAlias = tuple[float, float, float]
@@ -259,6 +260,7 @@ class MeshShape(Shape):
             raise ScenicTypeError(f"MeshShape.fromFile needs a fixed path, not {_described(path)}")
         rotation = _rotation(initial_rotation, "MeshShape")
         metres = factor_of(unit, 1, "MeshShape.fromFile")
+        note_file(path)
         mesh, (width, length, height) = _from_file(str(path), _stamp(Path(path)), bool(unify), rotation)
         extents = width * metres, length * metres, height * metres
         shape = cls.__new__(cls)

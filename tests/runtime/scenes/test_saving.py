@@ -1,12 +1,15 @@
 """Scenes kept as data and as programs, and taken up again."""
 
 import copy
+import hashlib
 import io
 import json
 import math
 import os
 import pickle
+import re
 import stat
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +19,12 @@ import trimesh
 from scenic.core.distributions import Range
 
 import scenic
+from scenic import pipeline
 from scenic.failures import diagnose
 from scenic.language.errors import InvalidScenarioError, ScenicWarning, SerializationError
 from scenic.runtime.ground.files import whole
 from scenic.runtime.scenes.dumping import literal, program_of
+from scenic.runtime.scenes.scenario import Scenario
 from tests.runtime.programs import fingerprint, scenario
 from tests.runtime.programs import scene as scene_of
 
@@ -107,7 +112,17 @@ def test_a_scene_is_saved_whole_or_not_at_all(tmp_path: Path) -> None:
 def test_a_saved_scene_is_data_only(tmp_path: Path) -> None:
     loaded = scenario(PROGRAM)
     data = json.loads(loaded.sceneToBytes(loaded.sample(1, seed=0)[0]))
-    assert set(data) == {"format", "version", "program", "seed", "scene", "attempts", "numbers", "words"}
+    assert set(data) == {
+        "format",
+        "version",
+        "program",
+        "seed",
+        "scene",
+        "attempts",
+        "numbers",
+        "words",
+        "sum",
+    }
     assert "lucky" not in json.dumps(data)
 
 
@@ -135,7 +150,7 @@ def test_data_of_another_program_or_damaged_is_refused() -> None:
         b"\xff",
         data[:-5],
         data.replace(b"0x1.", b"0x9."),
-        data.replace(b'"version":1', b'"version":2'),
+        data.replace(b'"version":2', b'"version":3'),
     ):
         with pytest.raises(SerializationError) as caught:
             loaded.sceneFromBytes(broken)
@@ -318,11 +333,65 @@ def test_a_saved_scene_has_all_draws_of_the_program_and_no_other() -> None:
     for numbers, words in (({}, {}), ({address: number, "01": number}, {}), ({address: number}, {"01": "0"})):
         changed = data | {"numbers": data["numbers"] | numbers, "words": words}
         with pytest.raises(SerializationError, match="other random values"):
-            loaded.sceneFromBytes(json.dumps(changed).encode())
+            loaded.sceneFromBytes(sealed(changed))
     for outside in (0.0, 1.0):
         changed = data | {"numbers": data["numbers"] | {address: outside.hex()}}
         with pytest.raises(SerializationError, match="outside of the unit interval"):
-            loaded.sceneFromBytes(json.dumps(changed).encode())
+            loaded.sceneFromBytes(sealed(changed))
+
+
+def sealed(data: dict[str, Any]) -> bytes:
+    """Data of a scene with the checksum that belongs to it."""
+    body = json.dumps({name: value for name, value in data.items() if name != "sum"}).encode()[:-1]
+    return body + b',"sum":"' + hashlib.sha256(body).hexdigest()[:32].encode() + b'"}'
+
+
+def test_every_bit_counts() -> None:
+    """A saved scene in which a bit flips is refused."""
+    loaded = scenario("ego = new Object at (Range(0, 1), 0)")
+    data = loaded.sceneToBytes(loaded.sample(1, seed=0)[0])
+    for place in range(8 * len(data)):
+        changed = bytearray(data)
+        changed[place // 8] ^= 1 << place % 8
+        with pytest.raises(SerializationError):
+            loaded.sceneFromBytes(bytes(changed))
+
+
+def test_unpickled_scenes_share_a_program(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A process compiles the program once, and evaluates a scene when it is looked at."""
+    loaded = scenario("ego = new Object at (Range(0, 1), 0)")
+    scenes = loaded.sample(20, seed=0)
+    pickled = [pickle.dumps(scene) for scene in scenes]
+    compiled = []
+    run = pipeline._run
+    monkeypatch.setattr(pipeline, "_run", lambda *given: compiled.append(given) or run(*given))
+    again = [pickle.loads(data) for data in pickled]
+    assert not compiled
+    assert [scene.egoObject.x for scene in again] == [scene.egoObject.x for scene in scenes]
+    assert [scene.k for scene in again] == list(range(20))
+    assert len(compiled) == 1
+    assert pickle.dumps(pickle.loads(pickled[0])) == pickled[0]
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda loaded: loaded.sample(1, seed=1.5), "`seed` must be an integer, not 1.5"),
+        (lambda loaded: loaded.sample(1, seed="abc"), "`seed` must be an integer, not 'abc'"),
+        (lambda loaded: loaded.sample(-1), "`n` must be an integer of at least 0, not -1"),
+        (
+            lambda loaded: loaded.stream(1, seed=1, first=-2),
+            "`first` must be an integer of at least 0, not -2",
+        ),
+        (lambda loaded: loaded.sample(1, max_attempts=0), "`max_attempts` must be an integer of at least 1"),
+        (lambda loaded: loaded.sample(1, time_limit=0), "`time_limit` must be a positive number of seconds"),
+        (lambda loaded: loaded.simulate(1, seed="x"), "`seed` must be an integer, not 'x'"),
+        (lambda loaded: loaded.simulate(-1), "`n` must be an integer of at least 0, not -1"),
+    ],
+)
+def test_numbers_that_cannot_be_are_refused(call: Callable[[Scenario], object], message: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(message)):
+        call(scenario("ego = new Object at (Range(0, 1), 0)"))
 
 
 def test_scenes_conditioned_on_one_keep_what_was_named() -> None:

@@ -1,0 +1,1 @@
+"""Folders that commands write over time: who writes (`lock`), what they hold (`folder`, `ranges`), what decides it (`fingerprint`)."""

@@ -1,0 +1,233 @@
+"""The options of ``scenic sample``, and the request that they make."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Final, TypeVar
+
+import click
+
+from scenic.cli.options import (
+    OneOf,
+    accept_changes_option,
+    count_option,
+    dask_option,
+    extra_params_option,
+    first_option,
+    image_size_option,
+    jobs_option,
+    look_from_option,
+    program_argument,
+    program_options,
+    seconds,
+    seed_option,
+    sobol_option,
+)
+from scenic.dataclass import dataclass
+
+__all__ = ["SampleRequest", "sample_options"]
+
+_Command = TypeVar("_Command", bound=Callable[..., Any])
+
+_OPTIONS: Final[tuple[Callable[[Any], Any], ...]] = (
+    program_argument,
+    count_option("How many scenes."),
+    first_option("Number of the first scene; -n scenes from there on."),
+    jobs_option("Make JSON Lines in so many processes. The scenes and their order are the same."),
+    click.option(
+        "--resume",
+        is_flag=True,
+        help="Continue the JSON Lines of an interrupted run: OUT.part, or OUT with fewer scenes.",
+    ),
+    click.option(
+        "--verify",
+        "verified",
+        is_flag=True,
+        help="With --resume: compare the content of a data set's parts with their digests, and make changed ones again.",
+    ),
+    accept_changes_option,
+    click.option(
+        "--properties",
+        type=OneOf(["all", "changed"]),
+        default="all",
+        show_default=True,
+        help="Properties of objects to write in JSON Lines: all, or only properties that the program gives.",
+    ),
+    seed_option("Scenes"),
+    sobol_option,
+    click.option(
+        "--approximate",
+        metavar="N",
+        type=click.IntRange(min=2),
+        help="For requirements that are hardly ever met: make N scenes together. The larger N, the closer their "
+        "distribution is to the program's.",
+    ),
+    program_options,
+    extra_params_option,
+    click.option(
+        "--settle",
+        metavar="T",
+        type=float,
+        callback=seconds,
+        help="Reject scenes in which an object moves within this number of seconds of physics (MuJoCo).",
+    ),
+    click.option(
+        "--settle-tolerance",
+        metavar="M",
+        type=click.FloatRange(min=0, min_open=True),
+        default=0.01,
+        show_default=True,
+        help="With --settle: the distance in metres that is not yet moving; turning by 5 degrees is.",
+    ),
+    click.option(
+        "--no-prune",
+        is_flag=True,
+        help="Do not narrow the distributions first. The distribution of the scenes is the same.",
+    ),
+    click.option(
+        "--max-attempts",
+        metavar="M",
+        type=click.IntRange(min=1),
+        help="Give up a scene after this number of candidates.",
+    ),
+    click.option(
+        "--time-limit", metavar="T", type=float, callback=seconds, help="Stop after this number of seconds."
+    ),
+    click.option(
+        "-o",
+        "--output",
+        metavar="OUT",
+        help="JSON Lines to this file, columns if OUT ends in .parquet, a file for each scene if it ends in .glb, .obj, .wbt, .usda, .usdc, .usdz, .xml (MJCF) or .sdf, a data "
+        "set of many files if it ends in / or is a folder; - is standard output, which is the default without --view and --png.",
+    ),
+    click.option(
+        "--format",
+        "form",
+        type=OneOf(["parquet", "jsonl", "images", "tar", "usd", "mjcf", "sdf"]),
+        help="Format of the files of a data set: parquet or jsonl; usd, mjcf or sdf for a file of each scene with shared meshes; with --camera images, or tar for shards.  [default: the first]",
+    ),
+    click.option(
+        "--part-size",
+        metavar="N",
+        type=click.IntRange(min=1),
+        help="Scenes in each part of a data set.  [default: 65536, with --camera 512]",
+    ),
+    dask_option("Sample"),
+    click.option(
+        "--sampler",
+        metavar="NAME",
+        help="Let a sampler of `scenic falsify` (halton, grid, cma, ...) choose the external parameters, else all draws.",
+    ),
+    click.option(
+        "--minimize",
+        "minimized",
+        metavar="EXPR",
+        help="With --sampler: an expression over parameters, `ego` and `objects` that learning samplers minimise.",
+    ),
+    click.option(
+        "--view",
+        metavar="PAGE.html",
+        help="Make a page in which the scenes can be turned and stepped through.",
+    ),
+    click.option(
+        "--png",
+        metavar="PATH",
+        help="Make an image of each scene: in this folder, or at this name with .png.",
+    ),
+    click.option(
+        "--camera",
+        "cameras",
+        metavar="NAME",
+        multiple=True,
+        help="Make a data set of labelled images, as the sensor of this name sees them, or the object of a variable; "
+        "several cameras share one data set.",
+    ),
+    click.option(
+        "--overlay", is_flag=True, help="With --camera: make images with the labels drawn into them, too."
+    ),
+    click.option(
+        "--image-size",
+        metavar="WxH",
+        callback=image_size_option,
+        help="Columns and rows of the images.  [default: 960x720; a sensor's own]",
+    ),
+    look_from_option("--png"),
+    click.option(
+        "--frame",
+        type=OneOf(["workspace", "objects"]),
+        default="workspace",
+        help="The contents that --png fits into the image: the workspace, so that all scenes are seen alike, or the "
+        "objects.",
+        show_default=True,
+    ),
+    click.option(
+        "--show-params",
+        is_flag=True,
+        help="Print the parameters of each scene, on the error stream if the scenes go to standard output.",
+    ),
+    click.option(
+        "--profile",
+        is_flag=True,
+        help="Show the time of sampling by operation, line and requirement, instead of the scenes.",
+    ),
+)
+
+
+def sample_options(command: _Command) -> _Command:
+    """Give a command all options of ``scenic sample``, in the order of its help."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+@dataclass(frozen=True, slots=True)
+class SampleRequest:
+    """The values of the options, as the command takes them."""
+
+    file: str
+    count: int
+    first: int
+    jobs: int
+    resume: bool
+    verified: bool
+    accept_changes: bool
+    properties: str
+    seed: int | None
+    sobol: bool
+    approximate: int | None
+    parameters: Mapping[str, Any]
+    scenario: str | None
+    model: str | None
+    mode_2d: bool
+    extra_params: bool
+    settle: float | None
+    settle_tolerance: float
+    no_prune: bool
+    max_attempts: int | None
+    time_limit: float | None
+    output: str | None
+    form: str | None
+    part_size: int | None
+    dask: str | None
+    sampler: str | None
+    minimized: str | None
+    view: str | None
+    png: str | None
+    cameras: tuple[str, ...]
+    overlay: bool
+    image_size: tuple[int, int] | None
+    outlook: Mapping[str, float]
+    frame: str
+    show_params: bool
+    profile: bool
+
+    @property
+    def path(self) -> Path:
+        """The program's file."""
+        return Path(self.file)
+
+    @property
+    def points(self) -> str | None:
+        """The way in which scenes are made, as manifests name it."""
+        return (
+            "sobol" if self.sobol else None if self.approximate is None else f"approximate {self.approximate}"
+        )

@@ -1,0 +1,297 @@
+"""The run of ``scenic sample``: scenes of a source, made by an engine, into sinks."""
+
+import secrets
+import shlex
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from scenic.batch.engines import Engine
+from scenic.batch.folders.fingerprint import digest_of_files, file_digests
+from scenic.batch.folders.lock import lock_beside
+from scenic.batch.scenes import Job, in_processes, method_of, results_of
+from scenic.cli import sinks
+from scenic.cli.batch_parts import SINKS, sink_parts
+from scenic.cli.output import has_colours
+from scenic.cli.running import engine_of, progress_bar
+from scenic.cli.sample_options import SampleRequest
+from scenic.dataclass import dataclass
+from scenic.formats.files import OutputError
+from scenic.formats.growing import GrowingFile
+from scenic.formats.json_lines import SceneLines
+from scenic.formats.resuming import continued
+from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.scenes.scenario import Scenario
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
+
+    from scenic.batch.manifest import Manifest
+    from scenic.runtime.scenes.scene import Scene
+
+__all__ = ["sample_into_sinks"]
+
+
+@dataclass(slots=True)
+class _Batch:
+    """The scenes of a request: a source and an engine.
+
+    Attributes:
+        scenario: the program.
+        request: the options.
+        seed: the seed of the scenes.
+        deadline: a time of `time.monotonic`.
+        engine: where scenes are made; this process if ``None``.
+        advance: called with how many more scenes are done, and their candidates.
+        missing: scenes that were not found so far.
+
+    """
+
+    scenario: Scenario
+    request: SampleRequest
+    seed: int
+    deadline: float | None
+    engine: Engine | None = None
+    advance: Callable[[int, int], None] = lambda _scenes, _attempts: None
+    missing: list[Exhausted] = field(default_factory=list)
+
+    def job(self, done: int = 0) -> Job:
+        """The scenes after the first ``done``."""
+        request = self.request
+        first, last = request.first + done, request.first + request.count
+        method = method_of(request.points)
+        return Job(self.seed, first, last, request.max_attempts, self.deadline, **method)
+
+    def scenes(self, done: int = 0) -> "Iterator[Scene]":
+        """The scenes after the first ``done``, made in this process; others are noted as missing."""
+        request = self.request
+        if request.sampler is None:
+            results = results_of(self.scenario, self.job(done))
+        else:
+            from scenic.falsification.objectives import Objective
+            from scenic.falsification.sampling import sampled_by
+
+            objective = None if request.minimized is None else Objective(expression=request.minimized)
+            results = sampled_by(
+                self.scenario, request.sampler, request.count, seed=self.seed, objective=objective
+            )
+        for result in results:
+            if isinstance(result, Exhausted):
+                self.missing.append(result)
+            else:
+                yield result
+            self.advance(1, result.attempts)
+
+    def manifest(self, form: str, part_size: int) -> "Manifest":
+        """The manifest of a data set of these scenes."""
+        from scenic.batch.manifest import Manifest
+
+        request = self.request
+        images = {
+            "cameras": list(dict.fromkeys(request.cameras)),
+            "size": request.image_size and list(request.image_size),
+            "overlay": request.overlay,
+        }
+        return Manifest.of(
+            self.scenario,
+            seed=self.seed,
+            first=request.first,
+            count=request.count,
+            form=form,
+            part_size=part_size,
+            points=request.points,
+            max_attempts=request.max_attempts,
+            properties=request.properties,
+            images=images if request.cameras else None,
+            command=shlex.join(["scenic", *sys.argv[1:]]),
+        )
+
+
+def sample_into_sinks(
+    scenario: Scenario, request: SampleRequest, chosen: "list[sinks.Sink]", deadline: float | None
+) -> list[Exhausted]:
+    """Make the scenes of a request and write them; returns those that were not found.
+
+    Args:
+        scenario: the program.
+        request: the options, which fit together.
+        chosen: sinks that take scenes one by one.
+        deadline: a time of `time.monotonic` after which scenes are not looked for.
+
+    """
+    names = sink_parts(request)
+    place = Path(request.output or "-")
+    target = place if "lines" in names else None
+    folder = place if names.keys() & {"dataset", "worlds", "labels"} else None
+    grown = None if target is None else GrowingFile(target, resume=request.resume)
+    to_terminal = "output" in names and sys.stdout.isatty()
+    with ExitStack() as stack:
+        if target is not None:
+            stack.enter_context(lock_beside(target))
+        seed, form, part_size = _as_before(request, folder)
+        files, done = digest_of_files(file_digests(scenario)), 0
+        if grown is not None and request.resume:
+            compared = None if request.accept_changes else files
+            seed, done = continued(
+                grown,
+                scenario.digest,
+                seed,
+                request.first,
+                request.count,
+                points=request.points,
+                files=compared,
+            )
+        batch = _Batch(scenario, request, _announced(seed), deadline)
+        stack.enter_context(_kept_is_reported(grown, folder, request.count))
+        takers = [stack.enter_context(sink) for sink in chosen]
+        put = _to_output if grown is None else stack.enter_context(grown).write
+        batch.engine = stack.enter_context(engine_of(request.jobs, request.dask))
+        batch.advance = stack.enter_context(progress_bar(request.count, "sampling", shown=not to_terminal))
+        batch.advance(done, 0)
+        if folder is not None:
+            _write_folder(batch, folder, form, part_size)
+        elif "table" in names:
+            from scenic.batch.datasets import Run, write_table
+
+            run = Run(batch.engine, deadline, batch.advance)
+            batch.missing.extend(write_table(scenario, place, batch.manifest("parquet", 65536), run).missing)
+        elif to_terminal:
+            shown = _Tables()
+            for scene in batch.scenes():
+                _take(scene, takers)
+                shown.show(scene)
+            shown.finish()
+        else:
+            has_lines = bool(names.keys() & {"output", "lines"})
+            lines = SceneLines(
+                (request.path.name, scenario.digest),
+                changed=request.properties == "changed",
+                points=request.points,
+                folder=Path.cwd() if target is None else target.parent,
+                files=files,
+            )
+            _write_lines(batch, takers, lines if has_lines else None, put, done)
+    return batch.missing
+
+
+def _as_before(request: SampleRequest, folder: Path | None) -> tuple[int | None, str, int]:
+    """Seed, form and size of the parts of a data set, by default those of the data set that is resumed."""
+    from scenic.batch.folders.folder import NAME
+
+    seed, form, part_size = request.seed, request.form, request.part_size
+    if folder is not None and request.resume and (folder / NAME).exists():
+        from scenic.batch.manifest import Manifest
+
+        earlier = Manifest.load(folder)
+        seed = earlier.seed if seed is None else seed
+        if form is None and bool(request.cameras) == (earlier.images is not None):
+            form = earlier.form
+        part_size = earlier.part_size if part_size is None else part_size
+    default = SINKS["labels" if request.cameras else "dataset"].forms[0]
+    return seed, form or default, part_size or (512 if request.cameras else 65536)
+
+
+def _announced(seed: int | None) -> int:
+    """The seed; one that is drawn is shown."""
+    if seed is None:
+        seed = secrets.randbits(32)
+        sys.stderr.write(f"seed {seed} (the same scenes again: --seed {seed})\n")
+    return seed
+
+
+def _write_folder(batch: _Batch, folder: Path, form: str, part_size: int) -> None:
+    from scenic.batch.datasets import Resuming, Run, make_dataset
+
+    request = batch.request
+    run = Run(batch.engine, batch.deadline, batch.advance)
+    resume = Resuming(request.verified, request.accept_changes) if request.resume else False
+    finished = make_dataset(batch.scenario, folder, batch.manifest(form, part_size), run, resume=resume)
+    batch.missing.extend(finished.missing)
+    if skipped := sum(part.skipped for part in finished.manifest.parts):
+        sys.stderr.write(
+            f"{skipped:,} images are not there: their camera's object does not take part in the scene\n"
+        )
+
+
+def _write_lines(
+    batch: _Batch,
+    takers: "list[sinks.Take]",
+    lines: SceneLines | None,
+    put: "Callable[[ReadableBuffer], object]",
+    done: int,
+) -> None:
+    """Give scenes to sinks, and write their lines, if there are to be any."""
+    request = batch.request
+    if batch.engine is not None and request.count - done > 1 and lines is not None:
+        for made in in_processes(batch.scenario, lines.block, batch.job(done), batch.engine):
+            put(made.encoded)
+            batch.missing.extend(made.missing)
+            batch.advance(made.job.last - made.job.first, made.attempts)
+        return
+    to_output = lines is not None and request.output in (None, "-")
+    for scene in batch.scenes(done):
+        _take(scene, takers)
+        if request.show_params:
+            stream = sys.stderr if to_output else sys.stdout
+            stream.write(f"scene {scene.k}:\n")
+            stream.writelines(f"  {name} = {value}\n" for name, value in scene.params.items())
+        if lines is not None:
+            put(lines.encoded(scene))
+
+
+def _take(scene: Any, takers: "list[sinks.Take]") -> None:
+    for take in takers:
+        take(scene)
+
+
+@contextmanager
+def _kept_is_reported(grown: GrowingFile | None, folder: Path | None, count: int) -> Iterator[None]:
+    """Print, when a run is interrupted, the number of kept scenes and the way to continue."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        kept = 0 if grown is None else len(grown.lines_kept())
+        if grown is not None and kept:
+            sys.stderr.write(f"{kept:,} of {count:,} kept in '{grown.part}'; continue with --resume\n")
+        if folder is None:
+            raise
+        from scenic.batch.datasets import scenes_kept
+
+        if kept := scenes_kept(folder):
+            sys.stderr.write(f"{kept:,} of {count:,} kept in '{folder}'; continue with --resume\n")
+        raise
+
+
+class _Tables:
+    """Scenes as tables on a terminal."""
+
+    def __init__(self) -> None:
+        from rich.console import Console
+
+        self._console = Console(no_color=not has_colours(sys.stdout), highlight=False)
+
+    def show(self, scene: "Scene") -> None:
+        """Print the parameters and objects of a scene."""
+        from scenic.cli.render.scenes import render_scene
+
+        render_scene(scene, self._console)
+
+    def finish(self) -> None:
+        """Say how to save scenes."""
+        self._console.print(
+            "save scenes with -o scenes.jsonl, look at them with --view page.html", style="dim"
+        )
+
+
+def _to_output(lines: "ReadableBuffer") -> None:
+    try:
+        sys.stdout.write(str(lines, "ascii"))
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise OutputError(f"cannot write to the standard output: {reason}") from error
