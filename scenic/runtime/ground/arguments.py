@@ -3,7 +3,7 @@
 import operator
 from typing import Any
 
-__all__ = ["whole_number"]
+__all__ = ["check_limits", "whole_number"]
 
 
 def whole_number(value: Any, name: str, least: int | None = None) -> int:
@@ -24,3 +24,12 @@ def whole_number(value: Any, name: str, least: int | None = None) -> int:
 
 def _words(least: int | None) -> str:
     return "an integer" if least is None else f"an integer of at least {least}"
+
+
+def check_limits(max_attempts: int | None, time_limit: float | None, lanes: int | None) -> None:
+    """Raise ``ValueError`` for limits of sampling that are not positive."""
+    for name, value in (("max_attempts", max_attempts), ("lanes", lanes)):
+        if value is not None:
+            whole_number(value, name, 1)
+    if time_limit is not None and not time_limit > 0:
+        raise ValueError(f"`time_limit` must be a positive number of seconds, not {time_limit!r}")

@@ -28,7 +28,7 @@ from scenic.language.spans import Span
 from scenic.language.spelling import nearest_attribute
 from scenic.runtime.description.declarations import Declared
 from scenic.runtime.description.outcome import Program
-from scenic.runtime.ground.arguments import whole_number
+from scenic.runtime.ground.arguments import check_limits, whole_number
 from scenic.runtime.ground.choosable import Choosable
 from scenic.runtime.instances.objects import Object
 from scenic.runtime.python.samples import dependencies
@@ -74,15 +74,6 @@ def _plain(options: Mapping[str, Any]) -> dict[str, Any]:
         if isinstance(value, str | int | float | bool | None)
     }
     return {**known, "params": params} if params else known
-
-
-def _check_limits(max_attempts: int | None, time_limit: float | None, lanes: int | None) -> None:
-    """Raise ``ValueError`` for limits of sampling that are not positive."""
-    for name, value in (("max_attempts", max_attempts), ("lanes", lanes)):
-        if value is not None:
-            whole_number(value, name, 1)
-    if time_limit is not None and not time_limit > 0:
-        raise ValueError(f"`time_limit` must be a positive number of seconds, not {time_limit!r}")
 
 
 _KEPT: Final = frozenset({"_foreseen", "_external_candidates"})
@@ -317,30 +308,7 @@ class Scenario(Generating):
         """
         n, first = whole_number(n, "n", 0), whole_number(first, "first", 0)
         seed = whole_number(seed, "seed")
-        _check_limits(max_attempts, time_limit, lanes)
-        return self._streamed(
-            n,
-            seed,
-            first,
-            max_attempts=max_attempts,
-            time_limit=time_limit,
-            lanes=lanes,
-            source=source,
-            approximate=approximate,
-        )
-
-    def _streamed(
-        self,
-        n: int,
-        seed: int,
-        first: int,
-        *,
-        max_attempts: int | None,
-        time_limit: float | None,
-        lanes: int | None,
-        source: PointSet | None,
-        approximate: int | None,
-    ) -> Iterator[Scene | Exhausted]:
+        check_limits(max_attempts, time_limit, lanes)
         if approximate is not None:
             if approximate < 2 or any(item is not None for item in (lanes, source, time_limit)):
                 raise ValueError(
@@ -437,7 +405,7 @@ class Scenario(Generating):
         n = whole_number(n, "n", 0)
         processes = whole_number(processes, "processes", 1)
         chosen = random.getrandbits(SEED_BITS) if seed is None else whole_number(seed, "seed")
-        _check_limits(max_attempts, time_limit, lanes)
+        check_limits(max_attempts, time_limit, lanes)
         if approximate is not None and (processes > 1 or executor is not None):
             raise ValueError("approximate scenes are made together, in one process")
         if (processes > 1 or executor is not None) and self._services.sample is not None:
@@ -483,7 +451,7 @@ class Scenario(Generating):
         """
         n, first = whole_number(n, "n", 0), whole_number(first, "first", 0)
         seed = whole_number(seed, "seed")
-        _check_limits(max_attempts, time_limit, None)
+        check_limits(max_attempts, time_limit, None)
         deadline = None if time_limit is None else time.monotonic() + time_limit
         tasks = [(seed, k) for k in range(first, first + n)]
         try:

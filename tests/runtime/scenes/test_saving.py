@@ -380,7 +380,7 @@ def test_unpickled_scenes_share_a_program(monkeypatch: pytest.MonkeyPatch) -> No
         (lambda loaded: loaded.sample(1, seed="abc"), "`seed` must be an integer, not 'abc'"),
         (lambda loaded: loaded.sample(-1), "`n` must be an integer of at least 0, not -1"),
         (
-            lambda loaded: loaded.stream(1, seed=1, first=-2),
+            lambda loaded: list(loaded.stream(1, seed=1, first=-2)),
             "`first` must be an integer of at least 0, not -2",
         ),
         (lambda loaded: loaded.sample(1, max_attempts=0), "`max_attempts` must be an integer of at least 1"),
