@@ -186,7 +186,7 @@ class Require(ScenicStatement):
 
     condition: ast.expr
     probability: float | None
-    name: str | None
+    name: str | ast.expr | None
     _fields = ("condition", "probability", "name")
 
 
@@ -194,7 +194,7 @@ class RequireMonitor(ScenicStatement):
     """``require monitor M() as name``."""
 
     monitor: ast.expr
-    name: str | None
+    name: str | ast.expr | None
     _fields = ("monitor", "name")
 
 
@@ -205,7 +205,7 @@ class Record(ScenicStatement):
     value: ast.expr
     every: Duration | None
     after: Duration | None
-    name: str | None
+    name: str | ast.expr | None
     to: ast.expr | None
     _fields = ("moment", "value", "every", "after", "name", "to")
 
@@ -215,7 +215,7 @@ class TerminateWhen(ScenicStatement):
 
     simulation: bool
     condition: ast.expr
-    name: str | None
+    name: str | ast.expr | None
     _fields = ("simulation", "condition", "name")
 
 

@@ -133,7 +133,7 @@ def _of_statement(
         for item in node.items:
             yield _symbol(snapshot, item, Kind.PARAMETER, _text(snapshot, item.value))
     elif isinstance(node, scenic.Require | scenic.RequireMonitor | scenic.TerminateWhen):
-        if node.name:
+        if isinstance(node.name, str):
             span = span_of(snapshot, node)
             yield Symbol(node.name, Kind.REQUIREMENT, "", span, span)
     elif isinstance(node, ast.Assign | ast.AnnAssign):

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import pytest
-
 from scenic.compiler._generated.tables import WORDS
+
 from scenic.compiler.check import check_text
 from scenic.compiler.lexer import lex
 from scenic.language.diagnostics import Severity

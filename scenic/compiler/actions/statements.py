@@ -158,7 +158,7 @@ class StatementActions(DefinitionActions, ExpressionActions):
         self.fail(self.place_of_token(index), "a name cannot be bytes", help="remove the prefix `b`")
         return None
 
-    def not_both(self, name: str | None, target: ast.expr | None) -> bool:
+    def not_both(self, name: str | ast.expr | None, target: ast.expr | None) -> bool:
         """Report a record with a name and a target."""
         if name is not None and target is not None:
             self._report(

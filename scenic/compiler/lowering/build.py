@@ -105,12 +105,13 @@ def prelude_call(
     *,
     options: Mapping[str, object] = MappingProxyType({}),
 ) -> ast.Call:
-    """``__scenic__.function(*args, **options)`` at a place; ``options`` are constants."""
+    """``__scenic__.function(*args, **options)`` at a place; ``options`` are constants, or expressions that are lowered."""
     callee = start_of(
         ast.Attribute(start_of(ast.Name(PRELUDE, ast.Load()), origin), function, ast.Load()), origin
     )
     constants = [
-        at(ast.keyword(option, constant(value, origin)), origin) for option, value in options.items()
+        at(ast.keyword(option, value if isinstance(value, ast.expr) else constant(value, origin)), origin)
+        for option, value in options.items()
     ]
     return at(ast.Call(callee, list(args), constants), origin)
 

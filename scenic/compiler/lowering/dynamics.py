@@ -56,6 +56,9 @@ class Lowerer(Protocol):
     def specifier(self, node: scenic.SpecifierPhrase) -> ast.expr:
         """A lowered specifier."""
 
+    def label(self, name: str | ast.expr | None) -> str | ast.expr | None:
+        """The name of a statement, lowered if it is an expression."""
+
     def conditions(self) -> Conditions:
         """The lowering of conditions that are kept."""
 
@@ -185,6 +188,8 @@ def plain(lowerer: Lowerer, node: scenic.ScenicStatement) -> ast.stmt:
         match value:
             case scenic.Duration():
                 args += _limit(lowerer, value, None)
+            case ast.expr() if field == "name":
+                options[field] = lowerer.label(value)
             case ast.expr():
                 lowered = lowerer.expression(value)
                 args.append(lambda_([], lowered, value) if field in declared.later else lowered)
@@ -228,13 +233,15 @@ def _wait_until(lowerer: Lowerer, node: scenic.WaitUntil) -> ast.stmt:
 
 def _terminate_when(lowerer: Lowerer, node: scenic.TerminateWhen) -> ast.stmt:
     kept = lowerer.conditions().kept(node.condition)
-    options = {"simulation": node.simulation, "name": node.name}
+    options = {"simulation": node.simulation, "name": lowerer.label(node.name)}
     return statement(prelude_call("terminate_when", kept, node, options=options), node)
 
 
 def _record(lowerer: Lowerer, node: scenic.Record) -> ast.stmt:
     kept = lowerer.conditions().kept(node.value)
-    call = prelude_call("record", kept, node, options={"moment": node.moment, "name": node.name})
+    call = prelude_call(
+        "record", kept, node, options={"moment": node.moment, "name": lowerer.label(node.name)}
+    )
     for option, duration in (("every", node.every), ("after", node.after)):
         if duration is not None:
             value = tuple_(_limit(lowerer, duration, None), duration)

@@ -235,8 +235,12 @@ class _Program:
 
     def require(self, node: scenic.Require) -> ast.stmt:
         condition = self.conditions().condition(node.condition)
-        options = {"probability": node.probability, "name": node.name}
+        options = {"probability": node.probability, "name": self.label(node.name)}
         return statement(prelude_call("require", [condition], node, options=options), node)
+
+    def label(self, name: str | ast.expr | None) -> str | ast.expr | None:
+        """The name of a requirement, record or end: as it is written, or the lowered expression that gives it."""
+        return self.expression(name) if isinstance(name, ast.expr) else name
 
     def conditions(self) -> Conditions:
         """The lowering of conditions."""

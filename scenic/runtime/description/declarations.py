@@ -8,10 +8,40 @@ from dataclasses import field, replace
 from typing import Any, Protocol
 
 from scenic.dataclass import dataclass
+from scenic.language.errors import ScenicTypeError
 from scenic.language.spans import Span
+from scenic.runtime.ground.context import here
 from scenic.runtime.temporal.formulas import Atom, Compound, Formula
+from scenic.runtime.values.values import describe
 
-__all__ = ["Copier", "Declared", "End", "Kept", "MonitorUse", "RecordUse", "Required", "Tree", "required"]
+__all__ = [
+    "Copier",
+    "Declared",
+    "End",
+    "Kept",
+    "MonitorUse",
+    "RecordUse",
+    "Required",
+    "Tree",
+    "label_of",
+    "required",
+]
+
+
+def label_of(name: object) -> str | None:
+    """The name that a statement is given with ``as``, which may be an expression.
+
+    Raises:
+        ScenicTypeError: the name is not a text.
+
+    """
+    if name is None or isinstance(name, str):
+        return name
+    raise ScenicTypeError(
+        f"a name after `as` is a text, not {describe(name)}",
+        span=here(),
+        help="write a name, a string, or an expression that gives a string which does not depend on chance",
+    )
 
 
 class Copier(Protocol):

@@ -9,7 +9,7 @@ from scenic.language.errors import (
     RejectSimulationException,
     ScenicTypeError,
 )
-from scenic.runtime.description.declarations import End, Kept, MonitorUse, RecordUse, Required
+from scenic.runtime.description.declarations import End, Kept, MonitorUse, RecordUse, Required, label_of
 from scenic.runtime.description.definitions import (
     Behavior,
     Definition,
@@ -173,21 +173,21 @@ class Dynamics:
         else:
             run.current.overrides.apply(target, specifiers)
 
-    def require_monitor(self, monitor: object, *, name: str | None = None) -> None:
+    def require_monitor(self, monitor: object, *, name: object = None) -> None:
         """``require monitor``."""
         if not isinstance(monitor, Monitor):
             raise not_a_monitor(monitor)
-        use = MonitorUse(monitor, name or _numbered("monitor"))
+        use = MonitorUse(monitor, label_of(name) or _numbered("monitor"))
         if self._run is not None:
             self._run.current.add_monitor(use)
         else:
             self._program.declared.monitors.append(use)
 
     def terminate_when(
-        self, concrete: Callable[..., Any], captured: Sequence[Any], *, simulation: bool, name: str | None
+        self, concrete: Callable[..., Any], captured: Sequence[Any], *, simulation: bool, name: object
     ) -> None:
         """``terminate when``."""
-        label = name or _numbered("termination condition")
+        label = label_of(name) or _numbered("termination condition")
         self._declared.ends.append(End(Kept(concrete, captured), label, simulation))
 
     def terminate_after(self, value: object, unit: str) -> None:
@@ -206,7 +206,7 @@ class Dynamics:
         captured: Sequence[Any],
         *,
         moment: str | None,
-        name: str | None,
+        name: object,
         every: tuple[Any, str] | None = None,
         after: tuple[Any, str] | None = None,
         to: object = None,
@@ -216,7 +216,7 @@ class Dynamics:
         check_duration(every, "every", 0, span)
         check_duration(after, "after", 0, span)
         check_target(to, span)
-        key = name or ("record" if span is None else f"record{span.line}")
+        key = label_of(name) or ("record" if span is None else f"record{span.line}")
         kept = Kept(concrete, captured)
         self._declared.records.append(
             RecordUse(kept, moment, key, every, after, to, span, self._module.filename)

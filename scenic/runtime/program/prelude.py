@@ -28,7 +28,7 @@ from scenic.language.errors import (
 from scenic.language.libraries import how_to_get
 from scenic.runtime.description import conditions, mutation
 from scenic.runtime.description.conditions import Condition
-from scenic.runtime.description.declarations import Kept, required
+from scenic.runtime.description.declarations import Kept, label_of, required
 from scenic.runtime.description.definitions import behavior_of
 from scenic.runtime.description.outcome import Module, Program, Requirement
 from scenic.runtime.dynamics.language import Dynamics
@@ -341,9 +341,7 @@ class Prelude(Symbolic, Dynamics):
         """``simulator expr``: stored, and evaluated when a simulator is needed."""
         self._program.simulator = make
 
-    def require(
-        self, condition: Condition, *, probability: float | None = None, name: str | None = None
-    ) -> None:
+    def require(self, condition: Condition, *, probability: float | None = None, name: object = None) -> None:
         """``require condition``: recorded while compiling, checked or followed during a simulation."""
         if self._context.evaluating:
             raise InvalidScenarioError(
@@ -352,7 +350,7 @@ class Prelude(Symbolic, Dynamics):
                 help="return the condition, and join conditions with `and`",
             )
         span = here()
-        label = name or (f"requirement on line {span.line}" if span else "requirement")
+        label = label_of(name) or (f"requirement on line {span.line}" if span else "requirement")
         formula = required(condition.tree, label, span, self._module.filename)
         if probability not in (None, 1) and is_temporal(formula.formula):
             raise InvalidScenarioError(
