@@ -115,7 +115,7 @@ ADDED: Mapping[str, tuple[tuple[str, str], ...]] = {
     ),
     "scenic/runtime/program/prelude.py": (
         (
-            "    def require(\n        self, condition",
+            "    def require(self, condition",
             """    def announce(self, value: Any) -> None:
         self._program.parameters["announced"] = value
 

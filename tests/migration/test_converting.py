@@ -3,9 +3,9 @@
 from pathlib import Path
 
 import pytest
-from scenic.compiler._generated.tables import WORDS
 
 from scenic.compiler.check import check_text
+from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
 from scenic.language.diagnostics import Severity
 from scenic.migration.converting import Converter
