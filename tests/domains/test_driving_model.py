@@ -236,6 +236,8 @@ bike = new Bicycle at (0, 0), with regionContainedIn None, with behavior Crossin
 walker = new Pedestrian with behavior WalkForwardBehavior(speed=1)
 bin = new Trash
 require (distance from ego to bike) > 20
+assert warnings.warn
+param town = map_town, categories = blueprints.carModels
 """
 
 
@@ -249,7 +251,8 @@ def test_carla_programs_sample_without_the_simulator(folder: Path) -> None:
         assert bike.blueprint in CATALOGUE["bicycle"]
         assert walker.blueprint in CATALOGUE["walker"]
         assert trash.physics is False
-        assert scene.params["carla_map"] == "cross"
+        assert scene.params["carla_map"] == scene.params["town"] == "cross"
+        assert scene.params["categories"] == tuple(CATALOGUE["car"])
     if "carla" not in sys.modules:
         with pytest.raises(scenic.ScenicError, match="needs the package carla"):
             scenario.getSimulator().simulate(scene, maxSteps=1)

@@ -36,6 +36,15 @@ def of_class(scene: Any, name: str) -> list[Any]:
     return [thing for thing in scene.objects if type(thing).__name__ == name]
 
 
+def test_the_model_brings_names_of_its_own_modules() -> None:
+    scene = scene_of(
+        "ego = new Object at toVector((1, 2))\n"
+        "param area = numpy.prod(trimesh.creation.box((1, 2, 3)).extents), axes = utils.Axes.__name__\n"
+    )
+    assert tuple(scene.egoObject.position) == (1, 2, 0)
+    assert (scene.params["area"], scene.params["axes"]) == (pytest.approx(6), "Axes")
+
+
 def test_objects_move_in_worlds_of_any_axes_as_in_ours() -> None:
     text = (
         "ego = new WebotsObject at (1, 2, 3), facing (30 deg, 20 deg, 10 deg), with webotsName 'CAR',"

@@ -1,10 +1,12 @@
 """The driving world model for CARLA. Sampling needs neither the simulator nor its package."""
 
 import pathlib
+import warnings
 
 from scenic.domains.driving.model import *
 from scenic.domains.driving.actions import Steers, Walks
 from scenic.domains.driving.setting import is2DMode
+from scenic.simulators.carla import blueprints
 from scenic.simulators.carla.actions import *
 from scenic.simulators.carla.behaviors import *
 from scenic.simulators.carla.blueprints import dimension, ids
@@ -15,7 +17,8 @@ from scenic.simulators.carla.lights import (
     withinDistanceToTrafficLight,
 )
 
-param carla_map = pathlib.Path(globalParameters.map).stem
+map_town = pathlib.Path(globalParameters.map).stem
+param carla_map = map_town
 param address = '127.0.0.1'
 param port = 2000
 param timeout = 10

@@ -1,6 +1,10 @@
 """World model of Webots. Sampling needs no Webots; simulations run in the controller of a supervisor (`WebotsSimulator`)."""
 
+import numpy
+import trimesh
+from scenic.core.type_support import toVector
 from scenic.domains.driving.setting import is2DMode
+from scenic.simulators.webots import axes as utils
 from scenic.simulators.webots.actions import ApplyForceAction, OffsetAction, WriteFileAction
 from scenic.simulators.webots.simulator import OutsideWebots
 from scenic.simulators.webots.terrain import ground_shape, heights_of, hill_heights
