@@ -32,6 +32,25 @@ def compiled(
     return scenic.scenarioFromString(program, filename=str(folder / "main.scenic"), mode2D=True)
 
 
+def test_temporal_requirements_measure_distances_to_the_objects_of_scenes_and_simulations(
+    folder: Path,
+) -> None:
+    scenario = compiled(
+        folder,
+        "ego = new Car at (-20, -2), with regionContainedIn None\n"
+        "require always ego.distanceToClosest(Car) > 12\n"
+        "require always withinDistanceToAnyCars(ego, 30)\n"
+        "other = new Car at (Range(-20, 40), -2), with regionContainedIn None\n"
+        "record ego.distanceToClosest(Car) as away\n",
+        "scenic.simulators.newtonian.driving_model",
+    )
+    gaps = [scene.objects[1].position.x + 20 for scene in scenario.sample(20, seed=1)]
+    assert 12 < min(gaps) < 20 < 25 < max(gaps) < 30
+    scene, _ = scenario.generate()
+    simulation = scenario.getSimulator().simulate(scene, maxSteps=1)
+    assert 12 < simulation.result.records["away"][0][1] < 30
+
+
 def test_cars_are_on_the_road_and_face_along_it(folder: Path) -> None:
     scenario = compiled(folder, "ego = new Car\nother = new Car\n")
     network: Network = scenario.objects[0].roadNetwork

@@ -17,6 +17,7 @@ from scenic.domains.driving.signals import FreezeTrafficLightsAction, SetTraffic
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.sensors import RGBSensor, SSSensor
 from scenic.domains.driving.setting import is2DMode, nearer, network_of_program, standing
+from scenic.runtime.program.builtins import present_objects
 from scenic.domains.driving.workspace import DrivingWorkspace
 from scenic.simulators.utils.colors import Color
 from scenic.core.distributions import RejectionException
@@ -122,7 +123,7 @@ class DrivingObject:
     def distanceToClosest(self, type):
         """The distance to the nearest other object of a class in metres; infinite if there is none."""
         closest = float('inf')
-        for other in simulation().objects:
+        for other in present_objects():
             if other is not self and isinstance(other, type):
                 away = distance from self to other
                 if 0 < away < closest:
@@ -265,18 +266,18 @@ if network.is_elevated:
 
 def withinDistanceToAnyCars(car, thresholdDistance):
     """Whether some other vehicle is nearer than the threshold, in any direction."""
-    return bool(nearer(car, thresholdDistance, Vehicle))
+    return bool(nearer(present_objects(), car, thresholdDistance, Vehicle))
 
 
 def withinDistanceToAnyObjs(vehicle, thresholdDistance):
     """Whether the vehicle sees some object nearer than the threshold."""
-    return any(vehicle can see other for other in nearer(vehicle, thresholdDistance, Object))
+    return any(vehicle can see other for other in nearer(present_objects(), vehicle, thresholdDistance, Object))
 
 
 def withinDistanceToAnyPedestrians(vehicle, thresholdDistance):
     """Whether the vehicle sees a pedestrian nearer than the threshold to its front."""
     front = front of vehicle
-    for other in nearer(vehicle, thresholdDistance + vehicle.length, Pedestrian):
+    for other in nearer(present_objects(), vehicle, thresholdDistance + vehicle.length, Pedestrian):
         if (distance from front to other) < thresholdDistance and (vehicle can see other):
             return True
     return False
@@ -284,7 +285,7 @@ def withinDistanceToAnyPedestrians(vehicle, thresholdDistance):
 
 def withinDistanceToObjsInLane(vehicle, thresholdDistance):
     """Whether the vehicle sees some object nearer than the threshold in its lane, or in its intersection."""
-    for other in nearer(vehicle, thresholdDistance, Object):
+    for other in nearer(present_objects(), vehicle, thresholdDistance, Object):
         if not (vehicle can see other):
             continue
         inter = network.intersectionAt(vehicle)

@@ -1,5 +1,6 @@
 """The setting of a driving program: its mode, its map, and which objects are near each other."""
 
+from collections.abc import Iterable
 from typing import Any
 
 from scenic.domains.driving.roads import Network
@@ -8,7 +9,6 @@ from scenic.language.errors import InvalidScenarioError
 from scenic.language.spans import Span
 from scenic.runtime.ground.context import current
 from scenic.runtime.instances.objects import OrientedPoint
-from scenic.runtime.program.builtins import running_simulation
 from scenic.runtime.values.lazy import Lazy
 from scenic.runtime.values.values import operate, to_vector, vector
 
@@ -97,13 +97,12 @@ def standing(spot: Any) -> Lazy:
     return Lazy(frozenset({"baseOffset", "contactTolerance"}), place)
 
 
-def nearer(agent: Any, threshold: float, kind: Any) -> list[Any]:
-    """The other objects of a class whose centres are nearer to an agent than a threshold in metres."""
-    simulation = running_simulation()
+def nearer(objects: Iterable[Any], agent: Any, threshold: float, kind: Any) -> list[Any]:
+    """The objects of a class, others than an agent, whose centres are nearer to it than a threshold in metres."""
     x, y, z = agent.position
     limit = threshold * threshold
     found: list[Any] = []
-    for other in simulation.objects:
+    for other in objects:
         if other is agent or not isinstance(other, kind):
             continue
         a, b, c = other.position

@@ -1,7 +1,7 @@
 """The names that every module of Scenic code finds in scope (section 7.2 of the specification)."""
 
 import builtins
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from pkgutil import resolve_name
 from types import MappingProxyType
@@ -26,6 +26,18 @@ def running_simulation() -> Any:
             help="`simulation()` can be used in behaviors, monitors, compose blocks and their conditions",
         )
     return context.run.simulation
+
+
+def present_objects() -> Sequence[Any]:
+    """The objects of the running simulation, or those of the scene whose requirements are evaluated.
+
+    Raises `InvalidScenarioError` where there is neither.
+    """
+    context = current.get()
+    if isinstance(context, RunContext) or context is None or context.sample is None:
+        objects: Sequence[Any] = running_simulation().objects
+        return objects
+    return [item for item in context.present if item.present]
 
 
 class GlobalParameters:

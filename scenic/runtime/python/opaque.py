@@ -75,7 +75,7 @@ def later(
     context = current.get()
     reads: list[Any] = [function, *args, *keywords.values()]
     reached = list(reachable(reads, seen))
-    looks = context is not None and mention(reached, "can see")
+    looks = context is not None and mention(reached, *_OBJECT_READERS)
     if context is not None and looks:
         context.record.looks = True
         reached = list(reachable([*reads, *context.objects], seen))
@@ -112,6 +112,9 @@ def call_later(function: Callable[..., Any], /, *args: Any, **keywords: Any) -> 
 
 Rows = Sequence[tuple[Any, ...]]
 """Arguments by lane."""
+
+_OBJECT_READERS = ("can see", "present_objects")
+"""Names of what looks at all objects of a scene."""
 
 _STATE_READERS = ("getstate", "get_state")
 """Names of the functions that read the state of a generator without drawing."""

@@ -195,13 +195,15 @@ _NO_LANDING = Operation(
 )
 
 
-def as_region(value: object) -> Region | None:
-    """A region, or a random choice among regions; ``None`` for anything else."""
+def as_region(value: object, missing: Region | None = None) -> Region | None:
+    """A region, or a random choice among regions, with ``missing`` in place of `None`; ``None`` for anything else."""
     if isinstance(value, Region):
         return value
+    if value is None:
+        return missing
     if not isinstance(value, Random) or value.node.operation is not TABLE["select"]:
         return None
     index, *options = (as_value(node) for node in value.node.operands)
-    regions = [as_region(option) for option in options]
+    regions = [as_region(option, missing) for option in options]
     known = [region for region in regions if region is not None]
     return RegionChoice(index, known) if len(known) == len(regions) else None

@@ -239,7 +239,7 @@ def _containment(program: Program, workspace: Workspace) -> list[NodeCheck]:
     reaches: dict[Region, Floats | None] = {}
     for item in program.objects:
         container = item.regionContainedIn
-        region = as_region(workspace if container is None else container)
+        region = as_region(container, missing=workspace)
         while isinstance(region, Workspace):
             region = region.region
         if isinstance(region, Everywhere):

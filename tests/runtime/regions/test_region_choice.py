@@ -446,3 +446,18 @@ def test_distances_are_bounded_where_the_choice_is_known() -> None:
     assert found.lower[1] > 38
     assert found.upper[1] < 42
     assert found.upper[2] == np.inf
+
+
+def test_a_container_that_draws_none_is_the_workspace() -> None:
+    scenes = scenario(
+        "workspace = Workspace(RectangularRegion((0, 0), 0, 40, 40))\n"
+        "small = RectangularRegion((0, 0), 0, 10, 10)\n"
+        "ego = new Object at (Range(-30, 30), 0), with regionContainedIn Uniform(small, None)\n"
+    ).sample(40, seed=1)
+    reach = {
+        free: max(
+            abs(s.egoObject.position.x) for s in scenes if (s.egoObject.regionContainedIn is None) == free
+        )
+        for free in (False, True)
+    }
+    assert reach[False] <= 4.5 < 10 < reach[True] <= 19.5
