@@ -248,13 +248,13 @@ class Resolution:
 
     @cached_property
     def sites(self) -> Mapping[ast.AST, Binding]:
-        """The binding that a node (a name, definition, parameter or alias) belongs to; in no particular order."""
-        return {
-            site: binding
-            for scope in self.scopes.values()
-            for binding in scope.bindings.values()
-            for site in binding.sites
-        }
+        """The binding that a node (a name, definition, parameter or alias) belongs to; in no particular order.
+
+        A behavior binds its own name and, within it, ``self``: it belongs to its own name.
+        """
+        bindings = [binding for scope in self.scopes.values() for binding in scope.bindings.values()]
+        bindings.sort(key=lambda binding: binding.kinds != {BindingKind.SELF})
+        return {site: binding for binding in bindings for site in binding.sites}
 
     # One name
 

@@ -196,7 +196,7 @@ def plain(value: object, numbers: Mapping[int, int], within: tuple[int, ...] = (
             return plain(value.tolist(), numbers, within)
     if id(value) in numbers:
         return {"$object": numbers[id(value)]}
-    if isinstance(value, Object):
+    if isinstance(value, Object) and not getattr(value, "present", True):
         return None  # it does not take part in this scene
     if len(within) >= DEPTH or id(value) in within:
         return _text(value)

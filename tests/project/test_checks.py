@@ -81,10 +81,6 @@ new Truck at 3, with behavior Drive
             "scenic.simulators.webots.mars.model",
             r"; .*copy its files to `scenic/simulators/webots/mars` beside the program",
         ),
-        (
-            "scenic.simulators.webots.road.model",
-            r"take another model \(`--model scenic\.simulators\.newtonian\.model`\)",
-        ),
         ("scenic.simulators.airsim.model", r"there is no \.scenic file of that name"),
         (
             "world.mine",

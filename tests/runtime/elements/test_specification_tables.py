@@ -25,6 +25,7 @@ PRIORITIES: dict[str, dict[str, int]] = {
     "in": {POSITION: 1, PARENT: 3},
     "contained in": {POSITION: 1, PARENT: 3, "regionContainedIn": 1},
     "on": {POSITION: 1, PARENT: 2},
+    "resting on": {POSITION: 1, "yaw": 3, "pitch": 1, "roll": 1, PARENT: 2},
     "offset by": BESIDE,
     "offset along": BESIDE,
     "beyond": BESIDE,
@@ -46,6 +47,7 @@ PRIORITIES: dict[str, dict[str, int]] = {
 }
 NEEDS: dict[str, frozenset[str]] = {
     "on": frozenset({"baseOffset", "contactTolerance", "onDirection"}),
+    "resting on": frozenset({"shape", "width", "length", "height", "contactTolerance", "onDirection"}),
     "visible": frozenset({"regionContainedIn"}),
     "not visible": frozenset({"regionContainedIn"}),
     **dict.fromkeys(("left of", "right of"), frozenset({"width"})),
@@ -67,7 +69,7 @@ def test_declared_priorities(name: str) -> None:
     declared = SPECIFIERS[name]
     assert {item.property: item.priority for item in declared.specifies} == PRIORITIES[name]
     assert set(declared.needs) == NEEDS.get(name, frozenset())
-    assert declared.modifies == (("position",) if name == "on" else ())
+    assert declared.modifies == (("position",) if name in ("on", "resting on") else ())
 
 
 def test_every_specifier_is_in_the_table() -> None:

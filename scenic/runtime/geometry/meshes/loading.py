@@ -10,7 +10,6 @@ import numbers
 import warnings
 import zlib
 from collections.abc import Mapping
-from importlib.metadata import version
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
@@ -100,6 +99,8 @@ def load_mesh(path: str | Path, *, unify: bool = True, volume: bool = True) -> M
     if file_type in _WITH_NEIGHBOURS:
         arrays = finished()
     else:
+        from importlib.metadata import version  # imports `email`, and few programs read meshes
+
         # Who reads and who repairs the mesh decides its content, too.
         libraries = [f"{library} {version(library)}" for library in ("trimesh", "manifold3d")]
         choices = f"{file_type} {unify} {volume} {libraries}\0".encode()
