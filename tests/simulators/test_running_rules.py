@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 import scenic
-from scenic.language.errors import DivergenceError, InvalidScenarioError, ScenicSyntaxError, SpecifierError
+from scenic.language.errors import DivergenceError, ScenicSyntaxError, SpecifierError
 from scenic.simulators.dummy import DummySimulator
 
 
@@ -141,12 +141,6 @@ def test_a_replay_of_states_is_compared_with_them() -> None:
     assert DummySimulator(drift=2).simulate(scene, maxSteps=3, replay=unchecked).currentTime == 3
 
 
-def test_actions_do_not_depend_on_an_object_being_specified() -> None:
-    text = 'field = VectorField("f", lambda p: 1)\nbehavior B():\n    take (1 relative to field).yaw\n'
-    with pytest.raises(InvalidScenarioError, match="an action depends on the object"):
-        _run(f"{text}ego = new Object with behavior B\n")
-
-
 def test_definitions_have_the_signatures_that_the_program_gives_them() -> None:
     text = (
         "import inspect\nbehavior B(a, b=2):\n    wait\nmonitor M(x):\n    wait\nscenario S(q=1):\n    setup:\n"
@@ -192,3 +186,20 @@ scenario Main():
 def test_a_monitor_that_is_required_like_a_condition_is_a_syntax_error() -> None:
     with pytest.raises(ScenicSyntaxError, match="`monitor` is missing"):
         scenic.scenarioFromString("monitor M():\n    wait\nego = new Object\nrequire M()\n")
+
+
+def test_fields_in_behaviors_mean_the_present_place_of_the_agent_and_in_specifiers_that_of_what_they_specify() -> (
+    None
+):
+    text = (
+        "field = VectorField('field', lambda place: place.x / 10)\n"
+        "behavior Report():\n"
+        "    spot = new OrientedPoint at (5, 0), facing 1 relative to field\n"
+        "    take (1 relative to field).yaw, spot.yaw\n"
+        "    self.position = (3, 0, 0)\n"
+        "    take turned()\n"
+        "def turned():\n"
+        "    return (1 relative to field).yaw\n"
+        "ego = new Object at (1, 0), with behavior Report\n"
+    )
+    assert _actions(text, 2) == [((pytest.approx(1.1), pytest.approx(1.5)),), ((pytest.approx(1.3),),)]

@@ -64,6 +64,8 @@ class _Program:
         }
         self._conditions: Conditions | None = None
         self.blocks = Blocks()
+        self._specifiers = 0
+        """The number of specifiers around the expression that is lowered."""
 
     def module(self, tree: ast.Module) -> ast.Module:
         return rebuilt(tree, body=self.block(tree.body), type_ignores=[])
@@ -162,7 +164,10 @@ class _Program:
             # The ego of the requirement, which the function around it has as a parameter, not the present one.
             for index in implicit_ego(node):
                 operands[index] = start_of(ast.Name("ego", ast.Load()), node)
-        return prelude_call("operation", [constant(node.operator, node), *operands], node)
+        lowered = prelude_call("operation", [constant(node.operator, node), *operands], node)
+        if node.operator == "relative to" and self.blocks.instances and not self._specifiers:
+            return prelude_call("at_present", [lowered], node)
+        return lowered
 
     def _operands(self, operands: Sequence[ast.expr | None], origin: ast.AST) -> list[ast.expr]:
         return [
@@ -175,7 +180,9 @@ class _Program:
         return prelude_call("new", [cls, *[self.specifier(part) for part in node.specifiers]], node)
 
     def specifier(self, node: scenic.SpecifierPhrase) -> ast.expr:
+        self._specifiers += 1  # in which fields mean the place of the object that is specified
         args = [constant(node.specifier, node), *self._operands(node.operands, node)]
+        self._specifiers -= 1
         options = {} if node.property is None else {"property": node.property}
         match node:
             case scenic.SpecifierPhrase(property="present", operands=[ast.expr() as operand]):

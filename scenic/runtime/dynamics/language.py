@@ -28,7 +28,7 @@ from scenic.runtime.dynamics.scenarios import not_a_monitor
 from scenic.runtime.ground.context import Context, current, here
 from scenic.runtime.temporal.formulas import is_temporal
 from scenic.runtime.temporal.monitors import Monitor as Follower
-from scenic.runtime.values.lazy import definite
+from scenic.runtime.values.lazy import MEMO, is_lazy, resolve
 from scenic.runtime.values.values import describe, is_number
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ class Dynamics:
         instance._activation.direct = True
         if len(actions) == 1 and isinstance(actions[0], list | tuple):
             actions = tuple(actions[0])
-        return tuple(definite(action, "an action") for action in actions if action is not None)
+        return tuple(self.at_present(action) for action in actions if action is not None)
 
     def terminate(self, instance: Invocable, *, simulation: bool) -> Yielded:
         """``terminate``: what to yield."""
@@ -162,6 +162,16 @@ class Dynamics:
     def margin(self, symbols: Sequence[str], operands: Sequence[Any]) -> float | None:
         """By how much ``a < b <= c`` or the like holds, the least of its parts; ``None`` where that is not known."""
         return margins.margin(symbols, operands)
+
+    def at_present(self, value: Any) -> Any:
+        """A value, at the present place of the agent whose behavior is running, if there is one."""
+        run = self._run
+        if run is None or run.agent is None or not is_lazy(value):
+            return value
+        try:
+            return resolve(value, run.agent)
+        finally:
+            run.agent.__dict__.pop(MEMO, None)
 
     # Statements that do not
 
