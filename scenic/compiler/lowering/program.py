@@ -391,6 +391,19 @@ class _Program:
             return node
         return rebuilt(node, names=names) if names else at(ast.Pass(), node)
 
+    def assignment(self, node: ast.Assign | ast.AugAssign) -> Any:
+        """An assignment, and after it the checks of what may be properties of objects."""
+        lowered: ast.stmt = self.copy(node)
+        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+        checks = [
+            at(
+                ast.Expr(prelude_call("assigned", [self.expression(owner), constant(attribute, node)], node)),
+                node,
+            )
+            for owner, attribute in _assigned_attributes(targets)
+        ]
+        return [lowered, *checks] if checks else lowered
+
     def annotated(self, node: ast.AnnAssign) -> ast.stmt:
         lowered: ast.AnnAssign = self.copy(node)
         # What was a name may have become an attribute.
@@ -429,6 +442,30 @@ class _Program:
         return at(ast.Call(setter, [constant(binding.name, site), name(binding.name, site)], []), site)
 
 
+def _assigned_attributes(targets: Sequence[ast.expr]) -> Iterator[tuple[ast.expr, str]]:
+    """Owners and names of the attributes that an assignment sets, where an owner can be read again.
+
+    Not those of ``self``: what behaviors and methods set there belongs to simulations.
+    """
+    parts = [part for target in targets for part in ast.walk(target)]
+    names = {part.id for part in parts if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)}
+    for part in parts:
+        match part:
+            case ast.Attribute(value=owner, attr=attribute, ctx=ast.Store()):
+                if _root(owner) not in {None, "self", *names}:
+                    yield owner, attribute
+
+
+def _root(node: ast.expr) -> str | None:
+    """The name from which attributes and fixed elements lead to an expression; ``None`` where more is evaluated."""
+    match node:
+        case ast.Name(id=identifier):
+            return identifier
+        case ast.Attribute(value=owner) | ast.Subscript(value=owner, slice=ast.Constant() | ast.Name()):
+            return _root(owner)
+    return None
+
+
 def _attributes(node: ast.expr) -> Iterator[ast.Attribute]:
     return (part for part in ast.walk(node) if isinstance(part, ast.Attribute))
 
@@ -446,6 +483,8 @@ def _rules() -> Mapping[type[ast.AST], Callable[[_Program, Any], Any]]:
         ast.Import: _Program.importation,
         ast.ImportFrom: _Program.importation,
         ast.Nonlocal: _Program.nonlocal_declaration,
+        ast.Assign: _Program.assignment,
+        ast.AugAssign: _Program.assignment,
         ast.AnnAssign: _Program.annotated,
         ast.ExceptHandler: _Program.exception_handler,
         ast.match_case: _Program.match_case,

@@ -11,7 +11,7 @@ from scenic.language.spelling import nearest_property
 from scenic.runtime.elements.specifiers import Specifier, kind_of_specifier
 from scenic.runtime.ground.context import here, warn
 from scenic.runtime.instances.objects import TWO_D_DEFAULTS, Object, Point
-from scenic.runtime.instances.properties import Property, normalised
+from scenic.runtime.instances.properties import Finals, Property, normalised
 from scenic.runtime.shapes.shapes import BoxShape
 from scenic.runtime.values.lazy import MEMO, reads_of
 from scenic.runtime.values.lazy import resolve as settle
@@ -72,6 +72,8 @@ class Resolution:
             )
         return provider
 
+
+_DIRECTIONS = frozenset({"heading", "orientation"})
 
 _CHECKED = frozenset({"width", "length", "height", "shape"})
 
@@ -424,8 +426,37 @@ def _check_value(name: str, value: object, *, mode_2d: bool) -> None:
         )
 
 
+def check_assigned(instance: Any, name: str, *, mode_2d: bool) -> None:
+    """Check and convert what the program has assigned to a property, as `with` does; what follows from it follows anew.
+
+    Raises `InvalidScenarioError` for a property that itself follows from others.
+    """
+    entry = instance.scenic_properties.get(name)
+    values = instance.__dict__
+    if entry is None or name not in values:
+        return
+    if entry.final:
+        raise InvalidScenarioError(
+            f"property {name!r} follows from others and cannot be assigned",
+            span=here(),
+            help="assign what it follows from" + (": yaw, pitch and roll" if name in _DIRECTIONS else ""),
+        )
+    value = settle(values[name], instance)
+    values.pop(MEMO, None)
+    value = normalised(name, value)
+    if isinstance(instance, Object):
+        if mode_2d and name == "position":
+            value = normalised(name, (value.x, value.y, 0))
+        _check_value(name, value, mode_2d=mode_2d)
+    values[name] = value
+    finals = Finals.of(instance.scenic_properties)
+    for entry in finals.builtin:
+        values[entry.name] = entry.default(instance)
+    finals.renew_own(instance)
+
+
 def _quoted(names: frozenset[str]) -> str:
     return ", ".join(repr(name) for name in sorted(names))
 
 
-__all__ = ["Resolution", "build", "class_defaults", "resolve"]
+__all__ = ["Resolution", "build", "check_assigned", "class_defaults", "resolve"]

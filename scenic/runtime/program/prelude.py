@@ -35,7 +35,7 @@ from scenic.runtime.dynamics.language import Dynamics
 from scenic.runtime.dynamics.run import RunContext
 from scenic.runtime.elements.functions import convert
 from scenic.runtime.elements.operators import OPERATORS
-from scenic.runtime.elements.resolution import build
+from scenic.runtime.elements.resolution import build, check_assigned
 from scenic.runtime.elements.specifiers import (
     BUILDERS,
     Specifier,
@@ -321,6 +321,13 @@ class Prelude(Symbolic, Dynamics):
             raise InvalidScenarioError("a model cannot itself use `model`", span=here())
         self._context.parameters.model_place = self._context.place(), self._context.file()
         self._modules.use_model(name, scope, self._module)
+
+    def assigned(self, owner: object, name: str) -> None:
+        """``owner.name = value``, after the fact: a property of an instance of the program is checked as by ``with``."""
+        if isinstance(owner, Point) and self._run is None and self._context.sample is None:
+            check_assigned(owner, name, mode_2d=self._context.mode_2d)
+            if name == "behavior" and isinstance(owner, Object):
+                owner.__dict__[name] = per_option(owner.behavior, behavior_of)
 
     def mutate(self, targets: Sequence[Any] | None = None, scale: object = 1) -> None:
         """``mutate a, b by scale``; without targets all objects so far."""

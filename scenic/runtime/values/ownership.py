@@ -34,7 +34,7 @@ __all__ = [
 PRELUDE = "__scenic__"
 """The global name by which generated code finds the prelude, through which functions read the ego."""
 
-EGOLESS: Final = frozenset({"convert", "spread"})
+EGOLESS: Final = frozenset({"assigned", "at_present", "convert", "spread"})
 """Methods of the prelude that functions call without reading the ego or the workspace."""
 
 EGOLESS_OPERATORS: Final = frozenset(

@@ -497,3 +497,45 @@ def _numbers(value: Any) -> list[float]:
     if isinstance(value, Orientation):
         return list(value.q)
     return list(value) if isinstance(value, Vector) else [value]
+
+
+ASSIGNED = "ego = new Object at (0, -5)\nother = new Object at (10, 0)\n"
+
+
+def test_assigned_properties_are_converted_and_what_follows_from_them_follows_anew() -> None:
+    text = (
+        "other.position = 3, 3\nother.yaw, other.width = 1, Range(2, 3)\nother.tag = 'mine'\n"
+        "for thing in [ego, other]:\n    thing.color = [1, 0, 0]\nthings = [ego]\nthings[0].position += (0, 1, 0)\n"
+        "behavior Act():\n    wait\nego.behavior = Act\n"
+    )
+    ego, other = scene(ASSIGNED + text).objects
+    assert (other.position, other.orientation, other.heading) == (
+        Vector(3, 3, 0),
+        Orientation.fromEuler(1, 0, 0),
+        1,
+    )
+    assert 2 < other.width < 3
+    assert (other.color, ego.position, other.tag) == ((1, 0, 0), Vector(0, -4, 0), "mine")
+    assert type(ego.behavior).__name__ == "Act"
+    flat = scene(ASSIGNED + "other.position = (Range(5, 6), 4, 7)\n", mode2D=True).objects[1].position
+    assert 5 < flat.x < 6
+    assert (flat.y, flat.z) == (4, 0)
+
+
+@pytest.mark.parametrize(
+    ("statement", "message"),
+    [
+        ("other.color = 'red'", "a colour is 3 or 4 numbers"),
+        ("other.position = (1, 2, 3, 4)", "a vector has 2 or 3 coordinates"),
+        ("other.width *= -1", "'width' must be greater than 0"),
+        ("other.behavior = 3", "'behavior' must be a behavior"),
+        ("other.heading = 1", "'heading' follows from others and cannot be assigned"),
+        ("other.hw = 1", "property 'hw' of 'Object' object has no setter"),
+    ],
+)
+def test_assignments_that_no_property_can_have_are_refused_at_their_place(
+    statement: str, message: str
+) -> None:
+    error = failure(f"{ASSIGNED}{statement}\n")
+    assert message in str(error)
+    assert isinstance(error, AttributeError) or error.span.line == 3  # type: ignore[attr-defined]
