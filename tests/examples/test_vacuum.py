@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import scenic
-from scenic.simulators.mujoco import convex
+from scenic.runtime.geometry.meshes import convex_parts
 from tests.amounts import LONG, amount
 
 if importlib.util.find_spec("mujoco") is None:
@@ -23,7 +23,9 @@ PROGRAM = Path(__file__).parents[2] / "examples" / "vacuum" / "vacuum.scenic"
 def test_the_vacuum_drives_turns_and_covers_the_floor(monkeypatch: pytest.MonkeyPatch) -> None:
     steps = amount(60, 120)
     if not LONG:  # Rougher parts of the furniture are found in half the time.
-        monkeypatch.setattr(convex, "_SEARCH", {**convex._SEARCH, "mcts_iterations": 10, "resolution": 200})
+        monkeypatch.setattr(
+            convex_parts, "_SEARCH", {**convex_parts._SEARCH, "mcts_iterations": 10, "resolution": 200}
+        )
     scenario = scenic.load(PROGRAM, params={"numToys": 2, "duration": steps / 4})
     scene = scenario.sample(1, seed=1)[0]
     kinds = [type(thing).__name__ for thing in scene.objects]
