@@ -131,7 +131,7 @@ def test_kept_simulations_tell_their_parameters(tmp_path: Path) -> None:
         "-p",
         "place=1,2",
     ]
-    first, again = (run_here(command, folder=tmp_path).stdout for _ in range(2))
+    first, again = (run_here([*command, *more], folder=tmp_path).stdout for more in ([], ["--resume"]))
     assert first == again
     assert [line for line in first.splitlines() if "place = " in line] == [
         "  parameter place = 1",

@@ -53,9 +53,10 @@ def run(folder: Path, *arguments: object) -> "subprocess.CompletedProcess[str]":
 
 
 def kept(folder: Path) -> dict[str, str]:
-    """What the run has left, by name."""
-    files = [*(folder / "out").iterdir(), *folder.glob("*place*")]
-    return {path.name: path.read_text() for path in files}
+    """What the run has left, by name: all but the manifest, which is there before the first simulation."""
+    files = {path.name: path for path in [*(folder / "out").iterdir(), *folder.glob("*place*")]}
+    files.pop("manifest.json")
+    return {name: path.read_text() for name, path in files.items()}
 
 
 def whole(*numbers: int) -> set[str]:
@@ -63,10 +64,10 @@ def whole(*numbers: int) -> set[str]:
 
 
 def check_resumed(folder: Path, before: dict[str, str], *arguments: object) -> None:
-    """Called again, the command makes what is missing, and leaves the rest as it is."""
+    """Called again with ``--resume``, the command makes what is missing, and leaves the rest as it is."""
     (folder / "how").unlink()
     times = {name: (folder / "out" / name).stat().st_mtime_ns for name in before if name.startswith("sim")}
-    again = run(folder, *arguments)
+    again = run(folder, *arguments, "--resume")
     assert again.returncode == 0, again.stderr
     after = kept(folder)
     assert set(after) == whole(0, 1, 2)

@@ -23,7 +23,7 @@ def simulated(name: str, folder: Path, count: int) -> list[Path]:
     options = ["-n", count, "--seed", 1, "--time", 800, "-o", folder]
     done = run_here(["simulate", program(name), *options])
     assert done.returncode in (0, 3), done.stderr
-    return sorted(folder.iterdir())
+    return sorted(folder.glob("*.jsonl"))
 
 
 def test_every_judged_example_is_shown() -> None:

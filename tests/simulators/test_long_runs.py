@@ -132,14 +132,16 @@ def test_the_command_keeps_what_a_program_looks_back_at(tmp_path: Path) -> None:
     options = ["--seed", "1", "--simulator", "dummy", "--time", "3", "-o", "out"]
     done = run_here(["simulate", "back.scenic", *options], folder=tmp_path)
     assert done.returncode == 0, done.stderr
-    (path,) = (tmp_path / "out").iterdir()
+    (path,) = (tmp_path / "out").glob("*.jsonl")
     records = scenic.read_trajectory(path).about["records"]
     assert [value for _, value in records["states"]] == [0, 1, 2, 3]
     # The numbers are there where the program itself looks back.
     assert records["record4"] == [[step, 0.0] for step in range(4)]
     text = (tmp_path / "back.scenic").read_text().replace("states(simulation())", "1")
     (tmp_path / "back.scenic").write_text(text)
-    assert run_here(["simulate", "back.scenic", *options], folder=tmp_path).returncode == 0
+    done = run_here(["simulate", "back.scenic", *options[:-1], "other"], folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    (path,) = (tmp_path / "other").glob("*.jsonl")
     read = scenic.read_trajectory(path)
     assert read.about["records"]["record4"] == {"$file": "x-0.npz"}
     assert read.about["records"]["record5"] == {"$file": "x-{simulation}-{step}.json"}
@@ -163,16 +165,17 @@ def test_a_program_whose_text_looks_back_is_run_once(tmp_path: Path) -> None:
         "    with Path('runs').open('a') as file:\n"
         "        file.write('x')\n"
     )
-    options = ["--seed", "1", "--simulator", "dummy", "--time", "3", "-o", "out"]
+    options = ["--seed", "1", "--simulator", "dummy", "--time", "3"]
     runs = 0
     for look, more in (("simulation().trajectory", 1), ("getattr(simulation(), 'tra' + 'jectory')", 2)):
         (tmp_path / "back.scenic").write_text(
             "from note import note\nego = new Object\nrecord initial note()\n"
             f"record final len(list({look})) as states\n"
         )
-        done = run_here(["simulate", "back.scenic", *options], folder=tmp_path)
+        output = f"out{more}"  # another program needs another folder
+        done = run_here(["simulate", "back.scenic", *options, "-o", output], folder=tmp_path)
         assert done.returncode == 0, done.stderr
-        (path,) = (tmp_path / "out").iterdir()
+        (path,) = (tmp_path / output).glob("*.jsonl")
         assert scenic.read_trajectory(path).about["records"]["states"] == 4
         runs += more
         assert (tmp_path / "runs").read_text() == "x" * runs
