@@ -39,7 +39,7 @@ def test_completion_scripts_ask_for_completions(shell: str) -> None:
 def test_commands_and_options_are_completed() -> None:
     asked = {"_SCENIC_COMPLETE": "bash_complete", "COMP_WORDS": "scenic sim", "COMP_CWORD": "1"}
     assert run_here([], variables=asked).stdout == "plain,simulate\n"
-    asked |= {"COMP_WORDS": "scenic sample --se", "COMP_CWORD": "2"}
+    asked |= {"COMP_WORDS": "scenic sample --see", "COMP_CWORD": "2"}
     assert run_here([], variables=asked).stdout == "plain,--seed\n"
     asked |= {"COMP_WORDS": "scenic sample ro", "COMP_CWORD": "2"}
     assert run_here([], variables=asked).stdout == "file,ro\n"
