@@ -59,7 +59,7 @@ scenario Short():
 )
 
 
-WARM = 400
+WARM = 800
 """Steps until Python's own reserves are filled."""
 STRETCH = 50
 """Steps between two counts."""
