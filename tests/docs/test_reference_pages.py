@@ -48,13 +48,22 @@ def test_every_word_of_the_language_is_in_an_example() -> None:
     examples = code()
     words = {*HARD_KEYWORDS, *SOFT_KEYWORDS} - PYTHON_WORDS
     properties = {item.name for cls in CLASSES.values() for item in cls.properties}
+    names = {name for name, item in NAMES.items() if item.syntax is None}
     sides = {f"{side} of" for side in SIDES}
     missing = [
         word
-        for word in sorted({*words, *NAMES, *sides, *properties})
+        for word in sorted({*words, *names, *sides, *properties})
         if not re.search(rf"(?<!\w){word}(?!\w)", examples)
     ]
     assert missing == []
+
+
+def test_functions_of_syntax_are_listed() -> None:
+    """What they stand for has its own examples."""
+    page = (REFERENCE / "language.md").read_text(encoding="utf-8")
+    listed = page.partition("## Operators and specifiers as functions\n")[2].partition("```")[0]
+    functions = {name for name, item in NAMES.items() if item.syntax is not None}
+    assert sorted(functions - set(re.findall(r"`(\w+)`", listed))) == []
 
 
 def test_every_command_and_diagnostic_is_told_of() -> None:
