@@ -12,7 +12,7 @@ ego = new Car on turn.startLane.centerline,
 other = new Car on oncoming.startLane.centerline,
     with behavior FollowTrajectoryBehavior(8, [oncoming.startLane, oncoming.connectingLane, oncoming.endLane])
 
-require 15 <= (distance from ego to crossing) <= 30
-require 15 <= (distance from other to crossing) <= 40
+require 25 <= (distance from ego to crossing) <= 40
+require 10 <= (distance from other to crossing) <= 20
 require always (distance from ego to other) > 3
 terminate when (distance from ego to crossing) > 20 and ego.lane is turn.endLane
