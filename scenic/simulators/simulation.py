@@ -342,13 +342,18 @@ class Simulation(ABC):
 
     def actionsAreCompatible(self, agent: object, actions: Sequence[Any]) -> bool:
         """Return whether an agent can take these actions in one step."""
-        return all(hasattr(action, "canBeTakenBy") and action.canBeTakenBy(agent) for action in actions)
+        return all(
+            hasattr(action, "canBeTakenBy") and action.canBeTakenBy(agent)
+            for action in actions
+            if action is not None
+        )
 
     def executeActions(self, allActions: Mapping[Any, Sequence[Any]]) -> None:
-        """Execute the actions of all agents."""
+        """Execute the actions of all agents; ``None`` is taken, and does nothing."""
         for agent, actions in allActions.items():
             for action in actions:
-                action.applyTo(agent, self)
+                if action is not None:
+                    action.applyTo(agent, self)
 
     def currentState(self) -> Any:
         """The present state for the trajectory: positions and orientations of the objects."""

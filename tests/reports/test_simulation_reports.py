@@ -11,11 +11,11 @@ from scenic.simulators.kinematic import KinematicSimulator
 from tests.reports.programs import Programs, programs, values  # noqa: F401 - a fixture
 
 
-def test_taking_none_is_taking_nothing(programs: Programs) -> None:  # noqa: F811
+def test_taking_none_does_nothing(programs: Programs) -> None:  # noqa: F811
     result = programs.simulated(
         "behavior B():\n    take None\n    take ()\nego = new Object with behavior B()\n", 2
     )
-    assert [tuple(step.values()) for step in result.actions] == [((),), ((),)]
+    assert [tuple(step.values()) for step in result.actions] == [((None,),), ((),)]
 
 
 def test_invariants_hold_after_actions(programs: Programs) -> None:  # noqa: F811

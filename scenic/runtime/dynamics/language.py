@@ -113,11 +113,11 @@ class Dynamics:
     # Statements that take time; `instance` is what runs
 
     def take(self, instance: Invocable, *actions: Any) -> Yielded:
-        """``take``, and ``wait`` as taking nothing: what to yield. ``None`` is no action."""
+        """``take``, and ``wait`` as taking nothing: what to yield."""
         instance._activation.direct = True
         if len(actions) == 1 and isinstance(actions[0], list | tuple):
             actions = tuple(actions[0])
-        return tuple(self.at_present(action) for action in actions if action is not None)
+        return tuple(self.at_present(action) for action in actions)
 
     def terminate(self, instance: Invocable, *, simulation: bool) -> Yielded:
         """``terminate``: what to yield."""

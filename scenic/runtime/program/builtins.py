@@ -107,7 +107,8 @@ def builtin_names(program: Program, filename: str, importer: Callable[..., Any])
     def local_path(relative: str) -> Path:
         """A path relative to the file that the program is in."""
         path = folder / relative
-        note_file(path)
+        if isinstance(path, Path):  # not a random one
+            note_file(path)
         return path
 
     return {

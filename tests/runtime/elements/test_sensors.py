@@ -53,7 +53,9 @@ def test_cameras_are_fixed_on_their_objects() -> None:
     drawn = scenario("param x = Range(0, 1), v = Vector(Range(0, 1), 2, 3)").params
     for wrong in ((1, 2), (1, 2, 3, 4), 5, "abc", (1, None, 2), (drawn["x"], 0, 0), drawn["v"]):
         for name in ("offset", "rotation"):
-            with pytest.raises(InvalidScenarioError, match=f"the {name} of a sensor must be three numbers"):
+            with pytest.raises(
+                InvalidScenarioError, match=f"the {name} of a sensor must be three finite numbers"
+            ):
                 CameraSensor(**{name: wrong})  # type: ignore[arg-type] # that is what it refuses
     assert (RGBSensor.outputs, DepthSensor.outputs, SSSensor.outputs) == (
         ("rgb",),

@@ -101,9 +101,9 @@ SEEN = {
 
 
 def test_all_of_them_are_here() -> None:
-    """Those of statements, and `CanSee`, which needs a scene, are tested with the established modules."""
+    """Those of statements, and `CanSee` and `RestingOn`, which need a scene or draw, are tested with the established modules."""
     tested = {call.partition("(")[0] for call in (*OPERATORS, *SPECIFIERS, *REGIONS, *SEEN)}
-    assert {name for name in FUNCTIONS if name[0].isupper()} == tested | {"CanSee"}
+    assert {name for name in FUNCTIONS if name[0].isupper()} == tested | {"CanSee", "RestingOn"}
 
 
 def test_operators() -> None:

@@ -89,7 +89,7 @@ def test_what_a_limit_ends() -> None:
     program = scenario(PROGRAMS["discs"])
     halved(program)
     assert {result.attempts for result in program.stream(3, seed=1, max_attempts=1)} == {1}
-    late = list(program.stream(3, seed=1, time_limit=0))
+    late = list(program.stream(3, seed=1, time_limit=1e-9))
     assert [result.reason for result in late] == ["time"] * 3
 
 

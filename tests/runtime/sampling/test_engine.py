@@ -338,7 +338,7 @@ def test_generate_counts_and_gives_up() -> None:
 def test_time_is_a_limit_only_when_it_is_up() -> None:
     program = scenario("x = Range(0, 1)\ndef same(v): return v\nrequire same(x < 0.5)\n")
     assert all(hasattr(scene, "objects") for scene in program.stream(3, seed=1, time_limit=600))
-    late = list(program.stream(3, seed=1, time_limit=-1))
+    late = list(program.stream(3, seed=1, time_limit=1e-9))
     assert [(item.k, item.reason) for item in late] == [(0, "time"), (1, "time"), (2, "time")]
 
 
@@ -350,7 +350,7 @@ def test_it_is_told_why_no_scene_was_found() -> None:
     culprits = "\nlow rejected every candidate\nhigh rejected every candidate\nof {} candidates:"
     for options, head, looked in (
         ({"max_attempts": 7}, "no scene was found within 7 candidates", 7),
-        ({"time_limit": -1}, "no scene was found in the time given (0 candidates)", 1),
+        ({"time_limit": 1e-9}, "no scene was found in the time given (0 candidates)", 1),
     ):
         with pytest.raises(RejectionException) as caught:
             program.sample(3, seed=1, **options)  # type: ignore[arg-type] # of several types
