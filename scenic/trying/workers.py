@@ -119,7 +119,7 @@ def _serve(connection: Connection, other: Connection) -> None:
         os.setsid()
     threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    home = os.getcwd()
+    home, inherited = os.getcwd(), _address_space()
     with tempfile.TemporaryFile() as output:
         for number in (1, 2):
             os.dup2(output.fileno(), number)
@@ -131,7 +131,7 @@ def _serve(connection: Connection, other: Connection) -> None:
                 trial: Trial = connection.recv()
             except (EOFError, OSError):
                 return
-            _limit_memory(trial.limits.memory)
+            _limit_memory(inherited + trial.limits.memory)
             output.seek(0)
             output.truncate()
             connection.send(_answered(trial, output))
@@ -166,6 +166,15 @@ def _answered(trial: Trial, output: IO[bytes]) -> dict[str, Any]:
     output.seek(0)
     text = output.read(4 * _LONGEST_OUTPUT).decode(errors="replace")[:_LONGEST_OUTPUT]
     return {**found, "output": text}
+
+
+def _address_space() -> int:
+    """Bytes that this process has mapped: what a fork inherits is no memory of the programs it tries."""
+    try:
+        with open("/proc/self/statm", encoding="ascii") as file:
+            return int(file.read().split()[0]) * os.sysconf("SC_PAGE_SIZE")
+    except OSError:  # Only Linux tells, and only there are processes forked.
+        return 0
 
 
 def _limit_memory(size: int) -> None:

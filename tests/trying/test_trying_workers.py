@@ -1,6 +1,10 @@
 """Trials in processes: no program takes the others, or the caller, along with it."""
 
+import mmap
 import multiprocessing
+import sys
+
+import pytest
 
 from scenic.trying.answer import Limits, Trial
 from scenic.trying.workers import tried
@@ -28,3 +32,11 @@ def test_programs_that_misbehave() -> None:
     assert answers[2]["output"] == "a line\n"
     assert answers[1]["diagnostics"][-1]["span"]["line"] == 1
     assert not multiprocessing.active_children()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="processes are forked on Linux only")
+def test_memory_of_the_caller_is_not_counted() -> None:
+    limits = Limits(memory=3 << 30)
+    with mmap.mmap(-1, limits.memory, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS, prot=mmap.PROT_READ):
+        [found] = tried([Trial("ego = new Object\n", "small.scenic", limits=limits)])
+    assert found["ok"], found["diagnostics"]
