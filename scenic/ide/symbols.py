@@ -7,6 +7,7 @@ from enum import StrEnum
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
+from scenic.compiler.traversal import position
 from scenic.dataclass import dataclass
 from scenic.ide.places import name_span, span_of
 from scenic.ide.snapshot import Snapshot
@@ -191,10 +192,18 @@ def _signature(snapshot: Snapshot, node: Any) -> str:
     """The parameters of a definition as they are written, on one line."""
     tokens = snapshot.tokens
     begin = _token_at(snapshot, node.lineno, node.col_offset)
-    while tokens.texts[begin] not in ("(", ":"):
+    if begin == len(tokens.texts) or (tokens.lines[begin], tokens.columns[begin]) != position(node):
+        # A string before it is left open, which only the parser knows: to the plain lexer the definition is inside.
+        body = getattr(node, "body", None)  # Not of a scenario.
+        first, *lines = snapshot.source.lines[node.lineno - 1 : body[0].lineno if body else node.end_lineno]
+        header = "\n".join([first.encode()[node.col_offset :].decode(), *lines])
+        snapshot, begin = Snapshot(header, snapshot.filename), 0
+        tokens = snapshot.tokens
+    count = len(tokens.texts)
+    while begin < count and tokens.texts[begin] not in ("(", ":"):
         begin += 1
     end, depth = begin, 0
-    while depth or tokens.texts[end] != ":":
+    while end < count and (depth or tokens.texts[end] != ":"):
         depth += (tokens.texts[end] in ("(", "[", "{")) - (tokens.texts[end] in (")", "]", "}"))
         end += 1
     return text_of(snapshot, begin, end).partition(" ->")[0]

@@ -7,6 +7,8 @@ from typing import Any
 
 import pytest
 
+from scenic.ide.snapshot import Snapshot
+from scenic.ide.symbols import symbols
 from scenic.lsp.handlers import METHODS, handler
 from tests.lsp.client import FULL, Client, Refused, applied, at
 
@@ -500,6 +502,12 @@ def test_symbols_of_the_document(project: Project) -> None:
     ]
     for each in found:
         assert project.text(project.main, each["selectionRange"]) == each["name"]
+
+
+def test_symbols_after_a_string_that_is_left_open() -> None:
+    text = '"""What is this?\nbehavior Go(goal, x=[3]):\n    wait\nscenario S(y):\n    setup:\n        pass\n'
+    found = [(each.name, each.detail) for each in symbols(Snapshot(text, "x"))]
+    assert found == [("Go", "(goal, x=[3])"), ("S", "(y)")]
 
 
 def test_folding(project: Project) -> None:
