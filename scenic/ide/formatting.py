@@ -22,8 +22,10 @@ from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
 from scenic.compiler.lines import measure
 from scenic.compiler.parser import parse, parse_lexed
+from scenic.compiler.scopes import ScopeKind
 from scenic.compiler.tokens import DEDENT, ENDMARKER, FSTRING_MIDDLE, INDENT, NEWLINE, STRING, Tokens
 from scenic.compiler.traversal import first_position, position
+from scenic.compiler.tree import GUARDS
 from scenic.dataclass import dataclass
 from scenic.ide.snapshot import Snapshot
 from scenic.ide.spacing import Lexeme, lexemes, needless_pairs, spaced
@@ -207,8 +209,8 @@ def _parts(snapshot: Snapshot, line: _Line) -> list[list[Lexeme]]:
     if not cuts or cuts[0] > begin:
         cuts.insert(0, begin)
     parts = [lexemes(snapshot, *cut) for cut in zip(cuts, [*cuts[1:], end], strict=True)]
-    if tokens.texts[begin] == "class" and any(each.text == ":" for part in parts[1:] for each in part):
-        return []  # An annotated variable would become a property.
+    if line.first in _lines_of_misread(snapshot):
+        return []
     return [part[:-1] if part[-1].text == ";" else part for part in parts]
 
 
@@ -222,6 +224,15 @@ def _needless_commas(part: Sequence[Lexeme]) -> Iterator[int]:
             commas[-1] += 1
         if lexeme.text in (")", "]", "}") and commas.pop() > 1 and before.text == ",":
             yield before.token
+
+
+def _lines_of_misread(snapshot: Snapshot) -> Container[int]:
+    """The lines with annotated variables that would become properties or guards on lines of their own."""
+    return frozenset(
+        node.lineno
+        for node, scope in snapshot.resolution.by_class.get(ast.AnnAssign, ())
+        if scope.kind is ScopeKind.CLASS or (isinstance(node.target, ast.Name) and node.target.id in GUARDS)
+    )
 
 
 def _starts_of_statements(snapshot: Snapshot) -> Container[tuple[int, int]]:

@@ -3,6 +3,7 @@
 from collections.abc import Container, Iterator, Sequence
 from typing import Final, NamedTuple
 
+from scenic.compiler.generated import WORDS
 from scenic.compiler.precedence import FORMS, Word
 from scenic.compiler.tokens import (
     DEDENT,
@@ -78,6 +79,8 @@ def lexemes(snapshot: Snapshot, begin: int, end: int) -> list[Lexeme]:
             if before == "with" and found[0].text not in ("with", "async"):
                 is_name = False  # A property, whose value follows.
             is_value = kind in (NUMBER, STRING) or text in _VALUES
+            if kind == NAME and text in WORDS:
+                text = _source(snapshot, index, index)  # In letters that keep it from being a keyword.
             found.append(Lexeme(index, text, is_name and not is_value, is_value))
     return found
 

@@ -183,6 +183,19 @@ def test_small_texts(text: str) -> None:
     check(text, format_text(text))
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "class C:\n    terminate; x: C\n",
+        "class C: pass; x: None\n",
+        "behavior B():\n    precondition: x; y: 3\n    wait\n",
+        "behavior B():\n    \U0001d429recondition: 3\n    wait\n",
+    ],
+)
+def test_annotated_variables_that_would_be_read_otherwise_stay(text: str) -> None:
+    assert format_text(text) == text
+
+
 def test_only_what_is_asked_for() -> None:
     snapshot = Snapshot("x=1\ny = 2\nz=3\n", "f")
     assert [edit.text for edit in formatting(snapshot)] == ["x = 1\n", "z = 3\n"]
