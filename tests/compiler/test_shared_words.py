@@ -169,8 +169,17 @@ def test_chains_take_linear_time(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", CHAINS)
-def test_two_thousand_operators(name: str) -> None:
-    result = parse(CHAINS[name](2000))
+def test_two_hundred_operators(name: str) -> None:
+    result = parse(CHAINS[name](200))
     assert bool(result.diagnostics) == (
         name in ("one word too few", "follow without", "words that nobody wants")
     )
+    assert "SC112" not in {each.code for each in result.diagnostics}
+
+
+@pytest.mark.parametrize("name", CHAINS)
+def test_two_thousand_operators(name: str) -> None:
+    result = parse(CHAINS[name](2000) + "\ny = 1\n")
+    codes = {each.code for each in result.diagnostics}
+    assert ("SC112" in codes) == (name != "none")
+    assert isinstance(result.tree.body[-1], ast.Assign)
