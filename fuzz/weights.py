@@ -33,6 +33,7 @@ WEIGHTS: Final[Mapping[str, float]] = MappingProxyType(
         "keyword_statement__deletable": 0.5,
         "done": 2,
         "temporal_not__temporal_group": 8,
+        "temporal_implies__Temporal": 3,
         "temporal_expression__1": 4,
         # What newer versions of Python have is refused by older ones, and nothing more can be seen of the program.
         "soft_statement__type_alias": 0.2,
