@@ -53,7 +53,7 @@ def run(folder: Path, *arguments: object) -> "subprocess.CompletedProcess[str]":
 
 
 def kept(folder: Path) -> dict[str, str]:
-    """What the run has left, by name: all but the manifest, which is there before the first simulation."""
+    """The files that the run has left, by name: all but the manifest, which is there before the first simulation."""
     files = {path.name: path for path in [*(folder / "out").iterdir(), *folder.glob("*place*")]}
     files.pop("manifest.json")
     return {name: path.read_text() for name, path in files.items()}

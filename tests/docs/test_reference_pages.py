@@ -59,7 +59,7 @@ def test_every_word_of_the_language_is_in_an_example() -> None:
 
 
 def test_functions_of_syntax_are_listed() -> None:
-    """What they stand for has its own examples."""
+    """The syntax that they stand for has its own examples."""
     page = (REFERENCE / "language.md").read_text(encoding="utf-8")
     listed = page.partition("## Operators and specifiers as functions\n")[2].partition("```")[0]
     functions = {name for name, item in NAMES.items() if item.syntax is not None}

@@ -43,7 +43,7 @@ def test_python(before: str, after: str) -> None:
 
 
 def test_values_of_python_strings_are_programs() -> None:
-    """Whatever way a string is written in, its value is the converted program."""
+    """In every way to write a string, its value is the converted program."""
     program = OLD + '# \\ "quotes" \u00e9 \t\n'
     wanted = NEW + '# \\ "quotes" \u00e9 \t\n'
     for literal in (repr(program), ascii(program), json.dumps(program), f"'''{repr(program)[1:-1]}'''"):

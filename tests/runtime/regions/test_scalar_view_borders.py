@@ -1,4 +1,4 @@
-"""What observers see on plain floats, right beside where that changes: see `tests.runtime.regions.test_scalar_borders`."""
+"""Views of observers on plain floats, right beside where they change: see `tests.runtime.regions.test_scalar_borders`."""
 
 import math
 from collections.abc import Callable
