@@ -27,7 +27,7 @@ from scenic.language.spelling import nearest
 from scenic.narrowing import prepared_sampler
 from scenic.runtime.description.definitions import ModularScenario
 from scenic.runtime.description.mutation import apply_noise
-from scenic.runtime.description.outcome import Module, Program, Requirement
+from scenic.runtime.description.outcome import Module, Program
 from scenic.runtime.ground.context import Context, current
 from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.program.prelude import Loader
@@ -40,8 +40,6 @@ from scenic.runtime.scenes.saving import program_digest
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.scenes.services import Services
-from scenic.runtime.values.generic import call_later
-from scenic.runtime.values.nodes import as_node
 from scenic.runtime.values.values import is_random
 
 if TYPE_CHECKING:
@@ -64,6 +62,7 @@ def load(
     extra_params: bool = False,
     settle: float | None = None,
     settle_tolerance: float = 0.01,
+    settle_keep: bool = False,
 ) -> Scenario:
     """The scenario of a file.
 
@@ -77,6 +76,8 @@ def load(
         extra_params: accept values of parameters that the program does not have, and add them to its scenes.
         settle: seconds of a simulation in MuJoCo in which no object of a scene may move, nor turn by more than 5 degrees.
         settle_tolerance: the distance that is not yet moving, metres.
+        settle_keep: give scenes the poses in which their objects are after that simulation, instead of rejecting scenes in which
+            objects move. Requirements are about the poses before. Only objects that are still moving reject a scene.
 
     Raises:
         ScenicSyntaxError: if the program cannot be compiled.
@@ -93,7 +94,7 @@ def load(
         mode2D,
         prune,
         strict_params=not extra_params,
-        settle=None if settle is None else (settle, settle_tolerance),
+        settle=None if settle is None else (settle, settle_tolerance, settle_keep),
     )
     return _scenario(source.text, source.filename, options)
 
@@ -199,8 +200,8 @@ class _Options:
     prune: bool = True
     strict_params: bool = False
     """True if a parameter that the program does not use is an error."""
-    settle: tuple[float, float] | None = None
-    """Seconds of a simulation in which no object moves, and the distance that is not yet moving, metres."""
+    settle: tuple[float, float, bool] | None = None
+    """Seconds of a simulation in which no object moves, the distance that is not yet moving (metres), and whether settled poses are kept."""
 
     def digest(self, text: str) -> str:
         """The digest of a program, whatever its comments and blanks, and of all options that change its scenes."""
@@ -231,7 +232,7 @@ class _Options:
         if not self.prune:
             given["prune"] = False
         if self.settle is not None:
-            given["settle"], given["settle_tolerance"] = self.settle
+            given["settle"], given["settle_tolerance"], given["settle_keep"] = self.settle
         return given
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -277,6 +278,7 @@ def _scenario(text: str, filename: str, options: _Options) -> Scenario:
             _simulate,
             _external_points,
             lambda given: _scenario(text, filename, replace(options, params={**options.params, **given})),
+            lambda settle: _scenario(text, filename, replace(options, settle=settle)),
         ),
     )
     promote_young()
@@ -322,23 +324,23 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
             program.module = vars(module)
             program.variables = _names(module, state.ego)
             _settle_parameters(program, strict=options.strict_params)
-            if options.settle is not None:
-                _require_rest(program, *options.settle)
             workspace = state.workspace or Workspace(everywhere)
-            outlined = outline(program, state.ego, workspace, mode_2d=options.mode_2d)
+            outlined = _outlined(program, workspace, options)
     finally:
         current.reset(token)
     return _Ran(program, outlined, state.ego, workspace, program.variables, _regions(module))
 
 
-def _require_rest(program: Program, seconds: float, tolerance: float) -> None:
-    """Add the requirement that no object of a scene moves in a simulation."""
-    from scenic.simulators.mujoco.settling import Settling
+def _outlined(program: Program, workspace: Workspace, options: _Options) -> Outline:
+    """The outline of a program that has run, with its objects at rest if the options say so."""
+    if options.settle is None:
+        return outline(program, program.ego, workspace, mode_2d=options.mode_2d)
+    from scenic.simulators.mujoco.settling import Settling, keep_poses, require_rest
 
-    program.settling = Settling(seconds, tolerance)
-    stays = call_later(program.settling, tuple(program.objects))
-    label = f"nothing moves by more than {tolerance:g} m in {seconds:g} s (--settle)"
-    program.requirements.append(Requirement(as_node(stays), 1.0, label))
+    seconds, tolerance, keep = options.settle
+    settled = require_rest(program, Settling(seconds, tolerance), keep=keep)
+    outlined = outline(program, program.ego, workspace, mode_2d=options.mode_2d)
+    return keep_poses(program, outlined, settled) if keep else outlined
 
 
 def _sample(scenario: Scenario, n: int, **options: Any) -> Iterator[Scene]:

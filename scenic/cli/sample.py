@@ -111,8 +111,9 @@ def _loaded(request: SampleRequest) -> "Scenario":
         mode2D=request.mode_2d,
         prune=not request.no_prune,
         extra_params=request.extra_params,
-        settle=request.settle,
+        settle=None if request.settle is None else request.settle[0],
         settle_tolerance=request.settle_tolerance,
+        settle_keep=request.settle is not None and request.settle[1],
     )
     if any("texture" in thing.__dict__ for thing in scenario.objects):
         from scenic.batch.source_files import check_textures, warn_of_textures

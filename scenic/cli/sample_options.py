@@ -1,5 +1,6 @@
 """The options of ``scenic sample``, and the request that they make."""
 
+import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final, TypeVar
@@ -28,6 +29,31 @@ __all__ = ["SampleRequest", "sample_options"]
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
+_SECONDS: Final = 3.0
+"""Length of the simulation of ``--settle keep``."""
+
+
+def _settling(
+    _context: click.Context, _option: click.Parameter, given: str | None
+) -> tuple[float, bool] | None:
+    """Seconds of the simulation, and whether settled poses are kept."""
+    if given is None:
+        return None
+    way, colon, number = (
+        given.rpartition(":") if given not in ("keep", "reject") else (given, ":", str(_SECONDS))
+    )
+    try:
+        length = float(number)
+    except ValueError:
+        length = 0.0
+    if not 0 < length < math.inf or (way, colon) not in _WAYS:
+        raise click.BadParameter(
+            f"{given!r} is neither a positive number of seconds nor keep:SECONDS; for example: --settle 2, --settle keep:2"
+        )
+    return length, way == "keep"
+
+
+_WAYS: Final = (("", ""), ("keep", ":"), ("reject", ":"))
 _OPTIONS: Final[tuple[Callable[[Any], Any], ...]] = (
     program_argument,
     count_option("How many scenes."),
@@ -65,10 +91,10 @@ _OPTIONS: Final[tuple[Callable[[Any], Any], ...]] = (
     extra_params_option,
     click.option(
         "--settle",
-        metavar="T",
-        type=float,
-        callback=seconds,
-        help="Reject scenes in which an object moves within this number of seconds of physics (MuJoCo).",
+        metavar="T|keep:T",
+        callback=_settling,
+        help="Reject scenes in which an object moves within T seconds of physics (MuJoCo). With keep:T (keep: 3 seconds) scenes "
+        "have the poses after that time instead.",
     ),
     click.option(
         "--settle-tolerance",
@@ -199,7 +225,7 @@ class SampleRequest:
     model: str | None
     mode_2d: bool
     extra_params: bool
-    settle: float | None
+    settle: tuple[float, bool] | None
     settle_tolerance: float
     no_prune: bool
     max_attempts: int | None

@@ -132,6 +132,7 @@ def test_options_reach_the_pipeline(stub: Stub) -> None:
         "extra_params": False,
         "settle": None,
         "settle_tolerance": 0.01,
+        "settle_keep": False,
         "max_attempts": 7,
         "source": None,
     }

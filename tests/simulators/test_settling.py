@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 
 import scenic
+from scenic.batch.engines import Processes
+from scenic.batch.scenes import Job, in_processes
 from scenic.language.errors import ScenicValueError
 
 pytest.importorskip("mujoco")
@@ -47,6 +49,37 @@ def test_scenes_do_not_depend_on_processes(program: Path) -> None:
     alone = [scene.egoObject.position for scene in scenario.sample(4, seed=3)]
     beside = [scene.egoObject.position for scene in scenario.sample(4, seed=3, processes=2)]
     assert alone == beside
+
+
+def test_settled_poses_are_kept(program: Path) -> None:
+    scenario = scenic.load(program, settle=1, settle_keep=True)
+    scenes = scenario.sample(5, seed=1)
+    again = Settling(1.0)
+    for scene in scenes:
+        assert again.stays(scene.objects)
+        assert scene.egoObject.position.z == pytest.approx(0.75, abs=2e-3)
+        corners = scene.egoObject.corners  # derived values follow
+        assert min(corner.z for corner in corners) == pytest.approx(0.7, abs=2e-3)
+    saved = scenario.sceneToBytes(scenes[0])
+    assert scenario.sceneFromBytes(saved).egoObject.position == scenes[0].egoObject.position
+    assert scenario.program.settling.tally.fell >= 1
+
+
+def test_processes_count_together(program: Path) -> None:
+    scenario = scenic.load(program, settle=0.2)
+    tally = scenario.program.settling.tally
+    list(in_processes(scenario, lambda _, scenes: b"", Job(3, 0, 8, None, None), Processes(2)))
+    assert tally.stable >= 8
+    assert tally.objects == 2 * tally.scenes
+
+
+def test_absent_objects_are_not_simulated() -> None:
+    program = """
+model scenic.simulators.mujoco.model
+new Body at (0, 0, 5), with present False
+ego = new Fixture at (0, 0, 0.5)
+"""
+    assert scenic.scenarioFromString(program).sample(1, seed=1, settle=0.5)
 
 
 def test_times_and_distances_are_positive() -> None:

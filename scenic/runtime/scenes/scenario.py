@@ -382,6 +382,8 @@ class Scenario(Generating):
         approximate: int | None = None,
         processes: int = 1,
         executor: "Executor | None" = None,
+        settle: float | None = None,
+        settle_keep: bool = False,
     ) -> list[Scene]:
         """``n`` scenes of a seed (drawn from Python's ``random`` if not given).
 
@@ -395,6 +397,8 @@ class Scenario(Generating):
             approximate: scenes made together, of nearly the program's law; see `stream`. It goes without several processes.
             processes: how many processes look for scenes. Changes speed, never the scenes.
             executor: looks for scenes in place of processes of our own, ``processes`` ranges at a time.
+            settle: seconds of a simulation in MuJoCo in which no object may move, as of `scenic.load`.
+            settle_keep: give scenes the poses after that simulation instead.
 
         Raises:
             RejectionException: if a scene is not found within the limits; the message lists what rejected it.
@@ -402,6 +406,17 @@ class Scenario(Generating):
                 its type, and tells the place in a note.
 
         """
+        limits: dict[str, Any] = {
+            "max_attempts": max_attempts,
+            "time_limit": time_limit,
+            "source": source,
+            "executor": executor,
+        }
+        if settle is not None and self._services.settled is not None:
+            other: Scenario = self._services.settled((settle, 0.01, settle_keep))
+            return other.sample(
+                n, seed=seed, lanes=lanes, approximate=approximate, processes=processes, **limits
+            )
         n = whole_number(n, "n", 0)
         processes = whole_number(processes, "processes", 1)
         chosen = random.getrandbits(SEED_BITS) if seed is None else whole_number(seed, "seed")
@@ -409,12 +424,6 @@ class Scenario(Generating):
         if approximate is not None and (processes > 1 or executor is not None):
             raise ValueError("approximate scenes are made together, in one process")
         if (processes > 1 or executor is not None) and self._services.sample is not None:
-            limits = {
-                "max_attempts": max_attempts,
-                "time_limit": time_limit,
-                "source": source,
-                "executor": executor,
-            }
             return list(self._services.sample(self, n, seed=chosen, processes=processes, **limits))
         scenes = []
         for result in self.stream(

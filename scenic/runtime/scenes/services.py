@@ -34,3 +34,5 @@ class Services:
     """The points of the program's external parameters, by the sampler that it names."""
     given: Callable[[Mapping[str, Any]], Any] | None = None
     """Compiles the program once more with values of global parameters."""
+    settled: Callable[[tuple[float, float, bool]], Any] | None = None
+    """Compiles the program once more, to simulate scenes: seconds, tolerance (metres), whether settled poses are kept."""
