@@ -12,7 +12,7 @@ from typing import Final
 import click
 
 from scenic.cli.sample_options import SampleRequest
-from scenic.cli.sinks import STANDARD_OUTPUT, is_dataset
+from scenic.cli.sinks import FILES, STANDARD_OUTPUT, is_dataset
 from scenic.dataclass import dataclass
 
 __all__ = ["SINKS", "BatchPart", "SinkPart", "check_parts", "given_options", "parts_of", "sink_parts"]
@@ -137,7 +137,7 @@ SINKS: Final[Mapping[str, SinkPart]] = MappingProxyType(
         "files": SinkPart(
             "3D files (-o OUT.glb)",
             _without(*_SHARED, *_RESUMED, "profile"),
-            endings=(".glb", ".obj", ".wbt", ".usda", ".usdc", ".usdz", ".xml", ".sdf"),
+            endings=tuple(FILES),
         ),
         "page": SinkPart(
             "a page (--view)", _without(*_SHARED, *_RESUMED, "profile"), endings=(".html", ".htm")

@@ -67,14 +67,14 @@ def is_lines(path: Path) -> bool:
     suffix = path.suffix.lower()
     if path != STANDARD_OUTPUT and suffix in _OTHER_FORMATS:
         raise OutputChoiceError(f"scenes are not written as '{suffix}' files", help=_OTHER_FORMATS[suffix])
-    return suffix not in _FILES
+    return suffix not in FILES
 
 
 def check_lines(path: Path) -> None:
     """Raises ``OutputChoiceError`` if a file of JSON Lines has a name with the ending of another format."""
     suffix = path.suffix.lower()
     if path != STANDARD_OUTPUT and suffix not in {"", ".jsonl"} and not is_special(path):
-        known = ", ".join(sorted({".jsonl", ".parquet", *_FILES}))
+        known = ", ".join(sorted({".jsonl", ".parquet", *FILES}))
         raise OutputChoiceError(
             f"'{suffix}' tells of no format that scenes are written as", help=f"known endings are {known}"
         )
@@ -95,7 +95,7 @@ def scene_file(path: Path, count: int, first: int = 0) -> Sink:
 
         check_form(ENDINGS[path.suffix.lower()])
     _check_numbered(path, count, first)
-    return _FILES[path.suffix.lower()](path, count)
+    return FILES[path.suffix.lower()](path, count)
 
 
 def check_files(form: str) -> None:
@@ -127,7 +127,7 @@ def check_labelled(folder: Path) -> None:
     from scenic.formats.imaging import require_pillow
 
     require_pillow()
-    if folder == STANDARD_OUTPUT or folder.suffix.lower() in {*_OTHER_FORMATS, *_FILES, ".jsonl"}:
+    if folder == STANDARD_OUTPUT or folder.suffix.lower() in {*_OTHER_FORMATS, *FILES, ".jsonl"}:
         raise OutputChoiceError(
             f"labelled images cannot be written to '{folder}'", help="give a folder: --camera front -o images"
         )
@@ -215,7 +215,7 @@ def _robot_files(path: Path, count: int) -> Iterator[Take]:
 _ROBOTICS = (".usda", ".usdc", ".usdz", ".xml", ".sdf")
 """Endings of files for robot simulators."""
 
-_FILES = {".glb": _glb_files, ".obj": _obj_files, ".wbt": _worlds, **dict.fromkeys(_ROBOTICS, _robot_files)}
+FILES = {".glb": _glb_files, ".obj": _obj_files, ".wbt": _worlds, **dict.fromkeys(_ROBOTICS, _robot_files)}
 """Sinks of 3D files by their endings."""
 
 

@@ -1,9 +1,16 @@
 """The declarations of the language as Markdown."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Final
+from typing import Final, cast
 
-from scenic.language.keywords import HARD_KEYWORDS, PYTHON_KEYWORDS, SOFT_KEYWORDS, TEMPORAL_OPERATORS
+from scenic.language.keywords import (
+    HARD_KEYWORDS,
+    PYTHON_KEYWORDS,
+    SOFT_KEYWORDS,
+    TEMPORAL_OPERATORS,
+    TemporalOperator,
+)
 from scenic.language.names import NAMES, SENSORS
 from scenic.language.operators import OPERATORS, Operand, Operator
 from scenic.language.properties import CLASSES, BuiltinProperty, attributes_of, properties_of
@@ -87,19 +94,23 @@ def of_property(name: str) -> str | None:
 
 
 def of_keyword(word: str) -> str | None:
-    """A keyword, in general."""
+    """A keyword, in general: its own meaning, or the elements of the language that begin with it or hold it."""
     for table in (HARD_KEYWORDS, SOFT_KEYWORDS, PYTHON_KEYWORDS):
         if word in table:
             return _page((word,), table[word], ())
-    forms = [form for form in _all_forms() if word in form.split()]
+    elements = [(form, declared.documentation) for declared in _elements() for form in declared.forms]
+    beginning = {form: text for form, text in elements if re.match(rf"{word}\b", form)}
+    if beginning:
+        return _page(list(beginning)[:_MOST_FORMS], next(iter(beginning.values())), ())
+    forms = [form for form, _ in elements if word in form.split()]
     return _page(forms[:_MOST_FORMS], f"`{word}` is a part of what is written so.", ()) if forms else None
 
 
-def _all_forms() -> Iterator[str]:
-    tables: tuple[Mapping[str, Any], ...] = (SPECIFIERS, OPERATORS, TEMPORAL_OPERATORS, STATEMENTS)
-    for table in tables:
-        for declared in table.values():
-            yield from declared.forms
+def _elements() -> Iterator[SpecifierDeclaration | Operator | TemporalOperator | Statement]:
+    for table in (SPECIFIERS, OPERATORS, TEMPORAL_OPERATORS, STATEMENTS):
+        yield from cast(
+            "Mapping[str, SpecifierDeclaration | Operator | TemporalOperator | Statement]", table
+        ).values()
 
 
 def _property(declared: BuiltinProperty) -> str:

@@ -1,5 +1,6 @@
 """The reference has every element of the language, with an example; the command line's page has every command."""
 
+import keyword
 import re
 from pathlib import Path
 
@@ -7,8 +8,8 @@ from docs._extensions.blocks import blocks_of
 from docs._extensions.commands import commands_text
 from docs._extensions.declared import diagnostics_text
 from scenic.cli.main import scenic
+from scenic.compiler.generated import HARD_KEYWORDS, SOFT_KEYWORDS
 from scenic.language.diagnostics import CODES
-from scenic.language.keywords import HARD_KEYWORDS, SOFT_KEYWORDS
 from scenic.language.names import NAMES
 from scenic.language.operators import OPERATORS, SIDES
 from scenic.language.properties import CLASSES
@@ -17,8 +18,8 @@ from scenic.language.statements import STATEMENTS
 
 DOCS = Path(__file__).parents[2] / "docs"
 REFERENCE = DOCS / "reference"
-PYTHON_WORDS = {"_", "case", "match", "type"}
-"""Python's own soft keywords."""
+PYTHON_WORDS = {*keyword.kwlist, "_", "case", "match", "type"}
+"""Python's own keywords."""
 
 
 def code() -> str:

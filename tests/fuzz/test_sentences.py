@@ -11,8 +11,8 @@ from fuzz.derivations import AlternativeId
 from fuzz.draws import RandomDraws, replayed
 from fuzz.grammar import Limits, Program, derivations, from_grammar, make_program, programs
 from fuzz.terminals import CLOSERS, OPENERS, Shape
+from scenic.compiler.generated import SOFT_KEYWORDS
 from scenic.compiler.parser import parse
-from scenic.language.keywords import SOFT_KEYWORDS
 
 QUICK = settings(
     max_examples=25, deadline=None, database=None, derandomize=True, suppress_health_check=list(HealthCheck)

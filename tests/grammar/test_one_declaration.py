@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -13,53 +14,59 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 
-ADDED: Mapping[str, tuple[tuple[str, str], ...]] = {
-    "grammar/scenic.gram": (
-        (
-            """    | "front" 'of' a=prefix {""",
-            """    | "gap" "between" a=expression 'to' b=prefix {
+ADDED: Mapping[str, Mapping[str, tuple[tuple[str, str], ...]]] = {
+    "operator": {
+        "grammar/scenic.gram": (
+            (
+                "    | \"front\" 'of' a=prefix {",
+                """    | "gap" "between" a=expression 'to' b=prefix {
         Operation(operator="gap between", operands=[a, b]) }
 """,
+            ),
         ),
-        (
-            """    | "behind" a=expression""",
-            """    | "beside" a=expression b=by_clause? {
-        SpecifierPhrase(specifier="beside", property=None, operands=[a, b]) }
-""",
-        ),
-        ("""    | "abort" { Abort() }""", """    | "announce" a=expression { Announce(value=a) }\n"""),
-    ),
-    "scenic/compiler/tree.py": (
-        (
-            "class Abort(ScenicStatement):",
-            '''class Announce(ScenicStatement):
-    """``announce value``."""
-
-    value: ast.expr
-    _fields = ("value",)
-
-
-''',
-        ),
-    ),
-    "scenic/language/operators.py": (
-        (
-            '    Operator(\n        "altitude",',
-            """    Operator(
+        "scenic/language/operators.py": (
+            (
+                """    Operator(
+        "altitude",""",
+                """    Operator(
         "gap between",
         (Operand("first", (OBJECT,)), Operand("second", (OBJECT,))),
         "scalar",
         ("gap between first to second",),
         "How much room is left between two objects.",
-        available=False,
     ),
 """,
+            ),
         ),
-    ),
-    "scenic/language/specifiers.py": (
-        (
-            '    _beside("behind",',
-            """    SpecifierDeclaration(
+        "scenic/runtime/elements/operators.py": (
+            (
+                "IMPLEMENTATIONS: Mapping",
+                """def _gap_between(first: Any, second: Any) -> Any:
+    return _distance_between(first.position, second.position)
+
+
+""",
+            ),
+            (
+                '        "deg": _degrees,',
+                """        "gap between": _gap_between,
+""",
+            ),
+        ),
+    },
+    "specifier": {
+        "grammar/scenic.gram": (
+            (
+                '    | "behind" a=expression',
+                """    | "beside" a=expression b=by_clause? {
+        SpecifierPhrase(specifier="beside", property=None, operands=[a, b]) }
+""",
+            ),
+        ),
+        "scenic/language/specifiers.py": (
+            (
+                '    _beside("behind",',
+                """    SpecifierDeclaration(
         "beside",
         (Operand("reference", (OBJECT,)), Operand("distance", (SCALAR,), "no gap")),
         (Specified("position", 1),),
@@ -70,30 +77,145 @@ ADDED: Mapping[str, tuple[tuple[str, str], ...]] = {
         functions=(Function("Beside(pos, dist=None)"),),
     ),
 """,
+            ),
         ),
-    ),
-    "scenic/runtime/elements/specifiers.py": (
-        (
-            "BUILDERS: Mapping[str",
-            """def beside(reference: Any, distance: Any) -> Specifier:
+        "scenic/runtime/elements/specifiers.py": (
+            (
+                "BUILDERS: Mapping[str",
+                """def beside(reference: Any, distance: Any) -> Specifier:
     return _specifier("beside", lambda _: {"position": reference.position + (distance or 1, 0, 0)})
 
 
 """,
-        ),
-        ("""        "behind": _directional("behind", -1),""", """        "beside": beside,\n"""),
-    ),
-    "scenic/language/names.py": (
-        (
-            '            _sensor(\n                "CallbackSensor',
-            """            _sensor("Thermometer(unit)", "Measures how warm it is.", "scenic.runtime.elements.warmth"),
+            ),
+            (
+                '        "behind": _directional("behind", -1),',
+                """        "beside": beside,
 """,
+            ),
         ),
-        (
-            "    # Exceptions\n",
-            """    _region("CubeRegion(center, size)", "The cube about a point.", "cubes"),
-    _shape("SlabShape(thickness)", "A flat square.", "scenic.runtime.elements.slabs"),
-    _distribution(
+    },
+    "statement": {
+        "grammar/scenic.gram": (
+            (
+                '    | "abort" { Abort() }',
+                """    | "announce" a=expression { Announce(value=a) }
+""",
+            ),
+        ),
+        "scenic/compiler/tree.py": (
+            (
+                "class Abort(ScenicStatement):",
+                '''class Announce(ScenicStatement):
+    """``announce value``."""
+
+    value: ast.expr
+    _fields = ("value",)
+
+
+''',
+            ),
+        ),
+        "scenic/language/statements.py": (
+            (
+                """    Statement(
+        "Abort",""",
+                """    Statement(
+        "Announce",
+        "announce",
+        ("announce value",),
+        frozenset({Place.TOP}),
+        "Says something when the scene is made.",
+    ),
+""",
+            ),
+        ),
+        "scenic/runtime/program/prelude.py": (
+            (
+                "    def require(self, condition",
+                """    def announce(self, value: Any) -> None:
+        self._program.parameters["announced"] = value
+
+""",
+            ),
+        ),
+    },
+    "sensor": {
+        "scenic/language/names.py": (
+            (
+                """            _sensor(
+                "CallbackSensor""",
+                """            _sensor("Thermometer(unit)", "Measures how warm it is.", "scenic.runtime.elements.warmth"),
+""",
+            ),
+        ),
+        "scenic/runtime/elements/warmth.py": (
+            (
+                "",
+                """
+from scenic.runtime.elements.sensors import Sensor
+
+class Thermometer(Sensor):
+    def __init__(self, unit):
+        self.deliver(f"20 {unit}")
+""",
+            ),
+        ),
+    },
+    "region": {
+        "scenic/language/names.py": (
+            (
+                """    # Exceptions
+""",
+                """    _region("CubeRegion(center, size)", "The cube about a point.", "cubes"),
+""",
+            ),
+        ),
+        "scenic/runtime/regions/cubes.py": (
+            (
+                "",
+                """
+from scenic.runtime.regions.volumes import BoxRegion
+
+class CubeRegion(BoxRegion):
+    def __init__(self, center, size):
+        super().__init__((size, size, size), center)
+""",
+            ),
+        ),
+    },
+    "shape": {
+        "scenic/language/names.py": (
+            (
+                """    # Exceptions
+""",
+                """    _shape("SlabShape(thickness)", "A flat square.", "scenic.runtime.elements.slabs"),
+""",
+            ),
+        ),
+        "scenic/runtime/elements/slabs.py": (
+            (
+                "",
+                """
+from scenic.runtime.shapes.shapes import PrimitiveShape
+from scenic.runtime.geometry.meshes import primitives
+
+class SlabShape(PrimitiveShape):
+    kind = "slab"
+    make = staticmethod(primitives.box)
+
+    def __init__(self, thickness=1, **options):
+        super().__init__(**{"dimensions": (1, 1, thickness), **options})
+""",
+            ),
+        ),
+    },
+    "distribution": {
+        "scenic/language/names.py": (
+            (
+                """    # Exceptions
+""",
+                """    _distribution(
         "Exponential(rate)",
         "A positive real number, the time until something happens.",
         "scenic.runtime.elements.exponential",
@@ -103,50 +225,13 @@ ADDED: Mapping[str, tuple[tuple[str, str], ...]] = {
         operation="exponential",
         noun="waiting time",
     ),
-    _function(
-        "clamp(value, low, high)",
-        "The nearest number between two.",
-        "scenic.runtime.elements.clamping",
-        lifted=True,
-        is_complete=True,
-    ),
 """,
+            ),
         ),
-    ),
-    "scenic/runtime/program/prelude.py": (
-        (
-            "    def require(self, condition",
-            """    def announce(self, value: Any) -> None:
-        self._program.parameters["announced"] = value
-
-""",
-        ),
-    ),
-    "scenic/language/statements.py": (
-        (
-            '    Statement(\n        "Abort",',
-            """    Statement(
-        "Announce",
-        "announce",
-        ("announce value",),
-        frozenset({Place.TOP}),
-        "Says something when the scene is made.",
-    ),
-""",
-        ),
-    ),
-}
-"""By file: the lines before which something is written."""
-
-IMPLEMENTED: Mapping[str, str] = {
-    "scenic/runtime/regions/cubes.py": """
-from scenic.runtime.regions.volumes import BoxRegion
-
-class CubeRegion(BoxRegion):
-    def __init__(self, center, size):
-        super().__init__((size, size, size), center)
-""",
-    "scenic/runtime/elements/exponential.py": """
+        "scenic/runtime/elements/exponential.py": (
+            (
+                "",
+                """
 import numpy as np
 from scenic.graph.kinds import Kind
 from scenic.graph.operation import Operation, always
@@ -160,35 +245,170 @@ _DRAW = Operation(
 def Exponential(rate):
     return primitive(_DRAW, rate)
 """,
-    "scenic/runtime/elements/slabs.py": """
-from scenic.runtime.shapes.shapes import PrimitiveShape
-from scenic.runtime.geometry.meshes import primitives
-
-class SlabShape(PrimitiveShape):
-    kind = "slab"
-    make = staticmethod(primitives.box)
-
-    def __init__(self, thickness=1, **options):
-        super().__init__(**{"dimensions": (1, 1, thickness), **options})
+            ),
+        ),
+    },
+    "function": {
+        "scenic/language/names.py": (
+            (
+                """    # Exceptions
 """,
-    "scenic/runtime/elements/warmth.py": """
-from scenic.runtime.elements.sensors import Sensor
-
-class Thermometer(Sensor):
-    def __init__(self, unit):
-        self.deliver(f"20 {unit}")
+                """    _function(
+        "clamp(value, low, high)",
+        "The nearest number between two.",
+        "scenic.runtime.elements.clamping",
+        lifted=True,
+        is_complete=True,
+    ),
 """,
-    "scenic/runtime/elements/clamping.py": """
+            ),
+        ),
+        "scenic/runtime/elements/clamping.py": (
+            (
+                "",
+                """
 from scenic.runtime.elements.functions import max, min
 
 def clamp(value, low, high):
     return min(max(value, low), high)
 """,
+            ),
+        ),
+    },
+    "diagnostic": {
+        "scenic/language/diagnostics.py": (
+            (
+                '        "SC390": "ignore',
+                """        "SC389": "condition that nobody doubts",
+""",
+            ),
+        ),
+        "scenic/language/explanations/SC389.md": (
+            (
+                "",
+                """# SC389: condition that nobody doubts
+
+A condition that is written as `True`.
+
+## Example
+
+```scenic
+require True
+```
+
+## Message
+
+```text
+1:1: warning[SC389]: nobody doubts this
+```
+
+## Repair
+
+Leave it out.
+""",
+            ),
+        ),
+        "scenic/compiler/checks/conditions.py": (
+            (
+                "RULES: Final",
+                """def _undoubted(node: ast.Assert, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+    if isinstance(node.test, ast.Constant) and node.test.value is True:
+        yield context.warning("SC389", "nobody doubts this", node, "leave it out")
+
+
+""",
+            ),
+            (
+                "    ast.Compare: _comparison,",
+                """    ast.Assert: _undoubted,
+""",
+            ),
+        ),
+    },
+    "simulator": {
+        "scenic/simulators/batch.py": (
+            (
+                '        "dummy": "scenic',
+                """        "still": "scenic.simulators.still:StillSimulator",
+""",
+            ),
+        ),
+        "scenic/simulators/still.py": (
+            (
+                "",
+                """
+from scenic.simulators.dummy import DummySimulator
+
+class StillSimulator(DummySimulator):
+    pass
+""",
+            ),
+        ),
+    },
+    "output format": {
+        "scenic/cli/sinks.py": (
+            (
+                "FILES = {",
+                """@contextmanager
+def _counts(path: Path, count: int) -> Iterator[Take]:
+    from scenic.formats.counts import counted
+
+    yield lambda scene: write(numbered(path, scene.k, count), counted(scene))
+
+
+""",
+            ),
+            ('".glb": _glb_files, ".obj"', '".count": _counts, '),
+        ),
+        "scenic/formats/counts.py": (
+            (
+                "",
+                """
+def counted(scene):
+    return f"{len(scene.objects)} objects\\n".encode()
+""",
+            ),
+        ),
+    },
+    "feature of the language server": {
+        "scenic/lsp/handlers/structure.py": (
+            (
+                "HANDLERS: Final",
+                """def _suggestions(session: Session, params: types.InlineCompletionParams) -> list[types.InlineCompletionItem]:
+    from scenic.ide.suggestions import suggestions
+
+    return [types.InlineCompletionItem(each) for each in suggestions(session.document(params.text_document.uri).snapshot)]
+
+
+""",
+            ),
+            (
+                "    types.TEXT_DOCUMENT_DOCUMENT_SYMBOL: _symbols",
+                """    types.TEXT_DOCUMENT_INLINE_COMPLETION: _suggestions,
+""",
+            ),
+        ),
+        "scenic/lsp/handlers/__init__.py": (
+            (
+                "        types.TEXT_DOCUMENT_DOCUMENT_SYMBOL,",
+                "        types.TEXT_DOCUMENT_INLINE_COMPLETION,\n",
+            ),
+        ),
+        "scenic/ide/suggestions.py": (
+            (
+                "",
+                """
+def suggestions(snapshot):
+    return ["ego = new Object"] if not snapshot.text.strip() else []
+""",
+            ),
+        ),
+    },
 }
-"""Files with implementations of what is no syntax."""
+"""By kind of element, by file: what is written, and the line before which; of a new file nothing stands before."""
 
 SCRIPT = r"""
-import ast, json
+import ast, json, subprocess, sys
 from pathlib import Path
 from hypothesis import HealthCheck, given, settings
 from scenic.compiler.check import check_text
@@ -241,10 +461,15 @@ from scenic.runtime.shapes.shapes import primitive_of
 from scenic.runtime.scenes.dumping import literal
 from scenic.runtime.values.source_text import spelled
 
+from lsprotocol import types
+from scenic.lsp.server import Server
+from scenic.simulators.batch import choose_simulator
+
 scenario = scenic.scenarioFromString(
     "from scenic import Thermometer\n"
     "x = Exponential(2)\nassert isinstance(x, Exponential)\nroom = CubeRegion((0, 0, 9), 4)\nrequire clamp(x, 0, 1) < 0.9\n"
     "ego = new Object in room, with tag clamp(x, 0, 0.1), with drawn x\nother = new Object beside ego by 3\n"
+    "param gap = gap between ego to other\n"
     "announce x\nslab = new Object at (9, 9, 9), with shape SlabShape(0.3), with sensors {'warmth': Thermometer('C')}\n"
 )
 [scene] = scenario.sample(1, seed=1)
@@ -255,6 +480,12 @@ def messages(text):
 
 def imported(module, name):
     return getattr(importlib.import_module(module), name).__name__
+
+Path("counted.scenic").write_text("ego = new Object\n")
+subprocess.run([sys.executable, "-m", "scenic", "sample", "counted.scenic", "-o", "scene.count"], check=True)
+server = Server()
+features = server.protocol.fm.features
+features["initialize"](types.InitializeParams(types.ClientCapabilities()))
 
 typed = Path("typed.scenic").resolve()
 typed.write_text("x = ")
@@ -271,6 +502,11 @@ print(json.dumps({
              primitive_of("slab").__name__],
     "written": format_text(TEXT),
     "noun": _NOUNS["exponential"],
+    "gap": scene.params["gap"],
+    "doubted": messages("assert True\n"),
+    "simulator": type(choose_simulator("still", scenario)).__name__,
+    "counted": Path("scene.count").read_text(),
+    "features": sorted(features),
     "wrong": messages("x = Exponential()\ny = clamp(1, 2)\nnew Object at Exponential(1)\nnew Object in CubeRegion\nnew SlabShape\nThermometer(3)"),
     "imported": [imported("scenic.core.regions", "CubeRegion"), imported("scenic.core.distributions", "Exponential"),
                  imported("scenic.syntax.veneer", "Beside"), imported("scenic.syntax.veneer", "clamp"),
@@ -297,13 +533,11 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Any:
     for name in ("scenic", "grammar", "fuzz", "editors"):
         ignored = shutil.ignore_patterns("corpus", "node_modules", "__pycache__", ".*.tmp")
         shutil.copytree(ROOT / name, root / name, ignore=ignored)
-    for path, changes in ADDED.items():
-        text = (root / path).read_text(encoding="utf-8")
+    for path, changes in (item for files in ADDED.values() for item in files.items()):
+        text = (root / path).read_text(encoding="utf-8") if changes[0][0] else ""
         for before, added in changes:
-            assert text.count(before) == 1, before
-            text = text.replace(before, added + before)
-        (root / path).write_text(text, encoding="utf-8")
-    for path, text in IMPLEMENTED.items():
+            assert not before or text.count(before) == 1, before
+            text = text.replace(before, added + before) if before else added
         (root / path).write_text(text, encoding="utf-8")
     done = subprocess.run(
         [sys.executable, "-c", SCRIPT],
@@ -322,8 +556,8 @@ def test_the_parser_has_them(found: Any) -> None:
 
 
 def test_checks_know_them(found: Any) -> None:
-    assert "SC900" in found["codes"]
-    assert "SC999" not in found["codes"]
+    assert not {"SC900", "SC999"} & set(found["codes"])
+    assert any(message.startswith("SC389 nobody doubts this") for message in found["doubted"])
 
 
 def test_the_fuzzer_makes_them(found: Any) -> None:
@@ -371,7 +605,23 @@ def test_programs_find_what_is_implemented(found: Any) -> None:
     assert tag == min(drawn, 0.1)
     assert way == [3, 0, 0]
     assert found["announced"] == drawn
+    assert found["gap"] == 3
     assert found["slab"] == [0.3, "20 C", "SlabShape(dimensions=(1.0, 1.0, 0.3))", "SlabShape"]
+
+
+def test_outputs_simulators_and_the_server_have_theirs(found: Any) -> None:
+    assert found["counted"] == "1 objects\n"
+    assert found["simulator"] == "StillSimulator"
+    assert "textDocument/inlineCompletion" in found["features"]
+
+
+def test_the_table_of_the_architecture_counts_the_files_of_each() -> None:
+    text = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| ([a-z -]+?) \| [^|]+ \| (\d+) \|$", text, re.MULTILINE)
+    counts = {kind: int(count) for kind, count in rows}
+    assert counts == {kind: len(files) for kind, files in ADDED.items()}
+    assert max(counts.values()) <= 5
+    assert sum(counts.values()) <= 30
 
 
 def test_statements_are_written_as_the_grammar_has_them(found: Any) -> None:
