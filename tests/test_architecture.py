@@ -22,7 +22,8 @@ LAYERS = {
     "simulators": {"runtime", "graph", "language", "formats", "domains"},
     "domains": {"runtime", "graph", "language", "formats", "simulators"},
     "batch": {"simulators", "formats", "runtime", "graph", "language"},
-    "falsification": {"batch", "simulators", "formats", "runtime", "graph", "language"},
+    "statistics": set(),
+    "falsification": {"batch", "simulators", "formats", "runtime", "graph", "language", "statistics"},
     "configuration": {"language"},
     "project": {"language", "compiler", "configuration", "formats"},  # of formats, the reader of maps alone
     "migration": {"compiler", "language", "project", "formats"},  # of formats, the writing of files alone
@@ -42,6 +43,7 @@ LAYERS = {
         "domains",
         "batch",
         "falsification",
+        "statistics",
         "formats",
         "runtime",
         "graph",

@@ -23,6 +23,7 @@ from scenic.falsification.space import Floats, Space, space_of, worded
 from scenic.falsification.store import SearchFolder
 from scenic.formats.files import OutputError
 from scenic.language.errors import InvalidScenarioError, Located
+from scenic.statistics.intervals import exact_interval
 
 if TYPE_CHECKING:
     from scenic.runtime.scenes.scenario import Scenario
@@ -144,16 +145,11 @@ class FalsificationResult:
         return bool(known) and not any(map(math.isfinite, known))
 
     def share(self, confidence: float = 0.95) -> tuple[float, float, float]:
-        """The share of counterexamples, and the ends of its interval (Clopper and Pearson, 1934)."""
-        from scipy.stats import beta
-
+        """The share of counterexamples, and the ends of its interval; see `exact_interval`."""
         total, failed = self.evaluated, len(self.counterexamples)
         if total == 0:
             return math.nan, 0.0, 1.0
-        rest = (1 - confidence) / 2
-        low = 0.0 if failed == 0 else float(beta.ppf(rest, failed, total - failed + 1))
-        high = 1.0 if failed == total else float(beta.ppf(1 - rest, failed + 1, total - failed))
-        return failed / total, low, high
+        return failed / total, *exact_interval(failed, total, confidence)
 
     def front(self) -> list[dict[str, Any]]:
         """The runs than which no other is at least as small in all objectives and smaller in one (Pareto's)."""
