@@ -54,14 +54,17 @@ docs: $(STAMP)
 docs-serve: docs
 	$(BIN)/python -m http.server --bind 127.0.0.1 --directory docs/_build/html 8000
 
-# Wheel and sdist in dist/: checked, and the wheel installed in an empty environment, where it samples a scene.
-dist: $(STAMP)
+# Wheel and sdist in dist/: checked, and the wheel installed in an empty environment, where it samples a scene and has the
+# page of the playground.
+dist: $(STAMP) playground
 	rm -rf dist build/empty
 	$(BIN)/python -m build --outdir dist
 	$(BIN)/python -m twine check --strict dist/*
 	$(PYTHON) -m venv build/empty
-	build/empty/bin/python -m pip install -q --disable-pip-version-check dist/*.whl
+	build/empty/bin/python -m pip install -q --disable-pip-version-check "$$(echo dist/*.whl)[playground]"
 	cd build/empty && bin/scenic new started && bin/scenic sample started/scene.scenic -n 2 --seed 1 -o scenes.jsonl
+	build/empty/bin/python -c "from scenic.playground.server import is_built; assert is_built()"
+	tar -tzf dist/*.tar.gz | grep -q 'scenic/playground/static/page.js'
 
 # The page of `scenic playground`, which wheels carry; needs npm.
 PAGE := scenic/playground/static/page.js

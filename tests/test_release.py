@@ -2,9 +2,12 @@
 
 import subprocess
 import sys
+import tarfile
 from pathlib import Path
 
 import pytest
+
+from scenic.playground.server import is_built
 
 ROOT = Path(__file__).parents[1]
 
@@ -39,3 +42,7 @@ def test_distributions_are_right_and_work_where_they_are_installed(tmp_path: Pat
     lines = run(script, installed, "sample", program, "-n", 2, "--seed", 1, folder=tmp_path).splitlines()
     assert len(lines) == 2
     assert "# SC202" in run(script, installed, "explain", "SC202", folder=tmp_path)
+    if is_built():  # by npm, which may be missing here
+        assert (installed / "scenic" / "playground" / "static" / "page.js").is_file()
+        with tarfile.open(source) as files:
+            assert any(name.endswith("/scenic/playground/static/page.js") for name in files.getnames())

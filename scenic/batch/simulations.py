@@ -264,8 +264,7 @@ class Simulations:
             numbered = self._simulated(k, kept)
             done = numbered.simulation
             if done is None:
-                what = f"rejected ({numbered.tries} tried)" if numbered.has_scene else "no scene found"
-                return SimulationRow(k, missing=what, rejections=numbered.rejections)
+                return SimulationRow(k, missing=_why_missing(numbered), rejections=numbered.rejections)
             about = {
                 **course_document(done, k=k, tries=numbered.tries),
                 "settings": self._settings(),
@@ -405,6 +404,15 @@ def _failure(error: Exception) -> Diagnostic:
     if isinstance(error, OutputError) or (isinstance(error, OSError) and error.filename is not None):
         found = replace(found, help=_NOTHING_KEPT)
     return found
+
+
+def _why_missing(numbered: "Numbered") -> str:
+    """Return the reason why there is no simulation of a number, in words."""
+    if not numbered.has_scene:
+        return "no scene found"
+    if numbered.is_random:
+        return f"rejected ({numbered.tries} tried)"
+    return f"rejected ({numbered.tries} tried: another would be the same simulation again, for nothing in it is random)"
 
 
 def _lost(k: int, code: int) -> SimulationRow:

@@ -36,7 +36,7 @@ def playground(file: Path | None, port: int, no_browser: bool) -> int:
 
     if not is_built():
         raise click.ClickException(
-            "the page is not built: run `make playground` in the checkout, which needs npm"
+            "this installation lacks the page: install npm, then run `make playground` in the checkout, or install it again"
         )
     with suppress(KeyboardInterrupt):
         asyncio.run(_serve(file, port, opens=not no_browser))

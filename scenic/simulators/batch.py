@@ -36,6 +36,8 @@ class Numbered:
     has_scene: bool = True
     rejections: tuple[tuple[str, int], ...] = ()
     """Reasons for which tries were rejected, and how many each; the most frequent first."""
+    is_random: bool = True
+    """False if another try would be the same simulation again: the simulator is deterministic, and nothing was drawn."""
 
 
 def choose_simulator(name: str | None, scenario: Scenario) -> Simulator:
@@ -99,14 +101,15 @@ def simulate_number(
 ) -> Numbered:
     """Simulate scene ``k`` of a seed, again with other draws while it is rejected; ``options`` are those of `simulate`.
 
-    ``sobol`` says that scenes and simulations are rows of Sobol's sequence. ``beginning`` is called before each try, and gives what
-    is then called with its states.
+    A rejected simulation is not made again if nothing in it is random. ``sobol`` says that scenes and simulations are rows of
+    Sobol's sequence. ``beginning`` is called before each try, and gives what is then called with its states.
     """
     points = Sobol() if sobol else None
     (scene,) = scenario.stream(1, seed=seed, first=k, max_attempts=max_attempts, source=points)
     if isinstance(scene, Exhausted):
         return Numbered(k, seed, 0, None, has_scene=False)
     reasons: Counter[str] = Counter()
+    draws: Counter[str] = Counter()
     for number in range(1, tries + 1):
         key = f"{seed}:{k}:{number}".encode()
         if points is not None:
@@ -117,11 +120,15 @@ def simulate_number(
             key=key,
             on_state=beginning(),
             robustness=True,
+            on_random=lambda: draws.update(["numbers"]),
             onRejection=lambda error: reasons.update([_reason(error)]),
             **options,
         )
-        if done is not None:
-            return Numbered(k, seed, number, done, rejections=tuple(reasons.most_common()))
+        is_random = bool(draws) or not getattr(simulator, "deterministic", False)
+        if done is not None or not is_random:
+            return Numbered(
+                k, seed, number, done, rejections=tuple(reasons.most_common()), is_random=is_random
+            )
     return Numbered(k, seed, tries, None, rejections=tuple(reasons.most_common()))
 
 

@@ -50,6 +50,8 @@ class DummySimulator(Simulator):
 
     """
 
+    deterministic = True
+
     def __init__(self, drift: float = 0, timestep: float | None = None) -> None:
         super().__init__()
         self.drift = drift

@@ -243,6 +243,8 @@ class KinematicSimulator(Simulator):
 
     """
 
+    deterministic = True
+
     def __init__(self, timestep: float = 0.1) -> None:
         super().__init__()
         self.timestep = timestep

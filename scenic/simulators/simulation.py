@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import ExitStack
+from types import FrameType
 from typing import Any, Final, TypeAlias
 
 from scenic.graph.kinds import Kind
@@ -19,11 +20,12 @@ from scenic.language.errors import (
 )
 from scenic.language.spans import Span
 from scenic.language.spelling import nearest_attribute
+from scenic.runtime.description.definitions import running_in
 from scenic.runtime.dynamics.chosen_draws import Sourcing
 from scenic.runtime.dynamics.copies import Copies
 from scenic.runtime.dynamics.run import Ending, Run
 from scenic.runtime.instances.properties import Finals
-from scenic.runtime.python.random_state import preserved, restore, seed_globals, states
+from scenic.runtime.python.random_state import is_as, preserved, restore, seed_globals, states
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.values.ownership import PRELUDE
 from scenic.runtime.values.values import Orientation, Vector, describe, kind_of
@@ -76,6 +78,7 @@ class Simulation(ABC):
             each step, and the result contains the last state and the last actions.
         keep_poses: keep position and orientation of every object at every step in `poses`.
         on_state: called for each state.
+        on_random: called when a random number is used, of a distribution or of Python's or NumPy's global generators.
         deferred: do not run now: the caller calls `begin`, then `advanceOnce` until it returns false.
 
     Attributes:
@@ -112,6 +115,7 @@ class Simulation(ABC):
         keep_course: bool = True,
         keep_poses: bool = False,
         on_state: OnState | None = None,
+        on_random: Callable[[], None] | None = None,
         deferred: bool = False,
     ) -> None:
         self.result: SimulationResult | None = None
@@ -163,6 +167,7 @@ class Simulation(ABC):
             keep_violations=keep_violations,
             keep_draws=enableReplay,
             keep_files=keep_course,
+            on_random=on_random,
         )
         self._tape.draws = self._run.draws
         self._isolated = _Isolated(self._run)
@@ -270,10 +275,12 @@ class Simulation(ABC):
             self._copies.release()
             self._destroy_once()
 
-    def _where_now(self, frame: object) -> str:
-        """The place of the program's code that a frame runs."""
+    def _where_now(self, frame: FrameType) -> tuple[str | None, str | None]:
+        """The behavior, monitor or scenario whose code a frame runs, and the line of the program."""
         place = self._run.context.locator(frame)
-        return "its code" if place is None else f"line {place.line}"
+        runner = running_in(frame)
+        words = None if runner is None else f"{runner._kind} {runner._definition.name!r}"
+        return words, None if place is None else f"line {place.line}"
 
     def _destroy_once(self) -> None:
         if not self._destroyed:
@@ -542,6 +549,7 @@ class _Isolated:
     def __init__(self, run: Run) -> None:
         self._run = run
         self._states: Any = None
+        self._before: Any = None
         self._open: ExitStack | None = None
 
     def __enter__(self) -> None:
@@ -552,8 +560,11 @@ class _Isolated:
             seed_globals(self._run.draws.seed("global generators"))
         else:
             restore(self._states)
+        self._before = states()
 
     def __exit__(self, *details: object) -> None:
         assert self._open is not None
+        if not is_as(self._before):
+            self._run.draws.report_use()
         self._states = states()
         self._open.close()

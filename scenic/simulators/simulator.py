@@ -17,6 +17,9 @@ __all__ = ["Simulator"]
 class Simulator(ABC):
     """Runs scenes; a subclass provides `createSimulation`."""
 
+    deterministic = False
+    """True if simulations of a scene that draw the same random numbers are the same."""
+
     def __init__(self, verbosity: int = 0) -> None:
         self._destroyed = False
         self.verbosity = verbosity

@@ -28,12 +28,14 @@ class Watch:
 
     Args:
         seconds: how long it may take.
-        place: what line a frame runs, in words.
+        place: describes a frame: the behavior or similar that runs in it, and its line. Each is ``None`` if unknown.
         is_error: raise `StuckBehaviorError` instead of warning; only where a signal can interrupt the code.
 
     """
 
-    def __init__(self, seconds: float, place: Callable[[FrameType], str], *, is_error: bool) -> None:
+    def __init__(
+        self, seconds: float, place: Callable[[FrameType], tuple[str | None, str | None]], *, is_error: bool
+    ) -> None:
         self._seconds = seconds
         self._place = place
         self._is_error = is_error
@@ -62,9 +64,10 @@ class Watch:
             self._before = None
 
     def _message(self, frame: FrameType | None) -> str:
-        where = "the program" if frame is None else self._place(frame)
+        runner, line = (None, None) if frame is None else self._place(frame)
+        where = f", at {line}" if runner is not None and line is not None else ""
         return (
-            f"{where} has run for {self._seconds:g} s within one step of the simulation; "
+            f"{runner or line or 'the program'} has run for {self._seconds:g} s within one step of the simulation{where}; "
             "is there a loop without `take` or `wait`?"
         )
 

@@ -111,9 +111,9 @@ def test_a_run_goes_on_where_it_ended(folder: Path) -> None:
 def test_rejected_simulations(folder: Path) -> None:
     result = run(folder, "rejected.scenic", "--seed", 3, "--time", 4, "--tries", 2)
     assert result.returncode == 3
-    assert "simulation 0: rejected (2 tried)" in result.stdout
+    assert "simulation 0: rejected (1 tried: another would be the same simulation again" in result.stdout
     assert "requirement on line" in result.stdout
-    assert "2 tries" in result.stdout
+    assert ": 1 try" in result.stdout
 
 
 def test_what_rejected_simulations_is_counted(folder: Path) -> None:
@@ -167,7 +167,7 @@ def test_an_error_tells_more_than_a_rejection(folder: Path) -> None:
     result = run(
         folder, "both.scenic", "-n", 8, "--seed", 3, "--time", 4, "--tries", 1, "--simulator", "dummy"
     )
-    assert "rejected (1 tried)" in result.stdout
+    assert "rejected (1 tried" in result.stdout
     assert "error[SC400]: ValueError: oops" in result.stderr
     assert result.returncode == 1
 

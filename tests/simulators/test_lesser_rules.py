@@ -583,11 +583,11 @@ def test_the_watch_over_a_step_ends_with_it_in_other_threads_too() -> None:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             for _ in range(3):
-                with Watch(0.1, lambda frame: "a line", is_error=False):
+                with Watch(0.1, lambda frame: (None, "a line"), is_error=False):
                     pass
             time.sleep(0.2)
             said.extend(str(each.message) for each in caught)
-            with Watch(0.02, lambda frame: "a line", is_error=False):
+            with Watch(0.02, lambda frame: (None, "a line"), is_error=False):
                 time.sleep(0.2)
             assert "a line has run for 0.02 s" in str(caught[-1].message)
 
@@ -668,7 +668,7 @@ def test_the_watch_leaves_a_timer_that_runs_alone() -> None:
     mine = signal.getsignal(signal.SIGALRM)
     try:
         signal.setitimer(signal.ITIMER_REAL, 0.1)
-        with Watch(0.01, lambda frame: "a line", is_error=True):
+        with Watch(0.01, lambda frame: (None, "a line"), is_error=True):
             assert signal.getsignal(signal.SIGALRM) is mine
             time.sleep(0.05)
         assert signal.getsignal(signal.SIGALRM) is mine
@@ -955,7 +955,7 @@ def test_no_time_at_all_is_no_limit_for_a_step() -> None:
     def work() -> None:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            with Watch(0, lambda frame: "a line", is_error=True):
+            with Watch(0, lambda frame: (None, "a line"), is_error=True):
                 time.sleep(0.02)
             said.extend(caught)
 
@@ -974,7 +974,7 @@ def test_the_watch_puts_back_what_the_signal_called() -> None:
 
     before = signal.signal(signal.SIGALRM, mine)
     try:
-        watch = Watch(30, lambda frame: "a line", is_error=True)
+        watch = Watch(30, lambda frame: (None, "a line"), is_error=True)
         for _ in range(2):
             with watch:
                 assert signal.getsignal(signal.SIGALRM) is not mine
@@ -999,6 +999,20 @@ def test_the_most_frequent_reason_of_rejections_is_the_first(tries: int) -> None
     assert found.rejections == (("often", 2 if tries == 3 else 3), ("rare", 1 if tries == 3 else 2))
     assert found.tries == min(tries, 6)
     assert (found.k, found.seed, found.simulation is None) == (2, 3, tries < 6)
+
+
+def test_simulations_in_which_nothing_is_random_are_tried_once() -> None:
+    text = "import random\nego = new Object\nmonitor M():\n    x = {}\n    wait\nrequire monitor M()\nrequire eventually ego.x > 1\n"
+
+    def tries(value: str) -> tuple[int, bool]:
+        made = simulate_number(
+            scenic.scenarioFromString(text.format(value)), DummySimulator(), seed=3, k=0, tries=4, maxSteps=1
+        )
+        return made.tries, made.is_random
+
+    assert tries("1") == (1, False)
+    assert tries("Range(0, 1)") == (4, True)
+    assert tries("random.random()") == (4, True)
 
 
 def test_scenes_of_a_number_are_tried_as_often_as_allowed() -> None:

@@ -1044,10 +1044,31 @@ SPINNING = "behavior B():\n    take 1\n    i = 0\n    while i < 4_000_000:\n    
 
 
 def test_code_that_spins_is_named() -> None:
-    with pytest.warns(StuckBehaviorWarning, match=r"line [45] has run for 0.05 s"):
+    with pytest.warns(StuckBehaviorWarning, match=r"behavior 'B' has run for 0.05 s .*, at line [45];"):
         simulate(SPINNING, 2, stuck_after=0.05)
-    with pytest.raises(StuckBehaviorError, match=r"line [45] has run"):
+    with pytest.raises(StuckBehaviorError, match=r"behavior 'B' has run .*, at line [45];"):
         simulate(SPINNING.replace("4_000_000", "10**12"), 2, stuck_after=0.05, stuck_is_error=True)
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("monitor M():\n    slow()\n    wait\nego = new Object\nrequire monitor M()\n", "monitor 'M'"),
+        (
+            "scenario Main():\n    setup:\n        ego = new Object\n    compose:\n        slow()\n        wait\n",
+            "scenario 'Main'",
+        ),
+        (
+            "behavior A():\n    slow()\n    wait\nbehavior B():\n    do A()\nego = new Object with behavior B\n",
+            "behavior 'A'",
+        ),
+        ("ego = new Object\nrecord slow() as x\n", "line [34]"),
+    ],
+)
+def test_the_code_that_spins_is_that_of_a_block(text: str, place: str) -> None:
+    slow = "def slow():\n    i = 0\n    while i < 2_000_000:\n        i += 1\n    return i\n"
+    with pytest.warns(StuckBehaviorWarning, match=f"^{place} has run for 0.02 s"):
+        simulate(slow + text, 1, stuck_after=0.02)
 
 
 def test_scripts_set_how_long_code_may_spin(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,7 +7,7 @@ attributes. An instance made while the scenario is compiled may hold random valu
 
 import inspect
 from collections.abc import Callable, Sequence
-from types import SimpleNamespace
+from types import FrameType, SimpleNamespace
 from typing import Any, ClassVar, NamedTuple
 
 from scenic.dataclass import dataclass
@@ -28,6 +28,7 @@ __all__ = [
     "Monitor",
     "behavior_of",
     "define",
+    "running_in",
 ]
 
 Guard = Callable[..., Any]
@@ -220,3 +221,14 @@ def behavior_of(value: object) -> Any:
         span=here(),
         help="define one with `behavior NAME():`, and write `with behavior NAME()`",
     )
+
+
+def running_in(frame: FrameType | None) -> Invocable | None:
+    """Return the behavior, monitor or scenario whose code runs in a frame or has called it; ``None`` outside of such code."""
+    while frame is not None:
+        for name in frame.f_code.co_varnames[:1]:
+            instance = frame.f_locals.get(name)
+            if isinstance(instance, Invocable):
+                return instance
+        frame = frame.f_back
+    return None

@@ -99,6 +99,7 @@ class Draws:
         where: the scenario and the agent that draw, and the name of the place in the program (text of the line, column).
         now: the step of the simulation.
         keep: whether to remember what was drawn.
+        on_random: called for each random number that is used.
 
     """
 
@@ -109,8 +110,10 @@ class Draws:
         now: Callable[[], int],
         *,
         keep: bool = True,
+        on_random: Callable[[], None] | None = None,
     ) -> None:
         self._source = source
+        self._on_random = on_random
         self._where = where
         self._now = now
         self._counts: dict[int, dict[Hashable, int]] = {}
@@ -120,6 +123,7 @@ class Draws:
 
     def random(self) -> float:
         """The next number, from (0, 1)."""
+        self.report_use()
         where = self._where()
         scenario, agent, name = where
         counts = self._counts.setdefault(scenario, {})
@@ -131,6 +135,11 @@ class Draws:
         if self._keep:
             self.made.append((place, number))
         return number
+
+    def report_use(self) -> None:
+        """Report that a random number is used, drawn here or by a generator that was seeded here."""
+        if self._on_random is not None:
+            self._on_random()
 
     def forget(self, scenario: int) -> None:
         """The scenario of this number will draw no more."""

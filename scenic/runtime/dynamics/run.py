@@ -101,6 +101,7 @@ class Run:
         keep_violations: whether a violated requirement is told, rather than rejects the simulation.
         keep_draws: whether to remember what was drawn.
         keep_files: whether to keep in memory, too, what is recorded to files.
+        on_random: called for each random number that is used.
 
     """
 
@@ -118,11 +119,14 @@ class Run:
         keep_violations: bool = False,
         keep_draws: bool = True,
         keep_files: bool = True,
+        on_random: Callable[[], None] | None = None,
     ) -> None:
         self.simulation = simulation
         self.program = program
         self.copies = copies
-        self.draws = Draws(source, self._where, lambda: simulation.currentTime, keep=keep_draws)
+        self.draws = Draws(
+            source, self._where, lambda: simulation.currentTime, keep=keep_draws, on_random=on_random
+        )
         self.context = RunContext(self, locate, name, mode_2d=mode_2d)
         self.wants_robustness = robustness
         self.keeps_violations = keep_violations

@@ -100,11 +100,11 @@ class ScenarioActivation(Guarded):
         if body is not None:
             assert self.instance is not None
             if not inspect.isgeneratorfunction(body):
+                definition = self.instance._definition
                 raise InvalidScenarioError(
-                    f"the compose block of scenario {self.instance._definition.name!r} never waits",
-                    span=self.instance._definition.span,
+                    f"the compose block of scenario {definition.name!r} never waits",
                     help="use `do`, `wait` or `terminate` in it",
-                )
+                ).at((definition.span, body.__code__.co_filename))
             self._compose = run.copies.value(body)(self.instance)
         timestep = run.simulation.timestep
         self._limit = min(

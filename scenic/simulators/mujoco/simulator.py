@@ -30,6 +30,8 @@ class MujocoSimulator(Simulator):
 
     """
 
+    deterministic = True
+
     def __init__(
         self,
         timestep: float = 0.05,

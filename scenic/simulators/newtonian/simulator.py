@@ -189,6 +189,8 @@ class NewtonianSimulator(DrivingSimulator):
 
     """
 
+    deterministic = True
+
     def __init__(self, network: Any = None, render: bool = False, export_gif: bool = False) -> None:
         super().__init__()
         self.network = network
