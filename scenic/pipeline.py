@@ -370,6 +370,11 @@ def _bundle(scene: Scene) -> Mapping[str, str]:
 def _export(scene: Scene, path: Path) -> bool:
     """Write a scene for another program by the ending of the file's name; returns whether that is such an ending."""
     suffix = path.suffix.lower()
+    if path.name.lower().endswith(".cr.xml"):
+        from scenic.formats.commonroad.files import write_scene as write_roads
+
+        write_roads(scene, path)
+        return True
     if suffix == ".wbt":
         from scenic.formats.webots import write_world
 

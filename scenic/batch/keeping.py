@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 if TYPE_CHECKING:
+    from scenic.formats.commonroad.files import CommonRoadFile
     from scenic.formats.course_page import PoseTape
     from scenic.formats.openscenario import OpenScenarioFile
     from scenic.formats.trajectories import TrajectoryFile
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Form", "Kept", "Watcher", "about_file", "is_whole"]
 
-Form = Literal["jsonl", "parquet", "xosc"]
+Form = Literal["jsonl", "parquet", "xosc", "xml"]
 """The format of a trajectory's file, which is also its suffix."""
 
 Watcher = Callable[["Simulation", "PoseTape"], None]
@@ -36,6 +37,10 @@ def about_file(path: Path, form: Form) -> Any:
         from scenic.formats.openscenario import openscenario_about
 
         return openscenario_about(path)
+    if form == "xml":
+        from scenic.formats.commonroad.files import commonroad_about
+
+        return commonroad_about(path)
     with path.open(encoding="utf-8") as stream:
         return json.loads(stream.readline(_FIRST_LINE))
 
@@ -65,7 +70,7 @@ class Kept:
         self._shown = shown
         self._watcher = watcher
         self._file: TrajectoryFile | None = None
-        self._story: OpenScenarioFile | None = None
+        self._story: OpenScenarioFile | CommonRoadFile | None = None
         self._tape: PoseTape | None = None
         self._simulation: Simulation | None = None
         self._looked_back = False
@@ -82,6 +87,10 @@ class Kept:
             from scenic.formats.openscenario import OpenScenarioFile
 
             self._story = OpenScenarioFile(self._path)
+        elif self._path is not None and self._form == "xml":
+            from scenic.formats.commonroad.files import CommonRoadFile
+
+            self._story = CommonRoadFile(self._path)
         elif self._path is not None:
             self._file = ParquetFile(self._path) if self._form == "parquet" else LinesFile(self._path)
         self._tape = PoseTape() if self._shown or self._watcher is not None else None
@@ -94,7 +103,7 @@ class Kept:
         if self._file is not None:
             self._file.add(step_document(simulation, poses, actions))
         if self._story is not None:
-            self._story.add(poses)
+            self._story.add(simulation, poses)
         if self._tape is not None:
             self._tape.add(poses)
 

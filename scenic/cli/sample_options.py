@@ -122,7 +122,7 @@ _OPTIONS: Final[tuple[Callable[[Any], Any], ...]] = (
         "-o",
         "--output",
         metavar="OUT",
-        help="JSON Lines to this file, columns if OUT ends in .parquet, a file for each scene if it ends in .glb, .obj, .wbt, .usda, .usdc, .usdz, .xml (MJCF) or .sdf, a data "
+        help="JSON Lines to this file, columns if OUT ends in .parquet, a file for each scene if it ends in .glb, .obj, .wbt, .usda, .usdc, .usdz, .xml (MJCF), .sdf or .cr.xml (CommonRoad), a data "
         "set of many files if it ends in / or is a folder; - is standard output, which is the default without --view and --png.",
     ),
     click.option(

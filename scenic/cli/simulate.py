@@ -107,11 +107,11 @@ __all__ = ["simulate"]
 @click.option(
     "--format",
     "form",
-    type=OneOf(["jsonl", "parquet", "openscenario"]),
+    type=OneOf(["jsonl", "parquet", "openscenario", "commonroad"]),
     default="jsonl",
     show_default=True,
-    help="Format of the trajectories: JSON Lines, columns (extra `parquet`), or OpenSCENARIO XML (extra "
-    "`openscenario`).",
+    help="Format of the trajectories: JSON Lines, columns (extra `parquet`), OpenSCENARIO XML (extra "
+    "`openscenario`), or CommonRoad XML.",
 )
 @click.option(
     "--view",
@@ -266,7 +266,7 @@ def simulate(
 
 
 _FORMS: Final[Mapping[str, "Form"]] = MappingProxyType(
-    {"jsonl": "jsonl", "parquet": "parquet", "openscenario": "xosc"}
+    {"jsonl": "jsonl", "parquet": "parquet", "openscenario": "xosc", "commonroad": "xml"}
 )
 
 

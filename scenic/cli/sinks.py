@@ -90,12 +90,19 @@ def scene_file(path: Path, count: int, first: int = 0) -> Sink:
 
     """
     check_writable(path)
-    if path.suffix.lower() in _ROBOTICS:
+    ending = _ending(path)
+    if ending in _ROBOTICS:
         from scenic.formats.robotics.scene_files import ENDINGS, check_form
 
-        check_form(ENDINGS[path.suffix.lower()])
+        check_form(ENDINGS[ending])
     _check_numbered(path, count, first)
-    return FILES[path.suffix.lower()](path, count)
+    return FILES[ending](path, count)
+
+
+def _ending(path: Path) -> str:
+    """The end of a file's name that tells the format."""
+    name = path.name.lower()
+    return _COMMONROAD if name.endswith(_COMMONROAD) else path.suffix.lower()
 
 
 def check_files(form: str) -> None:
@@ -212,10 +219,32 @@ def _robot_files(path: Path, count: int) -> Iterator[Take]:
     yield lambda scene: write_scene(scene, numbered(path, scene.k, count))
 
 
+@contextmanager
+def _road_files(path: Path, count: int) -> Iterator[Take]:
+    from scenic.formats.commonroad.files import write_scene
+
+    stem = path.name[: -len(_COMMONROAD)]
+
+    def take(scene: Scene) -> None:
+        file = numbered(path.with_name(f"{stem}.xml"), scene.k, count)
+        write_scene(scene, file.with_name(file.stem + path.name[len(stem) :]))
+
+    yield take
+
+
+_COMMONROAD = ".cr.xml"
+"""Ending of CommonRoad files."""
+
 _ROBOTICS = (".usda", ".usdc", ".usdz", ".xml", ".sdf")
 """Endings of files for robot simulators."""
 
-FILES = {".glb": _glb_files, ".obj": _obj_files, ".wbt": _worlds, **dict.fromkeys(_ROBOTICS, _robot_files)}
+FILES = {
+    ".glb": _glb_files,
+    ".obj": _obj_files,
+    ".wbt": _worlds,
+    _COMMONROAD: _road_files,
+    **dict.fromkeys(_ROBOTICS, _robot_files),
+}
 """Sinks of 3D files by their endings."""
 
 

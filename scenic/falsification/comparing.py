@@ -34,7 +34,9 @@ def file_departures(kept: Path, made: Path, form: Form, *, without: Sequence[str
     about, again = about_file(kept, form), about_file(made, form)
     found = list(differences(about, again, [name for name in about if name not in (*_LEFT_OUT, *without)]))
     if form == "xosc":
-        departure = _route_departure(kept, made)
+        departure = _route_departure(_routes(kept), _routes(made))
+    elif form == "xml":
+        departure = _route_departure(_road_states(kept), _road_states(made))
     else:
         things = [item["name"] or f"{item['class']} {k}" for k, item in enumerate(about["objects"])]
         departure = _state_departure(_states(kept, form), _states(made, form), things)
@@ -95,9 +97,12 @@ def _name(things: Sequence[str], number: int) -> str:
     return things[number] if number < len(things) else f"object {number}"
 
 
-def _route_departure(kept: Path, made: Path) -> str | None:
-    """Return the first place at which the trajectories of two OpenSCENARIO files differ."""
-    old, new = _routes(kept), _routes(made)
+_Routes = Mapping[str, list[tuple[str, dict[str, str]]]]
+"""Times and states of entities, by their names."""
+
+
+def _route_departure(old: _Routes, new: _Routes) -> str | None:
+    """Return the first place at which the trajectories of two files differ."""
     found = [
         (float(time), f"{name}'s {', '.join(differences(before, after, [*before]))}")
         for name, places in old.items()
@@ -114,7 +119,23 @@ def _route_departure(kept: Path, made: Path) -> str | None:
     return None
 
 
-def _routes(path: Path) -> dict[str, list[tuple[str, dict[str, str]]]]:
+def _road_states(path: Path) -> _Routes:
+    """Return the states of each obstacle of a CommonRoad file."""
+    from xml.etree import ElementTree
+
+    return {
+        f"obstacle {obstacle.get('id')}": [
+            (
+                state.findtext("time/exact", ""),
+                {item.tag: " ".join(text.strip() for text in item.itertext()).strip() for item in state},
+            )
+            for state in obstacle.iter("state")
+        ]
+        for obstacle in ElementTree.parse(path).iter("dynamicObstacle")
+    }
+
+
+def _routes(path: Path) -> _Routes:
     """Return the vertices of each entity's trajectory: time, and attributes of the position."""
     from xml.etree import ElementTree
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["KeptRun", "Replay", "ReplayError", "kept_run", "program_of", "replay"]
 
-_FORMS: Final = ("jsonl", "parquet", "xosc")
+_FORMS: Final = ("jsonl", "parquet", "xosc", "xml")
 
 
 class ReplayError(Located):

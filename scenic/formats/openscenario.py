@@ -276,7 +276,7 @@ class OpenScenarioFile:
         self._path = path
         self._poses: list[Poses] = []
 
-    def add(self, poses: Poses) -> None:
+    def add(self, _simulation: object, poses: Poses) -> None:
         """Take the next state: position and orientation of each object."""
         self._poses.append(poses)
 

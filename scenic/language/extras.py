@@ -32,6 +32,11 @@ EXTRAS: Final[Mapping[str, Extra]] = MappingProxyType(
             Extra("parquet", "data sets and trajectories in columns", ("pyarrow",)),
             Extra("cluster", "sampling on a Dask cluster", ("distributed",)),
             Extra("openscenario", "OpenSCENARIO files", ("scenariogeneration",)),
+            Extra(
+                "commonroad",
+                "reading CommonRoad files, and their collision checker",
+                ("commonroad", "commonroad_dc"),
+            ),
             Extra("video", "films of recorded images", ("imageio_ffmpeg",)),
             Extra("agent", "the server for language models", ("mcp",)),
             Extra("playground", "the playground in the browser", ("websockets",)),

@@ -255,9 +255,7 @@ class _RoadBuilder:
         left = backward.right if backward is not None else forward.left if forward is not None else reference
         right = forward.right if forward is not None else backward.left if backward is not None else reference
         road.place(reference, left, right)
-        signs = [
-            signal_of(signal, self._uid) for signal in record.signals if isinstance(signal, records.Signal)
-        ]
+        signs = [signal_of(signal, record) for signal in record.signals if isinstance(signal, records.Signal)]
         self._network.signals += tuple(signs)
         road.signals = tuple(
             sign

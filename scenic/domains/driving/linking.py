@@ -394,7 +394,7 @@ class _Linker:
         """Resolve references to signals of other roads."""
         without_lanes = [road for road in self._map.roads if road.id not in self._built]
         self._network.signals += tuple(
-            signal_of(record, f"road{road.id}")
+            signal_of(record, road)
             for road in without_lanes
             for record in road.signals
             if isinstance(record, records.Signal)

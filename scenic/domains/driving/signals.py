@@ -3,7 +3,10 @@
 import math
 from collections.abc import Mapping
 from dataclasses import fields
+from itertools import pairwise
 from typing import Any, Final
+
+import numpy as np
 
 from scenic.dataclass import dataclass
 from scenic.domains.driving.elements import Intersection
@@ -158,6 +161,23 @@ class TrafficLights:
         if 0 <= into < times.green:
             return "green"
         return "yellow" if times.green <= into < times.green + times.yellow else "red"
+
+    def cycle(self, signal: Signal) -> tuple[tuple[float, str], ...]:
+        """Seconds and colours of a light from the beginning of the simulation on, as they are repeated unless somebody sets it."""
+        fixed, place = self._fixed.get(signal.uid), self._phase.get(signal.uid)
+        if fixed is not None or place is None:
+            return ((1.0, fixed or "off"),)
+        number, count = place
+        times = self._times
+        length = times.green + times.yellow + times.all_red
+        colors = ["red", "green", "yellow", "red"]
+        ends = np.cumsum([number * length, times.green, times.yellow])
+        borders = [0.0, *ends.tolist(), length * count]
+        begun = times.offset % borders[-1]
+        parts = [(*border, color) for border, color in zip(pairwise(borders), colors, strict=True)]
+        turned = [(max(start, begun), end, color) for start, end, color in parts if end > begun]
+        turned += [(start, min(end, begun), color) for start, end, color in parts if start < begun]
+        return tuple((end - start, color) for start, end, color in turned if end > start)
 
     @property
     def longest_cycle(self) -> float:

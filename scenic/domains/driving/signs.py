@@ -1,12 +1,16 @@
 """Traffic signs and lights: what they are, and for which lanes they hold (section 12 of the driving specification)."""
 
+import math
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from scenic.dataclass import dataclass
 from scenic.formats.opendrive import records
+from scenic.formats.opendrive.curves import Curve
 from scenic.runtime.values.frozen import Frozen
+from scenic.runtime.values.values import Vector
 
 if TYPE_CHECKING:
     from scenic.domains.driving.elements import Lane, Maneuver
@@ -53,8 +57,11 @@ def placement_of(reference: records.SignalReference, road: str) -> Placement:
     return Placement(road, reference.s, reference.orientation, reference.validity, is_reference=True)
 
 
-def signal_of(record: records.Signal, road: str) -> "Signal":
+def signal_of(record: records.Signal, road: records.Road) -> "Signal":
     """The signal of a record on a road."""
+    curve = Curve(road.geometry)
+    points, headings = curve.at(np.array([min(max(record.s, 0.0), curve.length)]))
+    (x, y), heading = points[0].tolist(), float(headings[0])
     return Signal(
         f"signal{record.id}",
         record.id,
@@ -67,7 +74,8 @@ def signal_of(record: records.Signal, road: str) -> "Signal":
         references=record.references,
         dependencies=record.dependencies,
         priorities=record.priorities,
-        placements=(Placement(road, record.s, record.orientation, record.validity),),
+        place=(x - record.t * math.sin(heading), y + record.t * math.cos(heading)),
+        placements=(Placement(f"road{road.id}", record.s, record.orientation, record.validity),),
     )
 
 
@@ -103,6 +111,7 @@ class Signal(Frozen):
         references: tuple[str, ...] = (),
         dependencies: tuple[str, ...] = (),
         priorities: tuple[str, ...] = (),
+        place: tuple[float, float] = (0.0, 0.0),
         placements: tuple[Placement, ...] = (),
     ) -> None:
         self.uid = uid
@@ -116,6 +125,7 @@ class Signal(Frozen):
         self.references = references
         self.dependencies = dependencies
         self._priorities = priorities
+        self._place = place
         self.placements = placements
         self.network: Any = None
 
@@ -123,6 +133,13 @@ class Signal(Frozen):
     def s(self) -> float:
         """Metres along its road."""
         return self.placements[0].s if self.placements else 0.0
+
+    @cached_property
+    def position(self) -> Vector:
+        """The place at which it stands: its middle, above the ground by its height."""
+        x, y = self._place
+        place: Vector = Vector(x, y, float(self.height))
+        return place
 
     @property
     def orientation(self) -> str:

@@ -141,7 +141,7 @@ def stored(network: RoadNetwork) -> Arrays:
         "signals": [
             (
                 *(item.uid, item.openDriveID, item.country, item.type, item.subtype, item.t, item.height),
-                *(item.value, item.references, item.dependencies, item._priorities),
+                *(item.value, item.references, item.dependencies, item._priorities, item._place),
                 [
                     (at.road, at.s, at.orientation, at.validity, at.is_reference, at.holds)
                     for at in item.placements
@@ -244,7 +244,21 @@ def _element(network: RoadNetwork, row: Sequence[Any], polygon: Any) -> NetworkE
 
 
 def _signal(network: RoadNetwork, *fields: Any) -> Signal:
-    uid, key, country, kind, subtype, t, height, value, references, dependencies, priorities, places = fields
+    (
+        uid,
+        key,
+        country,
+        kind,
+        subtype,
+        t,
+        height,
+        value,
+        references,
+        dependencies,
+        priorities,
+        place,
+        places,
+    ) = fields
     signal = Signal(
         uid,
         key,
@@ -257,6 +271,7 @@ def _signal(network: RoadNetwork, *fields: Any) -> Signal:
         references=tuple(references),
         dependencies=tuple(dependencies),
         priorities=tuple(priorities),
+        place=tuple(place),
         placements=tuple(
             Placement(road, s, orientation, tuple(map(tuple, validity)), is_reference, holds)
             for road, s, orientation, validity, is_reference, holds in places

@@ -1,13 +1,18 @@
 """The workspace of driving scenarios."""
 
+from collections.abc import Mapping
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.domains.driving.lanelets import road_records
 from scenic.domains.driving.map_patches import MapPatches
 from scenic.domains.driving.network import RoadNetwork
+from scenic.domains.driving.signals import LightTimes, TrafficLights
+from scenic.formats.commonroad.records import RoadRecords
 from scenic.runtime.geometry.patches import Patch
 from scenic.runtime.regions.spaces import Workspace, everywhere
 
@@ -38,6 +43,22 @@ class DrivingWorkspace(Workspace):
     def patches(self, places: NDArray[np.float64]) -> tuple[Patch, ...]:
         """The map around places ``(n, 3)``, for pictures."""
         return self._patches.around(places)
+
+    def commonroad_records(self, params: Mapping[str, object]) -> RoadRecords:
+        """The road network as a CommonRoad file has it, with traffic lights by the parameters of a scene."""
+        times = params.get("traffic_lights")
+        lights = TrafficLights(self.network, LightTimes.of(times if isinstance(times, Mapping) else {}))
+        return road_records(self.network, lights, Path(str(params.get("map", "Map"))).stem)
+
+    def lanelets_at(self, place: tuple[float, float]) -> tuple[str, ...]:
+        """The keys of the CommonRoad lanelets for cars that contain a place."""
+        section = self.network.laneSectionAt(place)
+        return () if section is None else (section.uid,)
+
+    def light_colors(self, simulation: Any) -> Mapping[str, str]:
+        """The colours of traffic lights at the present step of a simulation, by ``uid``."""
+        lights = [signal for signal in self.network.signals if signal.isTrafficLight]
+        return {signal.uid: simulation.signalState(signal) for signal in lights}
 
     def scenicToSchematicCoords(self, coords: Any) -> tuple[float, float]:
         """Coordinates of drawings: x and y."""

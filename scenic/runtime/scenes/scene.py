@@ -298,8 +298,8 @@ class Scene:
     def save(self, path: str | Path) -> None:
         """Write the scene to a file, which `Scenario.replay` reads; the file is complete or absent.
 
-        If its name ends in ``.usda``, ``.usdc``, ``.usdz`` (OpenUSD), ``.xml`` (MJCF), ``.sdf`` (SDFormat) or ``.wbt`` (Webots), the
-        file is a scene of another program instead, which `replay` does not read.
+        If its name ends in ``.usda``, ``.usdc``, ``.usdz`` (OpenUSD), ``.xml`` (MJCF), ``.sdf`` (SDFormat), ``.wbt`` (Webots) or
+        ``.cr.xml`` (CommonRoad), the file is a scene of another program instead, which `replay` does not read.
         """
         if self._family.export is not None and self._family.export(self, Path(path)):
             return
