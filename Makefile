@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-fast test-long lint types fuzz semantics generate docs docs-serve dist playground extension pythons clean
+.PHONY: demo test test-fast test-long lint types fuzz semantics generate docs docs-serve dist playground extension pythons robosuite clean
 
 $(STAMP): pyproject.toml hatch_build.py
 	$(PYTHON) -c 'import sys; sys.exit("Scenic needs Python 3.11 or newer; this is " + sys.version.split()[0]) if sys.version_info < (3, 11) else None'
@@ -53,6 +53,16 @@ docs: $(STAMP)
 
 docs-serve: docs
 	$(BIN)/python -m http.server --bind 127.0.0.1 --directory docs/_build/html 8000
+
+# Robosuite in build/robosuite, since it wants an old MuJoCo, and the tests that need it.
+robosuite: build/robosuite/.installed
+	build/robosuite/bin/python -m pytest -q -p no:cacheprovider -W ignore tests/simulators/test_robosuite.py
+
+build/robosuite/.installed: pyproject.toml
+	test -x build/robosuite/bin/python || $(PYTHON) -m venv build/robosuite
+	build/robosuite/bin/python -m pip install -q --disable-pip-version-check -e '.[robosuite]' coacd hypothesis pytest
+	build/robosuite/bin/python -m pip install -q --disable-pip-version-check --no-deps robosuite==1.5.2
+	touch $@
 
 # Wheel and sdist in dist/: checked, and the wheel installed in an empty environment, where it samples a scene and has the
 # page of the playground.

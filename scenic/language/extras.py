@@ -25,6 +25,7 @@ EXTRAS: Final[Mapping[str, Extra]] = MappingProxyType(
             Extra("view", "images", ("PIL",)),
             Extra("deep", "proofs that requirements contradict each other", ("z3",)),
             Extra("mujoco", "simulations with contacts and friction", ("mujoco", "coacd")),
+            Extra("robosuite", "simulations in robosuite", ("robosuite",)),
             Extra("usd", "OpenUSD files of scenes", ("pxr",)),
             Extra("sumo", "traffic in SUMO", ("libsumo", "sumo")),
             Extra("gym", "environments of Gymnasium", ("gymnasium",)),
