@@ -34,6 +34,7 @@ from scenic.language.errors import (
 from scenic.language.extras import installation
 from scenic.pipeline import load
 from scenic.runtime.elements.sensors import CameraSensor
+from scenic.runtime.ground.arguments import check_seconds, whole_number
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.values.values import Orientation, Vector, is_number
@@ -172,6 +173,12 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
         render_mode: str | None = None,
         image_size: tuple[int, int] = (480, 360),
     ) -> None:
+        numbers = {"max_steps": max_steps, "tries": tries, "stride": stride}
+        numbers |= {"image_size[0]": image_size[0], "image_size[1]": image_size[1]}
+        for name, number in numbers.items():
+            whole_number(number, name, 1)
+        whole_number(first, "first", 0)
+        check_seconds(timestep, "timestep")
         self.scenario = scenario if isinstance(scenario, Scenario) else load(scenario)
         if simulator is None or isinstance(simulator, str):
             simulator = choose_simulator(simulator, self.scenario)
@@ -235,7 +242,7 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
             self._seed = seed if seed is not None else int(self.np_random.integers(2**32))
             self._k = self._first
         if options and "k" in options:
-            self._k = int(options["k"])
+            self._k = whole_number(options["k"], "k", 0)
         why = ""
         for number in range(1, self._tries + 1):
             try:
@@ -378,6 +385,7 @@ class ScenicVectorEnv(AsyncVectorEnv):
     def __init__(
         self, scenario: Scenario | str | Path, num_envs: int, *, context: str | None = None, **options: Any
     ) -> None:
+        whole_number(num_envs, "num_envs", 1)
         makers = [
             partial(ScenicEnv, scenario, first=number, stride=num_envs, **options)
             for number in range(num_envs)

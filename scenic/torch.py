@@ -64,14 +64,17 @@ class SceneStream(IterableDataset):  # type: ignore[misc] # PyTorch is not there
         world_size: int = 1,
         **options: Any,
     ) -> None:
-        if block < 1 or not 0 <= rank < world_size:
-            raise ValueError(f"no blocks of {block} scenes for process {rank} of {world_size}")
         for name, value, least in (
             ("seed", seed, None),
             ("first", first, 0),
             ("count", 0 if count is None else count, 0),
+            ("block", block, 1),
+            ("rank", rank, 0),
+            ("world_size", world_size, 1),
         ):
             whole_number(value, name, least)
+        if rank >= world_size:
+            raise ValueError(f"there is no process {rank} of {world_size}: they count from 0")
         self.scenario = scenario if isinstance(scenario, Scenario) else load(scenario)
         self._seed = seed
         self._count = count

@@ -274,6 +274,32 @@ def test_mistakes_of_a_run_are_told() -> None:
         environment(render_mode="human")
 
 
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"max_steps": 0}, "`max_steps` must be an integer of at least 1, not 0"),
+        ({"max_steps": 2.5}, "`max_steps` must be an integer of at least 1, not 2.5"),
+        ({"tries": -1}, "`tries` must be an integer of at least 1, not -1"),
+        ({"first": -1}, "`first` must be an integer of at least 0, not -1"),
+        ({"stride": 0}, "`stride` must be an integer of at least 1, not 0"),
+        ({"timestep": -0.1}, "`timestep` must be a positive number of seconds, not -0.1"),
+        ({"image_size": (640, -480)}, "`image_size\\[1\\]` must be an integer of at least 1, not -480"),
+    ],
+)
+def test_numbers_that_cannot_be_are_refused(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        environment(**options)
+
+
+def test_numbers_of_episodes_and_environments_that_cannot_be_are_refused() -> None:
+    env = environment()
+    for k in (-1, 0.5):
+        with pytest.raises(ValueError, match=f"`k` must be an integer of at least 0, not {k}"):
+            env.reset(seed=0, options={"k": k})
+    with pytest.raises(ValueError, match="`num_envs` must be an integer of at least 1, not 0"):
+        ScenicVectorEnv("absent.scenic", 0)
+
+
 def test_without_the_library_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "gymnasium", None)
     monkeypatch.delitem(sys.modules, "scenic.gym")

@@ -76,3 +76,19 @@ def test_rejections_diagnostics_and_simulations_are_shown(shell: Any) -> None:
     code += "DummySimulator(drift=1).simulate(still.sample(1, seed=1)[0], maxSteps=3)"
     (simulation,) = shown(shell, code)
     assert "iframe" in simulation["text/html"]
+
+
+def test_a_notebook_that_is_run_fails_with_the_diagnostic() -> None:
+    nbclient = pytest.importorskip("nbclient")
+    from nbformat.v4 import new_code_cell, new_notebook
+
+    cells = ["%load_ext scenic", "%%scenic\nego = new Object at (Range(0, 1), 0), facing flor"]
+    notebook = new_notebook(cells=[new_code_cell(cell) for cell in cells])
+    with pytest.raises(nbclient.exceptions.CellExecutionError) as failure:
+        nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3").execute()
+    wanted = "error[SC202], line 1: the name `flor` is not defined"
+    assert wanted in str(failure.value)
+    shown_data, error = notebook.cells[1].outputs
+    assert wanted in shown_data["data"]["text/plain"]
+    assert "<b>error SC202</b>, line 1" in shown_data["data"]["text/html"]
+    assert (error["output_type"], wanted in "\n".join(error["traceback"])) == ("error", True)

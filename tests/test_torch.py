@@ -115,6 +115,13 @@ def test_processes_epochs_and_endless_streams(workers: Workers) -> None:
         endless.set_epoch(1)
     with pytest.raises(ValueError, match="process 2 of 2"):
         SceneStream(SCENARIO, seed=5, rank=2, world_size=2)
+    for name in ("first", "count", "block", "rank"):
+        for value in (-1, 1.5):
+            with pytest.raises(ValueError, match=f"`{name}` must be an integer of at least ., not {value}"):
+                SceneStream(SCENARIO, **{"seed": 5, name: value})
+    for epoch in (-1, 0.5):
+        with pytest.raises(ValueError, match=f"`epoch` must be an integer of at least 0, not {epoch}"):
+            stream.set_epoch(epoch)
     # Workers that are started anew get the stream in a pickle.
     assert list(pickle.loads(pickle.dumps(stream))) == list(range(12, 18))
     never = scenic.scenarioFromString(
@@ -178,12 +185,12 @@ def test_epochs_reach_workers_that_live_on() -> None:
 
     from scenic.torch import SceneStream
 
-    stream = SceneStream(SCENARIO, seed=5, count=6, transform=number, block=2)
+    stream = SceneStream(SCENARIO, seed=5, count=6, first=10, transform=number, block=2)
     loader = DataLoader(stream, batch_size=2, num_workers=2, persistent_workers=True)
     for epoch in (0, 1, 3):
         stream.set_epoch(epoch)
         found = [int(value) for batch in loader for value in batch]
-        assert found == list(range(6 * epoch, 6 * epoch + 6))
+        assert found == list(range(10 + 6 * epoch, 10 + 6 * epoch + 6))
 
 
 @REAL

@@ -14,7 +14,7 @@ from scenic.batch.keeping import Form, Kept, Watcher, about_file, is_whole
 from scenic.batch.simulation_folders import SimulationFolder
 from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic
-from scenic.runtime.ground.arguments import whole_number
+from scenic.runtime.ground.arguments import check_seconds, whole_number
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -356,6 +356,7 @@ def simulated(
         The rows of all simulations, in order.
 
     Raises:
+        ValueError: for a number or time that is not allowed.
         SimulationError: if the program or the simulator fails in one of them.
         SimulatorChoiceError: if there is no such simulator.
         SimulationFolderError: if the folder holds other simulations, or some that are not to be gone on with.
@@ -364,6 +365,8 @@ def simulated(
     n, first = whole_number(n, "n", 0), whole_number(first, "first", 0)
     seed = None if seed is None else whole_number(seed, "seed")
     processes, tries = whole_number(processes, "processes", 1), whole_number(tries, "tries", 1)
+    max_steps = whole_number(max_steps, "max_steps", 0)
+    check_seconds(timestep, "timestep")
     place = None if folder is None else Path(folder)
     running = Running(
         random.getrandbits(63) if seed is None else seed,

@@ -2,6 +2,7 @@
 
 from collections.abc import Hashable, Iterable
 from dataclasses import field
+from functools import cached_property
 from typing import Any, Final
 from weakref import WeakValueDictionary
 
@@ -183,6 +184,11 @@ class Graph:
     def address(self, node: Node) -> int:
         """The address of an axis or key."""
         return address("unnamed", self.index[node]) if node.payload is None else int(node.payload)
+
+    @cached_property
+    def drawn_addresses(self) -> frozenset[int]:
+        """The addresses of all axes and keys."""
+        return frozenset(self.address(node) for node in self.nodes if node.is_drawn)
 
     def addresses(self, nodes: Iterable[Node]) -> Words:
         """The addresses of axes or keys."""

@@ -1,9 +1,10 @@
-"""Checks of arguments of the public Python interface: whole numbers within limits."""
+"""Checks of arguments of the public Python interface: whole numbers within limits, seconds."""
 
 import operator
+from numbers import Real
 from typing import Any
 
-__all__ = ["check_limits", "whole_number"]
+__all__ = ["check_limits", "check_seconds", "whole_number"]
 
 
 def whole_number(value: Any, name: str, least: int | None = None) -> int:
@@ -31,5 +32,10 @@ def check_limits(max_attempts: int | None, time_limit: float | None, lanes: int 
     for name, value in (("max_attempts", max_attempts), ("lanes", lanes)):
         if value is not None:
             whole_number(value, name, 1)
-    if time_limit is not None and not time_limit > 0:
-        raise ValueError(f"`time_limit` must be a positive number of seconds, not {time_limit!r}")
+    check_seconds(time_limit, "time_limit")
+
+
+def check_seconds(value: object, name: str) -> None:
+    """Raise ``ValueError`` for an argument that is neither a positive number of seconds nor ``None``."""
+    if value is not None and not (isinstance(value, Real) and value > 0):
+        raise ValueError(f"`{name}` must be a positive number of seconds, not {value!r}")

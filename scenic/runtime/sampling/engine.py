@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from copy import copy
 from dataclasses import field
+from functools import partial
 from itertools import islice, repeat
 from typing import Any
 
@@ -453,15 +454,18 @@ class Engine:
         chosen = self._pace.choose(scenes, self._pace.most, more=False)
         return chosen.scenes * chosen.ahead
 
-    def replay(self, source: Source, task: Task, attempts: int) -> Accepted:
-        """The scene of given draws, one lane of points of the cube; no check is made again."""
+    def replay(
+        self, source: Source, task: Task, attempts: int, kind: Callable[..., Batch] = Batch
+    ) -> Accepted:
+        """The scene of given draws, one lane of points of the cube; no check is made again.
 
-        def alone(_lane: int) -> Batch:
-            return Batch(self._single, source, self.plan.codec, rejections=(RejectionException,))
-
-        batch = alone(0)
+        ``kind`` makes its batch, as `Batch` does.
+        """
+        arguments, rejections = (self._single, source, self.plan.codec), (RejectionException,)
+        batch = kind(*arguments, rejections=rejections)
         batch.settle(self.plan.outputs)
-        return Found([task.seed], [task.k], [attempts], batch, alone), 0
+        alone = partial(Batch, *arguments, rejections=rejections)
+        return Found([task.seed], [task.k], [attempts], batch, lambda _lane: alone()), 0
 
     def accepted(self, seed: int, numbers: NDArray[np.int64], attempts: NDArray[np.int64]) -> list[Accepted]:
         """Scenes of a seed of which the accepted candidates are known; no check is made again.

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.language.errors import RejectionException, SerializationError
+from scenic.runtime.ground.arguments import whole_number
 from scenic.runtime.ground.choosable import Choosable
 from scenic.runtime.instances.objects import Object
 from scenic.runtime.regions.base import Region
@@ -192,10 +193,14 @@ class Generating(ABC):
 
         Raises:
             RejectionException: if a scene is not found.
-            ValueError: for several processes with a limit of candidates or feedback.
+            ValueError: for several processes with a limit of candidates or feedback, and numbers that are not allowed.
 
         """
         _check_workers(numWorkers, maxIterations, feedback)
+        if numScenes != math.inf:
+            whole_number(numScenes, "numScenes", 0)
+        if bufferSize is not None:
+            whole_number(bufferSize, "bufferSize", 1)
         limit = None if maxIterations == math.inf else int(maxIterations)
         return self._generated(
             numScenes,
@@ -277,5 +282,8 @@ class Generating(ABC):
 
 
 def _check_workers(workers: int, limit: float, feedback: object) -> None:
+    whole_number(workers, "numWorkers", 0)
+    if not limit >= 1:
+        raise ValueError(f"`maxIterations` must be a number of at least 1, not {limit!r}")
     if workers > 0 and (limit != math.inf or feedback is not None):
         raise ValueError("several processes go without `maxIterations` and `feedback`")

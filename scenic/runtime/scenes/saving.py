@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
 from scenic.graph.draws import Counter, Points, Source
@@ -98,22 +99,19 @@ def draws_of(
     """
     batch = found.again(lane)
     graph = batch.graph
+    drawn = [node for node in (graph.nodes if nodes is None else nodes) if node.is_drawn]
+    batch.need(drawn)
     numbers: dict[int, float] = {}
     words: dict[int, int] = {}
-    for node in graph.nodes if nodes is None else nodes:
-        if node.is_drawn:
-            (drawn,) = batch.column(node)
-            if node.is_axis:
-                numbers[graph.address(node)] = float(drawn)
-            else:
-                words[graph.address(node)] = int(drawn)
+    for node in drawn:
+        (value,) = batch.column(node).tolist()
+        (numbers if node.is_axis else words)[graph.address(node)] = value
     return numbers, words
 
 
 def source_of(saved: SavedScene, graph: Graph) -> Points:
     """The source of one lane that gives the saved draws; raises `SerializationError` if the program has others."""
-    wanted = {graph.address(node) for node in graph.nodes if node.is_drawn}
-    if wanted != saved.numbers.keys() | saved.words.keys():
+    if graph.drawn_addresses != saved.numbers.keys() | saved.words.keys():
         raise SerializationError(
             "the saved scene has other random values than this program",
             help="take it up again with the program, and the version of the tools, that made it",
@@ -123,12 +121,12 @@ def source_of(saved: SavedScene, graph: Graph) -> Points:
 
 def fixed_draws(numbers: Mapping[int, float], words: Mapping[int, int], rest: Source) -> Points:
     """The source in which some draws are fixed in every lane."""
-    lanes = len(rest)
-    return Points(
-        {name: np.full(lanes, number) for name, number in numbers.items()},
-        rest,
-        {name: np.full(lanes, word, dtype=np.uint64) for name, word in words.items()},
-    )
+
+    def rows(values: Mapping[int, float], dtype: type[np.generic]) -> dict[int, NDArray[Any]]:
+        column = np.array(list(values.values()), dtype=dtype)[:, np.newaxis]
+        return dict(zip(values, np.broadcast_to(column, (len(values), len(rest))), strict=True))
+
+    return Points(rows(numbers, np.float64), rest, rows(words, np.uint64))
 
 
 def program_digest(text: str, options: Mapping[str, Any]) -> str:

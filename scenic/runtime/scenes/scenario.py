@@ -4,7 +4,7 @@ import pickle
 import random
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import chain, repeat
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NoReturn
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
+from scenic.graph.batch import Batch
 from scenic.graph.domain import Domain
 from scenic.graph.node import Graph
 from scenic.graph.points import PointSet
@@ -42,6 +43,7 @@ from scenic.runtime.sampling.report import Approximation, Exhausted
 from scenic.runtime.scenes.external_candidates import ExternalCandidates
 from scenic.runtime.scenes.fingerprint import fingerprint
 from scenic.runtime.scenes.generating import Generating
+from scenic.runtime.scenes.pickled_values import RecalledBatch, ValueLayout
 from scenic.runtime.scenes.population import Populations
 from scenic.runtime.scenes.prefetching import SEED_BITS, Foreseen
 from scenic.runtime.scenes.sampler import Sampler
@@ -133,6 +135,7 @@ class Scenario(Generating):
             names,
             digest,
             self.sceneToBytes,
+            ValueLayout(outline.outputs),
             self,
             self._services.view,
             self._services.bundle,
@@ -506,7 +509,14 @@ class Scenario(Generating):
                 ``(n, components)``, or scenes are looked for again.
             source: random numbers that are not hashed; see `stream`.
 
+        Raises:
+            ValueError: for numbers below 0, and scenes without a candidate.
+
         """
+        seed = whole_number(seed, "seed")
+        for name, values, least in (("numbers", numbers, 0), ("attempts", attempts, 1)):
+            if not np.issubdtype(values.dtype, np.integer) or (values < least).any():
+                raise ValueError(f"`{name}` must be integers of at least {least}, not {values.tolist()}")
         with self._program.undisturbed():
             accepted = self._sampler.accepted(seed, numbers, attempts, source)
         return (Scene(found, lane, self._family) for found, lane in accepted)
@@ -577,7 +587,15 @@ class Scenario(Generating):
             SerializationError: if the data is damaged, or of another program (not checked if ``verify`` is false).
 
         """
-        saved = SavedScene.from_bytes(data)
+        return self._taken_up(SavedScene.from_bytes(data), Batch, verify=verify)
+
+    def recalled(self, data: bytes, values: bytes) -> Scene:
+        """The scene in the data of `sceneToBytes`, with values that its layout has packed; raises as `sceneFromBytes`."""
+        known = self._family.layout.unpack(values)
+        kind = partial(RecalledBatch, values=known, guard=self._program.undisturbed)
+        return self._taken_up(SavedScene.from_bytes(data), kind)
+
+    def _taken_up(self, saved: SavedScene, kind: Callable[..., Batch], *, verify: bool = True) -> Scene:
         if verify and saved.program != self.digest:
             raise SerializationError(
                 "the saved scene is of another program",
@@ -585,7 +603,7 @@ class Scenario(Generating):
             )
         source = source_of(saved, self.outline.graph)
         with self._program.undisturbed():
-            accepted = self._sampler.engine.replay(source, saved.task, saved.attempts)
+            accepted = self._sampler.engine.replay(source, saved.task, saved.attempts, kind)
         return Scene(*accepted, self._family)
 
     def replay(self, path: str | Path) -> Scene:

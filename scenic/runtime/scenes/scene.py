@@ -20,6 +20,7 @@ from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.sampling.engine import Found
 from scenic.runtime.sampling.report import Approximation
 from scenic.runtime.scenes.dumping import program_of
+from scenic.runtime.scenes.pickled_values import ValueLayout
 from scenic.runtime.scenes.population import Populations
 
 
@@ -55,7 +56,7 @@ class Family:
     """The common ground of all scenes of a scenario.
 
     ``populations`` makes their objects, ``names`` are the variables that hold these, by the identities of the program's.
-    ``keep`` gives a scene as data, ``view`` shows it, ``export`` writes it for another program, if the file's ending says so.
+    ``keep`` gives a scene as data, ``layout`` the values in its pickle, ``view`` shows it, ``export`` writes it for another program, if the file's ending says so.
     """
 
     program: Program
@@ -65,6 +66,7 @@ class Family:
     names: Mapping[int, str]
     digest: Callable[[], str]
     keep: Callable[["Scene"], bytes]
+    layout: ValueLayout
     scenario: Any
     view: Callable[["Scene"], Any] | None
     bundle: Callable[["Scene"], Mapping[str, str]] | None
@@ -82,7 +84,7 @@ class Scene:
     _cast: tuple[Any, ...] | None = None
     _objects: tuple[Any, ...] | None = None
     _params: dict[str, Any] | None = None
-    _pickled: tuple[bytes, bytes] | None = None
+    _pickled: tuple[bytes, bytes, bytes] | None = None
 
     def __init__(self, found: Found, lane: int, family: Family) -> None:
         self.found = found
@@ -268,19 +270,21 @@ class Scene:
         return self.show()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """A scene is pickled as its program, which a process compiles once for all of its scenes, and its draws."""
+        """A scene is pickled as its program, which a process compiles once for all of its scenes, its draws and its values."""
         if self._pickled is not None:
             return _taken_up, self._pickled
-        return _taken_up, (self._family.scenario.recipe_bytes, self._family.keep(self))
+        family = self._family
+        values = family.layout.pack(self.found.batch, self.lane)
+        return _taken_up, (family.scenario.recipe_bytes, family.keep(self), values)
 
     def __getattr__(self, name: str) -> Any:
-        """Evaluate a scene that was unpickled, when it is first looked at."""
+        """Read the data of a scene that was unpickled, when it is first looked at."""
         if name not in _EVALUATED or self._pickled is None:
             raise AttributeError(
                 f"'{type(self).__name__}' object has no attribute {name!r}", name=name, obj=self
             )
-        recipe, data = self._pickled
-        scene = _compiled(recipe).sceneFromBytes(data)
+        recipe, data, values = self._pickled
+        scene = _compiled(recipe).recalled(data, values)
         self.found, self.lane, self._family = scene.found, scene.lane, scene._family
         return self.__dict__[name]
 
@@ -324,15 +328,15 @@ def _always(requirement: Requirement) -> bool:
     return requirement.condition.is_constant and bool(requirement.condition.value)
 
 
-def _taken_up(recipe: bytes, data: bytes) -> Scene:
-    """The scene of its draws, with objects of its own; it is evaluated when it is first looked at."""
+def _taken_up(recipe: bytes, data: bytes, values: bytes) -> Scene:
+    """The scene of its draws and values, with objects of its own; they are read when it is first looked at."""
     scene = object.__new__(Scene)
-    scene._pickled = recipe, data
+    scene._pickled = recipe, data, values
     return scene
 
 
 _EVALUATED: Final = frozenset({"found", "lane", "_family"})
-"""Attributes that an unpickled scene gets when it is evaluated."""
+"""Attributes that an unpickled scene gets when it is first looked at."""
 
 
 @lru_cache(maxsize=16)

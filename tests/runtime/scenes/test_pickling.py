@@ -10,6 +10,7 @@ import pytest
 
 from runtime.programs import scenario
 from scenic.runtime.values.values import Orientation, Random, Vector
+from scenic.simulators.dummy import DummySimulator
 
 PROGRAM = (
     "class Car:\n    width: 2\n    speedy: Range(0, 1)\n"
@@ -111,6 +112,40 @@ def test_copies_of_objects_that_know_each_other_do_so_too(again: Any) -> None:
     assert same.itself is owner
     ego, other = again(scene).objects
     assert (ego.friend, other.friend, ego.itself) == (other, ego, ego)
+
+
+COUNTED = """
+calls = []
+def seen(x):
+    calls.append(x)
+    return [x, len(calls)]
+behavior Call():
+    calls.extend([1, 2, 3])
+    wait
+ego = new Object at (Range(0, 1), Normal(0, 1)), facing Range(0, 1), with behavior Call, with foo DiscreteRange(0, 9)
+other = new Object at (0, 9), with shape Uniform(BoxShape(), ConeShape())
+param p = seen(ego.x), b = Uniform(True, False)
+"""
+
+
+def test_values_come_out_of_the_pickle() -> None:
+    """Numbers, vectors and orientations are not evaluated again; Python objects are, when they are read, as if nothing had happened since."""
+    scenes = scenario(COUNTED).sample(3, seed=1)
+    copies = [pickle.loads(pickle.dumps(scene)) for scene in scenes]
+    calls = copies[0].scenario.program.module["calls"]
+    calls.clear()
+    for scene, same in zip(scenes, copies, strict=True):
+        for thing, copied in zip(scene.objects, same.objects, strict=True):
+            assert (copied.position, copied.orientation) == (thing.position, thing.orientation)
+        assert same.egoObject.foo == scene.egoObject.foo
+    assert calls == []
+    DummySimulator().simulate(copies[0], maxSteps=2)
+    for scene, same in zip(scenes, copies, strict=True):
+        assert same.params["p"][0] == scene.egoObject.x
+        assert (same.params["b"], type(same.objects[1].shape)) == (
+            scene.params["b"],
+            type(scene.objects[1].shape),
+        )
 
 
 def test_a_scenario_is_compiled_anew() -> None:

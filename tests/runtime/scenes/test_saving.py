@@ -387,6 +387,35 @@ def test_unpickled_scenes_share_a_program(monkeypatch: pytest.MonkeyPatch) -> No
         (lambda loaded: loaded.sample(1, time_limit=0), "`time_limit` must be a positive number of seconds"),
         (lambda loaded: loaded.simulate(1, seed="x"), "`seed` must be an integer, not 'x'"),
         (lambda loaded: loaded.simulate(-1), "`n` must be an integer of at least 0, not -1"),
+        (
+            lambda loaded: loaded.simulate(1, max_steps=-1),
+            "`max_steps` must be an integer of at least 0, not -1",
+        ),
+        (
+            lambda loaded: loaded.simulate(1, timestep=0),
+            "`timestep` must be a positive number of seconds, not 0",
+        ),
+        (
+            lambda loaded: loaded.found(1, np.array([0, -3]), np.array([1, 1])),
+            "`numbers` must be integers of at least 0, not [0, -3]",
+        ),
+        (
+            lambda loaded: loaded.found(1, np.array([0]), np.array([0])),
+            "`attempts` must be integers of at least 1, not [0]",
+        ),
+        (lambda loaded: loaded.generateBatch(-1), "`n` must be an integer of at least 0, not -1"),
+        (
+            lambda loaded: loaded.generateBatch(1, maxIterations=0),
+            "`maxIterations` must be a number of at least 1, not 0",
+        ),
+        (
+            lambda loaded: loaded.generateStream(2.5),
+            "`numScenes` must be an integer of at least 0, not 2.5",
+        ),
+        (
+            lambda loaded: loaded.generateStream(bufferSize=0),
+            "`bufferSize` must be an integer of at least 1, not 0",
+        ),
     ],
 )
 def test_numbers_that_cannot_be_are_refused(call: Callable[[Scenario], object], message: str) -> None:
