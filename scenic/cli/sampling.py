@@ -5,7 +5,7 @@ import shlex
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import field
+from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +22,7 @@ from scenic.dataclass import dataclass
 from scenic.formats.files import OutputError
 from scenic.formats.growing import GrowingFile
 from scenic.formats.json_lines import SceneLines
-from scenic.formats.resuming import continued
+from scenic.formats.resuming import check_remade, continued
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 
@@ -85,6 +85,12 @@ class _Batch:
                 yield result
             self.advance(1, result.attempts)
 
+    def line(self, k: int, lines: SceneLines) -> bytes | None:
+        """The line of one scene; ``None`` if it is not found."""
+        job = replace(self.job(), first=k, last=k + 1)
+        (result,) = results_of(self.scenario, job)
+        return None if isinstance(result, Exhausted) else lines.encoded(result)
+
     def manifest(self, form: str, part_size: int) -> "Manifest":
         """The manifest of a data set of these scenes."""
         from scenic.batch.manifest import Manifest
@@ -145,6 +151,15 @@ def sample_into_sinks(
                 files=compared,
             )
         batch = _Batch(scenario, request, _announced(seed), deadline)
+        lines = SceneLines(
+            (request.path.name, scenario.digest),
+            changed=request.properties == "changed",
+            points=request.points,
+            folder=Path.cwd() if target is None else target.parent,
+            files=files,
+        )
+        if grown is not None and done and not request.accept_changes:
+            check_remade(grown, lambda k: batch.line(k, lines))
         stack.enter_context(_kept_is_reported(grown, folder, request.count))
         takers = [stack.enter_context(sink) for sink in chosen]
         put = _to_output if grown is None else stack.enter_context(grown).write
@@ -166,13 +181,6 @@ def sample_into_sinks(
             shown.finish()
         else:
             has_lines = bool(names.keys() & {"output", "lines"})
-            lines = SceneLines(
-                (request.path.name, scenario.digest),
-                changed=request.properties == "changed",
-                points=request.points,
-                folder=Path.cwd() if target is None else target.parent,
-                files=files,
-            )
             _write_lines(batch, takers, lines if has_lines else None, put, done)
     return batch.missing
 

@@ -1,11 +1,12 @@
 """Runs that continue the JSON Lines of an earlier run."""
 
 import json
+from collections.abc import Callable
 
 from scenic.formats.growing import GrowingFile
 from scenic.language.errors import Located
 
-__all__ = ["ResumeError", "continued"]
+__all__ = ["ResumeError", "check_remade", "continued"]
 
 
 class ResumeError(Located):
@@ -61,3 +62,19 @@ def continued(
             help="give the same --seed, --first and -n as before, or a larger -n",
         )
     return made[1], reached + 1 - first
+
+
+def check_remade(grown: GrowingFile, line_of: Callable[[int], bytes | None]) -> None:
+    """Raise `ResumeError` if the first or the last kept scene is not what the run would write now.
+
+    ``line_of`` makes the line of a scene of a number, or ``None`` if it is not found.
+    """
+    kept = grown.kept()
+    for line in dict.fromkeys([*kept[:1], *kept[-1:]]):
+        number = int(json.loads(line)["k"])
+        if line_of(number) != line:
+            raise ResumeError(
+                f"scene {number} in '{grown.path}' is not the one that this run makes",
+                help="give the same options (--no-prune, --properties, --max-attempts) and the same versions as before, or sample to"
+                " a new file; --accept-changes goes on",
+            )

@@ -37,5 +37,5 @@ def check_limits(max_attempts: int | None, time_limit: float | None, lanes: int 
 
 def check_seconds(value: object, name: str) -> None:
     """Raise ``ValueError`` for an argument that is neither a positive number of seconds nor ``None``."""
-    if value is not None and not (isinstance(value, Real) and value > 0):
+    if value is not None and not (isinstance(value, Real) and float(value) > 0):
         raise ValueError(f"`{name}` must be a positive number of seconds, not {value!r}")
