@@ -17,6 +17,7 @@ import scenic
 from scenic.batch import portable
 from scenic.batch.datasets import Run, make_dataset
 from scenic.batch.engines import ClusterError, DaskCluster, OverExecutor
+from scenic.batch.folders.lock import LOCK, BusyError
 from scenic.batch.manifest import Manifest
 from scenic.batch.portable import Portable
 from scenic.batch.upcoming import Upcoming
@@ -272,7 +273,7 @@ def test_a_scheduler_that_dies_is_an_error(tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="starts processes by fork")
 def test_a_cluster_gives_the_bytes_of_one_process(tmp_path: Path) -> None:
-    """Also where a worker is killed in the middle."""
+    """Also where a worker is killed in the middle. Meanwhile the command that writes holds the lock of the folder."""
     import warnings
 
     distributed = pytest.importorskip("distributed")
@@ -292,9 +293,12 @@ def test_a_cluster_gives_the_bytes_of_one_process(tmp_path: Path) -> None:
                 nonlocal killed
                 if not killed:
                     killed = True
+                    with pytest.raises(BusyError, match=f"process {os.getpid()} on "):
+                        make_dataset(scenario, tmp_path / "cluster", wanted, resume=True)
                     next(iter(local.workers.values())).process.process.kill()
 
             with DaskCluster(local.scheduler_address) as cluster:
                 make_dataset(scenario, tmp_path / "cluster", wanted, Run(cluster, advance=advance))
     for part in sorted((tmp_path / "alone").glob("*.jsonl")):
         assert (tmp_path / "cluster" / part.name).read_bytes() == part.read_bytes()
+    assert not (tmp_path / "cluster" / LOCK).exists()

@@ -1,7 +1,8 @@
 """Locks of folders and files that are being written: one writer at a time, and none left by a process that was killed.
 
 A lock is a lock of the operating system on a small file, which says who holds it. The system gives it up when its process ends,
-however that ends; network file systems pass such locks on to other machines (NFS, Lustre, CephFS).
+however that ends; network file systems pass such locks on to other machines (NFS, Lustre, CephFS). Where a file system has no
+locks, the file alone says that somebody is writing: a holder on another machine counts as alive until the file is removed.
 """
 
 import errno
@@ -11,10 +12,12 @@ import platform
 import time
 import weakref
 from contextlib import suppress
+from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
 from typing import Final, Self
 
+from scenic.dataclass import dataclass
 from scenic.formats.files import OutputError
 from scenic.language.errors import Located
 from scenic.runtime.ground.context import warn
@@ -83,15 +86,10 @@ class Lock:
         if hasattr(os, "register_at_fork"):
             # A process that is forked must not hold the lock when this one has been killed.
             os.register_at_fork(after_in_child=_Forgetting(self))
-        holder = json.dumps(
-            {
-                "host": platform.node(),
-                "process": os.getpid(),
-                "started": datetime.now().astimezone().isoformat(timespec="seconds"),
-            }
-        )
+        started = datetime.now().astimezone().isoformat(timespec="seconds")
+        holder = _Holder(platform.node(), os.getpid(), started)
         os.ftruncate(descriptor, 0)
-        os.write(descriptor, holder.encode())
+        os.write(descriptor, json.dumps(asdict(holder)).encode())
         return self
 
     def _take(self, descriptor: int) -> None:
@@ -103,6 +101,10 @@ class Lock:
             if error.errno not in _WITHOUT_LOCKS:
                 reason = (error.strerror or str(error)).lower()
                 raise OutputError(f"cannot lock '{self._target}': {reason}") from error
+            if self._may_be_alive():
+                raise self._busy(
+                    f"wait until it has ended, or name another place; if it has ended already, remove '{self._path}'"
+                ) from None
             warn(
                 f"the file system of '{self._target}' has no locks: a second command that writes there is not noticed",
                 help="write to one place by one command at a time",
@@ -116,18 +118,37 @@ class Lock:
         here = os.fstat(descriptor)
         return (here.st_dev, here.st_ino) == (there.st_dev, there.st_ino)
 
-    def _busy(self) -> BusyError:
-        holder = ""
+    def _busy(
+        self, help: str = "wait until it has ended, then go on by --resume; or name another place"
+    ) -> BusyError:
+        words = ""
         for _ in range(_TRIES):
-            with suppress(OSError, ValueError, KeyError, TypeError):
-                found = json.loads(self._path.read_bytes())
-                holder = f": process {found['process']} on {found['host']}, since {found['started']}"
+            if (holder := self._holder()) is not None:
+                words = f": process {holder.process} on {holder.host}, since {holder.started}"
                 break
             time.sleep(_PAUSE)
-        return BusyError(
-            f"another command is writing '{self._target}'{holder}",
-            help="wait until it has ended, then go on by --resume; or name another place",
-        )
+        return BusyError(f"another command is writing '{self._target}'{words}", help=help)
+
+    def _holder(self) -> "_Holder | None":
+        """The process that the file names, if it names one."""
+        with suppress(OSError, ValueError, TypeError):
+            return _Holder(**json.loads(self._path.read_bytes()))
+        return None
+
+    def _may_be_alive(self) -> bool:
+        """Return whether the process that the file names may still be writing; what other machines run cannot be seen."""
+        holder = self._holder()
+        if holder is None or holder.process == os.getpid():
+            return holder is not None
+        if holder.host != platform.node():
+            return True
+        try:
+            os.kill(holder.process, 0)
+        except ProcessLookupError:
+            return False
+        except (OSError, OverflowError, TypeError):
+            return True
+        return True
 
     def __exit__(self, *_: object) -> None:
         if self._descriptor is not None:
@@ -141,6 +162,15 @@ class Lock:
         if descriptor is not None:
             with suppress(OSError):
                 os.close(descriptor)
+
+
+@dataclass(frozen=True, slots=True)
+class _Holder:
+    """The content of the file: who holds the lock, and since when."""
+
+    host: str
+    process: int
+    started: str
 
 
 class _Forgetting:
