@@ -19,6 +19,7 @@ from scenic.runtime.sampling.engine import Accepted, CandidateError
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.external_candidates import ExternalCandidates
 from scenic.runtime.scenes.prefetching import SEED_BITS, Foreseen
+from scenic.runtime.scenes.restoring import Restoring
 from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.scenes.services import Services
@@ -26,7 +27,7 @@ from scenic.runtime.scenes.services import Services
 __all__ = ["Generating"]
 
 
-class Generating(ABC):
+class Generating(Restoring, ABC):
     """Base of scenarios: `generate` and its kind, in terms of `sample`, `stream` and `chosen`."""
 
     workspace: Workspace
@@ -75,14 +76,6 @@ class Generating(ABC):
     @abstractmethod
     def _scene_of(self, result: Accepted | CandidateError) -> Scene:
         """The scene of a candidate; raises the program's error of one that failed."""
-
-    @abstractmethod
-    def sceneToBytes(self, scene: Scene, allowPickle: bool = False) -> bytes:
-        """A scene as data."""
-
-    @abstractmethod
-    def sceneFromBytes(self, data: bytes, verify: bool = True, allowPickle: bool = False) -> Scene:
-        """The scene in the data of `sceneToBytes`."""
 
     def generate(
         self,

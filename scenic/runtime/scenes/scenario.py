@@ -4,16 +4,14 @@ import pickle
 import random
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import chain, repeat
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
-from scenic.graph.batch import Batch
 from scenic.graph.domain import Domain
 from scenic.graph.node import Graph
 from scenic.graph.points import PointSet
@@ -22,7 +20,6 @@ from scenic.language.errors import (
     Located,
     RejectionException,
     SamplingError,
-    SerializationError,
     annotate,
 )
 from scenic.language.spans import Span
@@ -43,11 +40,11 @@ from scenic.runtime.sampling.report import Approximation, Exhausted
 from scenic.runtime.scenes.external_candidates import ExternalCandidates
 from scenic.runtime.scenes.fingerprint import fingerprint
 from scenic.runtime.scenes.generating import Generating
-from scenic.runtime.scenes.pickled_values import RecalledBatch, ValueLayout
+from scenic.runtime.scenes.pickled_values import ValueLayout
 from scenic.runtime.scenes.population import Populations
 from scenic.runtime.scenes.prefetching import SEED_BITS, Foreseen
 from scenic.runtime.scenes.sampler import Sampler
-from scenic.runtime.scenes.saving import SavedScene, draws_of, source_of
+from scenic.runtime.scenes.saving import draws_of
 from scenic.runtime.scenes.scene import Family, Scene
 from scenic.runtime.scenes.services import Services
 from scenic.runtime.temporal.formulas import is_temporal
@@ -556,13 +553,6 @@ class Scenario(Generating):
 
     # Scenes as data
 
-    def sceneToBytes(self, scene: Scene, allowPickle: bool = False) -> bytes:
-        """A scene as data, which `sceneFromBytes` reads. ``allowPickle`` is accepted for compatibility."""
-        numbers, words = draws_of(scene.found, scene.lane)
-        return SavedScene(
-            scene.digest, scene.found.task(scene.lane), scene.attempts, numbers, words
-        ).to_bytes()
-
     def __reduce__(self) -> tuple[Any, ...]:
         """A scenario is pickled as its program, which is compiled again when it is unpickled."""
         if self._services.recipe is None:
@@ -579,36 +569,6 @@ class Scenario(Generating):
 
     def __copy__(self) -> "Scenario":
         return self
-
-    def sceneFromBytes(self, data: bytes, verify: bool = True, allowPickle: bool = False) -> Scene:
-        """The scene in the data of `sceneToBytes`, exactly as it was.
-
-        Raises:
-            SerializationError: if the data is damaged, or of another program (not checked if ``verify`` is false).
-
-        """
-        return self._taken_up(SavedScene.from_bytes(data), Batch, verify=verify)
-
-    def recalled(self, data: bytes, values: bytes) -> Scene:
-        """The scene in the data of `sceneToBytes`, with values that its layout has packed; raises as `sceneFromBytes`."""
-        known = self._family.layout.unpack(values)
-        kind = partial(RecalledBatch, values=known, guard=self._program.undisturbed)
-        return self._taken_up(SavedScene.from_bytes(data), kind)
-
-    def _taken_up(self, saved: SavedScene, kind: Callable[..., Batch], *, verify: bool = True) -> Scene:
-        if verify and saved.program != self.digest:
-            raise SerializationError(
-                "the saved scene is of another program",
-                help="load the program, parameters and options with which it was saved",
-            )
-        source = source_of(saved, self.outline.graph)
-        with self._program.undisturbed():
-            accepted = self._sampler.engine.replay(source, saved.task, saved.attempts, kind)
-        return Scene(*accepted, self._family)
-
-    def replay(self, path: str | Path) -> Scene:
-        """The scene that `Scene.save` has written; raises `SerializationError` as `sceneFromBytes` does."""
-        return self.sceneFromBytes(Path(path).read_bytes())
 
     @property
     def is_timeless(self) -> bool:
