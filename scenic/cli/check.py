@@ -10,6 +10,7 @@ from typing import Final
 
 import click
 
+from scenic.cli.batch_parts import BatchPart, check_parts
 from scenic.cli.checking import Checker, Fixing, Outcome, Task, fault
 from scenic.cli.discovery import STANDARD_INPUT, discover
 from scenic.cli.options import OneOf
@@ -24,6 +25,12 @@ from scenic.language.selection import EVERYTHING, is_selector, similar_selector
 from scenic.language.source import Source
 
 __all__ = ["check"]
+
+_INPUT: Final = BatchPart("standard input", refuses=frozenset({"deep", "watching"}))
+_TEXT: Final = BatchPart("--format text", frozenset({"statistics"}))
+_DIFF: Final = BatchPart("--diff", refuses=frozenset({"fix", "watching", "statistics"}))
+_FIX: Final = BatchPart("--fix", refuses=frozenset({"watching"}))
+_NO_CONFIG: Final = BatchPart("--no-config", refuses=frozenset({"config"}))
 
 _ALL: Final = "ALL"
 _FAILING: Final = (Severity.ERROR, Severity.WARNING)
@@ -128,17 +135,10 @@ def check(
     Exit codes: 0 clean, 1 findings (errors or warnings; with --diff: something to repair), 2 wrong usage, or a file
     that cannot be read, 70 an internal error, 130 interrupted.
     """
-    if fix and diff:
-        raise click.UsageError("--fix and --diff exclude each other.")
-    if config is not None and no_config:
-        raise click.UsageError("--config and --no-config exclude each other.")
-    if deep and STANDARD_INPUT in paths:
-        raise click.UsageError("--deep runs files; it cannot be used with standard input.")
-    if statistics and (output_format != "text" or diff):
-        raise click.UsageError("--statistics goes with the format text, and not with --diff.")
+    parts = {_INPUT: STANDARD_INPUT in paths, _TEXT: output_format == "text"}
+    parts |= {_DIFF: diff, _FIX: fix, _NO_CONFIG: no_config}
+    check_parts([part for part, is_chosen in parts.items() if is_chosen], [_TEXT])
     if watching:
-        if STANDARD_INPUT in paths or fix or diff:
-            raise click.UsageError("--watch goes neither with standard input nor with --fix and --diff.")
         context = click.get_current_context()
         watch(paths, lambda: context.invoke(context.command, **{**context.params, "watching": False}))
     fixed_configuration = PLAIN if no_config else None if config is None else read_configuration(config)
@@ -153,27 +153,14 @@ def check(
         if file == STANDARD_INPUT:
             name = stdin_filename or "<stdin>"
             try:
-                data = sys.stdin.buffer.read()
-                Source.decode(data, name)
+                text = _standard_input(name)
             except ScenicError as error:
                 problems.append(error.diagnostic())
                 continue
-            text = data.decode()  # with its byte order mark, for --fix
             sources.add(Source(text, name))
-        configuration = configurations.of_file(name)
-        tasks.append(
-            Task(
-                name,
-                configuration.rules_for(name, select, ignore),
-                configuration.folder or None,
-                configuration.python_path,
-                verbose,
-                deep=deep,
-                fixing=fixing,
-                text=text,
-                strict=strict,
-            )
-        )
+        project = configurations.of_file(name)
+        rules, root = project.rules_for(name, select, ignore), project.folder or None
+        tasks.append(Task(name, rules, root, project.python_path, verbose, deep, fixing, text, strict))
     problems = [*configurations.problems, *problems]
     if not found.files and not problems:
         click.echo("warning: there are no Scenic files under the given paths", err=True)
@@ -207,6 +194,13 @@ def check(
         sys.stdout.flush()
         sys.stderr.write(_conclusion(report))
     return code
+
+
+def _standard_input(name: str) -> str:
+    """The text of standard input, with its byte order mark; raises ``ScenicError`` if it is not text."""
+    data = sys.stdin.buffer.read()
+    Source.decode(data, name)
+    return data.decode()
 
 
 def _conclusion(report: Report) -> str:

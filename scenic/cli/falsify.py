@@ -10,30 +10,27 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from scenic.cli.batch_parts import FileSink, SinkPart, check_parts, places_of, write_files
 from scenic.cli.options import (
+    BatchRequest,
     OneOf,
-    accept_changes_option,
-    count_option,
-    dask_option,
-    jobs_option,
+    batch_options,
+    course_options,
     named_values,
-    program_argument,
-    resume_option,
     seconds,
-    seed_option,
     settings_of,
-    simulator_option,
-    steps_option,
     swept_program_options,
-    timestep_option,
 )
 from scenic.cli.output import CLEAN
-from scenic.cli.running import NOT_ALL, ended_by_signals, engine_of, progress_bar
+from scenic.cli.running import NOT_ALL, announce_seed, batch_run
 from scenic.cli.sinks import check_page
+from scenic.dataclass import dataclass
+from scenic.formats.files import safe_name, write
 from scenic.language.errors import ScenicWarning
 
 if TYPE_CHECKING:
-    from scenic.falsification.search import FalsificationResult
+    from scenic.falsification.search import FalsificationResult, Plan
+    from scenic.runtime.scenes.scenario import Scenario
 
 __all__ = ["falsify"]
 
@@ -45,10 +42,57 @@ _TIMELESS: Final = (
 )
 _STATIC: Final = "search the scenes alone: --static with --objective PARAMETER or --minimize EXPRESSION"
 
+_SCREEN: Final = SinkPart("standard output")
+_FOLDER: Final = SinkPart("folders of searches (-o DIR)", frozenset({"resume", "accept_changes"}))
+
+
+@dataclass(frozen=True, slots=True)
+class _FalsifyRequest(BatchRequest):
+    """The values of the options, as the command takes them."""
+
+    sampler: str
+    sampler_options: Mapping[str, Any]
+    objectives: tuple[str, ...]
+    expressions: tuple[str, ...]
+    threshold: float
+    stop_after: int | None
+    time_limit: float | None
+    space: str
+    batch: int | None
+    static: bool
+    simulator: str | None
+    max_steps: int
+    timestep: float | None
+    swept: Mapping[str, tuple[Any, ...]]
+    output: Path | None
+    report: Path | None
+
+    def plan(self, seed: int) -> "Plan":
+        """The plan of the search for each setting of the parameters."""
+        from scenic.falsification.objectives import Objective
+        from scenic.falsification.search import Plan
+
+        objectives = [
+            *(Objective(name=item) for item in self.objectives),
+            *(Objective(expression=item) for item in self.expressions),
+        ]
+        return Plan(
+            seed, self.sampler, self.sampler_options, tuple(objectives) or (Objective(),), self.threshold, self.space,
+            self.batch, self.simulator, self.static, self.max_steps, self.timestep,
+        )  # fmt: skip
+
+
+def _report(page: Path, title: str, results: "Mapping[str, FalsificationResult]") -> bytes:
+    from scenic.falsification.report import report_page
+
+    return report_page(results, title, links_from=page.parent).encode()
+
+
+_FILES: Final = (FileSink("report", _report, lambda page: check_page(page, "--report")),)
+
 
 @click.command()
-@program_argument
-@count_option("Runs at most.", default=1000)
+@batch_options("runs", count=1000)
 @click.option(
     "--sampler",
     metavar="NAME",
@@ -107,14 +151,9 @@ _STATIC: Final = "search the scenes alone: --static with --objective PARAMETER o
     type=click.IntRange(min=1),
     help="Points that the sampler gives at a time.  [default: the sampler's]",
 )
-@seed_option("Searches")
 @click.option("--static", is_flag=True, help="Search scenes alone, without simulations.")
-@simulator_option
-@steps_option
-@timestep_option
+@course_options
 @swept_program_options
-@jobs_option("Processes.")
-@dask_option("Simulate")
 @click.option(
     "-o",
     "--output",
@@ -122,39 +161,10 @@ _STATIC: Final = "search the scenes alone: --static with --objective PARAMETER o
     type=click.Path(path_type=Path),
     help="Keep runs and counterexamples in this folder.",
 )
-@resume_option
-@accept_changes_option
 @click.option(
     "--report", metavar="PAGE.html", type=click.Path(path_type=Path), help="Make a page about the search."
 )
-def falsify(
-    file: str,
-    count: int,
-    sampler: str,
-    sampler_options: Mapping[str, Any],
-    objectives: tuple[str, ...],
-    expressions: tuple[str, ...],
-    threshold: float,
-    stop_after: int | None,
-    time_limit: float | None,
-    space: str,
-    batch: int | None,
-    seed: int | None,
-    static: bool,
-    simulator: str | None,
-    max_steps: int,
-    timestep: float | None,
-    swept: Mapping[str, tuple[Any, ...]],
-    scenario: str | None,
-    model: str | None,
-    mode_2d: bool,
-    jobs: int,
-    dask: str | None,
-    output: Path | None,
-    resume: bool,
-    accept_changes: bool,
-    report: Path | None,
-) -> int:
+def falsify(**options: Any) -> int:
     """Search for scenes and simulations in which requirements fail.
 
     If FILE is the folder of a search instead of a program, the command makes the report of the search again.
@@ -165,72 +175,63 @@ def falsify(
 
     Exit codes: 0 counterexamples were found, 1 the program has errors, 2 wrong usage, 3 none was found, 130 interrupted.
     """
-    if resume and output is None:
-        raise click.UsageError("--resume needs the folder of the search: -o DIR")
-    if report is not None:
-        check_page(report, "--report")
-    if Path(file).is_dir():
-        from scenic.falsification.report import load_results
+    request = _FalsifyRequest(**options)
+    check_parts([_SCREEN, *([_FOLDER] if request.output is not None else [])], [_SCREEN, _FOLDER])
+    places = places_of(request, _FILES)
+    if request.path.is_dir():
+        return _report_again(request)
+    from scenic.falsification.store import folders_of, manifest_of
 
-        page = report or Path(file) / "report.html"
-        _write_report(load_results(Path(file)), Path(file).name, page)
-        print(f"wrote {page}")
-        return CLEAN
-    from scenic.falsification.objectives import Objective
-    from scenic.falsification.search import Limits, Plan, search
-    from scenic.falsification.store import SearchFolder, folders_of, manifest_of
-    from scenic.formats.files import safe_name
-    from scenic.pipeline import load
-
-    if resume and seed is None and output is not None:
+    seed, output = request.seed, request.output
+    if request.resume and seed is None and output is not None:
         seed = next((int(manifest_of(folder)["seed"]) for folder in folders_of(output)), None)
-    settings = settings_of(swept)
     programs = [
-        load(Path(file), params=parameters, model=model, scenario=scenario, mode2D=mode_2d)
-        for parameters, _ in settings
+        (request.load(parameters), ", ".join(f"{name}={value}" for name, value in different.items()))
+        for parameters, different in settings_of(request.swept)
     ]
-    if not static and simulator is None and all(loaded.is_timeless for loaded in programs):
+    if not request.static and request.simulator is None and all(item.is_timeless for item, _ in programs):
         warnings.warn(ScenicWarning(_TIMELESS, help=_STATIC), stacklevel=2)
+    drawn = secrets.randbits(32) if seed is None else seed
     if seed is None:
-        seed = secrets.randbits(32)
-        sys.stderr.write(f"seed {seed} (the same search again: --seed {seed})\n")
-    wanted = [
-        *(Objective(name=item) for item in objectives),
-        *(Objective(expression=item) for item in expressions),
-    ]
-    plan = Plan(
-        seed,
-        sampler,
-        sampler_options,
-        tuple(wanted) or (Objective(),),
-        threshold,
-        space,
-        batch,
-        simulator,
-        static,
-        max_steps,
-        timestep,
-    )
-    results: dict[str, FalsificationResult] = {}
-    with (
-        ended_by_signals(),
-        progress_bar(count * len(settings), "searching", shown=not sys.stdout.isatty()) as advance,
-        engine_of(jobs, dask) as engine,
-    ):
-        limits = Limits(count, stop_after, time_limit, lambda _row: advance(1, 1))
-        for loaded, (_, different) in zip(programs, settings, strict=True):
-            label = ", ".join(f"{name}={value}" for name, value in different.items())
-            place = output if output is None or not label else output / safe_name(label)
-            folder = (
-                None
-                if place is None
-                else SearchFolder(place, plan.settings(loaded), resume=resume, accept_changes=accept_changes)
-            )
-            results[label] = search(loaded, plan, limits, engine=engine, folder=folder)
-            _show(label, results[label])
-    if report is not None:
-        _write_report(results, Path(file).name, report)
+        announce_seed(drawn, "search")
+    results = _search(request, request.plan(drawn), programs, places)
     return CLEAN if any(result.counterexamples for result in results.values()) else NOT_ALL
+
+
+def _report_again(request: _FalsifyRequest) -> int:
+    """Make the report of a search in a folder once more."""
+    from scenic.falsification.report import load_results
+
+    page = request.report or request.path / "report.html"
+    write(page, _report(page, request.path.name, load_results(request.path)))
+    print(f"wrote {page}")
+    return CLEAN
+
+
+def _search(
+    request: _FalsifyRequest, plan: "Plan", programs: "list[tuple[Scenario, str]]", places: list[Path]
+) -> "dict[str, FalsificationResult]":
+    """Search each program, and write what is wanted; returns the results by the labels of the programs."""
+    from scenic.falsification.search import Limits, search
+    from scenic.falsification.store import SearchFolder
+
+    results: dict[str, FalsificationResult] = {}
+    with batch_run(
+        request.count * len(programs), "searching",
+        jobs=request.jobs, dask=request.dask, shown=not sys.stdout.isatty(), places=places,
+    ) as (advance, engine):  # fmt: skip
+        limits = Limits(request.count, request.stop_after, request.time_limit, lambda _row: advance(1, 1))
+        for scenario, label in programs:
+            folder = None
+            if request.output is not None:
+                folder = SearchFolder(
+                    request.output / safe_name(label) if label else request.output, plan.settings(scenario),
+                    resume=request.resume, accept_changes=request.accept_changes,
+                )  # fmt: skip
+            results[label] = search(scenario, plan, limits, engine=engine, folder=folder)
+            _show(label, results[label])
+        write_files(request, _FILES, request.report, request.path.name, results)
+    return results
 
 
 def _show(label: str, result: "FalsificationResult") -> None:
@@ -260,10 +261,3 @@ def _show(label: str, result: "FalsificationResult") -> None:
 
 def _counted(count: int, thing: str) -> str:
     return f"{count} {thing}{'' if count == 1 else 's'}"
-
-
-def _write_report(results: "Mapping[str, FalsificationResult]", title: str, page: Path) -> None:
-    from scenic.falsification.report import report_page
-    from scenic.formats.files import write
-
-    write(page, report_page(results, title, links_from=page.parent).encode())

@@ -6,17 +6,25 @@ import os
 import re
 from collections.abc import Callable, Mapping, Sequence
 from itertools import product
+from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
+from scenic.dataclass import dataclass
 from scenic.language.spelling import nearest_option
 
+if TYPE_CHECKING:
+    from scenic.runtime.scenes.scenario import Scenario
+
 __all__ = [
+    "BatchRequest",
     "OneOf",
     "accept_changes_option",
+    "batch_options",
     "count_option",
+    "course_options",
     "dask_option",
     "extra_params_option",
     "first_option",
@@ -38,6 +46,34 @@ __all__ = [
     "swept_program_options",
     "timestep_option",
 ]
+
+
+@dataclass(frozen=True, slots=True)
+class BatchRequest:
+    """The values of the options that `sample`, `simulate` and `falsify` share."""
+
+    file: str
+    count: int
+    seed: int | None
+    scenario: str | None
+    model: str | None
+    mode_2d: bool
+    jobs: int
+    dask: str | None
+    resume: bool
+    accept_changes: bool
+
+    @property
+    def path(self) -> Path:
+        """The program's file."""
+        return Path(self.file)
+
+    def load(self, parameters: Mapping[str, Any], **options: Any) -> "Scenario":
+        """The program with values of its parameters; ``options`` are those of `scenic.load`."""
+        from scenic.pipeline import load
+
+        options |= {"model": self.model, "scenario": self.scenario, "mode2D": self.mode_2d}
+        return load(self.path, params=parameters, **options)
 
 
 class OneOf(click.Choice[str]):
@@ -269,7 +305,7 @@ timestep_option = click.option(
 resume_option = click.option(
     "--resume",
     is_flag=True,
-    help="Go on with what an earlier run of the same command has left in the folder.",
+    help="Go on with what an earlier run of the same command has left: a folder, or the lines of OUT or OUT.part.",
 )
 accept_changes_option = click.option(
     "--accept-changes",
@@ -282,6 +318,32 @@ extra_params_option = click.option(
     is_flag=True,
     help="Accept values for parameters that the program does not have, and add them to its scenes.",
 )
+
+
+def batch_options(things: str, *, count: int = 1) -> Callable[[_Command], _Command]:
+    """The program, and options that all commands share which make many ``things`` of it; ``count`` is the default of ``-n``."""
+
+    def add(command: _Command) -> _Command:
+        for option in (
+            accept_changes_option,
+            resume_option,
+            dask_option("Work"),
+            jobs_option("Number of processes. The results and their order are the same."),
+            seed_option(things.capitalize()),
+            count_option(f"Number of {things}.", default=count),
+            program_argument,
+        ):
+            command = option(command)
+        return command
+
+    return add
+
+
+def course_options(command: _Command) -> _Command:
+    """Options of commands that simulate."""
+    for option in (timestep_option, steps_option, simulator_option):
+        command = option(command)
+    return command
 
 
 def program_options(command: _Command) -> _Command:

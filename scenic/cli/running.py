@@ -1,19 +1,32 @@
-"""Running of ``sample``, ``simulate`` and ``falsify``: workers, a progress bar, the end by a signal, an exit code."""
+"""Running of ``sample``, ``simulate`` and ``falsify``: locks, workers, a progress bar, the end by a signal, an exit code."""
 
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeAlias
 
+from scenic.batch.folders.lock import locked
 from scenic.cli.output import has_colours
 
 if TYPE_CHECKING:
     from scenic.batch.engines import Engine
 
-__all__ = ["NOT_ALL", "ended_by_signals", "engine_of", "progress_bar"]
+__all__ = [
+    "NOT_ALL",
+    "Advance",
+    "announce_seed",
+    "batch_run",
+    "ended_by_signals",
+    "engine_of",
+    "progress_bar",
+]
+
+Advance: TypeAlias = Callable[[int, int], None]
+"""Takes how many more results are done, and the candidates that they took."""
 
 NOT_ALL: Final = 3
 """Exit code: some scenes were not found within the limits."""
@@ -32,11 +45,31 @@ def engine_of(jobs: int, dask: str | None) -> "Iterator[Engine | None]":
 
 
 @contextmanager
-def progress_bar(count: int, doing: str, *, shown: bool) -> Iterator[Callable[[int, int], None]]:
-    """A progress bar on the error stream if that is a terminal: what is being done, how much of it, rate, acceptance, time left.
+def batch_run(
+    count: int, doing: str, *, jobs: int, dask: str | None, shown: bool, places: Iterable[Path] = ()
+) -> "Iterator[tuple[Advance, Engine | None]]":
+    """Everything around a batch: locks of its files, the end by a signal, a progress bar, the engine.
 
-    The function it gives takes how many more scenes are done, and the candidates they took.
+    Args:
+        count: how many results are to be made.
+        doing: for the progress bar.
+        jobs: the number of processes.
+        dask: the address of a cluster to use instead.
+        shown: whether there is a progress bar, on a terminal.
+        places: single files that nobody else may write meanwhile.
+
     """
+    with ExitStack() as stack:
+        for place in places:
+            stack.enter_context(locked(place))
+        stack.enter_context(ended_by_signals())
+        advance = stack.enter_context(progress_bar(count, doing, shown=shown))
+        yield advance, stack.enter_context(engine_of(jobs, dask))
+
+
+@contextmanager
+def progress_bar(count: int, doing: str, *, shown: bool) -> Iterator[Advance]:
+    """A progress bar on the error stream if that is a terminal: what is being done, how much of it, rate, acceptance, time left."""
     if not (shown and sys.stderr.isatty()):
         yield lambda _scenes, _attempts: None
         return
@@ -65,6 +98,11 @@ def progress_bar(count: int, doing: str, *, shown: bool) -> Iterator[Callable[[i
             progress.update(task, advance=scenes, rate=rate)
 
         yield advance
+
+
+def announce_seed(seed: int, things: str) -> None:
+    """Show the seed that was drawn for some things."""
+    sys.stderr.write(f"seed {seed} (the same {things} again: --seed {seed})\n")
 
 
 class _Terminated(BaseException):

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from scenic.cli import sinks
-from scenic.cli.batch_parts import check_parts, sink_parts
 from scenic.cli.output import CLEAN, has_colours
-from scenic.cli.running import NOT_ALL, ended_by_signals
+from scenic.cli.running import NOT_ALL
 from scenic.cli.sample_options import SampleRequest, sample_options
+from scenic.cli.sample_parts import check_sample, sink_parts
 from scenic.cli.time_limit import PATIENCE, limited
 from scenic.formats.files import check_writable
 from scenic.language.garbage import import_lasting
@@ -34,7 +34,7 @@ def sample(**options: Any) -> int:
     unknown parameter), 3 some scenes were not found within the limits (the others are written), 130 interrupted.
     """
     request = SampleRequest(**options)
-    check_parts(request)
+    check_sample(request)
     chosen = _scene_sinks(request)
     limit = request.time_limit
     deadline = None if limit is None else time.monotonic() + limit
@@ -56,14 +56,16 @@ def sample(**options: Any) -> int:
         f"a candidate was still being evaluated {PATIENCE:g} s after the time limit of {limit or 0:g} s",
         "look for a loop without end in what is called on samples",
     )
-    with ended_by_signals(), endless:
-        missing = sample_into_sinks(scenario, request, chosen, deadline)
+    with endless:
+        missing, lost = sample_into_sinks(scenario, request, chosen, deadline)
     if request.settle is not None and scenario.program.settling.tally.scenes:
         sys.stderr.write(f"settling: {scenario.program.settling.tally}\n")
     if scenario.approximation is not None:
         sys.stderr.write(f"{scenario.approximation}\n")
+    if lost:
+        sys.stderr.write(f"{lost:,} scenes were not found by the earlier run, and are not looked for again\n")
     if not missing:
-        return CLEAN
+        return NOT_ALL if lost else CLEAN
     from rich.console import Console
 
     from scenic.cli.render.rejections import render_missing
@@ -101,14 +103,8 @@ def _scene_sinks(request: SampleRequest) -> list[sinks.Sink]:
 
 def _loaded(request: SampleRequest) -> "Scenario":
     """The program, whose textures are read if there will be pictures."""
-    from scenic.pipeline import load
-
-    scenario = load(
-        request.path,
-        params=request.parameters,
-        model=request.model,
-        scenario=request.scenario,
-        mode2D=request.mode_2d,
+    scenario = request.load(
+        request.parameters,
         prune=not request.no_prune,
         extra_params=request.extra_params,
         settle=None if request.settle is None else request.settle[0],

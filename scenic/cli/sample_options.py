@@ -2,27 +2,24 @@
 
 import math
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import Any, Final, TypeVar
 
 import click
 
+from scenic.cli.batch_parts import forms_help, output_help
 from scenic.cli.options import (
+    BatchRequest,
     OneOf,
-    accept_changes_option,
-    count_option,
-    dask_option,
+    batch_options,
     extra_params_option,
     first_option,
     image_size_option,
-    jobs_option,
     look_from_option,
-    program_argument,
     program_options,
     seconds,
-    seed_option,
     sobol_option,
 )
+from scenic.cli.sample_parts import SINKS
 from scenic.dataclass import dataclass
 
 __all__ = ["SampleRequest", "sample_options"]
@@ -55,22 +52,14 @@ def _settling(
 
 _WAYS: Final = (("", ""), ("keep", ":"), ("reject", ":"))
 _OPTIONS: Final[tuple[Callable[[Any], Any], ...]] = (
-    program_argument,
-    count_option("How many scenes."),
+    batch_options("scenes"),
     first_option("Number of the first scene; -n scenes from there on."),
-    jobs_option("Make JSON Lines in so many processes. The scenes and their order are the same."),
-    click.option(
-        "--resume",
-        is_flag=True,
-        help="Continue the JSON Lines of an interrupted run: OUT.part, or OUT with fewer scenes.",
-    ),
     click.option(
         "--verify",
         "verified",
         is_flag=True,
         help="With --resume: compare the content of a data set's parts with their digests, and make changed ones again.",
     ),
-    accept_changes_option,
     click.option(
         "--properties",
         type=OneOf(["all", "changed"]),
@@ -78,7 +67,6 @@ _OPTIONS: Final[tuple[Callable[[Any], Any], ...]] = (
         show_default=True,
         help="Properties of objects to write in JSON Lines: all, or only properties that the program gives.",
     ),
-    seed_option("Scenes"),
     sobol_option,
     click.option(
         "--approximate",
@@ -122,14 +110,13 @@ _OPTIONS: Final[tuple[Callable[[Any], Any], ...]] = (
         "-o",
         "--output",
         metavar="OUT",
-        help="JSON Lines to this file, columns if OUT ends in .parquet, a file for each scene if it ends in .glb, .obj, .wbt, .usda, .usdc, .usdz, .xml (MJCF), .sdf or .cr.xml (CommonRoad), a data "
-        "set of many files if it ends in / or is a folder; - is standard output, which is the default without --view and --png.",
+        help=f"Where the scenes go, by the ending: {output_help(SINKS.values())}",
     ),
     click.option(
         "--format",
         "form",
-        type=OneOf(["parquet", "jsonl", "images", "tar", "usd", "mjcf", "sdf"]),
-        help="Format of the files of a data set: parquet or jsonl; usd, mjcf or sdf for a file of each scene with shared meshes; with --camera images, or tar for shards.  [default: the first]",
+        type=OneOf([form for sink in SINKS.values() for form in sink.forms]),
+        help=f"Format of the files of a folder: {forms_help(SINKS.values())}",
     ),
     click.option(
         "--part-size",
@@ -137,7 +124,6 @@ _OPTIONS: Final[tuple[Callable[[Any], Any], ...]] = (
         type=click.IntRange(min=1),
         help="Scenes in each part of a data set.  [default: 65536, with --camera 512]",
     ),
-    dask_option("Sample"),
     click.option(
         "--sampler",
         metavar="NAME",
@@ -206,24 +192,15 @@ def sample_options(command: _Command) -> _Command:
 
 
 @dataclass(frozen=True, slots=True)
-class SampleRequest:
+class SampleRequest(BatchRequest):
     """The values of the options, as the command takes them."""
 
-    file: str
-    count: int
     first: int
-    jobs: int
-    resume: bool
     verified: bool
-    accept_changes: bool
     properties: str
-    seed: int | None
     sobol: bool
     approximate: int | None
     parameters: Mapping[str, Any]
-    scenario: str | None
-    model: str | None
-    mode_2d: bool
     extra_params: bool
     settle: tuple[float, bool] | None
     settle_tolerance: float
@@ -233,7 +210,6 @@ class SampleRequest:
     output: str | None
     form: str | None
     part_size: int | None
-    dask: str | None
     sampler: str | None
     minimized: str | None
     view: str | None
@@ -245,11 +221,6 @@ class SampleRequest:
     frame: str
     show_params: bool
     profile: bool
-
-    @property
-    def path(self) -> Path:
-        """The program's file."""
-        return Path(self.file)
 
     @property
     def points(self) -> str | None:

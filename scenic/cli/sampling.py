@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 from scenic.batch.engines import Engine
 from scenic.batch.folders.fingerprint import digest_of_files, file_digests
-from scenic.batch.folders.lock import lock_beside
+from scenic.batch.folders.lock import locked
 from scenic.batch.scenes import Job, in_processes, method_of, results_of
 from scenic.cli import sinks
-from scenic.cli.batch_parts import SINKS, sink_parts
 from scenic.cli.output import has_colours
-from scenic.cli.running import engine_of, progress_bar
+from scenic.cli.running import announce_seed, batch_run
 from scenic.cli.sample_options import SampleRequest
+from scenic.cli.sample_parts import SINKS, sink_parts
 from scenic.dataclass import dataclass
 from scenic.formats.files import OutputError
 from scenic.formats.growing import GrowingFile
@@ -47,6 +47,7 @@ class _Batch:
         engine: where scenes are made; this process if ``None``.
         advance: called with how many more scenes are done, and their candidates.
         missing: scenes that were not found so far.
+        lost: number of scenes that the run which goes on did not find.
 
     """
 
@@ -57,6 +58,7 @@ class _Batch:
     engine: Engine | None = None
     advance: Callable[[int, int], None] = lambda _scenes, _attempts: None
     missing: list[Exhausted] = field(default_factory=list)
+    lost: int = 0
 
     def job(self, done: int = 0) -> Job:
         """The scenes after the first ``done``."""
@@ -118,8 +120,8 @@ class _Batch:
 
 def sample_into_sinks(
     scenario: Scenario, request: SampleRequest, chosen: "list[sinks.Sink]", deadline: float | None
-) -> list[Exhausted]:
-    """Make the scenes of a request and write them; returns those that were not found.
+) -> tuple[list[Exhausted], int]:
+    """Make the scenes of a request and write them; returns those that were not found, and how many an earlier run did not find.
 
     Args:
         scenario: the program.
@@ -135,22 +137,17 @@ def sample_into_sinks(
     grown = None if target is None else GrowingFile(target, resume=request.resume)
     to_terminal = "output" in names and sys.stdout.isatty()
     with ExitStack() as stack:
-        if target is not None:
-            stack.enter_context(lock_beside(target))
+        _lock_files(stack, request, place if names.keys() & {"lines", "files"} else None)
         seed, form, part_size = _as_before(request, folder)
         files, done = digest_of_files(file_digests(scenario)), 0
         if grown is not None and request.resume:
             compared = None if request.accept_changes else files
-            seed, done = continued(
-                grown,
-                scenario.digest,
-                seed,
-                request.first,
-                request.count,
-                points=request.points,
-                files=compared,
-            )
-        batch = _Batch(scenario, request, _announced(seed), deadline)
+            first, count, points = request.first, request.count, request.points
+            seed, done = continued(grown, scenario.digest, seed, first, count, points=points, files=compared)
+        chosen_seed = secrets.randbits(32) if seed is None else seed
+        if seed is None:
+            announce_seed(chosen_seed, "scenes")
+        batch = _Batch(scenario, request, chosen_seed, deadline)
         lines = SceneLines(
             (request.path.name, scenario.digest),
             changed=request.properties == "changed",
@@ -158,13 +155,16 @@ def sample_into_sinks(
             folder=Path.cwd() if target is None else target.parent,
             files=files,
         )
-        if grown is not None and done and not request.accept_changes:
-            check_remade(grown, lambda k: batch.line(k, lines))
+        if grown is not None and done:
+            batch.lost = done - len(grown.kept())
+            if not request.accept_changes:
+                check_remade(grown, files, lambda k: batch.line(k, lines))
         stack.enter_context(_kept_is_reported(grown, folder, request.count))
         takers = [stack.enter_context(sink) for sink in chosen]
         put = _to_output if grown is None else stack.enter_context(grown).write
-        batch.engine = stack.enter_context(engine_of(request.jobs, request.dask))
-        batch.advance = stack.enter_context(progress_bar(request.count, "sampling", shown=not to_terminal))
+        batch.advance, batch.engine = stack.enter_context(
+            batch_run(request.count, "sampling", jobs=request.jobs, dask=request.dask, shown=not to_terminal)
+        )
         batch.advance(done, 0)
         if folder is not None:
             _write_folder(batch, folder, form, part_size)
@@ -182,7 +182,17 @@ def sample_into_sinks(
         else:
             has_lines = bool(names.keys() & {"output", "lines"})
             _write_lines(batch, takers, lines if has_lines else None, put, done)
-    return batch.missing
+    return batch.missing, batch.lost
+
+
+def _lock_files(stack: ExitStack, request: SampleRequest, output: Path | None) -> None:
+    """Keep other commands from the files of a request, of which ``output`` is the one that ``-o`` names."""
+    for place in (output, request.view):
+        if place is not None:
+            stack.enter_context(locked(Path(place)))
+    if request.png is not None:
+        image = Path(request.png)
+        stack.enter_context(locked(image, is_folder=image.suffix.lower() != ".png"))
 
 
 def _as_before(request: SampleRequest, folder: Path | None) -> tuple[int | None, str, int]:
@@ -202,14 +212,6 @@ def _as_before(request: SampleRequest, folder: Path | None) -> tuple[int | None,
     return seed, form or default, part_size or (512 if request.cameras else 65536)
 
 
-def _announced(seed: int | None) -> int:
-    """The seed; one that is drawn is shown."""
-    if seed is None:
-        seed = secrets.randbits(32)
-        sys.stderr.write(f"seed {seed} (the same scenes again: --seed {seed})\n")
-    return seed
-
-
 def _write_folder(batch: _Batch, folder: Path, form: str, part_size: int) -> None:
     from scenic.batch.datasets import Resuming, Run, make_dataset
 
@@ -218,6 +220,8 @@ def _write_folder(batch: _Batch, folder: Path, form: str, part_size: int) -> Non
     resume = Resuming(request.verified, request.accept_changes) if request.resume else False
     finished = make_dataset(batch.scenario, folder, batch.manifest(form, part_size), run, resume=resume)
     batch.missing.extend(finished.missing)
+    lost = {k for part in finished.manifest.parts for k in part.missing}
+    batch.lost = len(lost.difference(item.k for item in finished.missing))
     if skipped := sum(part.skipped for part in finished.manifest.parts):
         sys.stderr.write(
             f"{skipped:,} images are not there: their camera's object does not take part in the scene\n"

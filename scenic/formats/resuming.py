@@ -64,15 +64,20 @@ def continued(
     return made[1], reached + 1 - first
 
 
-def check_remade(grown: GrowingFile, line_of: Callable[[int], bytes | None]) -> None:
+def check_remade(grown: GrowingFile, files: str, line_of: Callable[[int], bytes | None]) -> None:
     """Raise `ResumeError` if the first or the last kept scene is not what the run would write now.
 
-    ``line_of`` makes the line of a scene of a number, or ``None`` if it is not found.
+    Args:
+        grown: the file.
+        files: the digest of the files that decide the scenes now; lines of others are not compared.
+        line_of: makes the line of a scene of a number, or ``None`` if it is not found.
+
     """
     kept = grown.kept()
     for line in dict.fromkeys([*kept[:1], *kept[-1:]]):
-        number = int(json.loads(line)["k"])
-        if line_of(number) != line:
+        scene = json.loads(line)
+        number = int(scene["k"])
+        if scene.get("files", "") == files and line_of(number) != line:
             raise ResumeError(
                 f"scene {number} in '{grown.path}' is not the one that this run makes",
                 help="give the same options (--no-prune, --properties, --max-attempts) and the same versions as before, or sample to"

@@ -147,7 +147,13 @@ def test_options_that_do_not_go_with_resume_are_refused(folder: Path, option: st
 def test_settling_is_in_the_digest(folder: Path) -> None:
     pytest.importorskip("mujoco")
     scenarios = [
-        load(folder / "p.scenic", settle=settle, settle_tolerance=tolerance)
-        for settle, tolerance in ((None, 0.01), (0.1, 0.01), (0.2, 0.01), (0.1, 0.02))
+        load(folder / "p.scenic", settle=settle, settle_tolerance=tolerance, settle_keep=is_kept)
+        for settle, tolerance, is_kept in (
+            (None, 0.01, False),
+            (0.1, 0.01, False),
+            (0.2, 0.01, False),
+            (0.1, 0.02, False),
+            (0.1, 0.01, True),
+        )
     ]
-    assert len({item.digest for item in scenarios}) == 4
+    assert len({item.digest for item in scenarios}) == 5

@@ -358,7 +358,7 @@ def _counts(path: Path, count: int) -> Iterator[Take]:
 
 """,
             ),
-            ('".glb": _glb_files, ".obj"', '".count": _counts, '),
+            ('    ".glb": _glb_files,\n', '    ".count": _counts,\n'),
         ),
         "scenic/formats/counts.py": (
             (

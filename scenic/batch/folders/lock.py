@@ -11,18 +11,19 @@ import os
 import platform
 import time
 import weakref
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
 from typing import Final, Self
 
 from scenic.dataclass import dataclass
-from scenic.formats.files import OutputError
+from scenic.formats.files import OutputError, is_special, make_folder
 from scenic.language.errors import Located
 from scenic.runtime.ground.context import warn
 
-__all__ = ["LOCK", "BusyError", "Lock", "lock_beside"]
+__all__ = ["LOCK", "BusyError", "Lock", "lock_beside", "locked"]
 
 LOCK: Final = ".lock"
 """Name of the lock of a folder."""
@@ -47,6 +48,23 @@ def lock_beside(path: Path) -> "Lock":
     """The lock of a single file."""
     whole = path.resolve()
     return Lock(whole.with_name(f".{whole.name[:100]}.lock"), path)
+
+
+@contextmanager
+def locked(path: Path, *, is_folder: bool = False) -> Iterator[None]:
+    """Hold the lock of a place, which is made if it is a folder, within a ``with`` block; a device or a pipe has none."""
+    if is_special(path):
+        yield
+        return
+    if is_folder:
+        make_folder(path)
+    try:
+        with Lock(path / LOCK, path) if is_folder else lock_beside(path):
+            yield
+    finally:
+        if is_folder:
+            with suppress(OSError):  # it has content
+                path.rmdir()
 
 
 class Lock:

@@ -1,6 +1,7 @@
 """Folders and files that commands write: nothing is lost, mixed or written elsewhere with exit code 0."""
 
 import json
+import os
 import shutil
 import warnings
 from collections.abc import Callable
@@ -104,6 +105,18 @@ def test_merging_leaves_what_is_there(run: Run, tmp_path: Path) -> None:
         (f"sample p.scenic {JSONL} -n 5 -o busy/", "busy"),
         ("sample p.scenic --seed 1 -n 5 -o busy.jsonl", "busy.jsonl"),
         ("sample p.scenic --seed 1 -n 5 -o busy.parquet", "busy.parquet"),
+        ("sample p.scenic -o busy.glb", "busy.glb"),
+        ("sample p.scenic -n 2 -o busy.obj", "busy.obj"),
+        ("sample p.scenic --view busy.html", "busy.html"),
+        ("sample p.scenic --png busy.png", "busy.png"),
+        ("sample p.scenic --png busy", "busy"),
+        ("simulate moving.scenic --table busy.csv", "busy.csv"),
+        ("simulate moving.scenic --plot busy.svg", "busy.svg"),
+        ("simulate moving.scenic --view busy.html", "busy.html"),
+        (
+            "falsify p.scenic --static --minimize 1 --threshold 2 --sampler random -n 2 --report busy.html",
+            "busy.html",
+        ),
         ("simulate moving.scenic --seed 1 -o busy", "busy"),
         (
             "falsify p.scenic --static --minimize 1 --threshold 2 --sampler random -n 2 --seed 1 -o busy",
@@ -119,8 +132,11 @@ def test_a_second_writer_is_refused(run: Run, tmp_path: Path, line: str, target:
         path.mkdir()
         lock = Lock(path / LOCK, path)
     with lock:
+        before = sorted(tmp_path.rglob("*"))
         refused = run(line, 1)
-        assert f"error[SC615]: another command is writing '{target}'" in refused.stderr
+        holder = f"error[SC615]: another command is writing '{target}': process {os.getpid()} on "
+        assert holder in refused.stderr
+        assert sorted(tmp_path.rglob("*")) == before
     run(line)
 
 
@@ -156,6 +172,17 @@ def test_a_run_is_replayed_with_its_own_modules(run: Run, tmp_path: Path) -> Non
     assert "error[SC609]" in (refused := run("replay out", 1).stderr)
     assert "'pylib.py' has changed" in refused
     assert "differs: 'pylib.py' has changed" in run("replay out --accept-changes", 3).stdout
+
+
+def test_scenes_that_an_earlier_run_did_not_find_are_reported(run: Run, tmp_path: Path) -> None:
+    """A run that goes on ends as one that nothing has interrupted: with code 3 where scenes are missing."""
+    (tmp_path / "rare.scenic").write_text(
+        "def f(x): return x > 0.5\nego = new Object with foo Range(0, 1)\nrequire f(ego.foo)\n"
+    )
+    for target in ("s.jsonl", "set/ --format jsonl --part-size 5"):
+        sample = f"sample rare.scenic --seed 1 --max-attempts 1 -o {target}"
+        run(f"{sample} -n 9", 3)  # scene 8 is there, and four before it are not
+        assert "4 scenes were not found by the earlier run" in run(f"{sample} -n 9 --resume", 3).stderr
 
 
 def test_fewer_scenes_are_refused_with_both_remedies(run: Run, tmp_path: Path) -> None:
