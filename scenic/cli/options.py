@@ -45,6 +45,7 @@ __all__ = [
     "steps_option",
     "swept_program_options",
     "timestep_option",
+    "with_options",
 ]
 
 
@@ -320,30 +321,32 @@ extra_params_option = click.option(
 )
 
 
-def batch_options(things: str, *, count: int = 1) -> Callable[[_Command], _Command]:
-    """The program, and options that all commands share which make many ``things`` of it; ``count`` is the default of ``-n``."""
+def with_options(*options: Callable[[Any], Any]) -> Callable[[_Command], _Command]:
+    """A decorator that gives a command options, in the order of its help."""
 
     def add(command: _Command) -> _Command:
-        for option in (
-            accept_changes_option,
-            resume_option,
-            dask_option("Work"),
-            jobs_option("Number of processes. The results and their order are the same."),
-            seed_option(things.capitalize()),
-            count_option(f"Number of {things}.", default=count),
-            program_argument,
-        ):
+        for option in reversed(options):
             command = option(command)
         return command
 
     return add
 
 
-def course_options(command: _Command) -> _Command:
-    """Options of commands that simulate."""
-    for option in (timestep_option, steps_option, simulator_option):
-        command = option(command)
-    return command
+def batch_options(things: str, *, count: int = 1) -> Callable[[_Command], _Command]:
+    """The program, and options that all commands share which make many ``things`` of it; ``count`` is the default of ``-n``."""
+    return with_options(
+        program_argument,
+        count_option(f"Number of {things}.", default=count),
+        seed_option(things.capitalize()),
+        jobs_option("Number of processes. The results and their order are the same."),
+        dask_option("Work"),
+        resume_option,
+        accept_changes_option,
+    )
+
+
+course_options: Final = with_options(simulator_option, steps_option, timestep_option)
+"""Options of commands that simulate."""
 
 
 def program_options(command: _Command) -> _Command:

@@ -1,8 +1,8 @@
 """The options of ``scenic sample``, and the request that they make."""
 
 import math
-from collections.abc import Callable, Mapping
-from typing import Any, Final, TypeVar
+from collections.abc import Mapping
+from typing import Any, Final
 
 import click
 
@@ -18,13 +18,12 @@ from scenic.cli.options import (
     program_options,
     seconds,
     sobol_option,
+    with_options,
 )
 from scenic.cli.sample_parts import SINKS
 from scenic.dataclass import dataclass
 
 __all__ = ["SampleRequest", "sample_options"]
-
-_Command = TypeVar("_Command", bound=Callable[..., Any])
 
 _SECONDS: Final = 3.0
 """Length of the simulation of ``--settle keep``."""
@@ -51,7 +50,7 @@ def _settling(
 
 
 _WAYS: Final = (("", ""), ("keep", ":"), ("reject", ":"))
-_OPTIONS: Final[tuple[Callable[[Any], Any], ...]] = (
+sample_options: Final = with_options(
     batch_options("scenes"),
     first_option("Number of the first scene; -n scenes from there on."),
     click.option(
@@ -182,13 +181,6 @@ _OPTIONS: Final[tuple[Callable[[Any], Any], ...]] = (
         help="Show the time of sampling by operation, line and requirement, instead of the scenes.",
     ),
 )
-
-
-def sample_options(command: _Command) -> _Command:
-    """Give a command all options of ``scenic sample``, in the order of its help."""
-    for option in reversed(_OPTIONS):
-        command = option(command)
-    return command
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from scenic.cli.batch_parts import FileSink, places_of, write_files
 from scenic.cli.options import settings_of
 from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
 from scenic.cli.running import NOT_ALL, Advance, announce_seed, batch_run
-from scenic.cli.simulate import FORMS, SimulateRequest
+from scenic.cli.simulate_options import FORMS, SimulateRequest
 from scenic.cli.sinks import check_page
 from scenic.formats.course_page import course_page
 from scenic.formats.files import safe_name

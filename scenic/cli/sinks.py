@@ -8,9 +8,10 @@ from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Any
 
-from scenic.formats.files import check_folder, check_writable, is_special, numbered, write
+from scenic.formats.files import check_folder, check_writable, numbered, write
 from scenic.formats.scenes import Scene
 from scenic.language.errors import Located
+from scenic.runtime.ground.files import is_special
 
 Take = Callable[[Scene], object]
 Sink = AbstractContextManager[Take]

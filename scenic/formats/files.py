@@ -1,23 +1,16 @@
-"""Files that are complete or absent.
-
-A file is written under a temporary name in its own folder, flushed to the disk and only then given its name; on
-any error, Ctrl-C included, the temporary file is removed and what had the name before is untouched.
-"""
+"""Files that are complete or absent (`scenic.runtime.ground.files`), with errors that name the place, the cause and the remedy."""
 
 import contextlib
 import hashlib
 import os
 import re
-import secrets
 import stat
 from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO, Final
 
 from scenic.language.errors import Located
-
-_UNFINISHED: Final = re.compile(r"\..+\.[0-9a-f]{12}\.part")
-"""Temporary names of `writing`."""
+from scenic.runtime.ground.files import is_special, unnamed, whole
 
 
 class OutputError(Located):
@@ -32,15 +25,6 @@ def _refusal(path: Path, reason: str, help: str | None = None) -> OutputError:
 
 def _reason(error: OSError) -> str:
     return (error.strerror or str(error)).lower()
-
-
-def is_special(path: Path) -> bool:
-    """Return whether the path names a device or a pipe, which cannot be renamed."""
-    try:
-        mode = path.stat().st_mode
-    except OSError:
-        return False
-    return not stat.S_ISREG(mode) and not stat.S_ISDIR(mode)
 
 
 def check_writable(path: Path) -> None:
@@ -84,66 +68,20 @@ def make_folder(folder: Path) -> None:
 
 @contextlib.contextmanager
 def writing(path: Path) -> Iterator[BinaryIO]:
-    """A binary file that gets the name ``path`` when the block ends well and vanishes when it does not.
-
-    Links are followed, so a link keeps pointing where it did. Devices and pipes are written to directly. The
-    permissions are those of the file replaced, else the usual ones of a new file.
-
-    Raises ``OutputError`` if the file cannot be made or written.
-    """
-    if is_special(path):
-        try:
-            with path.open("wb") as device:
-                yield device
-        except BrokenPipeError:
-            raise
-        except OSError as error:
-            raise _refusal(path, _reason(error)) from error
-        return
-    target = path.resolve()
-    check_writable(target)
-    temporary = target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}.part")
-    try:
-        # The kernel applies the user's umask to these permissions.
-        descriptor = os.open(
-            temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666
-        )
-    except OSError as error:
-        raise _refusal(path, _reason(error)) from error
-    try:
-        try:
-            with os.fdopen(descriptor, "wb") as stream:
-                yield stream
-                stream.flush()
-                with contextlib.suppress(FileNotFoundError):
-                    os.chmod(temporary, stat.S_IMODE(target.stat().st_mode))
-                os.fsync(stream.fileno())
-            os.replace(temporary, target)
-        except OSError as error:
-            raise _refusal(path, _reason(error)) from error
-        _flush_folder(target.parent)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(temporary)
-        raise
-
-
-def discard_unfinished(folder: Path) -> None:
-    """Remove the files that `writing` leaves in a folder if its process is killed; no other process may write there."""
-    for path in folder.glob(".*.part"):
-        if _UNFINISHED.fullmatch(path.name):
-            path.unlink(missing_ok=True)
+    """The file of `whole`; raises ``OutputError`` if it cannot be made or written, at once where that can be known."""
+    if not is_special(path):
+        check_writable(path.resolve())
+    with refusing(path), whole(path) as stream:
+        yield stream
 
 
 class Waiting:
     """A file without a name in the folder of ``path``, to become the file of that name; raises ``OutputError``."""
 
     def __init__(self, path: Path) -> None:
-        import tempfile  # slow to import
-
         self._path = path
         with refusing(path):
-            self.stream: BinaryIO = tempfile.TemporaryFile(dir=path.resolve().parent)  # noqa: SIM115 - `close` does
+            self.stream = unnamed(path)
 
     def write(self, content: bytes) -> None:
         """Append to it."""
@@ -169,6 +107,8 @@ def refusing(path: Path) -> Iterator[None]:
     """Errors of the system within this become an ``OutputError`` of the file ``path``."""
     try:
         yield
+    except BrokenPipeError:
+        raise
     except OSError as error:
         raise _refusal(path, _reason(error)) from error
 
@@ -177,16 +117,6 @@ def write(path: Path, content: bytes) -> None:
     """Write a whole file, or none; raises ``OutputError``."""
     with writing(path) as stream:
         stream.write(content)
-
-
-def _flush_folder(folder: Path) -> None:
-    """Make the new name itself last, on systems that can."""
-    with contextlib.suppress(OSError):
-        descriptor = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)
 
 
 def numbered(path: Path, k: int, count: int) -> Path:

@@ -11,7 +11,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, BinaryIO, Self
 
-from scenic.formats.files import OutputError, check_writable, is_special
+from scenic.formats.files import OutputError, check_writable
+from scenic.runtime.ground.files import is_special
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer

@@ -12,8 +12,9 @@ from typing import Any, Final, Self
 
 from scenic.batch.folders.lock import LOCK, Lock
 from scenic.dataclass import dataclass
-from scenic.formats.files import discard_unfinished, make_folder, write
+from scenic.formats.files import make_folder, write
 from scenic.language.errors import Located
+from scenic.runtime.ground.files import discard_unfinished
 
 __all__ = ["NAME", "FolderKind", "WrittenFolder", "changes_of", "check_files"]
 

@@ -19,9 +19,10 @@ from pathlib import Path
 from typing import Final, Self
 
 from scenic.dataclass import dataclass
-from scenic.formats.files import OutputError, is_special, make_folder
+from scenic.formats.files import OutputError, make_folder
 from scenic.language.errors import Located
 from scenic.runtime.ground.context import warn
+from scenic.runtime.ground.files import is_special
 
 __all__ = ["LOCK", "BusyError", "Lock", "lock_beside", "locked"]
 

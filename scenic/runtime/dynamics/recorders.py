@@ -194,7 +194,8 @@ def _image(stream: BinaryIO, value: object, **options: Any) -> None:
 
 
 def _image_format(stream: BinaryIO) -> str:
-    return {"jpg": "JPEG"}.get(suffix := Path(str(stream.name)).suffix[1:].lower(), suffix.upper())
+    suffix = Path(str(stream.name).removesuffix(".part")).suffix[1:].lower()
+    return {"jpg": "JPEG"}.get(suffix, suffix.upper())
 
 
 def _json(stream: BinaryIO, value: object) -> None:

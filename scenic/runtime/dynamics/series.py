@@ -179,7 +179,7 @@ class Film:
         assert self._first is not None
         _, first = self._first
         height, width = first.shape[:2]
-        self._file = named(self._path)
+        self._file = named(self._path, self._path.suffix)
         fps = self._fps or 1 / (self._timestep * steps)
         self._writer = imageio_ffmpeg.write_frames(
             str(self._file), (width, height), fps=fps, macro_block_size=1
