@@ -8,7 +8,7 @@ import sys
 from collections.abc import Mapping
 from importlib import import_module
 from types import MappingProxyType, ModuleType
-from typing import Any, Final, NoReturn
+from typing import Any, Final
 
 from scenic.language.names import NAMES, SENSORS, NameKind
 from scenic.language.operators import OPERATORS
@@ -32,9 +32,6 @@ _PROPOSITIONS: Final = "scenic.runtime.temporal.propositions"
 _SENSORS: Final = "scenic.runtime.elements.sensors"
 _LAZY: Final = "scenic.runtime.values.lazy"
 _EXTERNAL: Final = "scenic.runtime.elements.external_parameters"
-_INSIDE: Final = "the inside"
-"""Home of names of what is within the established implementation, and has no counterpart here."""
-
 
 _STATEMENTS: Final = "With ego globalParameters in_initial_scenario isActive localPath mutate new param simulationInProgress workspace"
 """Statements, and what asks for the state of a program, as functions."""
@@ -73,15 +70,6 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             (_VALUES, "Samplable=Random"),
             (_ESTABLISHED, "needsSampling toDistribution"),
             (_FUNCTIONS, "monotonicDistributionFunction=distributionFunction"),
-            (
-                _INSIDE,
-                (
-                    "AttributeDistribution ConstantSamplable FunctionDistribution MethodDistribution MultiplexerDistribution"
-                    " OperatorDistribution SliceDistribution StarredDistribution TupleDistribution UniformDistribution"
-                    " addSupports canUnpackDistributions makeOperatorHandler supmax supmin underlyingFunction unionOfSupports"
-                    " unpacksDistributions"
-                ),
-            ),
         ),
         "scenic.core.dynamics": _homes(
             ("scenic.simulators.actions", "Action"),
@@ -113,13 +101,6 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
                 ),
             ),
             (_ESTABLISHED, "setDebuggingOptions"),
-            (
-                _INSIDE,
-                (
-                    "callBeginningScenicTrace displayScenicException excepthook getText includeFrame optionallyDebugRejection"
-                    " saveErrorLocation"
-                ),
-            ),
         ),
         "scenic.core.external_params": _homes(
             (_LANGUAGE, _language(NameKind.DISTRIBUTION, external=True)),
@@ -136,51 +117,16 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
                     " triangulatePolygon plotPolygon"
                 ),
             ),
-            (
-                _INSIDE,
-                (
-                    "TriangulationError allChains cleanChain cleanPolygon splitSelfIntersections"
-                    " triangulatePolygon_mapbox"
-                ),
-            ),
         ),
         "scenic.core.lazy_eval": _homes(
             (_ESTABLISHED, "DelayedArgument valueInContext needsLazyEvaluation needsSampling"),
             (_LAZY, "isLazy=is_lazy requiredProperties=reads_of LazilyEvaluable=Lazy"),
             (_ESTABLISHED, "makeDelayedFunctionCall"),
-            (_INSIDE, "dependencies makeDelayedOperatorHandler toLazyValue"),
         ),
         "scenic.core.object_types": _homes(
             (_LANGUAGE, "Point OrientedPoint Object Mutator"),
             (_MUTATORS, "PositionMutator OrientationMutator"),
             (_OBJECTS, "Constructible=Point Point2D=Point OrientedPoint2D=OrientedPoint Object2D=Object"),
-            (
-                _INSIDE,
-                (
-                    "defaultSideSurface disableDynamicProxyFor enableDynamicProxyFor precomputed_property"
-                    " setDynamicProxyFor"
-                ),
-            ),
-        ),
-        "scenic.core.propositions": _homes(
-            (
-                _INSIDE,
-                (
-                    "Always And Atomic Eventually Implies Next Not Or PropositionMonitor PropositionNode UnaryProposition"
-                    " Until"
-                ),
-            ),
-        ),
-        "scenic.core.pruning": _homes(
-            (
-                _INSIDE,
-                (
-                    "checkConditionedCycle conditionedDeps conditionedVal currentPropValue feasibleRHPolygon"
-                    " isFunctionCall isMethodCall matchInRegion matchPolygonalField maxDistanceBetween percentagePruned"
-                    " prune pruneContainment pruneRelativeHeading pruneVisibility relativeHeadingRange unpackWorkspace"
-                    " visibilityBound"
-                ),
-            ),
         ),
         "scenic.core.regions": _homes(
             (
@@ -196,24 +142,6 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             ("scenic.runtime.regions.meshes", "MeshRegion"),
             (_ERRORS, "UndefinedSamplingException"),
             (_ESTABLISHED, "regionFromShapelyObject convertToFootprint toPolygon"),
-            (
-                _INSIDE,
-                (
-                    "CylinderSectionRegion PointInRegionDistribution SurfaceCollisionTrimesh ViewSectionRegion"
-                    " orientationFor"
-                ),
-            ),
-        ),
-        "scenic.core.requirements": _homes(
-            (
-                _INSIDE,
-                (
-                    "BlanketCollisionRequirement BoundRequirement CompiledRequirement ContainmentRequirement"
-                    " DynamicMonitorRequirement DynamicRequirement IntersectionRequirement MonitorRequirement"
-                    " NonVisibilityRequirement PendingRequirement RequirementType SamplingRequirement"
-                    " VisibilityRequirement getNameBindings"
-                ),
-            ),
         ),
         "scenic.core.sample_checking": _homes(
             (_ESTABLISHED, "SampleChecker BasicChecker WeightedAcceptanceChecker")
@@ -229,24 +157,10 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             (_SENSORS, "Sensor"),
             *((each.home.partition(":")[0], name) for name, each in SENSORS.items() if each.home is not None),
             (_RECORDERS, "Recorder File Files"),
-            (
-                _INSIDE,
-                (
-                    "AccumulatingRecorder RecordingConfiguration fileHandler npyHandler npzHandler pickleHandler pilHandler"
-                    " prepareImageData videoHandler"
-                ),
-            ),
         ),
         "scenic.core.serialization": _homes(
             (_ERRORS, "SerializationError"),
             (_ESTABLISHED, "dumpAsScenicCode scenicToJSON"),
-            (
-                _INSIDE,
-                (
-                    "Serializer deterministicHash readBool readBytes readFloat readInt readStr writeBool writeBytes writeFloat"
-                    " writeInt writeStr"
-                ),
-            ),
         ),
         "scenic.core.simulators": _homes(
             ("scenic.simulators.simulator", "Simulator"),
@@ -258,11 +172,9 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             ("scenic.simulators.actions", "Action"),
             (_ERRORS, "SimulationCreationError DivergenceError GuardViolation RejectSimulationException"),
             (_ESTABLISHED, "SimulatorInterfaceWarning"),
-            (_INSIDE, "ReplayMode"),
         ),
         "scenic.core.specifiers": _homes(
             ("scenic.runtime.elements.specifiers", "Specifier"),
-            (_INSIDE, "ModifyingSpecifier PropertyDefault"),
         ),
         "scenic.core.type_support": _homes(
             (
@@ -273,20 +185,12 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
                 ),
             ),
             (_ERRORS, "CoercionFailure=ScenicTypeError"),
-            (
-                _INSIDE,
-                (
-                    "TypeChecker TypeEqualityChecker TypecheckedDistribution coerceToFloat coerceToHeading"
-                    " evaluateRequiringEqualTypes is_typing_generic unifierOfTypes unifyingType"
-                ),
-            ),
         ),
         "scenic.core.utils": _homes(
             (
                 _ESTABLISHED,
                 "cached cached_method cached_property argsToString batched repairMesh=proper_mesh unifyMesh=united_mesh",
             ),
-            (_INSIDE, "DefaultIdentityDict alarm findMeshInteriorPoint"),
         ),
         "scenic.core.vectors": _homes(
             (_LANGUAGE, "Vector Orientation VectorField PolygonalVectorField"),
@@ -294,41 +198,11 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
             (_ESTABLISHED, "alwaysGlobalOrientation globalOrientation"),
             ("scenic.runtime.values.random_values", "VectorDistribution=RandomVector"),
             ("scenic.runtime.values.definite", "OrientedVector"),
-            (
-                _INSIDE,
-                (
-                    "VectorMethodDistribution VectorOperatorDistribution makeVectorOperatorHandler scalarOperator"
-                    " vectorDistributionMethod vectorOperator zeroIdentityVectorOperator zeroPreservingVectorOperator"
-                ),
-            ),
-        ),
-        "scenic.core.visibility": _homes(
-            (
-                _INSIDE,
-                ("canSee"),
-            ),
         ),
         "scenic.core.workspaces": _homes((_LANGUAGE, "Workspace")),
-        "scenic.syntax.relations": _homes(
-            (
-                _INSIDE,
-                (
-                    "BoundRelation DistanceRelation RelativeHeadingRelation RequirementMatcher inferDistanceRelations"
-                    " inferRelationsFrom inferRelativeHeadingRelations"
-                ),
-            ),
-        ),
         "scenic.syntax.translator": _homes(
             ("scenic.pipeline", "scenarioFromFile scenarioFromString"),
             (_ERRORS, "InvalidScenarioError ScenicSyntaxError"),
-            (
-                _INSIDE,
-                (
-                    "CompileOptions ScenicFileFinder ScenicLoader ScenicModule astToSource compileStream compileTranslatedTree"
-                    " constructScenarioFrom dump executeCodeIn gatherBehaviorNamespacesFrom purgeModulesUnsafeToCache"
-                    " scenic_path_hook storeScenarioStateIn topLevelNamespace"
-                ),
-            ),
         ),
         "scenic.syntax.veneer": _homes(
             (_ERRORS, "InvalidScenarioError"),
@@ -338,18 +212,6 @@ MODULES: Final[Mapping[str, Mapping[str, str]]] = MappingProxyType(
                 "Always AtomicProposition Eventually Implies Next PropositionAnd PropositionNot PropositionOr Until",
             ),
             (_VENEER, f"{_functions()} {_STATEMENTS}"),
-            (
-                _INSIDE,
-                (
-                    "ParameterTableProxy activate alwaysProvidesOrientation beginSimulation callWithStarArgs deactivate"
-                    " directionalSpecHelper endScenario endSimulation executeInBehavior executeInGuard executeInRequirement"
-                    " executeInScenario finishScenarioSetup instantiateSimulator makeRequirement model override prepareScenario"
-                    " projectVectorHelper record record_final record_initial registerDynamicScenarioClass"
-                    " registerExternalParameter registerInstance registerObject require require_always require_eventually"
-                    " require_monitor simulator startScenario terminate_after terminate_simulation_when terminate_when"
-                    " wrapStarredValue"
-                ),
-            ),
         ),
     }
 )
@@ -379,9 +241,9 @@ def lookup(module: str, name: str) -> Any:
     """The object of a name of an established module; raises ``AttributeError`` for unknown ones."""
     home, ours = _homes_by_name(module).get(name) or _home_elsewhere(name)
     if home is None:
-        raise AttributeError(f"module {module!r} has no attribute {name!r}")
-    if home == _INSIDE:
-        return _Inside(f"{module}.{name}")
+        raise AttributeError(
+            f"module {module!r} has no attribute {name!r}; docs/howto/moving.md says what of the established API is here"
+        )
     if home == _LANGUAGE:
         return _provided()[ours]
     return getattr(import_module(home), ours)
@@ -392,34 +254,7 @@ def _home_elsewhere(name: str) -> tuple[str | None, str]:
     if name in _provided():
         return _LANGUAGE, name
     homes = (_homes_by_name(module).get(name) for module in MODULES)
-    return next((home for home in homes if home is not None and home[0] != _INSIDE), (None, name))
-
-
-class _Inside:
-    """A name of the established implementation that has no counterpart here: it can be imported, but not used."""
-
-    def __init__(self, name: str) -> None:
-        self.__name = name
-
-    def __refuse(self) -> NoReturn:
-        raise import_module(_ERRORS).UnsupportedError(
-            f"`{self.__name}` belongs to the inside of the established implementation and is not supported",
-            help="docs/howto/moving.md says what of the Python API is here",
-        )
-
-    def __call__(self, *_args: Any, **_keywords: Any) -> NoReturn:
-        self.__refuse()
-
-    def __getattr__(self, attribute: str) -> NoReturn:
-        if attribute.startswith("__"):
-            raise AttributeError(attribute)
-        self.__refuse()
-
-    def __mro_entries__(self, _bases: Any) -> NoReturn:
-        self.__refuse()
-
-    def __instancecheck__(self, _instance: Any) -> bool:
-        return False
+    return next((home for home in homes if home is not None), (None, name))
 
 
 class _Established(ModuleType):
@@ -427,7 +262,7 @@ class _Established(ModuleType):
 
     def __getattr__(self, name: str) -> Any:
         if name == "__all__":
-            return sorted(key for key, home in _homes_by_name(self.__name__).items() if home[0] != _INSIDE)
+            return sorted(_homes_by_name(self.__name__))
         if name.startswith("__"):
             raise AttributeError(name)
         return lookup(self.__name__, name)

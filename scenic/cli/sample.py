@@ -63,7 +63,9 @@ def sample(**options: Any) -> int:
     if scenario.approximation is not None:
         sys.stderr.write(f"{scenario.approximation}\n")
     if lost:
-        sys.stderr.write(f"{lost:,} scenes were not found by the earlier run, and are not looked for again\n")
+        sys.stderr.write(
+            f"scenes that the earlier run did not find, and that are not looked for again: {lost:,}\n"
+        )
     if not missing:
         return NOT_ALL if lost else CLEAN
     from rich.console import Console

@@ -182,7 +182,9 @@ def test_scenes_that_an_earlier_run_did_not_find_are_reported(run: Run, tmp_path
     for target in ("s.jsonl", "set/ --format jsonl --part-size 5"):
         sample = f"sample rare.scenic --seed 1 --max-attempts 1 -o {target}"
         run(f"{sample} -n 9", 3)  # scene 8 is there, and four before it are not
-        assert "4 scenes were not found by the earlier run" in run(f"{sample} -n 9 --resume", 3).stderr
+        assert (
+            "did not find, and that are not looked for again: 4" in run(f"{sample} -n 9 --resume", 3).stderr
+        )
 
 
 def test_fewer_scenes_are_refused_with_both_remedies(run: Run, tmp_path: Path) -> None:
