@@ -41,13 +41,11 @@ if TYPE_CHECKING:
         ScenicWarning,
         SpecifierError,
     )
-    from scenic.pipeline import analyze, load, scenarioFromFile, scenarioFromString
+    from scenic.pipeline import Scenario, Scene, analyze, load, scenarioFromFile, scenarioFromString
     from scenic.runtime.elements.sensors import *  # noqa: F403  (declared in `scenic.language.names`)
     from scenic.runtime.elements.specifiers import specifier
     from scenic.runtime.python.bounded import bounded
     from scenic.runtime.scenes.established_api import setDebuggingOptions, setSeed
-    from scenic.runtime.scenes.scenario import Scenario
-    from scenic.runtime.scenes.scene import Scene
     from scenic.simulators.replays import Conditioned
 
 _HOMES = MappingProxyType(
@@ -74,8 +72,8 @@ _HOMES = MappingProxyType(
         "read_trajectory": "scenic.formats.trajectory_reading",
         "scenarioFromFile": "scenic.pipeline",
         "scenarioFromString": "scenic.pipeline",
-        "Scenario": "scenic.runtime.scenes.scenario",
-        "Scene": "scenic.runtime.scenes.scene",
+        "Scenario": "scenic.pipeline",
+        "Scene": "scenic.pipeline",
         "setDebuggingOptions": "scenic.runtime.scenes.established_api",
         "setSeed": "scenic.runtime.scenes.established_api",
         "specifier": "scenic.runtime.elements.specifiers",

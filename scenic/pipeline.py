@@ -36,10 +36,9 @@ from scenic.runtime.python.random_state import preserved, seed_globals
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Everywhere, Nowhere, Workspace, everywhere
 from scenic.runtime.sampling.planning import Outline, outline
+from scenic.runtime.scenes import scenario as scenarios
+from scenic.runtime.scenes import scene as scenes
 from scenic.runtime.scenes.saving import program_digest
-from scenic.runtime.scenes.scenario import Scenario
-from scenic.runtime.scenes.scene import Scene
-from scenic.runtime.scenes.services import Services
 from scenic.runtime.values.values import is_random
 
 if TYPE_CHECKING:
@@ -49,6 +48,77 @@ if TYPE_CHECKING:
 
 PROGRAM_SEED = 0
 """Seed of Python's and NumPy's global generators while a program runs, so that it builds the same graph each time."""
+
+
+class Scene(scenes.Scene):
+    __doc__ = scenes.Scene.__doc__
+
+    def show(self, axes: bool = True) -> Path:
+        """Show the scene in a browser, as a page in which it can be turned; returns the file of the page.
+
+        ``axes`` is accepted for compatibility.
+        """
+        import tempfile
+        import webbrowser
+
+        from scenic.formats.html import page
+
+        file = Path(tempfile.mkdtemp(prefix="scenic-")) / "scene.html"
+        file.write_text(page([self], "scene"), encoding="utf-8")
+        webbrowser.open(file.as_uri())
+        return file
+
+    show3D = show
+
+    def show2D(self, zoom: object = None, block: bool = True) -> Path:
+        """The same as `show`; the arguments are accepted for compatibility."""
+        return self.show()
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> Mapping[str, str]:
+        """The scene by type of media, as notebooks ask for it: a page in which it can be turned, and text."""
+        from scenic.formats.embedding import scene_bundle
+
+        return scene_bundle(self)
+
+    def save(self, path: str | Path) -> None:
+        """Write the scene to a file, which `Scenario.replay` reads; the file is complete or absent.
+
+        If its name ends in ``.usda``, ``.usdc``, ``.usdz`` (OpenUSD), ``.xml`` (MJCF), ``.sdf`` (SDFormat), ``.cr.xml`` (CommonRoad) or
+        ``.wbt`` (Webots), the file is a scene of another program instead, which `replay` does not read.
+        """
+        if not _export(self, Path(path)):
+            super().save(path)
+
+
+class Scenario(scenarios.Scenario):
+    __doc__ = scenarios.Scenario.__doc__
+    scene_class = Scene
+
+    def simulate(self, n: int = 1, **options: Any) -> "list[SimulationRow]":
+        """Simulate scenes 0 to ``n`` of a seed; see `scenic.batch.simulations.simulated` for the options and the result."""
+        from scenic.batch.simulations import simulated
+
+        return simulated(self, n, **options)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _scenario, (self.text, self.filename, _Options.of(self.options))
+
+    def _in_processes(self, n: int, **options: Any) -> "Iterator[scenes.Scene]":
+        from scenic.batch.scenes import sampled_in_processes
+
+        return sampled_in_processes(self, n, **options)
+
+    def _external_points(self) -> "ExternalPoints":
+        from scenic.falsification.external import external_points
+
+        return external_points(self)
+
+    def _compiled_again(
+        self, params: Mapping[str, Any], settle: tuple[float, float, bool] | None = None
+    ) -> "Scenario":
+        options = _Options.of(self.options)
+        changed = replace(options, params={**options.params, **params}, settle=settle or options.settle)
+        return _scenario(self.text, self.filename, changed)
 
 
 def load(
@@ -235,11 +305,15 @@ class _Options:
             given["settle"], given["settle_tolerance"], given["settle_keep"] = self.settle
         return given
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        values = (
-            dict(self.params), self.model, self.scenario, self.mode_2d, self.prune, self.strict_params, self.settle,
+    @classmethod
+    def of(cls, given: Mapping[str, Any]) -> "_Options":
+        """The options of keyword arguments, as `given` lists them."""
+        settle = given.get("settle")
+        return cls(
+            given.get("params", {}), given.get("model"), given.get("scenario"), given.get("mode2D", False),
+            given.get("prune", True), not given.get("extra_params", False),
+            None if settle is None else (settle, given["settle_tolerance"], given["settle_keep"]),
         )  # fmt: skip
-        return _Options, values
 
 
 @dataclass(frozen=True, slots=True)
@@ -268,18 +342,7 @@ def _scenario(text: str, filename: str, options: _Options) -> Scenario:
         regions=ran.regions,
         sampler=prepared_sampler(ran.outline, prune=options.prune),
         digest=cache(partial(options.digest, text)),
-        services=Services(
-            show_page,
-            _bundle,
-            _export,
-            (_scenario, (text, filename, options)),
-            options.given(),
-            _sample,
-            _simulate,
-            _external_points,
-            lambda given: _scenario(text, filename, replace(options, params={**options.params, **given})),
-            lambda settle: _scenario(text, filename, replace(options, settle=settle)),
-        ),
+        options=options.given(),
     )
     promote_young()
     return scenario
@@ -343,30 +406,6 @@ def _outlined(program: Program, workspace: Workspace, options: _Options) -> Outl
     return keep_poses(program, outlined, settled) if keep else outlined
 
 
-def _sample(scenario: Scenario, n: int, **options: Any) -> Iterator[Scene]:
-    from scenic.batch.scenes import sampled_in_processes
-
-    return sampled_in_processes(scenario, n, **options)
-
-
-def _simulate(scenario: Scenario, n: int, **options: Any) -> "list[SimulationRow]":
-    from scenic.batch.simulations import simulated
-
-    return simulated(scenario, n, **options)
-
-
-def _external_points(scenario: Scenario) -> "ExternalPoints":
-    from scenic.falsification.external import external_points
-
-    return external_points(scenario)
-
-
-def _bundle(scene: Scene) -> Mapping[str, str]:
-    from scenic.formats.embedding import scene_bundle
-
-    return scene_bundle(scene)
-
-
 def _export(scene: Scene, path: Path) -> bool:
     """Write a scene for another program by the ending of the file's name; returns whether that is such an ending."""
     suffix = path.suffix.lower()
@@ -386,19 +425,6 @@ def _export(scene: Scene, path: Path) -> bool:
         write_scene(scene, path)
         return True
     return False
-
-
-def show_page(scene: Any) -> Path:
-    """Write a page that shows a scene to a temporary file, open it in a browser, and return the file."""
-    import tempfile
-    import webbrowser
-
-    from scenic.formats.html import page
-
-    file = Path(tempfile.mkdtemp(prefix="scenic-")) / "scene.html"
-    file.write_text(page([scene], "scene"), encoding="utf-8")
-    webbrowser.open(file.as_uri())
-    return file
 
 
 def _run_chosen(module: ModuleType, state: Module, chosen: str | None) -> ModularScenario | None:

@@ -4,7 +4,7 @@ import math
 import random
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,21 +17,21 @@ from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Workspace
 from scenic.runtime.sampling.engine import Accepted, CandidateError
 from scenic.runtime.sampling.report import Exhausted
-from scenic.runtime.scenes.external_candidates import ExternalCandidates
+from scenic.runtime.scenes.external_candidates import ExternalCandidates, ExternalPoints
 from scenic.runtime.scenes.prefetching import SEED_BITS, Foreseen
 from scenic.runtime.scenes.restoring import Restoring
 from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS
 from scenic.runtime.scenes.scene import Scene
-from scenic.runtime.scenes.services import Services
 
 __all__ = ["Generating"]
+
+_BY_HAND: Final = "a scenario that was made by hand cannot be compiled again"
 
 
 class Generating(Restoring, ABC):
     """Base of scenarios: `generate` and its kind, in terms of `sample`, `stream` and `chosen`."""
 
     workspace: Workspace
-    _services: Services
     _foreseen: Foreseen
     _external_candidates: ExternalCandidates | None
 
@@ -62,6 +62,24 @@ class Generating(Restoring, ABC):
         self, numbers: Mapping[int, NDArray[np.float64]], count: int, *, seed: int, first: int = 0
     ) -> Iterator[Scene | Exhausted]:
         """Scenes in which some draws are given."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A scenario is pickled as its program, which is compiled again when it is unpickled."""
+        raise TypeError(_BY_HAND)
+
+    def _in_processes(self, n: int, **options: Any) -> Iterator[Scene]:
+        """Scenes that other processes make, which compile the program for themselves."""
+        raise TypeError(_BY_HAND)
+
+    def _external_points(self) -> ExternalPoints:
+        """The points of the external parameters, by the sampler that the program names."""
+        raise TypeError(_BY_HAND)
+
+    def _compiled_again(
+        self, params: Mapping[str, Any], settle: tuple[float, float, bool] | None = None
+    ) -> Any:
+        """The scenario of the same program with other values of parameters, or with settled objects."""
+        raise TypeError(_BY_HAND)
 
     @abstractmethod
     def _first_candidates(
@@ -97,7 +115,7 @@ class Generating(Restoring, ABC):
             RejectionException: if none of ``maxIterations`` candidates meets the requirements.
 
         """
-        if seed is None and self.externals and self._services.external_points is not None:
+        if seed is None and self.externals:
             return self._generate_chosen(maxIterations, feedback)
         if seed is None:
             result = self._foreseen.take(random.getrandbits(SEED_BITS), maxIterations)
@@ -109,10 +127,9 @@ class Generating(Restoring, ABC):
 
     def _generate_chosen(self, most: int, feedback: object) -> tuple[Scene, int]:
         """One scene whose external parameters their sampler chooses."""
-        assert self._services.external_points is not None
         if self._external_candidates is None:
             self._external_candidates = ExternalCandidates(
-                self._services.external_points(self), self._first_candidates, self._lanes_for
+                self._external_points(), self._first_candidates, self._lanes_for
             )
         result, tried = self._external_candidates.take(random.getrandbits(SEED_BITS), most, feedback)
         if result is None:
@@ -220,9 +237,9 @@ class Generating(Restoring, ABC):
         first = 0
         while first < count:
             size = int(min(block, count - first))
-            if workers > 0 and self._services.sample is not None:
-                found: Iterable[Scene | Exhausted] = self._services.sample(
-                    self, size, seed=seed, first=first, processes=workers
+            if workers > 0:
+                found: Iterable[Scene | Exhausted] = self._in_processes(
+                    size, seed=seed, first=first, processes=workers
                 )
             else:
                 found = self.stream(size, seed=seed, first=first, max_attempts=limit)

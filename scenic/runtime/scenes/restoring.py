@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import ClassVar
 
 from scenic.graph.batch import Batch
 from scenic.language.errors import SerializationError
@@ -23,6 +24,8 @@ class Restoring:
     _program: Program
     _sampler: Sampler
     _family: Family
+    scene_class: ClassVar[type[Scene]] = Scene
+    """The class of its scenes."""
 
     def sceneToBytes(self, scene: Scene, allowPickle: bool = False) -> bytes:
         """A scene as data, which `sceneFromBytes` reads. ``allowPickle`` is accepted for compatibility."""
@@ -55,7 +58,7 @@ class Restoring:
         source = source_of(saved, self.outline.graph)
         with self._program.undisturbed():
             accepted = self._sampler.engine.replay(source, saved.task, saved.attempts, kind)
-        return Scene(*accepted, self._family)
+        return self.scene_class(*accepted, self._family)
 
     def replay(self, path: str | Path) -> Scene:
         """The scene that `Scene.save` has written; raises `SerializationError` as `sceneFromBytes` does."""

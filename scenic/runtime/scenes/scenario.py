@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import chain, repeat
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import numpy as np
@@ -46,7 +47,6 @@ from scenic.runtime.scenes.prefetching import SEED_BITS, Foreseen
 from scenic.runtime.scenes.sampler import Sampler
 from scenic.runtime.scenes.saving import draws_of
 from scenic.runtime.scenes.scene import Family, Scene
-from scenic.runtime.scenes.services import Services
 from scenic.runtime.temporal.formulas import is_temporal
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ class Scenario(Generating):
         regions: Mapping[str, Region],
         sampler: Sampler,
         digest: Callable[[], str] = str,
-        services: Services | None = None,
+        options: Mapping[str, Any] = MappingProxyType({}),
     ) -> None:
         self.filename = filename
         self.text = text
@@ -108,7 +108,8 @@ class Scenario(Generating):
         self.egoObject = ego
         self.outline: Outline = outline
         self._program = program
-        self._services = services or Services()
+        self.options = options
+        """The keyword arguments of `scenic.load` with which the program was compiled."""
         # A region that nothing in the scenes depends on is not drawn, and has no value there.
         self._regions = {
             name: region
@@ -134,16 +135,13 @@ class Scenario(Generating):
             self.sceneToBytes,
             ValueLayout(outline.outputs),
             self,
-            self._services.view,
-            self._services.bundle,
-            self._services.export,
             self._regions,
         )
         self._unconditioned = {name: value for name, value in vars(self).items() if name not in _KEPT}
 
     def within(self, domain: Domain) -> "Scenario":
         """The same scenario, sampled from another part of the cube, which must contain all points that meet the requirements."""
-        return Scenario(
+        return type(self)(
             self._program,
             self.outline,
             filename=self.filename,
@@ -154,7 +152,7 @@ class Scenario(Generating):
             regions=self._regions,
             sampler=Sampler(self.outline, domain),
             digest=self._digest,
-            services=self._services,
+            options=self.options,
         )
 
     @property
@@ -345,7 +343,7 @@ class Scenario(Generating):
                     yield result
                 else:
                     found, lane = result
-                    yield Scene(found, lane, family)
+                    yield self.scene_class(found, lane, family)
         except CandidateError as error:
             failure = error
         self._raise(failure)
@@ -362,7 +360,7 @@ class Scenario(Generating):
     def _scene_of(self, result: Accepted | CandidateError) -> Scene:
         if isinstance(result, CandidateError):
             self._raise(result)
-        return Scene(*result, self._family)
+        return self.scene_class(*result, self._family)
 
     def _raise(self, failure: CandidateError) -> NoReturn:
         problem = self._sampling_error(failure)
@@ -412,8 +410,8 @@ class Scenario(Generating):
             "source": source,
             "executor": executor,
         }
-        if settle is not None and self._services.settled is not None:
-            other: Scenario = self._services.settled((settle, 0.01, settle_keep))
+        if settle is not None:
+            other: Scenario = self._compiled_again({}, settle=(settle, 0.01, settle_keep))
             return other.sample(
                 n, seed=seed, lanes=lanes, approximate=approximate, processes=processes, **limits
             )
@@ -423,8 +421,8 @@ class Scenario(Generating):
         check_limits(max_attempts, time_limit, lanes)
         if approximate is not None and (processes > 1 or executor is not None):
             raise ValueError("approximate scenes are made together, in one process")
-        if (processes > 1 or executor is not None) and self._services.sample is not None:
-            return list(self._services.sample(self, n, seed=chosen, processes=processes, **limits))
+        if processes > 1 or executor is not None:
+            return list(self._in_processes(n, seed=chosen, processes=processes, **limits))
         scenes = []
         for result in self.stream(
             n,
@@ -473,14 +471,9 @@ class Scenario(Generating):
         raise self._sampling_error(failure) from failure.__cause__
 
     @property
-    def options(self) -> Mapping[str, Any]:
-        """The keyword arguments of `scenic.load` with which the program was compiled."""
-        return self._services.options
-
-    @property
     def origin(self) -> dict[str, Any]:
         """The file of the program, and those `options` that are plain data: what it takes to load it again."""
-        return {"file": self.filename, "options": _plain(self._services.options)}
+        return {"file": self.filename, "options": _plain(self.options)}
 
     @property
     def fingerprint(self) -> str:
@@ -516,13 +509,7 @@ class Scenario(Generating):
                 raise ValueError(f"`{name}` must be integers of at least {least}, not {values.tolist()}")
         with self._program.undisturbed():
             accepted = self._sampler.accepted(seed, numbers, attempts, source)
-        return (Scene(found, lane, self._family) for found, lane in accepted)
-
-    def simulate(self, n: int = 1, **options: Any) -> Any:
-        """Simulate scenes 0 to ``n`` of a seed; see `scenic.batch.simulations.simulated` for the options and the result."""
-        if self._services.simulate is None:
-            raise TypeError("a scenario that was made by hand cannot be simulated")
-        return self._services.simulate(self, n, **options)
+        return (self.scene_class(found, lane, self._family) for found, lane in accepted)
 
     def _sampling_error(self, error: CandidateError) -> Exception:
         cause, check = error.__cause__, error.check
@@ -552,12 +539,6 @@ class Scenario(Generating):
         """Do nothing: the order of checks follows their cost and rejections."""
 
     # Scenes as data
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """A scenario is pickled as its program, which is compiled again when it is unpickled."""
-        if self._services.recipe is None:
-            raise TypeError("a scenario that was made by hand cannot be pickled")
-        return self._services.recipe
 
     @cached_property
     def recipe_bytes(self) -> bytes:
@@ -643,9 +624,7 @@ class Scenario(Generating):
 
     def _take_parameters(self, given: Mapping[str, Any]) -> None:
         """Go on as the same program with other values of parameters, under the conditions so far."""
-        if self._services.given is None:
-            raise TypeError("a scenario that was made by hand cannot be given parameters")
-        other = self._services.given(given)
+        other = self._compiled_again(given)
         other._sampler = self._sampler.on(other._sampler)
         vars(self).update({name: vars(other)[name] for name in self._unconditioned})
         self._external_candidates = None

@@ -56,7 +56,7 @@ class Family:
     """The common ground of all scenes of a scenario.
 
     ``populations`` makes their objects, ``names`` are the variables that hold these, by the identities of the program's.
-    ``keep`` gives a scene as data, ``layout`` the values in its pickle, ``view`` shows it, ``export`` writes it for another program, if the file's ending says so.
+    ``keep`` gives a scene as data, ``layout`` the values in its pickle.
     """
 
     program: Program
@@ -68,9 +68,6 @@ class Family:
     keep: Callable[["Scene"], bytes]
     layout: ValueLayout
     scenario: Any
-    view: Callable[["Scene"], Any] | None
-    bundle: Callable[["Scene"], Mapping[str, str]] | None
-    export: Callable[["Scene", Path], bool] | None
     regions: Mapping[str, Region]
 
 
@@ -248,34 +245,13 @@ class Scene:
         origin: Origin = known
         return origin
 
-    def show(self, axes: bool = True) -> Any:
-        """Show the scene in a browser, as a page in which it can be turned; returns the file of the page.
-
-        ``axes`` is accepted for compatibility.
-        """
-        view = self._family.view
-        return None if view is None else view(self)
-
-    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> Mapping[str, str]:
-        """The scene by type of media, as notebooks ask for it: a page in which it can be turned, and text."""
-        bundle = self._family.bundle
-        return {"text/plain": repr(self)} if bundle is None else bundle(self)
-
-    def show3D(self, axes: bool = True) -> Any:
-        """The same as `show`."""
-        return self.show(axes)
-
-    def show2D(self, zoom: object = None, block: bool = True) -> Any:
-        """The same as `show`; the arguments are accepted for compatibility."""
-        return self.show()
-
     def __reduce__(self) -> tuple[Any, ...]:
         """A scene is pickled as its program, which a process compiles once for all of its scenes, its draws and its values."""
         if self._pickled is not None:
-            return _taken_up, self._pickled
+            return _taken_up, (type(self), *self._pickled)
         family = self._family
         values = family.layout.pack(self.found.batch, self.lane)
-        return _taken_up, (family.scenario.recipe_bytes, family.keep(self), values)
+        return _taken_up, (type(self), family.scenario.recipe_bytes, family.keep(self), values)
 
     def __getattr__(self, name: str) -> Any:
         """Read the data of a scene that was unpickled, when it is first looked at."""
@@ -300,13 +276,7 @@ class Scene:
         return scene
 
     def save(self, path: str | Path) -> None:
-        """Write the scene to a file, which `Scenario.replay` reads; the file is complete or absent.
-
-        If its name ends in ``.usda``, ``.usdc``, ``.usdz`` (OpenUSD), ``.xml`` (MJCF), ``.sdf`` (SDFormat), ``.wbt`` (Webots) or
-        ``.cr.xml`` (CommonRoad), the file is a scene of another program instead, which `replay` does not read.
-        """
-        if self._family.export is not None and self._family.export(self, Path(path)):
-            return
+        """Write the scene to a file, which `Scenario.replay` reads; the file is complete or absent."""
         content = self._family.keep(self)
         with whole(Path(path)) as stream:
             stream.write(content)
@@ -328,9 +298,9 @@ def _always(requirement: Requirement) -> bool:
     return requirement.condition.is_constant and bool(requirement.condition.value)
 
 
-def _taken_up(recipe: bytes, data: bytes, values: bytes) -> Scene:
+def _taken_up(cls: type[Scene], recipe: bytes, data: bytes, values: bytes) -> Scene:
     """The scene of its draws and values, with objects of its own; they are read when it is first looked at."""
-    scene = object.__new__(Scene)
+    scene = object.__new__(cls)
     scene._pickled = recipe, data, values
     return scene
 
