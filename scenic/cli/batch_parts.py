@@ -116,8 +116,9 @@ def output_help(sinks: Iterable[SinkPart]) -> str:
     words = []
     for sink in sinks:
         if sink.help:
-            endings = [ending or "none" for ending in sink.endings]
-            words.append(f"{sink.help} ({', '.join(endings)})" if endings else sink.help)
+            details = [ending or "none" for ending in sink.endings]
+            details += [f"extra `{sink.extra}`"] if sink.extra else []
+            words.append(f"{sink.help} ({', '.join(details)})" if details else sink.help)
     return f"{'; '.join(words)}."
 
 

@@ -2,7 +2,6 @@
 
 import sys
 import time
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -13,7 +12,6 @@ from scenic.cli.running import NOT_ALL
 from scenic.cli.sample_options import SampleRequest, sample_options
 from scenic.cli.sample_parts import check_sample, sink_parts
 from scenic.cli.time_limit import PATIENCE, limited
-from scenic.formats.files import check_writable
 from scenic.language.garbage import import_lasting
 
 if TYPE_CHECKING:
@@ -35,7 +33,7 @@ def sample(**options: Any) -> int:
     """
     request = SampleRequest(**options)
     check_sample(request)
-    chosen = _scene_sinks(request)
+    takers = _takers(request)
     limit = request.time_limit
     deadline = None if limit is None else time.monotonic() + limit
     # These bring in NumPy and the geometry libraries.
@@ -57,7 +55,7 @@ def sample(**options: Any) -> int:
         "look for a loop without end in what is called on samples",
     )
     with endless:
-        missing, lost = sample_into_sinks(scenario, request, chosen, deadline)
+        missing, lost = sample_into_sinks(scenario, request, takers, deadline)
     if request.settle is not None and scenario.program.settling.tally.scenes:
         sys.stderr.write(f"settling: {scenario.program.settling.tally}\n")
     if scenario.approximation is not None:
@@ -76,31 +74,12 @@ def sample(**options: Any) -> int:
     return NOT_ALL
 
 
-def _scene_sinks(request: SampleRequest) -> list[sinks.Sink]:
+def _takers(request: SampleRequest) -> "list[sinks.Sink]":
     """The sinks that take scenes one by one; all outputs are checked, before anything is sampled."""
-    names, place = sink_parts(request), Path(request.output or "-")
-    chosen: list[sinks.Sink] = []
-    if "labels" in names:
-        sinks.check_labelled(place)
-    if "worlds" in names and request.form is not None:
-        sinks.check_files(request.form)
-    if "table" in names:
-        sinks.is_table(place)
-    if "lines" in names:
-        sinks.is_lines(place)
-        sinks.check_lines(place)
-        check_writable(place)
-    if "files" in names:
-        chosen.append(sinks.scene_file(place, request.count, request.first))
-    if request.view is not None:
-        chosen.append(sinks.page(Path(request.view), request.path.name))
-    if request.png is not None:
-        outlook = {**request.outlook, "workspace": request.frame == "workspace"}
-        png = Path(request.png)
-        chosen.append(
-            sinks.images(png, request.path.stem, request.count, request.image_size, outlook, request.first)
-        )
-    return chosen
+    parts = sink_parts(request).values()
+    for part in parts:
+        part.check(request)
+    return [part.taker(request) for part in parts if part.taker is not None]
 
 
 def _loaded(request: SampleRequest) -> "Scenario":

@@ -1,14 +1,15 @@
 """Sources, engines and sinks of ``scenic sample``. A new format of files is one more `SinkPart`, with its endings, forms and extra."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
 import click
 
+from scenic.cli import sinks
 from scenic.cli.batch_parts import BatchPart, SinkPart, check_parts
-from scenic.cli.sinks import FILES, STANDARD_OUTPUT, is_dataset
+from scenic.dataclass import dataclass
 
 if TYPE_CHECKING:
     from scenic.cli.sample_options import SampleRequest
@@ -26,61 +27,104 @@ _TOGETHER: Final = BatchPart("--approximate", refuses=_ALONE | {"sobol", "time_l
 _HERE: Final = BatchPart("one process")
 _PROCESSES: Final = BatchPart("several processes (-j, --dask)", refuses=frozenset({"show_params", "profile"}))
 
-SINKS: Final[Mapping[str, SinkPart]] = MappingProxyType(
+
+def _place(request: "SampleRequest") -> Path:
+    return Path(request.output or "-")
+
+
+def _pictures(request: "SampleRequest") -> sinks.Sink:
+    return sinks.images(
+        Path(request.png or ""),
+        request.path.stem,
+        request.count,
+        request.image_size,
+        {**request.outlook, "workspace": request.frame == "workspace"},
+        request.first,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class SampleSink(SinkPart):
+    """A place where scenes go.
+
+    Attributes:
+        check: raises an error of Scenic, before anything is sampled, if the place of a request cannot be written.
+        taker: the context that takes scenes one by one, of sinks that do; it checks its place, too.
+
+    """
+
+    check: "Callable[[SampleRequest], object]" = lambda _request: None
+    taker: "Callable[[SampleRequest], sinks.Sink] | None" = None
+
+
+SINKS: Final[Mapping[str, SampleSink]] = MappingProxyType(
     {
-        "lines": SinkPart(
+        "lines": SampleSink(
             "JSON Lines (-o OUT.jsonl)",
             frozenset({"properties"}),
             frozenset({"verified", "profile"}),
             "JSON Lines",
             endings=(".jsonl", ""),
+            check=lambda request: sinks.check_lines(_place(request)),
         ),
-        "table": SinkPart(
+        "table": SampleSink(
             "Parquet (-o OUT.parquet)",
             refuses=_RESUMED | _FOLDER,
             help="columns",
             endings=(".parquet",),
             extra="parquet",
+            check=lambda request: sinks.check_table(_place(request)),
         ),
-        "files": SinkPart(
-            "3D files (-o OUT.glb)", refuses=_ALONE, help="a file for each scene", endings=tuple(FILES)
+        "files": SampleSink(
+            "3D files (-o OUT.glb)",
+            refuses=_ALONE,
+            help="a file for each scene",
+            endings=tuple(sinks.FILES),
+            taker=lambda request: sinks.scene_file(_place(request), request.count, request.first),
         ),
-        "dataset": SinkPart(
+        "dataset": SampleSink(
             "data sets (-o FOLDER/)",
             frozenset({"properties", "form", "part_size"}),
             _FOLDER,
             "a data set of many files (a name that ends in /, or a folder)",
             forms=("parquet", "jsonl"),
-            extra="parquet",
         ),
-        "worlds": SinkPart(
+        "worlds": SampleSink(
             "data sets of files of scenes (--format usd, mjcf, sdf)",
             frozenset({"form", "part_size"}),
             _FOLDER,
             forms=("usd", "mjcf", "sdf"),
+            check=lambda request: sinks.check_files(request.form or "usd"),
         ),
-        "labels": SinkPart(
+        "labels": SampleSink(
             "labelled images (--camera NAME)",
             frozenset({"form", "part_size", "overlay", "image_size"}),
             _FOLDER,
             forms=("images", "tar"),
             extra="view",
+            check=lambda request: sinks.check_labelled(_place(request)),
         ),
-        "output": SinkPart(
+        "output": SampleSink(
             "standard output",
             frozenset({"properties"}),
             _RESUMED | {"profile"},
             "- is standard output, the default without --view and --png",
         ),
-        "page": SinkPart("a page (--view)", refuses=_ALONE, endings=(".html", ".htm")),
-        "images": SinkPart(
+        "page": SampleSink(
+            "a page (--view)",
+            refuses=_ALONE,
+            endings=(".html", ".htm"),
+            taker=lambda request: sinks.page(Path(request.view or ""), request.path.name),
+        ),
+        "images": SampleSink(
             "images (--png)",
             frozenset({"image_size", "outlook", "frame"}),
             _ALONE,
             endings=(".png",),
             extra="view",
+            taker=_pictures,
         ),
-        "profile": SinkPart(
+        "profile": SampleSink(
             "--profile", refuses=_SHARED | _RESUMED | {"show_params", "sampler", "approximate"}
         ),
     }
@@ -88,7 +132,7 @@ SINKS: Final[Mapping[str, SinkPart]] = MappingProxyType(
 """The sinks by name."""
 
 
-def sink_parts(request: "SampleRequest") -> dict[str, SinkPart]:
+def sink_parts(request: "SampleRequest") -> dict[str, SampleSink]:
     """The sinks of a request, by name."""
     names = []
     if request.profile:
@@ -103,10 +147,10 @@ def sink_parts(request: "SampleRequest") -> dict[str, SinkPart]:
 
 def _named_sink(request: "SampleRequest") -> str:
     """The sink that the option ``-o`` names; names without a known ending are lines, which refuse them."""
-    if is_dataset(request.output):
+    if sinks.is_dataset(request.output):
         return "worlds" if request.form in SINKS["worlds"].forms else "dataset"
-    path = Path(request.output or "-")
-    if path == STANDARD_OUTPUT:
+    path = _place(request)
+    if path == sinks.STANDARD_OUTPUT:
         return "output"
     suffix = path.suffix.lower()
     return next((name for name in ("table", "files") if suffix in SINKS[name].endings), "lines")
@@ -120,12 +164,12 @@ def check_sample(request: "SampleRequest") -> None:
         raise click.UsageError("--profile makes no files: it goes without -o, --view, --png and --camera")
     source = _DRAWN if request.approximate is None else _TOGETHER
     engine = _PROCESSES if request.jobs > 1 or request.dask is not None else _HERE
-    sinks = sink_parts(request).values()
-    chosen = [source if request.sampler is None else _CHOSEN, engine, *sinks]
+    parts = sink_parts(request).values()
+    chosen = [source if request.sampler is None else _CHOSEN, engine, *parts]
     check_parts(chosen, (_CHOSEN, *SINKS.values()))
     if (request.verified or request.accept_changes) and not request.resume:
         raise click.UsageError("--verify and --accept-changes go with --resume")
-    forms = [form for part in sinks for form in part.forms]
+    forms = [form for part in parts for form in part.forms]
     if request.form is not None and request.form not in forms:
         raise click.UsageError(
             f"--format {request.form} does not go with {chosen[2].name}: give {' or '.join(forms)}"

@@ -49,15 +49,12 @@ def is_dataset(output: str | None) -> bool:
     return output is not None and (output.endswith(("/", "\\")) or Path(output).is_dir())
 
 
-def is_table(path: Path) -> bool:
-    """Return whether scenes go to one Parquet file, by its name's ending; raises as `parquet_support` without the library."""
-    if path.suffix.lower() != ".parquet":
-        return False
+def check_table(path: Path) -> None:
+    """Raises ``OutputError`` or ``MissingLibraryError`` if scenes cannot be written to a Parquet file."""
     from scenic.formats.trajectory_tables import parquet_support
 
     parquet_support()
     check_writable(path)
-    return True
 
 
 def is_lines(path: Path) -> bool:
@@ -72,13 +69,15 @@ def is_lines(path: Path) -> bool:
 
 
 def check_lines(path: Path) -> None:
-    """Raises ``OutputChoiceError`` if a file of JSON Lines has a name with the ending of another format."""
+    """Raises ``OutputChoiceError`` for a name with the ending of another format, ``OutputError`` if it cannot be written."""
+    is_lines(path)
     suffix = path.suffix.lower()
-    if path != STANDARD_OUTPUT and suffix not in {"", ".jsonl"} and not is_special(path):
+    if suffix not in {"", ".jsonl"} and not is_special(path):
         known = ", ".join(sorted({".jsonl", ".parquet", *FILES}))
         raise OutputChoiceError(
             f"'{suffix}' tells of no format that scenes are written as", help=f"known endings are {known}"
         )
+    check_writable(path)
 
 
 def scene_file(path: Path, count: int, first: int = 0) -> Sink:
