@@ -185,15 +185,21 @@ def check(
         return code
     colours = output_file is None and has_colours(sys.stdout)
     report = Report(diagnostics, sources, len(tasks), fixed, code, colours)
-    text = render("statistics" if statistics else output_format, report)
-    if output_file is None:
+    _write_report(report, "statistics" if statistics else output_format, output_file)
+    return code
+
+
+def _write_report(report: Report, output_format: str, file: Path | None) -> None:
+    """Write a report to a file or to standard output, and its conclusion to the error stream."""
+    text = render(output_format, report)
+    if file is None:
         sys.stdout.write(text)
     else:
-        write(output_file, text.encode("utf-8", "backslashreplace"))
-    if output_format == "text" and (diagnostics or fixed or sys.stderr.isatty()):
+        write(file, text.encode("utf-8", "backslashreplace"))
+    has_content = report.diagnostics or report.fixed or sys.stderr.isatty()
+    if output_format in ("text", "statistics") and has_content:
         sys.stdout.flush()
         sys.stderr.write(_conclusion(report))
-    return code
 
 
 def _standard_input(name: str) -> str:

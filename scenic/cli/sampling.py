@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from scenic.batch.engines import Engine
 from scenic.batch.folders.fingerprint import digest_of_files, file_digests
@@ -173,15 +173,12 @@ def sample_into_sinks(
 
             run = Run(batch.engine, deadline, batch.advance)
             batch.missing.extend(write_table(scenario, place, batch.manifest("parquet", 65536), run).missing)
+        elif not names.keys() & {"output", "lines"}:
+            _give(batch, done, takers)
         elif to_terminal:
-            shown = _Tables()
-            for scene in batch.scenes():
-                _take(scene, takers)
-                shown.show(scene)
-            shown.finish()
+            _show_tables(batch, takers)
         else:
-            has_lines = bool(names.keys() & {"output", "lines"})
-            _write_lines(batch, takers, lines if has_lines else None, put, done)
+            _write_lines(batch, done, lines, put, takers)
     return batch.missing, batch.lost
 
 
@@ -230,33 +227,45 @@ def _write_folder(batch: _Batch, folder: Path, form: str, part_size: int) -> Non
 
 def _write_lines(
     batch: _Batch,
-    takers: "list[sinks.Take]",
-    lines: SceneLines | None,
-    put: "Callable[[ReadableBuffer], object]",
     done: int,
+    lines: SceneLines,
+    put: "Callable[[ReadableBuffer], object]",
+    takers: "list[sinks.Take]",
 ) -> None:
-    """Give scenes to sinks, and write their lines, if there are to be any."""
-    request = batch.request
-    if batch.engine is not None and request.count - done > 1 and lines is not None:
-        for made in in_processes(batch.scenario, lines.block, batch.job(done), batch.engine):
-            put(made.encoded)
-            batch.missing.extend(made.missing)
-            batch.advance(made.job.last - made.job.first, made.attempts)
+    """Write the lines of the scenes after the first ``done``; other processes make them where there are any."""
+    if batch.engine is None or batch.request.count - done < 2:
+        is_output = put is _to_output
+        _give(batch, done, [*takers, lambda scene: put(lines.encoded(scene))], is_output=is_output)
         return
-    to_output = lines is not None and request.output in (None, "-")
+    for made in in_processes(batch.scenario, lines.block, batch.job(done), batch.engine):
+        put(made.encoded)
+        batch.missing.extend(made.missing)
+        batch.advance(made.job.last - made.job.first, made.attempts)
+
+
+def _give(batch: _Batch, done: int, takers: "list[sinks.Take]", *, is_output: bool = False) -> None:
+    """Give the scenes after the first ``done`` to sinks; parameters go beside standard output if this has the scenes."""
     for scene in batch.scenes(done):
-        _take(scene, takers)
-        if request.show_params:
-            stream = sys.stderr if to_output else sys.stdout
+        if batch.request.show_params:
+            stream = sys.stderr if is_output else sys.stdout
             stream.write(f"scene {scene.k}:\n")
             stream.writelines(f"  {name} = {value}\n" for name, value in scene.params.items())
-        if lines is not None:
-            put(lines.encoded(scene))
+        for take in takers:
+            take(scene)
 
 
-def _take(scene: Any, takers: "list[sinks.Take]") -> None:
-    for take in takers:
-        take(scene)
+def _show_tables(batch: _Batch, takers: "list[sinks.Take]") -> None:
+    """Print scenes as tables, and the ways to save them."""
+    from rich.console import Console
+
+    from scenic.cli.render.scenes import render_scene
+
+    console = Console(no_color=not has_colours(sys.stdout), highlight=False)
+    for scene in batch.scenes():
+        for take in takers:
+            take(scene)
+        render_scene(scene, console)
+    console.print("save scenes with -o scenes.jsonl, look at them with --view page.html", style="dim")
 
 
 @contextmanager
@@ -265,37 +274,13 @@ def _kept_is_reported(grown: GrowingFile | None, folder: Path | None, count: int
     try:
         yield
     except KeyboardInterrupt:
-        kept = 0 if grown is None else len(grown.lines_kept())
-        if grown is not None and kept:
-            sys.stderr.write(f"{kept:,} of {count:,} kept in '{grown.part}'; continue with --resume\n")
-        if folder is None:
-            raise
         from scenic.batch.datasets import scenes_kept
 
-        if kept := scenes_kept(folder):
-            sys.stderr.write(f"{kept:,} of {count:,} kept in '{folder}'; continue with --resume\n")
+        place = folder if grown is None else grown.part
+        kept = len(grown.lines_kept()) if grown is not None else 0 if folder is None else scenes_kept(folder)
+        if kept:
+            sys.stderr.write(f"{kept:,} of {count:,} kept in '{place}'; continue with --resume\n")
         raise
-
-
-class _Tables:
-    """Scenes as tables on a terminal."""
-
-    def __init__(self) -> None:
-        from rich.console import Console
-
-        self._console = Console(no_color=not has_colours(sys.stdout), highlight=False)
-
-    def show(self, scene: "Scene") -> None:
-        """Print the parameters and objects of a scene."""
-        from scenic.cli.render.scenes import render_scene
-
-        render_scene(scene, self._console)
-
-    def finish(self) -> None:
-        """Say how to save scenes."""
-        self._console.print(
-            "save scenes with -o scenes.jsonl, look at them with --view page.html", style="dim"
-        )
 
 
 def _to_output(lines: "ReadableBuffer") -> None:
