@@ -2,6 +2,7 @@
 
 import os
 import pickle
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -295,7 +296,7 @@ def test_a_cluster_gives_the_bytes_of_one_process(tmp_path: Path) -> None:
                     killed = True
                     with pytest.raises(BusyError, match=f"process {os.getpid()} on "):
                         make_dataset(scenario, tmp_path / "cluster", wanted, resume=True)
-                    next(iter(local.workers.values())).process.process.kill()
+                    os.kill(next(iter(local.workers.values())).process.process.pid, signal.SIGKILL)
 
             with DaskCluster(local.scheduler_address) as cluster:
                 make_dataset(scenario, tmp_path / "cluster", wanted, Run(cluster, advance=advance))

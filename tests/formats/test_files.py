@@ -9,12 +9,12 @@ from scenic.formats.files import (
     OutputError,
     check_folder,
     check_writable,
-    discard_unfinished,
     numbered,
     write,
     writing,
 )
 from scenic.formats.growing import GrowingFile
+from scenic.runtime.ground.files import discard_unfinished
 
 
 def test_a_file_appears_whole(tmp_path: Path) -> None:
