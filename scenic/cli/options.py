@@ -23,7 +23,6 @@ __all__ = [
     "OneOf",
     "accept_changes_option",
     "batch_options",
-    "count_option",
     "course_options",
     "dask_option",
     "extra_params_option",
@@ -222,19 +221,6 @@ no_cache_option = click.option(
 program_argument = click.argument("file", metavar="FILE", type=click.Path())
 
 
-def count_option(help: str, *, default: int = 1) -> Callable[[_Command], _Command]:
-    """The option ``-n``: how many results to make."""
-    return click.option(
-        "-n",
-        "--count",
-        "count",
-        metavar="N",
-        type=click.IntRange(min=1),
-        default=default,
-        help=f"{help}  [default: {default}]",
-    )
-
-
 def first_option(help: str) -> Callable[[_Command], _Command]:
     """The option ``--first``: the number of the first result."""
     return click.option(
@@ -336,7 +322,14 @@ def batch_options(things: str, *, count: int = 1) -> Callable[[_Command], _Comma
     """The program, and options that all commands share which make many ``things`` of it; ``count`` is the default of ``-n``."""
     return with_options(
         program_argument,
-        count_option(f"Number of {things}.", default=count),
+        click.option(
+            "-n",
+            "--count",
+            metavar="N",
+            type=click.IntRange(min=1),
+            default=count,
+            help=f"Number of {things}.  [default: {count}]",
+        ),
         seed_option(things.capitalize()),
         jobs_option("Number of processes. The results and their order are the same."),
         dask_option("Work"),
