@@ -9,11 +9,15 @@ from scenic.language.diagnostics import Diagnostic, Label
 from scenic.language.errors import (
     InvalidScenarioError,
     Located,
+    ParseCompileError,
     RejectionException,
     annotate,
     annotation,
 )
+from scenic.language.spans import Span
 from scenic.language.spelling import nearest_attribute
+from scenic.runtime.ground.context import current
+from scenic.runtime.ground.reported_places import Place, reported
 
 __all__ = ["diagnose", "placed"]
 
@@ -86,25 +90,34 @@ def placed(text: str, filename: str) -> Iterator[None]:
             place = locate(error.__traceback__) if error.__traceback__ is not None else None
             error.span = error.span or (place.span if place else None)
             error.filename = error.filename or (place.filename if place else filename)
+        if not isinstance(error, ParseCompileError):
+            raised: Place = error.span, error.filename
+            (error.span, error.filename), labels = reported(raised, (_program_place(error), filename))
+            error.labels += labels
         if error.filename == filename:
             error.program = text
         raise
     except Exception as error:
         found = diagnose(error)
         if found is not None and found.span is not None:
-            annotate(
-                error,
-                found,
-                f"{found.filename}:{found.span.line}:{found.span.column + 1}: raised while the program ran",
-            )
+            own = _program_place(error), filename
+            (span, file), labels = reported((found.span, found.filename), own)
+            span = found.span if span is None else span
+            found = replace(found, span=span, filename=file, labels=labels or found.labels)
+            annotate(error, found, f"{file}:{span.line}:{span.column + 1}: raised while the program ran")
         raise
+
+
+def _program_place(error: BaseException) -> Span | None:
+    """The innermost line of the program's own file that an exception has passed through."""
+    context = current.get()
+    return None if context is None else context.program_place(error.__traceback__)
 
 
 def _no_scenario(error: BaseException, filename: str, message: str, help: str) -> InvalidScenarioError:
     place = locate(error.__traceback__) if error.__traceback__ is not None else None
-    return InvalidScenarioError(
-        message,
-        span=None if place is None else place.span,
-        filename=filename if place is None else place.filename,
-        help=help,
-    )
+    raised: Place = (None, filename) if place is None else (place.span, place.filename)
+    (span, file), labels = reported(raised, (_program_place(error), filename))
+    found = InvalidScenarioError(message, span=span, filename=file, help=help)
+    found.labels = labels
+    return found

@@ -366,7 +366,8 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
         place = locator.place(where, instruction)
         return None if place is None else place.span
 
-    context = Context(locate=span_of, name=locator.name, mode_2d=options.mode_2d)
+    context = Context(locate=span_of, name=locator.name, quote=locator.quote, mode_2d=options.mode_2d)
+    context.filename = filename
     program = Program(overrides=dict(options.params), context=context)
     context.parameters.value = program.parameter
     context.parameters.given = frozenset(options.params)

@@ -46,6 +46,7 @@ class Locator:
     def __init__(self) -> None:
         self._positions: dict[int, tuple[CodeType, list[_Positions]]] = {}
         self._places: dict[tuple[int, int], Place | None] = {}
+        self._quotable: dict[int, tuple[Place, object]] = {}
         self._names: dict[tuple[int, int], tuple[str, int]] = {}
 
     def place(self, where: TracebackType | FrameType, instruction: int | None = None) -> Place | None:
@@ -60,8 +61,23 @@ class Locator:
         frame, instruction = found
         key = (id(frame.f_code), instruction)
         if key not in self._places:
-            self._places[key] = _place(frame, self._position(frame.f_code, instruction))
+            place = self._places[key] = _place(frame, self._position(frame.f_code, instruction))
+            if place is not None:
+                self._quotable[id(place.span)] = place, frame.f_globals.get(SOURCE_NAME)
         return self._places[key]
+
+    def quote(self, span: Span) -> tuple[str, str] | None:
+        """Return the file and the text of a span that was found here, identified by its identity; ``None`` for others."""
+        place, source = self._quotable.get(id(span), (None, None))
+        if place is None:
+            return None
+        numbers = range(span.line, span.end_line + 1)
+        lines = [
+            source.line(number) if isinstance(source, Source) else linecache.getline(place.filename, number)
+            for number in numbers
+        ]
+        lines[-1] = lines[-1][: span.end_column]
+        return place.filename, "\n".join([lines[0][span.column :], *lines[1:]])
 
     def name(self, where: FrameType) -> tuple[str, int] | None:
         """A name that identifies a place, and stays the same when lines are added elsewhere.

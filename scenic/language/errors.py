@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Self
 
-from scenic.language.diagnostics import Diagnostic, Severity
+from scenic.language.diagnostics import Diagnostic, Label, Severity
 from scenic.language.spans import Span
 
 
@@ -17,6 +17,8 @@ class Finding(Exception):
 
     code = "SC400"
     severity = Severity.ERROR
+    labels: tuple[Label, ...] = ()
+    """Further places that take part in it."""
 
     def __init__(
         self,
@@ -38,7 +40,13 @@ class Finding(Exception):
     def diagnostic(self) -> Diagnostic:
         """The same as plain data."""
         return Diagnostic(
-            self.code, self.message, self.span, self.severity, filename=self.filename, help=self.help
+            self.code,
+            self.message,
+            self.span,
+            self.severity,
+            filename=self.filename,
+            help=self.help,
+            labels=self.labels,
         )
 
 
@@ -228,7 +236,12 @@ class SerializationError(Located):
 
 
 class RejectionException(Exception):
-    """The current sample is rejected; or, from ``generate``, no sample was accepted."""
+    """The current sample is rejected; or, from ``generate``, no sample was accepted.
+
+    ``subject`` is the object that the message is about, if it is about one.
+    """
+
+    subject: object = None
 
 
 def annotate(error: BaseException, diagnostic: Diagnostic, note: str) -> None:

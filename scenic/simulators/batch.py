@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from scenic.dataclass import dataclass
 from scenic.graph.points import Sobol
-from scenic.language.errors import Located
+from scenic.language.errors import Located, RejectionException
 from scenic.language.spelling import nearest_option
 from scenic.runtime.dynamics.chosen_draws import driven
 from scenic.runtime.sampling.report import Exhausted
@@ -133,5 +133,7 @@ def simulate_number(
 
 
 def _reason(error: Exception) -> str:
-    """Return the reason why a simulation was rejected, in a few words."""
-    return str(error) or f"`raise {type(error).__name__}` in the program"
+    """Return the reason why a simulation was rejected, in a few words; of a rejection by a value, with its place."""
+    notes = getattr(error, "__notes__", ()) if isinstance(error, RejectionException) else ()
+    words = str(error) or f"`raise {type(error).__name__}` in the program"
+    return ": ".join([words, *notes])

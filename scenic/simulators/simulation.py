@@ -13,6 +13,7 @@ from scenic.language.errors import (
     InternalError,
     InvalidScenarioError,
     Located,
+    RejectionException,
     RejectSimulationException,
     SimulationCreationError,
     StuckBehaviorError,
@@ -24,6 +25,7 @@ from scenic.runtime.description.definitions import running_in
 from scenic.runtime.dynamics.chosen_draws import Sourcing
 from scenic.runtime.dynamics.copies import Copies
 from scenic.runtime.dynamics.run import Ending, Run
+from scenic.runtime.ground.reported_places import reported
 from scenic.runtime.instances.properties import Finals
 from scenic.runtime.python.random_state import is_as, preserved, restore, seed_globals, states
 from scenic.runtime.scenes.scene import Scene
@@ -289,17 +291,23 @@ class Simulation(ABC):
 
     def _say_where(self, error: Exception) -> None:
         """Give an exception of the program its place."""
-        traceback = error.__traceback__
-        place = None if traceback is None else self._run.context.place_of(traceback)
+        context, traceback = self._run.context, error.__traceback__
+        place = None if traceback is None else context.place_of(traceback)
         filename = None
         while traceback is not None:
             if PRELUDE in traceback.tb_frame.f_globals:
                 filename = traceback.tb_frame.f_code.co_filename
             traceback = traceback.tb_next
+        own = context.program_place(error.__traceback__), context.filename
+        if own[0] is None and self._run.failed_agent is not None:
+            own = self.place_of(self._run.failed_agent)
         if isinstance(error, Located):
-            error.span = error.span or place
-            error.filename = error.filename or filename
+            raised = error.span or place, error.filename or filename
+            (error.span, error.filename), error.labels = reported(raised, own)
+        elif isinstance(error, RejectionException):
+            error.add_note(self._details(error, own[0] or place))
         elif place is not None and not isinstance(error, RejectSimulationException | GuardViolation):
+            (span, filename), labels = reported((place, filename), own)
             near = nearest_attribute(error)
             words = f"{type(error).__name__}: {error}"
             hint = (
@@ -307,10 +315,25 @@ class Simulation(ABC):
             )
             if isinstance(error, StuckBehaviorError):
                 words, hint = str(error), "if it only computes for long, allow it more time (`--step-limit`)"
-            found = Diagnostic("SC400", words, place, filename=filename, help=hint)
-            annotate(
-                error, found, f"{filename}:{place.line}: raised at step {self.currentTime} of a simulation"
-            )
+            found = Diagnostic("SC400", words, span, filename=filename, help=hint, labels=labels)
+            line = place.line if span is None else span.line
+            annotate(error, found, f"{filename}:{line}: raised at step {self.currentTime} of a simulation")
+
+    def _details(self, error: RejectionException, place: Span | None) -> str:
+        """The object that a rejection is about, the time and the line of the program, in words."""
+        subject = error.subject
+        parts = []
+        if subject is not None:
+            span, _ = self.place_of(subject)
+            pairs = zip(self.objects, self._original.objects, strict=False)
+            names = self._original.names
+            name = next((names.get(original) for item, original in pairs if item is subject), None)
+            name = name or str(subject)
+            parts.append(name if span is None else f"{name} (line {span.line})")
+        parts.append(f"at {self.currentRealTime:g} s")
+        if place is not None:
+            parts.append(f"line {place.line}")
+        return ", ".join(parts)
 
     def _restore(self) -> None:
         """Replace the copies that the simulation has changed by the scene's own objects."""

@@ -283,9 +283,11 @@ class RoadNetwork(Frozen):
             return element_at(self._finder(tuple(elems)), place, reject)
         found = self._finder(tuple(elems)).at(place.x, place.y, place.z)
         if found is None and reject:
-            raise RejectionException(
+            error = RejectionException(
                 reject if isinstance(reject, str) else "there is no such element at the point"
             )
+            error.subject = None if place is point else point
+            raise error
         return found
 
     def _finder(self, elements: tuple[NetworkElement, ...]) -> Finder:
@@ -344,8 +346,8 @@ class RoadNetwork(Frozen):
             return defer(self._through, place, reject, elems, parts)
         if is_random(place):
             return element_at(self._nested(parts, elems), place, reject)
-        found = self.findPointIn(place, elems, reject)
-        return None if found is None else self.findPointIn(place, getattr(found, parts), reject)
+        found = self.findPointIn(point, elems, reject)
+        return None if found is None else self.findPointIn(point, getattr(found, parts), reject)
 
     def _nested(self, parts: str, elems: Sequence[NetworkElement]) -> NestedFinder:
         finder = self._nested_finders.get(parts)

@@ -71,6 +71,7 @@ class RunContext(Context):
 
     def __init__(self, run: "Run", locate: Locator, name: Namer, *, mode_2d: bool) -> None:
         super().__init__(locate=locate, name=name, generator=run.draws, mode_2d=mode_2d)  # type: ignore[arg-type] # it has `random`
+        self.filename = run.program.context.filename
         self.run = run
         self.guarding = False
         """True if a guard, or the condition of an interrupt or ``until``, is being evaluated."""
@@ -131,6 +132,8 @@ class Run:
         self.wants_robustness = robustness
         self.keeps_violations = keep_violations
         self.keeps_files = keep_files
+        self.failed_agent: Any = None
+        """The agent whose behavior has raised an exception."""
         self.scenarios: list[ScenarioActivation] = []
         """The scenarios that run, in the order in which they started."""
         self.followed: list[Followed] = []
@@ -464,6 +467,9 @@ class Run:
         self.agent = agent
         try:
             output = activation.resume()
+        except Exception:
+            self.failed_agent = agent
+            raise
         finally:
             self.current = before
             self.agent = None

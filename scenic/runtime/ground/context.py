@@ -34,6 +34,10 @@ Namer = Callable[[FrameType], Hashable]
 """A name of the place of a frame whatever is added before it: the text of its line, not the number."""
 
 
+Quoter = Callable[[Span], tuple[str, str] | None]
+"""Returns the file and the text of a span that a `Locator` has found; ``None`` for other spans."""
+
+
 class Site(NamedTuple):
     """A call in generated code, whose place is looked up on demand."""
 
@@ -101,6 +105,7 @@ class Context:
     Args:
         locate: finds the place of a frame of generated code.
         name: names that place, for the addresses of draws.
+        quote: returns file and text of a place, for reports.
         generator: ``None`` while a scenario is compiled (distributions become nodes of the graph); during a
             simulation the source of the draws (distributions draw at once and give plain values).
         mode_2d: whether the 2D compatibility mode is on (section 5.5 of the specification).
@@ -112,11 +117,15 @@ class Context:
         *,
         locate: Locator = lambda *_: None,
         name: Namer = lambda _frame: None,
+        quote: Quoter = lambda _span: None,
         generator: np.random.Generator | None = None,
         mode_2d: bool = False,
     ) -> None:
         self._locate = locate
         self._name = name
+        self.quote = quote
+        self.filename: str | None = None
+        """The file of the program itself, rather than of a module that it imports."""
         self._occurrences: Counter[Hashable] = Counter()
         self.generator = generator
         self.mode_2d = mode_2d
@@ -158,6 +167,15 @@ class Context:
     def place_of(self, traceback: TracebackType) -> Span | None:
         """Place in the program where an exception comes from."""
         return self._locate(traceback)
+
+    def program_place(self, traceback: TracebackType | None) -> Span | None:
+        """Place in the program's own file that an exception has passed through, the innermost one."""
+        found = None
+        while traceback is not None:
+            if traceback.tb_frame.f_code.co_filename == self.filename:
+                found = self._locate(traceback.tb_frame, traceback.tb_lasti) or found
+            traceback = traceback.tb_next
+        return found
 
     def place_at(self, site: "Site") -> Span | None:
         """Place in the program of a call that was made earlier."""

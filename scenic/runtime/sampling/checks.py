@@ -82,12 +82,33 @@ class Part:
     holds: Mask
     note: str = ""
     """A note that helps to understand why it never holds."""
+    undecided: Mask | None = None
+    """Lanes in which a value that it reads is missing; ``None`` if there are none."""
+
+    def lacks_value(self) -> Mask:
+        """Return the lanes in which a value that it reads is missing."""
+        return np.zeros(len(self.holds), dtype=np.bool_) if self.undecided is None else self.undecided
 
 
-def _only_part(check: Check, batch: Batch, note: str = "") -> Sequence[Part]:
+def joined(parts: Sequence[Part]) -> Part:
+    """One requirement on the lanes of several batches."""
+    return replace(
+        parts[0],
+        holds=np.concatenate([part.holds for part in parts]),
+        undecided=np.concatenate([part.lacks_value() for part in parts]),
+    )
+
+
+def _only_part(check: Check, batch: Batch, note: str = "", undecided: Mask | None = None) -> Sequence[Part]:
     verdict = check.test(batch)
     holds = verdict.holds if verdict.failed is None else verdict.holds & ~verdict.failed
-    return [Part(check.label, check.span, holds, note)]
+    return [Part(check.label, check.span, holds, note, undecided)]
+
+
+def _any_rejected(batch: Batch, nodes: Sequence[Node]) -> Mask | None:
+    """Lanes in which one of some nodes rejects the sample; ``None`` if there are none."""
+    marks = [status == REJECTED for node in nodes if (status := batch.status(node)) is not None]
+    return np.any(marks, axis=0) if marks else None
 
 
 @dataclass(slots=True)
@@ -119,7 +140,7 @@ class NodeCheck:
         return Verdict(holds, failed if failed.any() else None)
 
     def parts(self, batch: Batch) -> Sequence[Part]:
-        return _only_part(self, batch, self.note)
+        return _only_part(self, batch, self.note, _any_rejected(batch, [self.node]))
 
 
 @dataclass(slots=True)
@@ -134,6 +155,8 @@ class DrawingCheck:
     cost: float = 2.0
     separate: bool = False
     filename: str | None = None
+    reason: str | None = None
+    """The label of lanes that have no value, in reports."""
 
     @property
     def nodes(self) -> Sequence[Node]:
@@ -147,7 +170,10 @@ class DrawingCheck:
         return Verdict(status == OK, failed if failed.any() else None)
 
     def parts(self, batch: Batch) -> Sequence[Part]:
-        return _only_part(self, batch)
+        (part,) = _only_part(self, batch)
+        # Of a choice, the option that is drawn may be what is missing.
+        operands = self.node.operands if self.node.operation.strict else self.node.operands[:1]
+        return [replace(part, label=self.reason or self.label, undecided=_any_rejected(batch, operands))]
 
 
 @dataclass(frozen=True, slots=True)

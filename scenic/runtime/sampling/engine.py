@@ -27,11 +27,11 @@ from scenic.graph.node import Graph, Node
 from scenic.graph.schedule import Scheduler
 from scenic.language.errors import Located, RejectionException, ScenicError
 from scenic.runtime.geometry.ragged import expand, first_of_each
-from scenic.runtime.sampling.checks import Check, Mask, Verdict
+from scenic.runtime.sampling.checks import Check, Mask, Verdict, joined
 from scenic.runtime.sampling.pace import Pace
 from scenic.runtime.sampling.pending import Pending, Task, soft_address
 from scenic.runtime.sampling.profiling import Meter, Profile
-from scenic.runtime.sampling.report import Approximation, Exhausted, RejectionReport, RejectionRow
+from scenic.runtime.sampling.report import Approximation, Exhausted, RejectionReport, rejection_rows
 from scenic.runtime.sampling.stages import Stage, Stages
 
 DEFAULT_LANES = 4096
@@ -662,15 +662,7 @@ class Engine:
             ]
             for numbers in np.split(np.arange(count, dtype=np.int64), range(size, count, size))
         ]
-        rejected = np.array(
-            [~np.concatenate([part.holds for part in parts]) for parts in zip(*batches, strict=True)]
-        )
-        alone = rejected & (rejected.sum(axis=0) == 1) if len(rejected) else rejected
-        rows = [
-            RejectionRow(part.label, part.span, float(mine.mean()), float(only.mean()), part.note)
-            for part, mine, only in zip(batches[0], rejected, alone, strict=True)
-        ]
-        return RejectionReport(count, tuple(row for row in rows if row.rejected > 0))
+        return RejectionReport(count, rejection_rows(list(map(joined, zip(*batches, strict=True)))))
 
 
 def _attempts(task: Task, numbers: NDArray[np.int64]) -> Lanes:

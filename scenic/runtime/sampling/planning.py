@@ -35,10 +35,10 @@ from scenic.runtime.sampling.checks import (
     BUILT_IN,
     Check,
     CollisionCheck,
-    DrawingCheck,
     NodeCheck,
     ObjectNodes,
 )
+from scenic.runtime.sampling.drawing import called, drawing_checks
 from scenic.runtime.sampling.engine import Plan
 from scenic.runtime.sampling.sizes import extents, outgrows, size_in_words
 from scenic.runtime.values.values import CODEC, Random, as_node, fixed_batch, is_random, operate
@@ -82,7 +82,7 @@ def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_
             help="leave `present` out, or make another object the ego",
         )
     reached = dependencies(program.reachable())
-    checks: list[Check] = _drawing(reached)
+    checks: list[Check] = drawing_checks(reached, program)
     checks += _finite(program)
     checks += _sizes(program)
     built_in = [*_containment(program, workspace), *_visibility(program, ego, mode_2d=mode_2d)]
@@ -94,43 +94,6 @@ def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_
     outputs = dependencies([*program.objects, *program.parameters.values()])
     hard = tuple(item for item in program.requirements if item.probability == 1)
     return Outline(graph, tuple(checks), tuple(outputs), hard, tuple(built_in), len(program.objects))
-
-
-def _drawing(outputs: Sequence[Node]) -> list[Check]:
-    """One check for each node that may have no value in some lane.
-
-    Below a choice only the drawn option counts, so that there the choice itself is checked.
-    """
-    sources: dict[Node, None] = {}
-    stack = list(outputs)[::-1]
-    seen: set[Node] = set()
-    while stack:
-        node = stack.pop()
-        if node in seen:
-            continue
-        seen.add(node)
-        if not node.operation.strict:
-            if any(_may_mark(below) for operand in node.operands for below in Graph([operand]).nodes):
-                sources[node] = None
-            continue
-        if _may_mark(node):
-            sources[node] = None
-        stack.extend(reversed(node.operands))
-    return [DrawingCheck(node, node.operation.missing, _span(node)) for node in sources]
-
-
-def _may_mark(node: Node) -> bool:
-    """Return whether a lane may fail at a node, or have no value there."""
-    if node.is_constant or node.is_drawn:
-        return False
-    operation = node.operation
-    return operation.may_fault(node.operands, node.payload, node.kind) or operation.may_reject(
-        node.operands, node.payload, node.kind
-    )
-
-
-def _span(node: Node) -> Span | None:
-    return node.span if isinstance(node.span, Span) else None
 
 
 def _place(program: Program, item: object) -> tuple[Span | None, str | None]:
@@ -149,7 +112,7 @@ def _finite(program: Program) -> list[Check]:
                 # What is undefined is not less than anything.
                 node = _if_present(item, truth(operate("less", size, math.inf)))
                 checks.append(
-                    NodeCheck(node, f"finite position and angles of {_called(program, item)}", span, BUILT_IN)
+                    NodeCheck(node, f"finite position and angles of {called(program, item)}", span, BUILT_IN)
                 )
     return checks
 
@@ -215,7 +178,7 @@ def _sizes(program: Program) -> list[Check]:
                     checks.append(
                         NodeCheck(
                             _if_present(item, node),
-                            f"positive {name} of {_called(program, item)}",
+                            f"positive {name} of {called(program, item)}",
                             span,
                             BUILT_IN,
                         )
@@ -225,7 +188,7 @@ def _sizes(program: Program) -> list[Check]:
                     checks.append(
                         NodeCheck(
                             _if_present(item, node),
-                            f"finite {name} of {_called(program, item)}",
+                            f"finite {name} of {called(program, item)}",
                             span,
                             BUILT_IN,
                         )
@@ -264,11 +227,11 @@ def _containment(program: Program, workspace: Workspace) -> list[NodeCheck]:
         size = size_in_words(node)
         found = _required(
             held,
-            f"{_called(program, item)} inside its container",
+            f"{called(program, item)} inside its container",
             _place(program, item),
             f"{_subject(program, item)}{f', {size},' if size else ''} is not inside its container, {region!r}",
             "move or shrink it, or enlarge the workspace or its `regionContainedIn`",
-            f"{_called(program, item)} is {size}" if size else "",
+            f"{called(program, item)} is {size}" if size else "",
         )
         if found and size and outgrows(node, reaches[region]):
             _warn_of_size(program, item, size, "the workspace" if container is None else "its container")
@@ -296,7 +259,7 @@ def _required(
 def _warn_of_size(program: Program, item: Object, size: str, container: str) -> None:
     span, filename = _place(program, item)
     warn(
-        f"{_called(program, item)} is {size}, larger than {container}",
+        f"{called(program, item)} is {size}, larger than {container}",
         span=span,
         filename=filename,
         help="the unit of length is the metre; `MeshShape.fromFile(path, unit='cm')` reads a mesh in centimetres",
@@ -312,8 +275,8 @@ def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[
     checks: list[NodeCheck] = []
     for item, sighting in program.sightings:
         node = seen(sighting.observer, item)
-        name, subject = _called(program, item), _subject(program, item)
-        whom = _called(program, sighting.observer, article="the ")
+        name, subject = called(program, item), _subject(program, item)
+        whom = called(program, sighting.observer, article="the ")
         if sighting.wanted:
             label, never = f"{name} visible from {whom}", f"{subject} cannot be seen from {whom}"
             node = _if_present(item, node)
@@ -329,7 +292,7 @@ def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[
         span, filename = _place(program, item)
         if ego is None and is_random(wanted):
             node = _if_present(item, connect("not", [truth(wanted)]))
-            label = f"{_called(program, item)} visible from the ego"
+            label = f"{called(program, item)} visible from the ego"
             checks.append(NodeCheck(node, label, span, BUILT_IN))
             continue
         if ego is None:
@@ -345,7 +308,7 @@ def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[
         node = _if_present(item, node)
         checks += _required(
             node,
-            f"{_called(program, item)} visible from the ego",
+            f"{called(program, item)} visible from the ego",
             (span, filename),
             f"{_subject(program, item)} cannot be seen from the ego",
             "move it into view, or write `with requireVisible False`",
@@ -386,7 +349,7 @@ def _is_true(node: Node) -> bool:
 
 def _object_nodes(program: Program, item: Object) -> ObjectNodes:
     span, _ = _place(program, item)
-    name = _called(program, item)
+    name = called(program, item)
     label = name if span is None else f"{name} (line {span.line})"
     values = (*body_operands(item), item.allowCollisions)
     position, orientation, size, shape, allowed = (as_node(value) for value in values)
@@ -416,7 +379,7 @@ def _check_fixed(program: Program, nodes: Sequence[ObjectNodes], pairs: NDArray[
     place, _ = _place(program, one)
     where = f" on line {place.line}" if place is not None else ""
     raise InvalidScenarioError(
-        f"{_subject(program, other)} always collides with {_called(program, one, article='the ')}{where}",
+        f"{_subject(program, other)} always collides with {called(program, one, article='the ')}{where}",
         span=span,
         filename=filename,
         help="move one of the two, or write `with allowCollisions True`",
@@ -445,16 +408,6 @@ def _requirements(program: Program) -> list[Check]:
     return checks
 
 
-def _called(program: Program, item: object, *, article: str = "") -> str:
-    """The property `name` of an instance, else the variable that holds it, else its class after ``article``."""
-    if is_random(item):
-        return f"{article}random observer"
-    given = getattr(item, "name", None)
-    if not (isinstance(given, str) and given):
-        given = program.variables.get(id(item))
-    return given or article + type(item).__name__
-
-
 def _subject(program: Program, item: object) -> str:
     """An instance as the subject of a message at its own place."""
-    return _called(program, item, article="this ")
+    return called(program, item, article="this ")

@@ -1,9 +1,13 @@
 """Reports of why candidates were rejected, with counts that do not depend on the order of checks."""
 
+from collections.abc import Sequence
 from typing import Final
+
+import numpy as np
 
 from scenic.dataclass import dataclass
 from scenic.language.spans import Span
+from scenic.runtime.sampling.checks import Part
 
 CORRELATED: Final = 0.1
 """Copies count as parted when what they are and what they were correlate less."""
@@ -30,6 +34,28 @@ class RejectionRow:
         """A sentence to say where it rejected every candidate."""
         note = f" ({self.note})" if self.note else ""
         return f"{self.label} rejected every candidate{note}"
+
+
+def rejection_rows(parts: Sequence[Part]) -> tuple[RejectionRow, ...]:
+    """The rows of a report, one for all parts of one label and place, without those that reject nothing.
+
+    Where a value is missing, the check that it exists rejects the lane, rather than every check that reads it.
+    """
+    if not parts:
+        return ()
+    rejected = np.array([~part.holds for part in parts])
+    undecided = np.array([part.lacks_value() for part in parts])
+    rejected &= ~undecided | ~(rejected & ~undecided).any(axis=0)
+    groups: dict[tuple[str, Span | None], list[int]] = {}
+    for number, part in enumerate(parts):
+        groups.setdefault((part.label, part.span), []).append(number)
+    merged = np.array([rejected[members].any(axis=0) for members in groups.values()])
+    alone = merged & (merged.sum(axis=0) == 1)
+    rows = [
+        RejectionRow(*key, float(mine.mean()), float(only.mean()), parts[members[0]].note)
+        for (key, members), mine, only in zip(groups.items(), merged, alone, strict=True)
+    ]
+    return tuple(row for row in rows if row.rejected > 0)
 
 
 @dataclass(frozen=True, slots=True)
