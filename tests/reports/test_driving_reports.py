@@ -1,12 +1,21 @@
 """Reports about driving: walkers, actions of cars, maps, what spawns."""
 
+import re
 import sys
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import pytest
 
-from scenic.language.errors import InvalidScenarioError, SimulationCreationError
+from scenic.failures import diagnose
+from scenic.language.errors import (
+    InvalidScenarioError,
+    RejectionException,
+    ScenicTypeError,
+    SimulationCreationError,
+)
+from scenic.simulators.batch import simulate_number
+from scenic.simulators.newtonian.simulator import NewtonianSimulator
 from tests.maps import straight
 from tests.reports.programs import Programs, programs, values  # noqa: F401 - a fixture
 
@@ -184,3 +193,56 @@ def test_what_cannot_be_spawned_is_named(
     )
     with pytest.raises(SimulationCreationError, match=message):
         scenario.getSimulator().simulate(scenario.sample(1, seed=1)[0], maxSteps=1)
+
+
+def test_rejections_by_lanes_name_object_time_and_line(programs: Programs) -> None:  # noqa: F811
+    """A car drives off the end of its street at 20 m/s."""
+    scenario = programs.compiled(
+        "behavior B():\n    while True:\n        here = self.lane\n        wait\n"
+        "ego = new Car at (290, -2), with velocity (20, 0, 0), with behavior B()\n",
+        map="street",
+        mode2D=True,
+    )
+    found = simulate_number(scenario, NewtonianSimulator(), seed=1, k=0, tries=3, maxSteps=40, timestep=0.1)
+    ((reason, times),) = found.rejections
+    assert (found.simulation, found.is_random, times) == (None, False, 1)
+    assert re.fullmatch(r"object is not in a lane: ego \(line 7\), at [0-9.]+ s, line 5", reason)
+
+
+def test_tables_of_rejections_quote_what_is_missing(programs: Programs) -> None:  # noqa: F811
+    """Some places are in no lane."""
+    scenario = programs.compiled(
+        "ego = new Object in RectangularRegion((150, 0), 0, 300, 40), with regionContainedIn everywhere\n"
+        "x = network.laneAt(ego, reject=True)\nrequire ego.x > 1000\nparam lane = x.uid\n",
+        map="street",
+    )
+    with pytest.raises(RejectionException) as caught:
+        scenario.sample(1, seed=1, max_attempts=50)
+    assert "`x.uid` is missing (line 6)" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("ego = new Car with behavior FollowLaneBehavior(target_speed='fast')\n", 3),
+        (
+            "behavior B():\n    do LaneChangeBehavior(laneSectionToSwitch=None)\nego = new Car with behavior B\n",
+            4,
+        ),
+    ],
+)
+def test_errors_of_library_behaviors_are_at_the_program(programs: Programs, text: str, line: int) -> None:  # noqa: F811
+    with pytest.raises((TypeError, AttributeError)) as caught:
+        programs.simulated(text, 3, map="street")
+    found = diagnose(caught.value)
+    assert found is not None
+    assert found.span is not None
+    assert (found.filename, found.span.line) == (str(programs.path), line)
+    assert [label.text for label in found.labels] == ["raised here"]
+
+
+def test_errors_of_library_defaults_are_at_the_program(programs: Programs) -> None:  # noqa: F811
+    with pytest.raises(ScenicTypeError) as caught:
+        programs.compiled("ego = new Car with roadDeviation 'y'\n", map="street")
+    assert (caught.value.filename, caught.value.line) == (str(programs.path), 3)
+    assert [label.text for label in caught.value.labels] == ["raised here"]

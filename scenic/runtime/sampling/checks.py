@@ -171,8 +171,8 @@ class DrawingCheck:
 
     def parts(self, batch: Batch) -> Sequence[Part]:
         (part,) = _only_part(self, batch)
-        # Of a choice, the option that is drawn may be what is missing.
-        operands = self.node.operands if self.node.operation.strict else self.node.operands[:1]
+        # Below a choice nothing has a check of its own.
+        operands = self.node.operands if self.node.operation.strict else ()
         return [replace(part, label=self.reason or self.label, undecided=_any_rejected(batch, operands))]
 
 
