@@ -91,6 +91,16 @@ def test_all_and_not(programs: Programs) -> None:  # noqa: F811
         assert max(box.position.x for box in scene.objects[1:]) <= 5
 
 
+def test_filters_of_values_that_depend_on_the_object(programs: Programs) -> None:  # noqa: F811
+    """The heading of a field at the object is the only positive element."""
+    scenario = programs.compiled(
+        "field = VectorField('field', lambda point: point.x)\nheading = (0 relative to field).yaw\n"
+        "ego = new Object at (Range(1, 2), 0), with foo Uniform(*filter(lambda x: x > 0, [-1, heading, 0]))\n"
+    )
+    for scene in scenario.sample(5, seed=1):
+        assert scene.egoObject.foo == pytest.approx(scene.egoObject.x)
+
+
 def test_random_filters(programs: Programs) -> None:  # noqa: F811
     """The filter leaves one or two options, depending on the draw."""
     scenario = programs.compiled(

@@ -10,6 +10,7 @@ from scenic.runtime.ground.context import current, here
 from scenic.runtime.python.opaque import call_later
 from scenic.runtime.python.purity import is_pure
 from scenic.runtime.values.distributions import Uniform
+from scenic.runtime.values.lazy import Lazy, defer
 from scenic.runtime.values.values import (
     NOTHING,
     Random,
@@ -31,6 +32,9 @@ def spread(function: Callable[..., Any], parts: Parts, keywords: Mapping[str, An
     ``Uniform(*xs)`` of a random list draws one of its elements, each equally likely; a sample in which it has none is
     rejected. Any other function is called with the sampled arguments.
     """
+    if any(is_starred and isinstance(value, Lazy) for is_starred, value in parts):
+        flags = tuple(is_starred for is_starred, _ in parts)
+        return defer(_spread_values, function, flags, tuple(value for _, value in parts), dict(keywords))
     if function is Uniform:
         _refuse_nothing(parts)
     if not any(is_starred and isinstance(value, Random) for is_starred, value in parts):
@@ -42,6 +46,16 @@ def spread(function: Callable[..., Any], parts: Parts, keywords: Mapping[str, An
         if chosen is not None:
             return chosen
     return call_later(_call, function, parts, **keywords)
+
+
+def _spread_values(
+    function: Callable[..., Any],
+    flags: Sequence[bool],
+    values: Sequence[Any],
+    keywords: Mapping[str, Any],
+) -> Any:
+    """`spread`, of values that no longer depend on the object being specified."""
+    return spread(function, tuple(zip(flags, values, strict=True)), keywords)
 
 
 def _refuse_nothing(parts: Parts) -> None:

@@ -12,6 +12,7 @@ from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph, Node
 from scenic.language.properties import CLASSES, properties_of
 from scenic.language.spans import Span
+from scenic.runtime.description.definitions import Invocable
 from scenic.runtime.description.outcome import Program
 from scenic.runtime.instances.objects import Point
 from scenic.runtime.python.samples import dependencies
@@ -134,6 +135,9 @@ class _Naming:
             for place, item in enumerate(value):
                 self.name(f"{text}[{place}]", item, unit, most)
             return
+        if isinstance(value, Invocable):
+            for parameter, argument in value._arguments.arguments.items():
+                self.name(f"{text}.{parameter}", argument, most=most)
         nodes = _nodes(value)
         if most is not None and (isinstance(value, Region) or len(Graph(nodes).axes) > most):
             return

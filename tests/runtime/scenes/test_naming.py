@@ -61,3 +61,10 @@ def test_external_parameters_are_named_where_only_a_variable_holds_them() -> Non
         "spare",
         "ego.position.x",
     ]
+
+
+def test_arguments_of_behaviors_are_named_by_their_parameters() -> None:
+    scenario = scenic.scenarioFromString(
+        "behavior Go(speed, gap=3):\n    wait\nego = new Object with behavior Go(Range(1, 10), gap=Range(0, 1))\n"
+    )
+    assert [name.text for name in scenario.draw_names.values()] == ["ego.behavior.speed", "ego.behavior.gap"]
