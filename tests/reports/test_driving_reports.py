@@ -2,10 +2,12 @@
 
 import re
 import sys
+from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import pytest
+from PIL import Image
 
 from scenic.failures import diagnose
 from scenic.language.errors import (
@@ -246,3 +248,21 @@ def test_errors_of_library_defaults_are_at_the_program(programs: Programs) -> No
         programs.compiled("ego = new Car with roadDeviation 'y'\n", map="street")
     assert (caught.value.filename, caught.value.line) == (str(programs.path), 3)
     assert [label.text for label in caught.value.labels] == ["raised here"]
+
+
+def test_films_are_written_without_a_display(
+    programs: Programs,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scene = programs.compiled("ego = new Car at (50, -2), with velocity (10, 0, 0)\n", map="street").sample(
+        1, seed=1
+    )[0]
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    simulator = NewtonianSimulator(render=True, export_gif=True)
+    assert simulator.simulate(scene, maxSteps=3, timestep=0.1) is not None
+    with Image.open(tmp_path / "simulation.gif") as film:
+        assert (film.n_frames, film.info["duration"]) == (4, 100)
+    NewtonianSimulator(render=True).simulate(scene, maxSteps=1)
+    assert [path.name for path in tmp_path.iterdir()] == ["simulation.gif"]

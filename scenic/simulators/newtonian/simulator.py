@@ -6,6 +6,7 @@ velocity. Objects pass through each other.
 
 import math
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, ClassVar, Final
 
 from scenic.domains.driving.simulators import DrivingSimulation, DrivingSimulator
@@ -14,6 +15,8 @@ from scenic.runtime.values.values import Orientation, Vector, operate
 from scenic.simulators.cameras import Cameras
 from scenic.simulators.newtonian.controls import Driven, Walking
 from scenic.simulators.newtonian.terrain import Terrain
+from scenic.simulators.results import ActionsTaken
+from scenic.simulators.simulation import Poses, Simulation
 
 __all__ = ["NewtonianSimulation", "NewtonianSimulator", "State"]
 
@@ -184,8 +187,8 @@ class NewtonianSimulator(DrivingSimulator):
 
     Args:
         network: accepted for compatibility; drawings take the network of the scene.
-        render: accepted for compatibility; `scenic simulate --view` makes a page that plays the simulation.
-        export_gif: accepted for compatibility.
+        render: no window is opened; `scenic simulate --view` makes a page that plays the simulation.
+        export_gif: with ``render``, write a film of each simulation that ends, as ``simulation.gif`` in the working directory.
 
     """
 
@@ -194,7 +197,24 @@ class NewtonianSimulator(DrivingSimulator):
     def __init__(self, network: Any = None, render: bool = False, export_gif: bool = False) -> None:
         super().__init__()
         self.network = network
+        self.render = render
+        self.export_gif = export_gif
 
     def createSimulation(self, scene: Scene, **options: Any) -> NewtonianSimulation:
-        """A simulation that has run."""
-        return NewtonianSimulation(scene, **options)
+        """A simulation that has run, or a deferred one, of which there is no film."""
+        if not (self.render and self.export_gif) or options.get("deferred"):
+            return NewtonianSimulation(scene, **options)
+        from scenic.formats.course_page import PoseTape
+        from scenic.formats.course_pictures import StatePictures, film_of
+
+        tape, on_state = PoseTape(), options.pop("on_state", None)
+
+        def keep(simulation: Simulation, poses: Poses, actions: ActionsTaken) -> None:
+            tape.add(poses)
+            if on_state is not None:
+                on_state(simulation, poses, actions)
+
+        simulation = NewtonianSimulation(scene, on_state=keep, **options)
+        pictures = StatePictures.of_course(simulation, tape)
+        film_of(pictures, range(len(pictures)), Path("simulation.gif"))
+        return simulation
