@@ -6,7 +6,7 @@ from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.source import Source
 from scenic.migration.class_names import Library
 from scenic.migration.expressions import rewrite_expressions
-from scenic.migration.instances import Dialect, dialect_of
+from scenic.migration.instances import Dialect, dialect_of, unknown_classes
 from scenic.migration.maps import MapFiles
 from scenic.migration.pieces import Piece
 from scenic.migration.rules import Note
@@ -52,12 +52,15 @@ class Converter:
         self._flat = flat
 
     def convert(self, text: str, filename: str, *, is_old: bool = False) -> Converted:
-        """Convert a program; ``is_old`` says that it is Scenic 2 even if its text does not show it."""
+        """Convert a program; ``is_old`` says that it is Scenic 2 even if its text does not show it.
+
+        A text without signs of either dialect in which an unknown name makes an object counts as Scenic 2, too.
+        """
         source = Source(text, filename)
         tokens = tokens_of(source)
         names = self._library.names(source, tokens)
         dialect = dialect_of(tokens, names)
-        if is_old and not dialect.is_new:
+        if not dialect.is_new and (is_old or unknown_classes(tokens, names)):
             dialect = Dialect(True, False, dialect.first, dialect.count)
         edits, notes, monitors = rewritten_words(tokens, names, dialect)
         readable = Source(edited(source.text, edits), filename)

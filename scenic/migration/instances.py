@@ -98,8 +98,11 @@ def dialect_of(tokens: Sequence[Token], names: Names) -> Dialect:
     return Dialect(bool(signs) and not is_new, is_new, signs[0] if signs else 1, len(signs))
 
 
-def unknown_classes(tokens: Sequence[Token], names: Names) -> frozenset[str]:
-    """Names of no known meaning that are used like classes: capitalised, and followed by a specifier or made the ego."""
+def unknown_classes(tokens: Sequence[Token], names: Names, *, certain: bool = False) -> frozenset[str]:
+    """Names of no known meaning that are used like classes: capitalised, and followed by a specifier or made the ego.
+
+    ``certain`` leaves out names that no module which was not found may define: in Scenic 3 these are mistakes.
+    """
     bound = set(_bound(tokens))
     found = set()
     for index in _uses(tokens):
@@ -107,7 +110,7 @@ def unknown_classes(tokens: Sequence[Token], names: Names) -> frozenset[str]:
         name = token.text
         if not name[:1].isupper() or name in names.classes or name in bound or name in names.others:
             continue
-        if name not in names.unseen and not names.has_unseen:
+        if certain and name not in names.unseen and not names.has_unseen:
             continue
         follower = tokens[index + 1]
         is_ego = tokens[index - 1].text == "=" and tokens[index - 2].text == "ego"
@@ -126,7 +129,7 @@ def makers(tokens: Sequence[Token], names: Names, *, certain: bool = False) -> I
     ``certain`` leaves out those that may be meant as classes in Scenic 3: names that no specifier follows, except the
     value of the ego and whole statements.
     """
-    unknown = unknown_classes(tokens, names)
+    unknown = unknown_classes(tokens, names, certain=certain)
     for index in _uses(tokens):
         name = tokens[index].text
         if name not in names.classes and name not in unknown:

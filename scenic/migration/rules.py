@@ -43,7 +43,7 @@ _RULES: Final = (
     Rule(
         "unknown-class",
         "names taken for classes",
-        "`{}` is defined in a module that was not found; it is used like a class of objects, and taken for one",
+        "`{}` is not defined here, nor in a module that was found; it is used like a class of objects, and taken for one",
         "check that `new {}` is meant",
     ),
     Rule(
