@@ -27,6 +27,7 @@ NEVER_LOADS = {
     "a map that is nowhere",
     "positionStdDev of a random number",
     "a class of a module that is not found",
+    "an unknown class beside an object, without a world model",
     "a class that is called",
 }
 """Programs that a person must change before they run."""
