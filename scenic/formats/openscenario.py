@@ -24,6 +24,7 @@ from scenic.runtime.values.values import Orientation, Vector
 __all__ = [
     "OpenScenarioFile",
     "map_beside",
+    "map_offset",
     "openscenario_about",
     "openscenario_document",
     "openscenario_support",
@@ -82,6 +83,7 @@ def openscenario_document(
     flat: bool,
     names: Sequence[str | None] = (),
     properties: Mapping[str, str] | None = None,
+    offset: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0),
 ) -> Any:
     """A ``scenariogeneration.xosc.Scenario`` of a simulation.
 
@@ -94,6 +96,7 @@ def openscenario_document(
         flat: whether positions are on the ground rather than in the middle of the objects.
         names: of the variables of the objects, where they have some.
         properties: of the file header.
+        offset: of the map's header: metres along x, y and z, and radians, by which players move the map.
 
     Raises:
         UnsupportedError: the package ``scenariogeneration`` is not installed.
@@ -106,7 +109,7 @@ def openscenario_document(
     times = [float(step * timestep) for step in range(len(poses))]
     for index, entity in enumerate(entities):
         listed.add_scenario_object(entity.name, _scenario_object(xosc, entity))
-        places = _places(xosc, entity, [state[index] for state in poses])
+        places = _places(xosc, entity, [state[index] for state in poses], offset)
         init.add_init_action(entity.name, xosc.TeleportAction(places[0]))
         speed = math.hypot(*entity.thing.velocity)
         if speed:
@@ -210,13 +213,24 @@ def _scenario_object(xosc: Any, entity: _Entity) -> Any:
     )
 
 
-def _places(xosc: Any, entity: _Entity, poses: Poses) -> list[Any]:
+def map_offset(scene: Any) -> tuple[float, float, float, float]:
+    """Metres along x, y and z, and radians, by which the header of a scene's map moves its coordinates."""
+    network = getattr(scene.workspace, "network", None)
+    found: tuple[float, float, float, float] = getattr(network, "offset", (0.0, 0.0, 0.0, 0.0))
+    return found
+
+
+def _places(xosc: Any, entity: _Entity, poses: Poses, moved: tuple[float, float, float, float]) -> list[Any]:
     """Positions of the reference point; height, pitch and roll only where some state has them."""
     offset = Vector.of(entity.offset)
     points = np.array([tuple(position + offset.rotatedBy(orientation)) for position, orientation in poses])
+    *shift, turn = moved
+    sine, cosine = math.sin(turn), math.cos(turn)
+    points[:, :2] = points[:, :2] @ np.array([[cosine, sine], [-sine, cosine]])
+    points += shift
     angles = np.array([_euler(orientation) for _, orientation in poses])
     # Players interpolate between states: a heading that jumps by a whole turn would spin the entity.
-    headings = np.unwrap(angles[:, 0] + math.pi / 2)
+    headings = np.unwrap(angles[:, 0] + math.pi / 2 + turn)
     rises, pitches, rolls = points[:, 2].any(), angles[:, 1].any(), angles[:, 2].any()
     return [
         xosc.WorldPosition(
@@ -307,6 +321,7 @@ class OpenScenarioFile:
             name=self._path.stem,
             flat=stands_on_ground(scene),
             names=variables_of(scene),
+            offset=map_offset(scene),
             properties={_PROPERTY: json.dumps(about, allow_nan=False, separators=(",", ":"))},
         )
         tree = document.get_element()

@@ -59,3 +59,39 @@ def test_a_reference_line_that_is_torn_is_told_once():
     text = text.replace('length="100" id', 'length="120" id')
     assert judged(text)[0] == "network"
     assert len(judged(text)[1]) == 1
+
+
+SIGNAL = '<signal id="7" s="58" t="-5" zOffset="4" orientation="+" dynamic="yes" type="1000001" subtype="-1">{}</signal>'
+CROSSWALK = '<objects><object id="3" type="crosswalk" s="40" t="0" zOffset="0">{}</object></objects>'
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "message"),
+    [
+        (cross(signal=SIGNAL.format('<validity fromLane="-9" toLane="-7"/>')), "SC621", "signal 7 of road 1 is valid for lanes -9 to -7, which"),
+        (cross(signal=SIGNAL.format('<validity fromLane="3" toLane="3"/>')), "SC621", "signal 7 of road 1 is valid for lane 3, which"),
+        (cross(signal=SIGNAL.format('<dependency id="99" type="x"/>')), "SC623", "signal 7 of road 1 names signal 99, which is not there"),
+        (cross(signal=SIGNAL.format('<reference elementType="signal" elementId="98"/>')), "SC623", "signal 7 of road 1 refers to signal 98, which"),
+        (cross(signal=SIGNAL.format("") + '<signalReference id="55" s="3" t="0" orientation="+"/>'), "SC623", "road 1 refers to signal 55"),
+        (CROSS.replace("<junction", '<controller id="1"><control signalId="77" type="0"/></controller><junction'), "SC623", "controller 1 names signal 77"),
+        (CROSS.replace("</junction>", '<controller id="5" type="0"/></junction>'), "SC623", "junction 9 names controller 5"),
+        (CROSS.replace("<planView>", '<type s="0" type="town"><speed max="fast"/></type><planView>', 1), "SC621", "'max' of <speed> of road 1 is 'fast', not a number"),
+        (CROSS.replace("<planView>", '<type s="0" type="town"><speed max="9" unit="knots"/></type><planView>', 1), "SC621", "'unit' of <speed> of road 1 is 'knots'"),
+        (straight(100, rest=CROSSWALK.format("")), "SC621", "crosswalk 3 is left out: it has no outline with three corners"),
+        (straight(100, rest=CROSSWALK.format('<outline><cornerLocal u="1" v="x"/></outline>')), "SC621", "crosswalk 3 is left out: 'v' of <cornerLocal> is 'x'"),
+    ],
+)  # fmt: skip
+def test_names_that_mean_nothing_are_told_once(text: str, code: str, message: str) -> None:
+    from scenic.domains.driving.loading import MapOptions, network_of
+
+    options = MapOptions(useCache=False, writeCache=False)
+    (problem,) = network_of.__wrapped__(text.encode(), "map.xodr", options).problems
+    assert problem.code == code
+    assert message in problem.message
+    assert problem.span is not None
+
+
+def test_controllers_and_signals_that_are_there_are_fine() -> None:
+    text = cross(signal=SIGNAL.format('<validity fromLane="-1" toLane="-1"/><dependency id="7"/>'))
+    text = text.replace("<junction", '<controller id="1"><control signalId="7"/></controller><junction')
+    assert judged(text.replace("</junction>", '<controller id="1"/></junction>')) == ("network", ())

@@ -245,7 +245,7 @@ class _RoadBuilder:
         road.speedLimitRanges = road_speeds(record)
         built = BuiltRoad(record, self._shape, road)
         sections = self._lane_sections(road, tags)
-        self._lanes(built, road, sections, tags)
+        self._lanes(built, road, sections)
         self._groups(road)
         self._sections(road, sections)
         self._neighbours(sections)
@@ -307,7 +307,7 @@ class _RoadBuilder:
                         ranges := section_speeds(self._record, strip.shape.record, strip.lane, forward)
                     ),
                     vehicles=_vehicles(strip.lane),
-                    tags=tags,
+                    tags=tags | {strip.lane.type},
                 )
                 element.road = road
                 element.speedLimitRanges = ranges
@@ -323,7 +323,6 @@ class _RoadBuilder:
         built: BuiltRoad,
         road: Road,
         sections: list[dict[int, LaneSection]],
-        tags: frozenset[str],
     ) -> None:
         """Join lane sections to lanes by their links, and give each its successor within the road."""
         lane_of: dict[int, list[LaneSection]] = {}
@@ -360,7 +359,7 @@ class _RoadBuilder:
                 union_of(part.polygon for part in chain),
                 speed=lowest(ranges := ranges_of(parts)),
                 vehicles=frozenset().union(*(part.vehicleTypes for part in chain)),
-                tags=tags,
+                tags=frozenset().union(*(part.tags for part in chain)),
             )
             lane.road = road
             lane.speedLimitRanges = ranges

@@ -530,6 +530,23 @@ class PedestrianCrossing(LinearElement):
     endSidewalk: Sidewalk | None = None
 
     @cached_property
+    def conflictingManeuvers(self) -> tuple["Maneuver", ...]:
+        """The maneuvers that lead over it: of its intersection, or with a lane of its road."""
+        import shapely
+
+        found = []
+        for maneuver in self.network.maneuvers:
+            lanes = [maneuver.startLane, maneuver.connectingLane, maneuver.endLane]
+            if isinstance(self.parent, Road):
+                lanes = [lane for lane in lanes if lane is not None and lane.road is self.parent]
+            elif maneuver.intersection is not self.parent:
+                continue
+            lines = [shapely.LineString(lane.line) for lane in lanes if lane is not None]
+            if any(self.polygon.intersects(line) for line in lines):
+                found.append(maneuver)
+        return tuple(found)
+
+    @cached_property
     def _road_uid(self) -> str:
         """The road that it crosses; in an intersection, the connecting road at its middle."""
         if isinstance(self.parent, Road):
@@ -638,7 +655,11 @@ class Maneuver(Frozen):
             for other in self.intersection.maneuvers
             if other.startLane is not self.startLane
             and other.connectingLane is not None
-            and mine.intersects(shapely.linestrings(other.connectingLane.line))
+            # Ways into one lane end at one point, but for rounding.
+            and (
+                other.endLane is self.endLane
+                or mine.intersects(shapely.linestrings(other.connectingLane.line))
+            )
         )
 
     @cached_property

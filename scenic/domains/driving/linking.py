@@ -218,6 +218,7 @@ class _Linker:
             polygon,
             id=number_or_text(junction.id),
             name=junction.name,
+            tags=junction.groups | ({junction.type} - {"default"}),
         )
         self._network.elements[intersection.uid] = intersection
         self._intersections[junction.id] = intersection

@@ -14,7 +14,8 @@ from scenic.domains.driving.elevation import Elevation, RoadHeight
 from scenic.domains.driving.linking import link_roads
 from scenic.domains.driving.network import RoadNetwork
 from scenic.domains.driving.storing import KIND, restored, stored
-from scenic.formats.opendrive.reader import read_map, told
+from scenic.formats.opendrive.problems import told
+from scenic.formats.opendrive.reader import read_map
 from scenic.formats.opendrive.records import Problem
 from scenic.formats.opendrive.shapes import MAX_ERROR
 from scenic.formats.opendrive.xml_tree import MapError

@@ -16,7 +16,7 @@ from scenic.domains.driving.roads import (
 from scenic.domains.driving.signals import FreezeTrafficLightsAction, SetTrafficLightAction
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.sensors import RGBSensor, SSSensor
-from scenic.domains.driving.setting import is2DMode, nearer, network_of_program, standing
+from scenic.domains.driving.setting import check_lights, is2DMode, nearer, network_of_program, standing
 from scenic.runtime.program.builtins import present_objects
 from scenic.domains.driving.workspace import DrivingWorkspace
 from scenic.simulators.utils.colors import Color
@@ -27,6 +27,7 @@ param map_options = {}
 param traffic_lights = {}
 
 network = network_of_program(globalParameters)
+check_lights(globalParameters, network)
 workspace = DrivingWorkspace(network)
 
 road = network.drivableRegion

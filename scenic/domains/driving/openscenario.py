@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from scenic.formats.openscenario import openscenario_document, stands_on_ground, variables_of
+from scenic.formats.openscenario import map_offset, openscenario_document, stands_on_ground, variables_of
 from scenic.language.errors import UnsupportedError
 from scenic.language.extras import installation
 
@@ -49,6 +49,7 @@ def toOpenScenario(simulation: Any, mapPath: Any = None, scenarioName: str = "Sc
             name=scenarioName,
             flat=stands_on_ground(scene),
             names=variables_of(scene),
+            offset=map_offset(scene),
         )
     except UnsupportedError as error:
         raise ModuleNotFoundError(

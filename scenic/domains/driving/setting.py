@@ -1,18 +1,19 @@
 """The setting of a driving program: its mode, its map, and which objects are near each other."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from scenic.domains.driving.roads import Network
+from scenic.domains.driving.signals import LightTimes, fixed_colors
 from scenic.formats.opendrive.xml_tree import MapError
 from scenic.language.errors import InvalidScenarioError
 from scenic.language.spans import Span
 from scenic.runtime.ground.context import current
 from scenic.runtime.instances.objects import OrientedPoint
 from scenic.runtime.values.lazy import Lazy
-from scenic.runtime.values.values import operate, to_vector, vector
+from scenic.runtime.values.values import is_random, operate, to_vector, vector
 
-__all__ = ["SettingError", "is2DMode", "nearer", "network_of_program", "standing"]
+__all__ = ["SettingError", "check_lights", "is2DMode", "nearer", "network_of_program", "standing"]
 
 
 def is2DMode() -> bool:
@@ -59,6 +60,31 @@ def network_of_program(parameters: Any) -> Network:
             str(error),
             "paths are relative to the working directory; `localPath(...)` makes them relative to the program",
         ) from error
+
+
+def check_lights(parameters: Any, network: Network) -> None:
+    """Check the parameter ``traffic_lights``, as far as it is not random.
+
+    Raises:
+        SettingError: an entry is unknown or no time, or names a light that the map does not have.
+
+    """
+    given = parameters["traffic_lights"]
+    if is_random(given) or not given:
+        return
+    if not isinstance(given, Mapping):
+        raise _wrong("traffic_lights", f"traffic_lights is {given!r}, not a dictionary", _LIGHTS)
+    definite = {name: value for name, value in given.items() if not is_random(value)}
+    try:
+        states = LightTimes.of(definite).states or {}
+        if not isinstance(states, Mapping):
+            raise InvalidScenarioError("traffic_lights: states must be a dictionary", help=_LIGHTS)
+        fixed_colors(network, {key: color for key, color in states.items() if not is_random(color)})
+    except InvalidScenarioError as error:
+        raise _wrong("traffic_lights", error.message, error.help or _LIGHTS) from error
+
+
+_LIGHTS = "write {'green': 10, 'yellow': 3, 'all_red': 1.5, 'offset': 0, 'states': {'12': 'red'}}, or some of these entries"
 
 
 def _wanted_by(parameter: str) -> str:

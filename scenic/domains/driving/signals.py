@@ -22,6 +22,7 @@ __all__ = [
     "LightTimes",
     "SetTrafficLightAction",
     "TrafficLights",
+    "fixed_colors",
     "phases_of",
 ]
 
@@ -96,6 +97,29 @@ def _conflict(one: Signal, other: Signal) -> bool:
     )
 
 
+def fixed_colors(network: RoadNetwork, states: Mapping[str, str]) -> dict[str, str]:
+    """The colours of lights that never change, by ``uid``, from colours by ids.
+
+    Raises:
+        InvalidScenarioError: a light is not there, or a colour is not one of `COLORS`.
+
+    """
+    colors = {}
+    lights = {signal.openDriveID: signal for signal in network.signals if signal.isTrafficLight}
+    for key, color in states.items():
+        light = lights.get(str(key).removeprefix("signal"))
+        if light is None:
+            near = nearest(str(key), list(lights))
+            raise InvalidScenarioError(
+                f"traffic_lights names the light {key!r}, which the map does not have",
+                help=f"did you mean {near!r}?"
+                if near
+                else f"lights of the map: {', '.join(sorted(lights)) or 'none'}",
+            )
+        colors[light.uid] = _color(color)
+    return colors
+
+
 class TrafficLights:
     """The traffic lights of a running simulation.
 
@@ -116,17 +140,7 @@ class TrafficLights:
             for number, phase in enumerate(phases):
                 for signal in phase:
                     self._phase.setdefault(signal.uid, (number, len(phases)))
-        self._fixed: dict[str, str] = {}
-        lights = {signal.openDriveID: signal for signal in network.signals if signal.isTrafficLight}
-        for key, color in (times.states or {}).items():
-            light = lights.get(str(key).removeprefix("signal"))
-            if light is None:
-                near = nearest(str(key), list(lights))
-                raise InvalidScenarioError(
-                    f"traffic_lights names the light {key!r}, which the map does not have",
-                    help=f"did you mean {near!r}?" if near else f"the map has {len(lights)} lights",
-                )
-            self._fixed[light.uid] = _color(color)
+        self._fixed = fixed_colors(network, times.states or {})
         self._set: dict[str, tuple[str, str]] = {}
         self._frozen: float | None = None
         self._lag = 0.0

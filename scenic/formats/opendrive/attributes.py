@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from scenic.formats.opendrive.xml_tree import Element
 
-__all__ = ["ids", "number_or", "offset", "priorities", "speed", "validity"]
+__all__ = ["ids", "junction_groups", "number_or", "offset", "priorities", "speed", "validity"]
 
 _SPEEDS: Final = {"m/s": 1.0, "km/h": 1 / 3.6, "kmh": 1 / 3.6, "mph": 0.44704, "": 1.0}
 
@@ -18,6 +18,15 @@ def offset(header: Element) -> tuple[float, float, float, float]:
         return 0.0, 0.0, 0.0, 0.0
     x, y, z, heading = (number_or(found, name, 0.0) for name in ("x", "y", "z", "hdg"))
     return x, y, z, heading
+
+
+def junction_groups(root: Element) -> dict[str, frozenset[str]]:
+    """The types of groups, such as ``roundabout``, to which each junction belongs, by the junction's id."""
+    found: dict[str, frozenset[str]] = {}
+    for group in root.all("junctionGroup"):
+        for junction in ids(group, "junctionReference", "junction"):
+            found[junction] = found.get(junction, frozenset()) | {group.attributes.get("type", "unknown")}
+    return found
 
 
 def validity(element: Element) -> tuple[tuple[int, int], ...]:

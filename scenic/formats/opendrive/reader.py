@@ -4,14 +4,21 @@ Anything that is wrong with a part of the file costs at most that part, and is t
 """
 
 import math
-from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise, zip_longest
 from types import MappingProxyType
 from typing import Final, Literal
 
-from scenic.formats.opendrive.attributes import ids, number_or, offset, priorities, speed, validity
+from scenic.formats.opendrive.attributes import (
+    ids,
+    junction_groups,
+    number_or,
+    offset,
+    priorities,
+    speed,
+    validity,
+)
 from scenic.formats.opendrive.records import (
     Connection,
     Crosswalk,
@@ -32,6 +39,7 @@ from scenic.formats.opendrive.records import (
     Speed,
 )
 from scenic.formats.opendrive.schema import LARGEST, faults_of
+from scenic.formats.opendrive.signal_references import unknown_references
 from scenic.formats.opendrive.xml_tree import Element, MapError, read_tree
 from scenic.language.spans import Span
 
@@ -46,8 +54,6 @@ _AGREEMENT: Final = 1e-3
 _BEHIND: Final = 0.1
 """Metres by which something may lie behind the end of its road without a word."""
 _CODES: Final = MappingProxyType({"road": "SC621", "lane": "SC622", "link": "SC623", "junction": "SC624"})
-_ALIKE: Final = 5
-"""Number of problems of one kind that are reported one by one."""
 
 
 class _Wrong(Exception):
@@ -128,6 +134,7 @@ class _Reader:
             else:
                 roads[road.id] = road
         junctions: dict[str, Junction] = {}
+        groups = junction_groups(root)
         for element in root.all("junction"):
             try:
                 junction = self._junction(element)
@@ -141,7 +148,7 @@ class _Reader:
                 message = f"junction {junction.id} is there twice: the second is left out"
                 self._tell("SC624", message, junction.line, "twice")
             else:
-                junctions[junction.id] = junction
+                junctions[junction.id] = replace(junction, groups=groups.get(junction.id, frozenset()))
         if not roads:
             # Whatever is wrong with the first road says more than that there is none.
             told = [problem for problem in self._problems if problem.kind == "road"] or self._told()
@@ -161,7 +168,7 @@ class _Reader:
             offset(header),
             tuple(roads.values()),
             tuple(junctions.values()),
-            tuple(self._told()),
+            (*self._told(), *unknown_references(root)),
             frozenset(self._left_out),
         )
 
@@ -495,10 +502,14 @@ class _Reader:
             try:
                 found = _crosswalk(element)
             except _Wrong as wrong:
-                self._tell_of(wrong.about, "SC621", f"a crosswalk is left out: {wrong}", "crosswalk")
+                self._tell_of(
+                    wrong.about,
+                    "SC621",
+                    f"crosswalk {element.attributes.get('id')} is left out: {wrong}",
+                    "crosswalk",
+                )
                 continue
-            if found is not None:
-                yield found
+            yield found
 
     # Junctions
 
@@ -545,22 +556,6 @@ class _Reader:
                 )
             )
         return Junction(name, element.attributes.get("name", ""), kind, tuple(connections), element.line)
-
-
-def told(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
-    """The problems with at most a few of a kind, and a count of the others of that kind."""
-    seen: Counter[str] = Counter()
-    shown = []
-    for problem in problems:
-        seen[problem.kind] += 1
-        if seen[problem.kind] <= _ALIKE:
-            shown.append(problem)
-    for kind, count in seen.items():
-        if count > _ALIKE:
-            first = next(problem for problem in problems if problem.kind == kind)
-            message = f"{count - _ALIKE} more like: {first.message}"
-            shown.append(Problem(first.code, message, first.line, kind))
-    return tuple(shown)
 
 
 # Parts of elements
@@ -676,7 +671,7 @@ def _lane(element: Element) -> Lane:
     )
 
 
-def _crosswalk(element: Element) -> Crosswalk | None:
+def _crosswalk(element: Element) -> Crosswalk:
     outlines = list(element.all("outline"))
     for several in element.all("outlines"):
         outlines += several.all("outline")
@@ -688,4 +683,4 @@ def _crosswalk(element: Element) -> Crosswalk | None:
             s, t, heading = (_number(element, name, 0.0) for name in ("s", "t", "hdg"))
             name = element.attributes.get("id", "")
             return Crosswalk(name, s, t, heading, tuple(corners), bool(along), element.line)
-    return None
+    raise _Wrong("it has no outline with three corners", element)

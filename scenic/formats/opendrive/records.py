@@ -258,6 +258,8 @@ class Junction:
     type: str
     connections: tuple[Connection, ...]
     line: int
+    groups: frozenset[str] = frozenset()
+    """Types of the groups of junctions to which it belongs, as ``roundabout``."""
 
 
 @dataclass(frozen=True, slots=True)

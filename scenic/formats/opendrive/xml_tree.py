@@ -9,9 +9,7 @@ from scenic.language.spans import Span
 
 __all__ = ["Element", "MapError", "read_tree"]
 
-_SKIPPED: Final = frozenset(
-    {"userData", "roadMark", "surface", "railroad", "controller", "geoReference", "dataQuality"}
-)
+_SKIPPED: Final = frozenset({"userData", "roadMark", "surface", "railroad", "geoReference", "dataQuality"})
 """Elements in which nothing is of interest (the text of ``geoReference`` is kept apart)."""
 
 

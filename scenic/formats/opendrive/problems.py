@@ -1,0 +1,27 @@
+"""Problems of a map, counted where many are alike."""
+
+from collections import Counter
+from typing import Final
+
+from scenic.formats.opendrive.records import Problem
+
+__all__ = ["told"]
+
+_ALIKE: Final = 5
+"""Number of problems of one kind that are reported one by one."""
+
+
+def told(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
+    """The problems with at most a few of a kind, and a count of the others of that kind."""
+    seen: Counter[str] = Counter()
+    shown = []
+    for problem in problems:
+        seen[problem.kind] += 1
+        if seen[problem.kind] <= _ALIKE:
+            shown.append(problem)
+    for kind, count in seen.items():
+        if count > _ALIKE:
+            first = next(problem for problem in problems if problem.kind == kind)
+            message = f"{count - _ALIKE} more like: {first.message}"
+            shown.append(Problem(first.code, message, first.line, kind))
+    return tuple(shown)
