@@ -148,47 +148,22 @@ class Lexer(LineReader):
                 add_column(start - line_start)
                 add_end_column(end - line_start)
             elif group == 2:  # OPENER
-                if len(brackets) == MOST_BRACKETS:
-                    raise NestedTooDeeplyError(start)
-                word = text[start]
-                column = start - line_start
-                add_kind(words[word])
-                add_text(word)
-                add_column(column)
-                add_end_column(column + 1)
-                brackets.append(Bracket(lexical_errors.CLOSER_OF[word], word, self.line, column))
+                self.opener(start)
             elif group == 3:  # CLOSER
-                word = text[start]
-                if brackets and brackets[-1][0] == word:
-                    brackets.pop()
-                    column = start - line_start
-                    add_kind(words[word])
-                    add_text(word)
-                    add_column(column)
-                    add_end_column(column + 1)
-                else:
+                if not (brackets and brackets[-1][0] == text[start]):
                     return self.odd_closer(start)
+                brackets.pop()
+                self.add(words[text[start]], start, end)
             elif group == 4:  # LINE_END
                 if brackets:
-                    self.next_lines(start, end)
-                    if lexemes.STATEMENT_WORD.match(text, end):
-                        self.never_closed(start)
-                        return self.start_line(self.line_start)
-                    if tolerant:
-                        leap = self.line_in_brackets(start, end)
-                        if leap is not None:
-                            return leap
+                    leap = self.line_end_in_brackets(start, end)
+                    if leap is not None:
+                        return leap
                     line_start = self.line_start
                 else:
-                    column = start - line_start
-                    add_kind(1)  # NEWLINE
-                    add_text("")
-                    add_column(column)
-                    add_end_column(column + 1)
-                    self.next_lines(start, end)
+                    self.line_end(start, end)
                     line_start = self.line_start
-                    white = text[line_start:end]
-                    if white != self.white or tolerant:
+                    if text[line_start:end] != self.white or tolerant:
                         return self.start_line(line_start)
             elif group == 5:  # COLON, and an exclamation mark
                 if fields and len(brackets) == 1:
@@ -201,15 +176,11 @@ class Lexer(LineReader):
                 add_column(start - line_start)
                 add_end_column(end - line_start)
             elif group == 6:  # NUMERAL
-                word = text[start:end]
-                if word[0] == "0" and lexemes.LEADING_ZERO.fullmatch(word):
-                    self.bad_number(start, end, word)
-                else:
-                    self.add(NUMBER, start, end)
+                self.number(start, end)
             elif group == 7:  # TEXT
                 if tolerant and self.text_is_open(start, end):
-                    quotes = len(text[start:end]) - len(text[start:end].lstrip("bBrRuU")) + 3
-                    return self.open_text(start, start + quotes)
+                    prefix = len(text[start:end]) - len(text[start:end].lstrip("bBrRuU"))
+                    return self.open_text(start, start + prefix + 3)
                 self.add(STRING, start, end)
                 if "\n" in text[start:end]:
                     self.lines_within(start, end)
@@ -222,6 +193,38 @@ class Lexer(LineReader):
             else:
                 return self.rare(group, start, end)
         raise AssertionError("the last match is that of the end")
+
+    def opener(self, start: int) -> None:
+        """Add an opening bracket; raises `NestedTooDeeplyError`."""
+        if len(self.brackets) == MOST_BRACKETS:
+            raise NestedTooDeeplyError(start)
+        word = self.text[start]
+        self.brackets.append(
+            Bracket(lexical_errors.CLOSER_OF[word], word, self.line, start - self.line_start)
+        )
+        self.add(self.words[word], start, start + 1)
+
+    def line_end(self, start: int, end: int) -> None:
+        """Add the end of a statement's line."""
+        self.add(NEWLINE, start, start + 1)
+        self.tokens.texts[-1] = ""
+        self.next_lines(start, end)
+
+    def line_end_in_brackets(self, start: int, end: int) -> int | None:
+        """Go on to the next line; returns where to read on if that is not the next character."""
+        self.next_lines(start, end)
+        if lexemes.STATEMENT_WORD.match(self.text, end):
+            self.never_closed(start)
+            return self.start_line(self.line_start)
+        return self.line_in_brackets(start, end) if self.tolerant else None
+
+    def number(self, start: int, end: int) -> None:
+        """Add a number, or what looks like one."""
+        word = self.text[start:end]
+        if word[0] == "0" and lexemes.LEADING_ZERO.fullmatch(word):
+            self.bad_number(start, end, word)
+        else:
+            self.add(NUMBER, start, end)
 
     def end(self, pos: int) -> None:
         """Close what is open, and fill the lists that hold the same for nearly every token."""

@@ -51,6 +51,14 @@ OnState: TypeAlias = Callable[["Simulation", Poses, ActionsTaken], None]
 """Called for each state of a simulation with what was then done, before the simulator advances."""
 
 
+def _tape(replay: bytes | None, key: bytes | None, **options: Any) -> Tape:
+    """The tape of a simulation: of an earlier one, with its key, where there is one."""
+    earlier = None if replay is None else Replay.decoded(replay)
+    if earlier is not None:
+        key = earlier.key
+    return Tape(earlier, key=fresh_key() if key is None else key, **options)
+
+
 class Simulation(ABC):
     """One run of a scene; it has run when the constructor returns.
 
@@ -146,25 +154,16 @@ class Simulation(ABC):
         self._inputs: dict[int, tuple[Any, ...]] = {}
         self._adopted: dict[tuple[int, str], Any] = {}
         self._destroyed = False
-        earlier = None if replay is None else Replay.decoded(replay)
-        self._tape = Tape(
-            earlier,
-            key=(fresh_key() if key is None else key) if earlier is None else earlier.key,
+        self._tape = _tape(
+            replay,
+            key,
             keep_draws=enableReplay,
             keep_states=enableDivergenceCheck,
             tolerance=divergenceTolerance,
             go_on=continueAfterDivergence,
             sourcing=source,
         )
-        program = scene.program
-        self._run = Run(
-            self,
-            program,
-            self._copies,
-            self._tape.source,
-            program.context.locator,
-            program.context.namer,
-            mode_2d=program.context.mode_2d,
+        self._run = self._new_run(
             robustness=robustness,
             keep_violations=keep_violations,
             keep_draws=enableReplay,
@@ -179,6 +178,19 @@ class Simulation(ABC):
         self._loop = self._whole()
         if not deferred:
             self.runToEnd()
+
+    def _new_run(self, **options: bool) -> Run:
+        program, context = self.scene.program, self.scene.program.context
+        return Run(
+            self,
+            program,
+            self._copies,
+            self._tape.source,
+            context.locator,
+            context.namer,
+            mode_2d=context.mode_2d,
+            **options,
+        )
 
     # Running
 

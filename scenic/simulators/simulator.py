@@ -78,41 +78,36 @@ class Simulator(ABC):
             raise RuntimeError("the simulator has been destroyed")
         if verbosity is None:
             verbosity = getattr(self, "verbosity", 0)
+        options |= {
+            "timestep": timestep,
+            "replay": replay,
+            "enableReplay": enableReplay,
+            "enableDivergenceCheck": enableDivergenceCheck,
+            "divergenceTolerance": divergenceTolerance,
+            "continueAfterDivergence": continueAfterDivergence,
+            "allowPickle": allowPickle,
+            "verbosity": verbosity,
+            "raiseGuardViolations": raiseGuardViolations,
+        }
+        tell = print if verbosity >= 2 else _in_silence
         for iteration in range(1, maxIterations + 1):
             label = str(iteration) if name is None else name if maxIterations == 1 else f"{name}.{iteration}"
-            tells = verbosity >= 2
-            if tells:
-                print(f"  Starting simulation {label}...")  # noqa: T201 - asked for by the user
+            tell(f"  Starting simulation {label}...")
             if source is not None:
                 options["source"] = _sourcing(source, scene, iteration - 1)
             try:
-                done = self._runSingleSimulation(
-                    scene,
-                    maxSteps,
-                    name=label,
-                    verbosity=verbosity,
-                    raiseGuardViolations=raiseGuardViolations,
-                    timestep=timestep,
-                    replay=replay,
-                    enableReplay=enableReplay,
-                    enableDivergenceCheck=enableDivergenceCheck,
-                    divergenceTolerance=divergenceTolerance,
-                    continueAfterDivergence=continueAfterDivergence,
-                    allowPickle=allowPickle,
-                    **options,
-                )
+                done = self._runSingleSimulation(scene, maxSteps, name=label, **options)
             except (RejectSimulationException, RejectionException, GuardViolation) as error:
                 if isinstance(error, GuardViolation) and raiseGuardViolations:
                     raise
                 if onRejection is not None:
                     onRejection(error)
-                if tells:
-                    print(f"  Rejected simulation {label} because: {error}")  # noqa: T201 - asked for by the user
+                tell(f"  Rejected simulation {label} because: {error}")
                 continue
-            if tells and done.result is not None:
-                print(  # noqa: T201 - asked for by the user
-                    f"  Simulation {label} ended successfully at time step {done.currentTime} because: "
-                    f"{done.result.terminationReason}"
+            if done.result is not None:
+                reason = done.result.terminationReason
+                tell(
+                    f"  Simulation {label} ended successfully at time step {done.currentTime} because: {reason}"
                 )
             return done
         return None
@@ -169,3 +164,7 @@ def _sourcing(source: PointSet | Sourcing, scene: Scene, attempt: int) -> Sourci
     if callable(source):
         return source
     return driven(source, scene.dimension, seed=scene.seed, scene=scene.k, attempt=attempt)
+
+
+def _in_silence(_: str) -> None:
+    """What is said is not printed."""

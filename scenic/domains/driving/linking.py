@@ -1,9 +1,9 @@
 """Links between roads: successors, intersections, maneuvers (sections 2.5 and 2.6 of the driving specification)."""
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -50,6 +50,52 @@ def link_roads(
     linker.tell_of_links()
     if fill_gaps:
         network._fillings = fillings
+
+
+class _Way(NamedTuple):
+    """A connection of a junction: from an end of a road over a connecting road."""
+
+    incoming: BuiltRoad
+    end: str
+    connecting: BuiltRoad
+    connection: records.Connection
+
+
+class _Crossing:
+    """The traffic through one intersection, as its connections are read."""
+
+    def __init__(self) -> None:
+        self.ends: dict[str, tuple[BuiltRoad, str]] = {}
+        """The roads that meet there, with their ends."""
+        self.maneuvers: list[Maneuver] = []
+        self.nowhere: dict[int, tuple[BuiltRoad, str, int]] = {}
+        """Connecting roads that lead nowhere, each with an end and a lane there."""
+
+    def complete(self, intersection: Intersection, inside: Sequence[BuiltRoad]) -> None:
+        """Give an intersection its roads, lanes, maneuvers and signals."""
+        center = intersection.polygon.centroid
+        middle = (center.x, center.y)
+
+        def around(meeting: tuple[BuiltRoad, str]) -> float:
+            road, end = meeting
+            return angle_about(middle, road.shape.reference[0 if end == "start" else -1])
+
+        intersection.roads = tuple(road.road for road, _ in sorted(self.ends.values(), key=around))
+        incoming = [maneuver.startLane for maneuver in self.maneuvers]
+        intersection.incomingLanes = _by_angle(incoming, middle, -1)
+        intersection.outgoingLanes = _by_angle([item.endLane for item in self.maneuvers], middle, 0)
+        # Together by the lanes that they start from, lanes and maneuvers in the order of the file.
+        order = {lane: number for number, lane in enumerate(dict.fromkeys(incoming))}
+        self.maneuvers.sort(key=lambda maneuver: order[maneuver.startLane])
+        intersection.maneuvers = tuple(self.maneuvers)
+        lanes = [maneuver.connectingLane for maneuver in self.maneuvers]
+        lanes += [lane for road in inside for lane in road.road.lanes]
+        intersection._connecting = tuple(dict.fromkeys(lane for lane in lanes if lane is not None))
+        signals: dict[str, Signal] = {}
+        for road in (*intersection.roads, *(item.road for item in inside)):
+            for signal in road.signals:
+                signals.setdefault(signal.uid, signal)
+        intersection.signals = tuple(signals.values())
 
 
 class _Linker:
@@ -180,10 +226,23 @@ class _Linker:
 
     def junction(self, junction: records.Junction, *, fill: bool) -> None:
         """Make the intersection of a junction, and the ways through it."""
-        import shapely
-
         inside = self._inside[junction.id]
-        ways: list[tuple[BuiltRoad, str, BuiltRoad, records.Connection]] = []
+        ways = list(self._ways(junction))
+        if junction.type == "virtual":
+            return
+        intersection = self._intersection(junction, inside, ways, fill=fill)
+        if intersection is None:
+            return
+        crossing = _Crossing()
+        for way in ways:
+            self._cross(way, intersection, crossing)
+        for connecting, contact, lane_id in crossing.nowhere.values():
+            self._tell_of_end(connecting, _OPPOSITE[contact], lane_id)
+        crossing.complete(intersection, inside)
+        self._network.connectingRoads += tuple(road.road for road in inside)
+
+    def _ways(self, junction: records.Junction) -> Iterator[_Way]:
+        """The connections of a junction between roads that are there."""
         for connection in junction.connections:
             incoming, connecting = (
                 self._built.get(connection.incoming),
@@ -193,22 +252,21 @@ class _Linker:
                 for name in (connection.incoming, connection.connecting):
                     self._look_up_road(name, connection.line)
                 continue
-            ways.append(
-                (
-                    incoming,
-                    self._touching(incoming, junction.id, connecting, connection),
-                    connecting,
-                    connection,
-                )
-            )
-        if junction.type == "virtual":
-            return
-        through = {id(road): road for road in (*inside, *(way[2] for way in ways)) if road.road.lanes}
+            end = self._touching(incoming, junction.id, connecting, connection)
+            yield _Way(incoming, end, connecting, connection)
+
+    def _intersection(
+        self, junction: records.Junction, inside: Sequence[BuiltRoad], ways: Sequence[_Way], *, fill: bool
+    ) -> Intersection | None:
+        """The intersection of a junction over the areas of its roads; ``None`` where nothing goes through it."""
+        import shapely
+
+        through = {id(road): road for road in (*inside, *(way.connecting for way in ways)) if road.road.lanes}
         polygon = union_of(lane.polygon for road in through.values() for lane in road.road.lanes)
         if polygon is None or not ways:
             message = f"junction {junction.id} has no connection that can be used: left out"
             self._tell(Problem("SC624", message, junction.line, "junction"))
-            return
+            return None
         if fill:
             parts = [shapely.Polygon(part.exterior) for part in getattr(polygon, "geoms", [polygon])]
             polygon = area_of(shapely.union_all(parts))
@@ -222,65 +280,34 @@ class _Linker:
         )
         self._network.elements[intersection.uid] = intersection
         self._intersections[junction.id] = intersection
-        ends: dict[str, tuple[BuiltRoad, str]] = {}
-        incoming_lanes: list[Lane] = []
-        outgoing: list[Lane] = []
-        maneuvers: list[Maneuver] = []
-        nowhere: dict[int, tuple[BuiltRoad, str, int]] = {}
-        for incoming, end, connecting, connection in ways:
-            ends.setdefault(incoming.record.id, (incoming, end))
-            links = connection.links
-            if links is None:
-                links = tuple(records.LaneLinks(key, key) for key, _ in incoming.contact_lanes(end))
-            for link in links:
-                start = incoming.lane_at(end, link.source)
-                lane = connecting.lane_at(connection.contact, link.target)
-                if start is None or lane is None:
-                    if connection.links is not None:
-                        self._look_up_lane(incoming, end, link.source, link.line)
-                        self._look_up_lane(connecting, connection.contact, link.target, link.line)
-                    continue
-                if (start.sections[0].isForward) != (end == "end"):
-                    continue  # traffic comes out of the junction there
-                beyond, where = self._beyond(connecting, _OPPOSITE[connection.contact], link.target)
-                self._join(start, lane)
-                if beyond is None or where is None:
-                    nowhere.setdefault(id(connecting), (connecting, connection.contact, link.target))
-                    continue
-                ends.setdefault(where[0].record.id, where)
-                maneuver = Maneuver(start, beyond, lane, intersection)
-                self._maneuvers[id(start)].append(maneuver)
-                maneuvers.append(maneuver)
-                incoming_lanes.append(start)
-                outgoing.append(beyond)
-        for connecting, contact, lane_id in nowhere.values():
-            self._tell_of_end(connecting, _OPPOSITE[contact], lane_id)
-        center = polygon.centroid
-        middle = (center.x, center.y)
+        return intersection
 
-        def around(road: BuiltRoad, end: str) -> float:
-            reference = road.shape.reference
-            return angle_about(middle, reference[0 if end == "start" else -1])
-
-        ordered = sorted(ends.values(), key=lambda item: around(*item))
-        intersection.roads = tuple(road.road for road, _ in ordered)
-        intersection.incomingLanes = _by_angle(incoming_lanes, middle, -1)
-        intersection.outgoingLanes = _by_angle(outgoing, middle, 0)
-        # Together by the lanes that they start from, lanes and maneuvers in the order of the file.
-        order = {lane: number for number, lane in enumerate(dict.fromkeys(incoming_lanes))}
-        maneuvers.sort(key=lambda maneuver: order[maneuver.startLane])
-        intersection.maneuvers = tuple(maneuvers)
-        lanes = [maneuver.connectingLane for maneuver in maneuvers] + [
-            lane for road in inside for lane in road.road.lanes
-        ]
-        intersection._connecting = tuple(dict.fromkeys(lane for lane in lanes if lane is not None))
-        signals: dict[str, Signal] = {}
-        for road in (*(item for item, _ in ordered), *inside):
-            for signal in road.road.signals:
-                signals.setdefault(signal.uid, signal)
-        intersection.signals = tuple(signals.values())
-        for road in inside:
-            self._network.connectingRoads += (road.road,)
+    def _cross(self, way: _Way, intersection: Intersection, crossing: _Crossing) -> None:
+        """Make the maneuvers of one connection."""
+        incoming, end, connecting, connection = way
+        crossing.ends.setdefault(incoming.record.id, (incoming, end))
+        links = connection.links
+        if links is None:
+            links = tuple(records.LaneLinks(key, key) for key, _ in incoming.contact_lanes(end))
+        for link in links:
+            start = incoming.lane_at(end, link.source)
+            lane = connecting.lane_at(connection.contact, link.target)
+            if start is None or lane is None:
+                if connection.links is not None:
+                    self._look_up_lane(incoming, end, link.source, link.line)
+                    self._look_up_lane(connecting, connection.contact, link.target, link.line)
+                continue
+            if (start.sections[0].isForward) != (end == "end"):
+                continue  # traffic comes out of the junction there
+            beyond, where = self._beyond(connecting, _OPPOSITE[connection.contact], link.target)
+            self._join(start, lane)
+            if beyond is None or where is None:
+                crossing.nowhere.setdefault(id(connecting), (connecting, connection.contact, link.target))
+                continue
+            crossing.ends.setdefault(where[0].record.id, where)
+            maneuver = Maneuver(start, beyond, lane, intersection)
+            self._maneuvers[id(start)].append(maneuver)
+            crossing.maneuvers.append(maneuver)
 
     def _tell_of_end(self, connecting: BuiltRoad, end: str, lane_id: int) -> None:
         """Report a connecting road with a lane that leads nowhere, unless the cause has been reported."""

@@ -100,27 +100,7 @@ def stored(network: RoadNetwork) -> Arrays:
     signals = list(network.signals)
     way = {id(item): index for index, item in enumerate(maneuvers)}
     sign = {id(item): index for index, item in enumerate(signals)}
-    rows = []
-    for element in elements:
-        cls: Any = type(element)
-        row: list[Any] = [
-            _CLASSES.index(cls),
-            element.uid,
-            element.id,
-            element.name,
-            element.speedLimit,
-            sorted(kind.name for kind in element.vehicleTypes),
-            sorted(element.tags),
-            [getattr(element, name) for name in _PLAIN.get(cls, ())],
-            [number[id(getattr(element, name, None))] for name in _ONE[cls]],
-            [[number[id(item)] for item in getattr(element, name)] for name in _MANY[cls]],
-            [way[id(item)] for item in getattr(element, "maneuvers", ())],
-            [sign[id(item)] for item in getattr(element, "signals", ())],
-            element.speedLimitRanges,
-        ]
-        if isinstance(element, RoadSection):
-            row.append([number[id(item)] for item in element.lanesByOpenDriveID.values()])
-        rows.append(row)
+    rows = [_row(element, number, way, sign) for element in elements]
     text = {
         "driveOnLeft": network.driveOnLeft,
         "problems": [
@@ -128,37 +108,11 @@ def stored(network: RoadNetwork) -> Arrays:
             for item in network.problems
         ],
         "elements": rows,
-        "maneuvers": [
-            (
-                number[id(item.startLane)],
-                number[id(item.endLane)],
-                number[id(item.connectingLane)],
-                number[id(item.intersection)],
-                item.type.name,
-            )
-            for item in maneuvers
-        ],
-        "signals": [
-            (
-                *(item.uid, item.openDriveID, item.country, item.type, item.subtype, item.t, item.height),
-                *(item.value, item.references, item.dependencies, item._priorities, item._place),
-                [
-                    (at.road, at.s, at.orientation, at.validity, at.is_reference, at.holds)
-                    for at in item.placements
-                ],
-            )
-            for item in signals
-        ],
+        "maneuvers": [_maneuver_row(item, number) for item in maneuvers],
+        "signals": [_signal_row(item) for item in signals],
         "offset": network.offset,
         "lists": [[number[id(item)] for item in getattr(network, name)] for name in _LISTS],
-        "heights": [
-            (
-                road.uid,
-                *([_numbers(cubic) for cubic in cubics] for cubics in (road.profile, road.tilt, *road.falls)),
-                [(shape.s, [_numbers(cubic) for cubic in shape.heights]) for shape in road.shapes],
-            )
-            for road in network._elevation.roads
-        ],
+        "heights": [_height_row(road) for road in network._elevation.roads],
     }
     samples = [road.samples for road in network._elevation.roads]
     lines = [line for element in elements for line in _lines(element)]
@@ -171,6 +125,55 @@ def stored(network: RoadNetwork) -> Arrays:
         **_binary("areas", [element.polygon for element in elements]),
         **_binary("fillings", network._fillings),
     }
+
+
+def _row(
+    element: Any, number: Mapping[int | None, int], way: Mapping[int, int], sign: Mapping[int, int]
+) -> list[object]:
+    """An element, others by their numbers; `_element` and `_link` read it."""
+    cls = type(element)
+    row = [
+        _CLASSES.index(cls),
+        element.uid,
+        element.id,
+        element.name,
+        element.speedLimit,
+        sorted(kind.name for kind in element.vehicleTypes),
+        sorted(element.tags),
+        [getattr(element, name) for name in _PLAIN.get(cls, ())],
+        [number[id(getattr(element, name, None))] for name in _ONE[cls]],
+        [[number[id(item)] for item in getattr(element, name)] for name in _MANY[cls]],
+        [way[id(item)] for item in getattr(element, "maneuvers", ())],
+        [sign[id(item)] for item in getattr(element, "signals", ())],
+        element.speedLimitRanges,
+    ]
+    if isinstance(element, RoadSection):
+        row.append([number[id(item)] for item in element.lanesByOpenDriveID.values()])
+    return row
+
+
+def _maneuver_row(item: Maneuver, number: Mapping[int | None, int]) -> tuple[object, ...]:
+    ends = (item.startLane, item.endLane, item.connectingLane, item.intersection)
+    return (*(number[id(end)] for end in ends), item.type.name)
+
+
+def _signal_row(item: Signal) -> tuple[object, ...]:
+    places = [
+        (at.road, at.s, at.orientation, at.validity, at.is_reference, at.holds) for at in item.placements
+    ]
+    return (
+        *(item.uid, item.openDriveID, item.country, item.type, item.subtype, item.t, item.height),
+        *(item.value, item.references, item.dependencies, item._priorities, item._place),
+        places,
+    )
+
+
+def _height_row(road: RoadHeight) -> tuple[object, ...]:
+    return (
+        road.uid,
+        *([_numbers(cubic) for cubic in cubics] for cubics in (road.profile, road.tilt, *road.falls)),
+        [(shape.s, [_numbers(cubic) for cubic in shape.heights]) for shape in road.shapes],
+    )
 
 
 def restored(arrays: Arrays, filename: str, tolerance: float, cls: type[_Network]) -> _Network:
@@ -210,8 +213,13 @@ def restored(arrays: Arrays, filename: str, tolerance: float, cls: type[_Network
         for code, message, line in text["problems"]
     )
     network._fillings = tuple(_polygons(arrays, "fillings"))
+    network._elevation = _elevation(arrays, text["heights"])
+    return network
+
+
+def _elevation(arrays: Arrays, rows: Sequence[Any]) -> Elevation:
     starts = [0, *np.cumsum(arrays["sample_counts"]).tolist()]
-    network._elevation = Elevation(
+    return Elevation(
         [
             RoadHeight(
                 uid,
@@ -222,11 +230,10 @@ def restored(arrays: Arrays, filename: str, tolerance: float, cls: type[_Network
                 tuple(LateralShape(s, _cubics(heights)) for s, heights in shapes),
             )
             for (uid, profile, tilt, left, right, shapes), start, stop in zip(
-                text["heights"], starts[:-1], starts[1:], strict=True
+                rows, starts[:-1], starts[1:], strict=True
             )
         ]
     )
-    return network
 
 
 def _element(network: RoadNetwork, row: Sequence[Any], polygon: Any) -> NetworkElement:
