@@ -3,7 +3,7 @@
 import csv
 import io
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field
 from typing import Any, Final
 
@@ -108,8 +108,6 @@ def plot(settings: Sequence[Setting]) -> str:
 
     Simulations without a finite robustness have no dot, but count in the share.
     """
-    import html
-
     values = [_values(item) for item in settings]
     every = [value for some in values for value in some] or [0.0]
     low, high = min(*every, 0.0), max(*every, 0.0)
@@ -123,50 +121,48 @@ def plot(settings: Sequence[Setting]) -> str:
     parts = [
         f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {_WIDTH} {_HEIGHT}' font-family='sans-serif' font-size='13'>",
         f"<rect width='{_WIDTH}' height='{_HEIGHT}' fill='white'/>",
+        *_scale([low + (high - low) * tick / _TICKS for tick in range(_TICKS + 1)], height),
     ]
-    for tick in range(_TICKS + 1):
-        value = low + (high - low) * tick / _TICKS
-        parts.append(
-            f"<text x='{_LEFT - 8}' y='{height(value) + 4:.1f}' text-anchor='end' fill='#555'>{value:.2g}</text>"
-        )
-        parts.append(
-            f"<line x1='{_LEFT}' x2='{_WIDTH}' y1='{height(value):.1f}' y2='{height(value):.1f}' stroke='#eee'/>"
-        )
-    parts.append(
-        f"<line x1='{_LEFT}' x2='{_WIDTH}' y1='{height(0):.1f}' y2='{height(0):.1f}' stroke='#888' stroke-dasharray='5 4'/>"
-    )
     means = []
     for number, (setting, some) in enumerate(zip(settings, values, strict=True)):
         middle = _LEFT + column * (number + 0.5)
-        for place, value in enumerate(some):
-            # Dots beside each other, in the order of the simulations.
-            x = middle + 0.5 * column * ((place + 0.5) / len(some) - 0.5)
-            colour = "#c0392b" if value < 0 else "#2e86c1"
-            parts.append(
-                f"<circle cx='{x:.1f}' cy='{height(value):.1f}' r='3' fill='{colour}' fill-opacity='.55'/>"
-            )
+        parts += _column(setting, some, middle, column, height)
         if some:
-            means.append(f"{middle:.1f},{height(sum(some) / len(some)):.1f}")
-        violated = sum(verdict_of(row) == "violated" for row in setting.simulations)
-        words = (
-            setting.label or "all",
-            f"{violated} of {len(setting.rows)}",
-            "violated",
-        )
-        parts += [
-            f"<text x='{middle:.1f}' y='{_HEIGHT - _BOTTOM + 22 + 17 * line}' text-anchor='middle'>{html.escape(text)}</text>"
-            for line, text in enumerate(words)
-        ]
-    parts.append(f"<polyline points='{' '.join(means)}' fill='none' stroke='#222' stroke-width='2'/>")
-    parts += [
-        f"<rect x='{float(x) - 4:.1f}' y='{float(y) - 4:.1f}' width='8' height='8' fill='#222'/>"
-        for x, y in (point.split(",") for point in means)
-    ]
+            means.append((middle, height(sum(some) / len(some))))
+    line = " ".join(f"{x:.1f},{y:.1f}" for x, y in means)
+    parts.append(f"<polyline points='{line}' fill='none' stroke='#222' stroke-width='2'/>")
+    parts += [f"<rect x='{x - 4:.1f}' y='{y - 4:.1f}' width='8' height='8' fill='#222'/>" for x, y in means]
     centre = _TOP + (_HEIGHT - _TOP - _BOTTOM) / 2
     parts.append(
         f"<text transform='translate(18 {centre:.0f}) rotate(-90)' text-anchor='middle'>robustness</text></svg>"
     )
     return "".join(parts)
+
+
+def _scale(ticks: Sequence[float], height: Callable[[float], float]) -> Iterator[str]:
+    """The lines and numbers of the vertical axis, and the line of 0."""
+    for value in ticks:
+        y = height(value)
+        yield f"<text x='{_LEFT - 8}' y='{y + 4:.1f}' text-anchor='end' fill='#555'>{value:.2g}</text>"
+        yield f"<line x1='{_LEFT}' x2='{_WIDTH}' y1='{y:.1f}' y2='{y:.1f}' stroke='#eee'/>"
+    y = height(0)
+    yield f"<line x1='{_LEFT}' x2='{_WIDTH}' y1='{y:.1f}' y2='{y:.1f}' stroke='#888' stroke-dasharray='5 4'/>"
+
+
+def _column(
+    setting: Setting, values: Sequence[float], middle: float, width: float, height: Callable[[float], float]
+) -> Iterator[str]:
+    """The dots of one setting, beside each other in the order of the simulations, and its words."""
+    import html
+
+    for place, value in enumerate(values):
+        x = middle + 0.5 * width * ((place + 0.5) / len(values) - 0.5)
+        colour = "#c0392b" if value < 0 else "#2e86c1"
+        yield f"<circle cx='{x:.1f}' cy='{height(value):.1f}' r='3' fill='{colour}' fill-opacity='.55'/>"
+    violated = sum(verdict_of(row) == "violated" for row in setting.simulations)
+    for line, text in enumerate((setting.label or "all", f"{violated} of {len(setting.rows)}", "violated")):
+        y = _HEIGHT - _BOTTOM + 22 + 17 * line
+        yield f"<text x='{middle:.1f}' y='{y}' text-anchor='middle'>{html.escape(text)}</text>"
 
 
 def _values(setting: Setting) -> list[float]:

@@ -120,6 +120,26 @@ def _merged(nodes: Iterable[ast.expr]) -> list[ast.expr]:
     return result
 
 
+def _between(tokens: Tokens, first: int, last: int) -> tuple[int, int, int, int]:
+    """The place of some tokens."""
+    return (tokens.lines[first], tokens.columns[first], tokens.end_lines[last], tokens.end_columns[last])
+
+
+def _check_conversion(actions: Reader, tokens: Tokens, conversion: int) -> bool:
+    """Report a conversion that is none, or does not follow its mark; return whether it is right."""
+    mark_end = (tokens.end_lines[conversion - 1], tokens.end_columns[conversion - 1])
+    if (tokens.lines[conversion], tokens.columns[conversion]) != mark_end:
+        message = "the conversion of an f-string has to come right after the `!`"
+        advice = "remove the space between them"
+    elif tokens.texts[conversion] not in ("s", "r", "a"):
+        message = f"`{tokens.texts[conversion]}` is no conversion of an f-string"
+        advice = "use `!s`, `!r` or `!a`"
+    else:
+        return True
+    actions.fail(actions.place_of_token(conversion), message, help=advice, code="SC105")
+    return False
+
+
 def replacement_field(
     actions: Reader,
     tokens: Tokens,
@@ -133,22 +153,7 @@ def replacement_field(
     """The nodes of ``{value=!conversion:specification}``: a constant first if it has the ``=``."""
     code = -1
     if conversion is not None:
-        mark_end = (tokens.end_lines[conversion - 1], tokens.end_columns[conversion - 1])
-        if (tokens.lines[conversion], tokens.columns[conversion]) != mark_end:
-            actions.fail(
-                actions.place_of_token(conversion),
-                "the conversion of an f-string has to come right after the `!`",
-                help="remove the space between them",
-                code="SC105",
-            )
-            return None
-        if tokens.texts[conversion] not in ("s", "r", "a"):
-            actions.fail(
-                actions.place_of_token(conversion),
-                f"`{tokens.texts[conversion]}` is no conversion of an f-string",
-                help="use `!s`, `!r` or `!a`",
-                code="SC105",
-            )
+        if not _check_conversion(actions, tokens, conversion):
             return None
         code = ord(tokens.texts[conversion])
     elif equals is not None and specification is None:
@@ -159,21 +164,9 @@ def replacement_field(
         format_spec = ast.JoinedStr(
             values=_merged(_parts(actions, tokens, parts, raw=_is_raw(tokens, opening)))
         )
-        last = closing - 1
-        _put(
-            format_spec,
-            (tokens.lines[colon], tokens.columns[colon], tokens.end_lines[last], tokens.end_columns[last]),
-        )
+        _put(format_spec, _between(tokens, colon, closing - 1))
     node = ast.FormattedValue(value=value, conversion=code, format_spec=format_spec)
-    _put(
-        node,
-        (
-            tokens.lines[opening],
-            tokens.columns[opening],
-            tokens.end_lines[closing],
-            tokens.end_columns[closing],
-        ),
-    )
+    _put(node, _between(tokens, opening, closing))
     if equals is None:
         return [node]
     if conversion is not None:

@@ -34,6 +34,7 @@ _DIRECTIVE: Final = (
     r"#[ \t]*scenic[ \t]*:[ \t]*(?P<word>[A-Za-z][A-Za-z_-]*)"
     r"[ \t]*(?:\[(?P<codes>[^\[\]#]*)(?P<close>\])?)?"
 )
+_WORDS: Final = ("ignore", "ignore-file")
 _BARE_CODES: Final = r"[ \t:=(]*(?P<codes>SC[0-9]+(?:[ \t]*,[ \t]*SC[0-9]+)*)\)?"
 _CODE: Final = r"[^\s,](?:[^,]*[^\s,])?"
 _STATIC: Final = ("SC1", "SC2", "SC3", "SC9")
@@ -171,73 +172,88 @@ def _comments(tokens: Tokens, source: Source) -> Iterator[_Comment]:
     )
     for line, column, text in tokens.comments:
         for match in re.finditer(_DIRECTIVE, text):
-            comment = _comment(match, line, column, source, before_program=line < first)
+            comment = _comment(_Written(match, line, column, source), before_program=line < first)
             if comment is not None:
                 yield comment
 
 
-def _comment(
-    match: re.Match[str], line: int, column: int, source: Source, *, before_program: bool
-) -> _Comment | None:
-    def span(start: int, end: int) -> Span:
-        return Span(line, column + start, line, column + end)
+@dataclass(frozen=True, slots=True)
+class _Written:
+    """An ignore comment as it stands in the text."""
 
-    word = match["word"]
-    whole = span(match.start(), match.end() if match["codes"] is not None else match.end("word"))
+    match: re.Match[str]
+    line: int
+    column: int
+    source: Source
 
-    def bad(message: str, advice: str, place: Span = whole, fix: Fix | None = None) -> Diagnostic:
-        return Diagnostic(BAD, message, place, Severity.WARNING, source.filename, advice, fix=fix)
+    def span(self, start: int, end: int) -> Span:
+        """The place of a part of its line."""
+        return Span(self.line, self.column + start, self.line, self.column + end)
 
-    if word not in ("ignore", "ignore-file"):
-        meant = nearest(word, ("ignore", "ignore-file"))
-        if meant is None and word.lower() not in ("ignore", "ignore-file"):
-            return None
-        meant = meant or word.lower()
-        place = span(match.start("word"), match.end("word"))
-        problem = bad(
-            f"`{word}` silences nothing",
-            f"did you mean `{meant}`?",
-            place,
-            Fix(f"Write `{meant}`", (Edit(place, meant),)),
+    @property
+    def whole(self) -> Span:
+        """Its place, with the codes."""
+        return self.span(
+            self.match.start(),
+            self.match.end() if self.match["codes"] is not None else self.match.end("word"),
         )
-        return _Comment(whole, False, problem=problem)
-    comment = _Comment(whole, word == "ignore-file")
+
+    def bad(self, message: str, advice: str, edit: Edit | None = None) -> Diagnostic:
+        """A problem with it, and the change that mends it."""
+        place, fix = self.whole, None
+        if edit is not None:
+            place, fix = edit.span, Fix(f"Write `{edit.text}`", (edit,))
+        return Diagnostic(BAD, message, place, Severity.WARNING, self.source.filename, advice, fix=fix)
+
+
+def _comment(written: _Written, *, before_program: bool) -> _Comment | None:
+    match, word = written.match, written.match["word"]
+    if word not in _WORDS:
+        meant = nearest(word, _WORDS) or (word.lower() if word.lower() in _WORDS else None)
+        if meant is None:
+            return None
+        edit = Edit(written.span(match.start("word"), match.end("word")), meant)
+        problem = written.bad(f"`{word}` silences nothing", f"did you mean `{meant}`?", edit)
+        return _Comment(written.whole, False, problem=problem)
+    comment = _Comment(written.whole, word == "ignore-file")
     if match["codes"] is None:
         bare = re.compile(_BARE_CODES, re.IGNORECASE).match(match.string, match.end("word"))
         if bare is not None:
-            place = span(match.end("word"), bare.end())
             codes = ", ".join(each.strip().upper() for each in bare["codes"].split(","))
-            comment.span = span(match.start(), bare.end())
-            comment.problem = bad(
-                "the codes of an ignore comment stand in brackets",
-                f"write `{word}[{codes}]`",
-                place,
-                Fix(f"Write `[{codes}]`", (Edit(place, f"[{codes}]"),)),
+            edit = Edit(written.span(match.end("word"), bare.end()), f"[{codes}]")
+            comment.span = written.span(match.start(), bare.end())
+            comment.problem = written.bad(
+                "the codes of an ignore comment stand in brackets", f"write `{word}[{codes}]`", edit
             )
             return comment
-    else:
-        start, end = match.span("codes")
-        comment.brackets = span(start, end)
-        comment.codes = [
-            _Code(each[0], span(each.start(), each.end()))
-            for each in re.compile(_CODE).finditer(match.string, start, end)
-        ]
-        if match["close"] is None:
-            comment.problem = bad("the bracket of this ignore comment is not closed", "add `]`")
-            comment.codes = []
-            return comment
-        if not comment.codes:
-            comment.problem = bad(
-                "this ignore comment names no codes",
-                "name codes between the brackets, or leave the brackets out to silence all warnings",
-            )
+    elif not _read_codes(comment, written):
+        return comment
     if comment.whole_file and not before_program:
-        comment.problem = bad(
+        comment.problem = written.bad(
             "`ignore-file` stands after the first statement, where it silences nothing",
             "move it to the top of the file",
         )
         comment.codes = []
     return comment
+
+
+def _read_codes(comment: _Comment, written: _Written) -> bool:
+    """Read the codes in brackets; returns whether the bracket is closed."""
+    start, end = written.match.span("codes")
+    comment.brackets = written.span(start, end)
+    if written.match["close"] is None:
+        comment.problem = written.bad("the bracket of this ignore comment is not closed", "add `]`")
+        return False
+    comment.codes = [
+        _Code(each[0], written.span(each.start(), each.end()))
+        for each in re.compile(_CODE).finditer(written.match.string, start, end)
+    ]
+    if not comment.codes:
+        comment.problem = written.bad(
+            "this ignore comment names no codes",
+            "name codes between the brackets, or leave the brackets out to silence all warnings",
+        )
+    return True
 
 
 def _bad(comment: _Comment, source: Source) -> Iterator[Diagnostic]:

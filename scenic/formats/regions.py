@@ -62,12 +62,7 @@ def outlines(region: object) -> list[Array]:
         case CircularRegion():
             return [columns[0] + columns[1][:, np.newaxis] * _ring()]
         case RectangularRegion():
-            offset = np.zeros((5, 3))
-            offset[:, :2] = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) / 2
-            offset *= [region.width, region.length, 0]
-            half = region.heading / 2
-            turn = rotation_matrix((0.0, 0.0, np.sin(half), np.cos(half)))
-            return [np.array(list(region.position), dtype=float) + offset @ turn.T]
+            return [_rectangle(region)]
         case PlanarRegion():
             return _rings(region.polygons, _height(region))
         case Footprint():
@@ -77,12 +72,7 @@ def outlines(region: object) -> list[Array]:
         case PointSetRegion():
             return _crosses(region.points)
         case BoxRegion() | SpheroidRegion():
-            size, middle, turn = columns
-            frame = rotation_matrix(tuple(turn[0].tolist())) * size[0]
-            ring = _ring() / 2
-            rings = [ring, ring[:, [0, 2, 1]], ring[:, [2, 0, 1]]]
-            lines = [_CORNERS[list(edge)] for edge in _EDGES] if isinstance(region, BoxRegion) else rings
-            return [middle + line @ frame.T for line in lines]
+            return _ellipsoid_or_box(columns, is_box=isinstance(region, BoxRegion))
         case VoxelRegion():
             return _longest([region.corner + line * region.pitch for line in _cell_edges(region.filled)])
         case SideSurface():
@@ -100,6 +90,24 @@ def outlines(region: object) -> list[Array]:
             return _composed(region)
         case _:
             return _cloud(region, columns)
+
+
+def _rectangle(region: RectangularRegion) -> Array:
+    offset = np.zeros((5, 3))
+    offset[:, :2] = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) / 2
+    offset *= [region.width, region.length, 0]
+    half = region.heading / 2
+    turn = rotation_matrix((0.0, 0.0, np.sin(half), np.cos(half)))
+    return np.array(list(region.position), dtype=float) + offset @ turn.T
+
+
+def _ellipsoid_or_box(columns: Sequence[Any], *, is_box: bool) -> list[Array]:
+    size, middle, turn = columns
+    frame = rotation_matrix(tuple(turn[0].tolist())) * size[0]
+    ring = _ring() / 2
+    rings = [ring, ring[:, [0, 2, 1]], ring[:, [2, 0, 1]]]
+    lines = [_CORNERS[list(edge)] for edge in _EDGES] if is_box else rings
+    return [middle + line @ frame.T for line in lines]
 
 
 def _composed(region: Composite) -> list[Array]:

@@ -6,8 +6,8 @@ from typing import Final, cast
 
 from scenic.language.keywords import (
     HARD_KEYWORDS,
+    MEANINGS,
     PYTHON_KEYWORDS,
-    SOFT_KEYWORDS,
     TEMPORAL_OPERATORS,
     TemporalOperator,
 )
@@ -95,7 +95,7 @@ def of_property(name: str) -> str | None:
 
 def of_keyword(word: str) -> str | None:
     """A keyword, in general: its own meaning, or the elements of the language that begin with it or hold it."""
-    for table in (HARD_KEYWORDS, SOFT_KEYWORDS, PYTHON_KEYWORDS):
+    for table in (HARD_KEYWORDS, MEANINGS, PYTHON_KEYWORDS):
         if word in table:
             return _page((word,), table[word], ())
     elements = [(form, declared.documentation) for declared in _elements() for form in declared.forms]

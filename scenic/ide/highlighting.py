@@ -5,7 +5,7 @@ keywords are names in most places, so most of them count only within a phrase of
 """
 
 import re
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from enum import StrEnum
 from itertools import groupby
 from typing import Final
@@ -82,28 +82,37 @@ def _runs(form: Form) -> Iterator[_Run]:
             yield _Run(words, found[0][0] > 0, found[-1][0] + 1 < len(form.parts))
 
 
-def _vocabulary() -> Vocabulary:
-    runs = [run for form in SCENIC_FORMS for run in _runs(form)]
-    phrases = {run.words for run in runs if len(run.words) > 1}
-    statements, whole, blocks, headers, definitions = set(), set(), set(), set(), set()
+def _starts_of_statements() -> tuple[Mapping[str, set[str]], set[tuple[str, ...]]]:
+    """The words that begin statements, by what follows them, and runs of several words."""
+    starts: dict[str, set[str]] = {
+        kind: set() for kind in ("statement", "whole", "block", "header", "definition")
+    }
+    phrases: set[tuple[str, ...]] = set()
     for form in STATEMENT_FORMS:
         words = _leading(form.row)
         if form.has_block and _begins_with_name(form.row[1:]):
-            definitions.add(form.start)
+            starts["definition"].add(form.start)
             continue
         match form.row[1:]:
             case _ if not form.is_soft:
                 pass
             case (Written(":"), *_):
-                blocks.add(form.start)
+                starts["block"].add(form.start)
             case () | (Optional(),):
-                whole.add(form.start)
+                starts["whole"].add(form.start)
             case _ if form.has_block and len(words) == 1:
-                headers.add(form.start)
+                starts["header"].add(form.start)
             case (Reference() | ListOf() | Kind(), *_):
-                statements.add(form.start)
+                starts["statement"].add(form.start)
         if len(words) > 1:
             phrases.add(words)
+    return starts, phrases
+
+
+def _vocabulary() -> Vocabulary:
+    runs = [run for form in SCENIC_FORMS for run in _runs(form)]
+    by_kind, phrases = _starts_of_statements()
+    phrases |= {run.words for run in runs if len(run.words) > 1}
     infix = {
         form.parts[1].text
         for form in FORMS
@@ -119,20 +128,20 @@ def _vocabulary() -> Vocabulary:
     operators = of_expressions | {word for run in runs for word in run.words if word in HARD_KEYWORDS}
     starts = frozenset(form.start for form in STATEMENT_FORMS)
     return Vocabulary(
-        statement_words=frozenset(HARD_KEYWORDS) - constants - (operators - starts) - definitions,
+        statement_words=frozenset(HARD_KEYWORDS) - constants - (operators - starts) - by_kind["definition"],
         operator_words=operators - starts,
         constants=constants,
         variables=frozenset(TRACKED) | _named(NameKind.VALUE) | {"self"},
-        definitions=frozenset(definitions),
+        definitions=frozenset(by_kind["definition"]),
         phrases=tuple(sorted(phrases, key=lambda words: (-len(words), words))),
         before_operands=_single(runs, after=True),
         after_operands=_single(runs, before=True, after=False) | _units(),
         infix=frozenset(word for word in infix if word.isidentifier()),
         statement_starts=starts,
-        statements=frozenset(statements),
-        whole_statements=frozenset(whole),
-        blocks=frozenset(blocks),
-        headers=frozenset(headers),
+        statements=frozenset(by_kind["statement"]),
+        whole_statements=frozenset(by_kind["whole"]),
+        blocks=frozenset(by_kind["block"]),
+        headers=frozenset(by_kind["header"]),
         classes=_named(
             NameKind.CLASS, NameKind.SHAPE, NameKind.REGION, NameKind.DISTRIBUTION, NameKind.EXCEPTION
         ),

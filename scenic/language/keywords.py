@@ -6,7 +6,7 @@ from typing import Final
 
 from scenic.dataclass import dataclass
 
-__all__ = ["HARD_KEYWORDS", "PYTHON_KEYWORDS", "SOFT_KEYWORDS", "TEMPORAL_OPERATORS", "TemporalOperator"]
+__all__ = ["HARD_KEYWORDS", "MEANINGS", "PYTHON_KEYWORDS", "TEMPORAL_OPERATORS", "TemporalOperator"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +109,7 @@ PYTHON_KEYWORDS: Final[Mapping[str, str]] = MappingProxyType(
 )
 """Python's own keywords, in Scenic's light."""
 
-SOFT_KEYWORDS: Final[Mapping[str, str]] = MappingProxyType(
+MEANINGS: Final[Mapping[str, str]] = MappingProxyType(
     {
         "_": "In a pattern of `match`, matches anything.",
         "additive": "Attribute of a property: the values of all classes along the inheritance chain are collected.",

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from scenic.ide.hover import hover
 from scenic.ide.snapshot import Snapshot
-from scenic.language.keywords import SOFT_KEYWORDS
+from scenic.language.keywords import MEANINGS
 from scenic.language.names import NAMES
 from scenic.language.operators import OPERATORS
 from scenic.language.spans import Span
@@ -53,7 +53,7 @@ def at(word: str, *, nth: int = 1, text: str = PROGRAM) -> str | None:
         ("left", 1, SPECIFIERS["left of"].documentation),
         ("by", 1, SPECIFIERS["left of"].documentation),
         ("toward", 1, SPECIFIERS["facing toward"].documentation),
-        ("ego", 3, SOFT_KEYWORDS["ego"]),
+        ("ego", 3, MEANINGS["ego"]),
         ("require", 1, STATEMENTS["Require"].documentation),
         ("to", 1, "distance"),
         ("deg", 1, OPERATORS["deg"].documentation),

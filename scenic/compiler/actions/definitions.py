@@ -11,6 +11,25 @@ from scenic.compiler.actions.targets import TargetActions
 Parameter: TypeAlias = tuple[Any, Any]
 
 
+def _disorder(earlier: ast.arguments, key: Any, value: Any, *, starred: bool) -> tuple[str, str] | None:
+    """The message and the help for an item of a signature that cannot follow the earlier ones."""
+    if earlier.kwarg is not None:
+        return "nothing can follow a parameter with `**`", "move it to the front"
+    if key == "/" and (starred or earlier.posonlyargs or not earlier.args):
+        return (
+            "`/` has to stand once, after the first parameters and before `*`",
+            "the order is `positional, /, any, *, keyword`",
+        )
+    if key == "*" and starred:
+        return "there can be only one `*`", "remove one of them"
+    if isinstance(key, ast.arg) and not starred and value is None and earlier.defaults:
+        return (
+            "a parameter without a default follows one with a default",
+            "give it a default, or move it to the front",
+        )
+    return None
+
+
 class DefinitionActions(TargetActions):
     """Definitions in Python."""
 
@@ -40,22 +59,13 @@ class DefinitionActions(TargetActions):
             if isinstance(key, ast.arg):
                 place = place_of(key)
             starred = bare is not None or result.vararg is not None
-            if result.kwarg is not None:
-                self._misordered(place, "nothing can follow a parameter with `**`", "move it to the front")
+            disorder = _disorder(result, key, value, starred=starred)
+            if disorder is not None:
+                self._misordered(place, *disorder)
                 return None
             if key == "/":
-                if starred or result.posonlyargs or not result.args:
-                    self._misordered(
-                        place,
-                        "`/` has to stand once, after the first parameters and before `*`",
-                        "the order is `positional, /, any, *, keyword`",
-                    )
-                    return None
                 result.posonlyargs, result.args = result.args, []
             elif key == "*":
-                if starred:
-                    self._misordered(place, "there can be only one `*`", "remove one of them")
-                    return None
                 if isinstance(value, int):
                     bare = value
                 else:
@@ -68,20 +78,10 @@ class DefinitionActions(TargetActions):
             else:
                 if value is not None:
                     result.defaults.append(value)
-                elif result.defaults:
-                    self._misordered(
-                        place,
-                        "a parameter without a default follows one with a default",
-                        "give it a default, or move it to the front",
-                    )
-                    return None
                 result.args.append(key)
         if bare is not None and not result.kwonlyargs:
-            self._misordered(
-                self.place_of_token(bare),
-                "a parameter has to follow the bare `*`",
-                "remove `*`, or add a parameter",
-            )
+            advice = "remove `*`, or add a parameter"
+            self._misordered(self.place_of_token(bare), "a parameter has to follow the bare `*`", advice)
             return None
         return result
 

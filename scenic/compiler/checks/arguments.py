@@ -1,7 +1,7 @@
 """Arguments of calls whose callee is certain: too many, too few, unknown."""
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
@@ -123,6 +123,49 @@ def _known(node: ast.Call, context: Context) -> _Callee | None:
     return _Callee(definition.name, title, args, definition, None, skip)
 
 
+def _too_many(node: ast.Call, positional: Sequence[ast.arg], callee: _Callee, context: Context) -> Diagnostic:
+    """More positional arguments than there are parameters."""
+    count, given = len(positional), len(node.args)
+    if count == 1 and positional[0].arg in _VECTORS and given in (2, 3) and not node.keywords:
+        return _one_vector(node, callee.title, positional[0].arg, callee, context)
+    return context.error(
+        "SC211",
+        f"{callee.title} takes {_count(count)}, and {given} {'is' if given == 1 else 'are'} given",
+        node.args[count],
+        "leave out the rest, or give it by name" if callee.args.kwonlyargs else "leave out the rest",
+        labels=callee.labels(context),
+    )
+
+
+def _keywords(
+    node: ast.Call, by_name: set[str], filled: set[str], callee: _Callee, context: Context
+) -> Iterator[Diagnostic]:
+    """Arguments by name that are given twice, or that no parameter has the name of."""
+    for keyword in node.keywords:
+        if keyword.arg is None:
+            continue
+        if keyword.arg in filled and keyword.arg in by_name:
+            yield context.error(
+                "SC211",
+                f"{callee.title} is given `{keyword.arg}` twice, by position and by name",
+                word_span(context.source, keyword, keyword.arg),
+                "keep one of them",
+                labels=callee.labels(context),
+            )
+        elif keyword.arg not in by_name and callee.args.kwarg is None:
+            place = word_span(context.source, keyword, keyword.arg)
+            free = by_name - filled - {other.arg for other in node.keywords if other.arg is not None}
+            suggestion = nearest(keyword.arg, free) or related(keyword.arg, free)
+            yield context.error(
+                "SC211",
+                f"{callee.title} has no parameter `{keyword.arg}`",
+                place,
+                f"did you mean `{suggestion}`?" if suggestion else f"it takes {_listed(sorted(by_name))}",
+                labels=callee.labels(context),
+                fix=context.renaming(place, keyword.arg, suggestion) if suggestion else None,
+            )
+
+
 def _arguments(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Diagnostic]:
     title, args, skip = callee.title, callee.args, callee.skip
     positional = [*args.posonlyargs, *args.args][skip:]
@@ -132,51 +175,15 @@ def _arguments(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Di
     spread = any(isinstance(argument, ast.Starred) for argument in node.args)
     spread_names = any(keyword.arg is None for keyword in node.keywords)
     if not spread and args.vararg is None and len(node.args) > len(positional):
-        count = len(positional)
-        given = len(node.args)
-        if count == 1 and positional[0].arg in _VECTORS and given in (2, 3) and not node.keywords:
-            yield _one_vector(node, title, positional[0].arg, callee, context)
-            return
-        yield context.error(
-            "SC211",
-            f"{title} takes {_count(count)}, and {given} {'is' if given == 1 else 'are'} given",
-            node.args[count],
-            "leave out the rest, or give it by name" if args.kwonlyargs else "leave out the rest",
-            labels=callee.labels(context),
-        )
+        yield _too_many(node, positional, callee, context)
         return
     filled = {arg.arg for arg in positional[: 0 if spread else len(node.args)]}
-    wrong = False
-    for keyword in node.keywords:
-        if keyword.arg is None:
-            continue
-        if keyword.arg in filled and keyword.arg in by_name:
-            wrong = True
-            place = word_span(context.source, keyword, keyword.arg)
-            yield context.error(
-                "SC211",
-                f"{title} is given `{keyword.arg}` twice, by position and by name",
-                place,
-                "keep one of them",
-                labels=callee.labels(context),
-            )
-        elif keyword.arg not in by_name and args.kwarg is None:
-            wrong = True
-            place = word_span(context.source, keyword, keyword.arg)
-            free = by_name - filled - {other.arg for other in node.keywords}
-            suggestion = nearest(keyword.arg, free) or related(keyword.arg, free)
-            yield context.error(
-                "SC211",
-                f"{title} has no parameter `{keyword.arg}`",
-                place,
-                f"did you mean `{suggestion}`?" if suggestion else f"it takes {_listed(sorted(by_name))}",
-                labels=callee.labels(context),
-                fix=context.renaming(place, keyword.arg, suggestion) if suggestion else None,
-            )
+    problems = list(_keywords(node, by_name, filled, callee, context))
+    yield from problems
     if isinstance(callee.definition, scenic.BehaviorDef) and not spread:
         yield from _apart(node, positional, callee, context)
         yield from _unlike_default(node, callee, context)
-    if wrong or spread or spread_names:
+    if problems or spread or spread_names:
         return
     given_names = filled | {keyword.arg for keyword in node.keywords if keyword.arg in by_name}
     missing = [name for name in callee.required if name not in given_names]

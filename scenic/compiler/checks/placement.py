@@ -10,7 +10,7 @@ from scenic.compiler.checks.context import HEADED, Context
 from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import TRACKED
-from scenic.language.statements import STATEMENTS, Place
+from scenic.language.statements import STATEMENTS, Place, Statement
 
 __all__ = ["check_placement"]
 
@@ -74,26 +74,31 @@ def _evaluated_later(context: Context) -> set[ast.AST]:
     }
 
 
+def _declared_problem(statement: Statement, where: Where) -> tuple[str, str] | None:
+    """The message and the help for a statement that is not at one of its declared places."""
+    if where.place not in statement.places:
+        allowed = " or ".join(sorted(str(place) for place in statement.places))
+        if where.function is not None and where.place is Place.TOP:
+            return (
+                f"`{statement.title}` cannot be used in a function",
+                f"it can stand {allowed}; a function cannot act for an agent",
+            )
+        return f"`{statement.title}` cannot be used {where.place}", f"it can stand {allowed}"
+    if where.function is not None and where.place in DYNAMIC and statement.suspends:
+        return (
+            f"`{statement.title}` cannot be used in a function {where.place}",
+            "it acts on what is running: move it out of the function",
+        )
+    return None
+
+
 def _problems(node: ast.AST, where: Where) -> Iterator[tuple[str, str]]:
     """Messages and help for one statement."""
     statement = STATEMENTS.get(type(node).__name__)
-    if statement is not None:
-        if where.place not in statement.places:
-            allowed = " or ".join(sorted(str(place) for place in statement.places))
-            if where.function is not None and where.place is Place.TOP:
-                yield (
-                    f"`{statement.title}` cannot be used in a function",
-                    f"it can stand {allowed}; a function cannot act for an agent",
-                )
-                return
-            yield f"`{statement.title}` cannot be used {where.place}", f"it can stand {allowed}"
-            return
-        if where.function is not None and where.place in DYNAMIC and statement.suspends:
-            yield (
-                f"`{statement.title}` cannot be used in a function {where.place}",
-                "it acts on what is running: move it out of the function",
-            )
-            return
+    problem = None if statement is None else _declared_problem(statement, where)
+    if problem is not None:
+        yield problem
+        return
     match node:
         case scenic.PropertyDef() if not where.in_class_block:
             yield (
@@ -125,6 +130,12 @@ def _problems(node: ast.AST, where: Where) -> Iterator[tuple[str, str]]:
                 "annotated assignments are not allowed in the body of a class",
                 "write `name: default` for a property, `name = value` for an attribute",
             )
+        case _:
+            yield from _python_problems(node, where)
+
+
+def _python_problems(node: ast.AST, where: Where) -> Iterator[tuple[str, str]]:
+    match node:
         case ast.Return() if where.function is None and where.place in (Place.TOP, Place.CLASS):
             yield f"`return` cannot be used {where.place}", "it belongs in a function"
         case ast.Break() | ast.Continue() if not where.in_loop:

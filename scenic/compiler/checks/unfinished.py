@@ -11,8 +11,9 @@ from typing import Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import Context
 from scenic.compiler.forms import declared_forms
+from scenic.compiler.generated import SOFT_KEYWORDS
 from scenic.language.diagnostics import Diagnostic
-from scenic.language.keywords import SOFT_KEYWORDS, TEMPORAL_OPERATORS
+from scenic.language.keywords import TEMPORAL_OPERATORS
 from scenic.language.statements import STATEMENTS
 
 __all__ = [

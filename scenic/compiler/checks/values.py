@@ -1,7 +1,7 @@
 """Values of a kind that cannot be used where they stand, and attributes that values of a kind do not have."""
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import Final
 
 from scenic.compiler import tree as scenic
@@ -387,6 +387,14 @@ def _attribute(node: ast.Attribute, scope: Scope, context: Context) -> Iterator[
         known = frozenset(members_of(kind.name))
         if not known or name in known:
             return
+    yield from _unknown_attribute(node, kind, known, context)
+
+
+def _unknown_attribute(
+    node: ast.Attribute, kind: Kind, known: Collection[str], context: Context
+) -> Iterator[Diagnostic]:
+    """An attribute that is none of the known ones."""
+    name = node.attr
     meant = nearest(name, known)
     if meant is None and kind.name in INSTANCES:
         meant = related(name, {each for each in known if not each.startswith("_")})

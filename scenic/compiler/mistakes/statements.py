@@ -89,54 +89,59 @@ def initial_or_final_clause(at: Situation) -> Problem | None:
     )
 
 
+def _until_or_for(at: Situation) -> Problem | None:
+    """``do for 3 seconds``, ``do a for 3 seconds until x``, ``do a, b until x``."""
+    if at.token == at.first + 1:
+        clause = "until condition" if at.found == "until" else "for 3 seconds"
+        message = f"what to do has to stand before `{at.found}`"
+        return at.problem("SC116", at.here(), message, f"write `do behavior() {clause}`")
+    earlier = [i for i in range(at.first, at.token) if at.word(i) in ("until", "for", "choose", "shuffle")]
+    if earlier and at.opener(at.token) is None:
+        word = at.word(earlier[0])
+        if word in ("choose", "shuffle"):
+            message = f"`do {word}` takes no `{at.found}`"
+            advice = f"put the choice into a behavior, and run that with `{at.found}`"
+        elif word == at.found:
+            return None
+        else:
+            message = "`do` takes either `for` or `until`, not both"
+            advice = "use `try` with `interrupt when` for the other condition"
+        labels = ((at.place(earlier[0]), f"`{word}` stands here"),)
+        return at.problem("SC116", at.here(), message, advice, labels=labels)
+    if at.found == "for":
+        return None
+    changes = [insertion(at.first + 1, "("), insertion(at.token, ")")]
+    return at.problem(
+        "SC125",
+        at.place(at.first + 1, at.token),
+        "what stands before `until` needs parentheses here",
+        "put parentheses around what stands between `do` and `until`",
+        fix=("add parentheses", changes),
+    )
+
+
+def _while(at: Situation) -> Problem:
+    """``do a while x``."""
+    changes = [Change(at.token, at.token + 1, ("until", "not"))]
+    if not _BINDING_LESS.isdisjoint(map(at.word, range(at.token, at.end))):
+        # `until not a and b` would end it for other reasons.
+        changes += [insertion(at.token + 1, "("), insertion(at.end, ")")]
+    return at.problem(
+        "SC129",
+        at.here(),
+        "`do` has no `while`",
+        "write `until`, which ends it when the condition holds",
+        fix=("replace it by `until not`", changes),
+    )
+
+
 def target_first(at: Situation) -> Problem | None:
     """``do until x``, ``do for 3 seconds``, ``mutate by 2 x``, ``terminate x when``."""
     first = at.word(at.first)
-    if at.token == at.first + 1 and first == "do" and at.found in ("until", "for"):
-        clause = "until condition" if at.found == "until" else "for 3 seconds"
-        return at.problem(
-            "SC116",
-            at.here(),
-            f"what to do has to stand before `{at.found}`",
-            f"write `do behavior() {clause}`",
-        )
     if first == "do" and at.found in ("until", "for"):
-        earlier = [
-            i for i in range(at.first, at.token) if at.word(i) in ("until", "for", "choose", "shuffle")
-        ]
-        if earlier and at.opener(at.token) is None:
-            word = at.word(earlier[0])
-            if word in ("choose", "shuffle"):
-                message = f"`do {word}` takes no `{at.found}`"
-                advice = f"put the choice into a behavior, and run that with `{at.found}`"
-            elif word == at.found:
-                return None
-            else:
-                message = "`do` takes either `for` or `until`, not both"
-                advice = "use `try` with `interrupt when` for the other condition"
-            labels = ((at.place(earlier[0]), f"`{word}` stands here"),)
-            return at.problem("SC116", at.here(), message, advice, labels=labels)
-        if at.found == "until":
-            changes = [insertion(at.first + 1, "("), insertion(at.token, ")")]
-            return at.problem(
-                "SC125",
-                at.place(at.first + 1, at.token),
-                "what stands before `until` needs parentheses here",
-                "put parentheses around what stands between `do` and `until`",
-                fix=("add parentheses", changes),
-            )
+        return _until_or_for(at)
     if first == "do" and at.found == "while":
-        changes = [Change(at.token, at.token + 1, ("until", "not"))]
-        if not _BINDING_LESS.isdisjoint(map(at.word, range(at.token, at.end))):
-            # `until not a and b` would end it for other reasons.
-            changes += [insertion(at.token + 1, "("), insertion(at.end, ")")]
-        return at.problem(
-            "SC129",
-            at.here(),
-            "`do` has no `while`",
-            "write `until`, which ends it when the condition holds",
-            fix=("replace it by `until not`", changes),
-        )
+        return _while(at)
     if first == "mutate" and at.word(at.first + 1) == "by" and at.is_name(at.token):
         return at.problem(
             "SC116",

@@ -254,25 +254,35 @@ def faults_of(root: Element) -> Iterator[tuple[tuple[Element, str], Fault]]:
     yield from _repeated_ids(root)
 
 
-def _faults(
+def _faults_of_attributes(
     element: Element, rule: _Rule, name: str, where: str
 ) -> Iterator[tuple[tuple[Element, str], Fault]]:
-    """The violations in an element and all that it holds."""
-    given = element.attributes
     for known, must in ((rule.required, True), (rule.optional, False)):
         for attribute, check in known.items():
-            text = given.get(attribute)
+            text = element.attributes.get(attribute)
             if text is None:
                 if must:
-                    yield (
-                        (element, attribute),
-                        Fault(f"<{element.tag}> of {name} has no {attribute!r}", element.line, where),
-                    )
+                    message = f"<{element.tag}> of {name} has no {attribute!r}"
+                    yield (element, attribute), Fault(message, element.line, where)
                 continue
             wrong = check(text)
             if wrong is not None:
                 message = f"{attribute!r} of <{element.tag}> of {name} is {text!r}, {wrong}"
                 yield (element, attribute), Fault(message, element.line, where)
+
+
+def _name(child: Element, name: str) -> str:
+    """The name of an element in messages: its own, or that of the one around it."""
+    if child.tag in ("road", "junction"):
+        return f"{child.tag} {child.attributes.get('id')}"
+    return f"lane {child.attributes.get('id')} of {name}" if child.tag == "lane" else name
+
+
+def _faults(
+    element: Element, rule: _Rule, name: str, where: str
+) -> Iterator[tuple[tuple[Element, str], Fault]]:
+    """The violations in an element and all that it holds."""
+    yield from _faults_of_attributes(element, rule, name, where)
     if not rule.children and not rule.inner:
         return
     counts: dict[str, int] = {}
@@ -294,15 +304,7 @@ def _faults(
                 message = f"<{tag}> of {name} at {along} = {begin} does not begin behind the one before it"
                 yield (child, "order"), Fault(message, child.line, where)
             starts[tag] = start
-        name_of_child = child.attributes.get("id")
-        named = (
-            f"{tag} {name_of_child}"
-            if tag in ("road", "junction")
-            else f"lane {name_of_child} of {name}"
-            if tag == "lane"
-            else name
-        )
-        yield from _faults(child, inner, named, _WHERE.get(tag, where))
+        yield from _faults(child, inner, _name(child, name), _WHERE.get(tag, where))
     for tag, many in rule.children.items():
         if many in ("", "+") and tag not in counts:
             message = (

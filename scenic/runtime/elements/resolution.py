@@ -184,16 +184,8 @@ def class_defaults(cls: type[Point], *, mode_2d: bool) -> dict[str, Property]:
     return properties
 
 
-def resolve(
-    cls: type[Point], specifiers: Sequence[Specifier], properties: Mapping[str, Property]
-) -> Resolution:
-    """Decide who provides what, and in which order."""
-    _reject_duplicates(specifiers)
-    for name, entry in properties.items():
-        if hasattr(cls, name):
-            raise _clash(cls, name, entry.definitions[0].span)
-    claims: dict[str, Specifier] = {}
-    modifiers: dict[str, Specifier] = {}
+def _check(cls: type[Point], specifiers: Sequence[Specifier], properties: Mapping[str, Property]) -> bool:
+    """Raise `SpecifierError` for what no specifier may specify; returns whether a property of Python's is doubtful."""
     is_doubtful = False
     for specifier in specifiers:
         own = specifier.dependencies & specifier.priorities.keys()
@@ -204,6 +196,15 @@ def resolve(
             )
         for name in specifier.priorities:
             is_doubtful |= _check_property(cls, name, specifier, properties)
+    return is_doubtful
+
+
+def _claims(
+    specifiers: Sequence[Specifier], properties: Mapping[str, Property]
+) -> tuple[dict[str, Specifier], dict[str, Specifier]]:
+    """By property: the specifier, or the default, that provides it, and the one that modifies it."""
+    claims: dict[str, Specifier] = {}
+    modifiers: dict[str, Specifier] = {}
     for specifier in specifiers:
         if not specifier.modifiable:
             for name, priority in specifier.priorities.items():
@@ -214,6 +215,19 @@ def resolve(
     for name, entry in properties.items():
         if name not in claims:
             claims[name] = _default_specifier(name, entry)
+    return claims, modifiers
+
+
+def resolve(
+    cls: type[Point], specifiers: Sequence[Specifier], properties: Mapping[str, Property]
+) -> Resolution:
+    """Decide who provides what, and in which order."""
+    _reject_duplicates(specifiers)
+    for name, entry in properties.items():
+        if hasattr(cls, name):
+            raise _clash(cls, name, entry.definitions[0].span)
+    is_doubtful = _check(cls, specifiers, properties)
+    claims, modifiers = _claims(specifiers, properties)
     owns = _by_specifier(claims)
     modifies = _by_specifier(modifiers)
     numbers = {specifier: number for number, specifier in enumerate(specifiers)}
