@@ -179,7 +179,7 @@ class Simulation(ABC):
         if not deferred:
             self.runToEnd()
 
-    def _new_run(self, **options: bool) -> Run:
+    def _new_run(self, **options: Any) -> Run:
         program, context = self.scene.program, self.scene.program.context
         return Run(
             self,

@@ -192,7 +192,7 @@ LOOKUP: Final = Operation(
 )
 
 
-def _constants(operands: Sequence[Node], _payload: Any) -> Node | None:
+def _constants(operands: Sequence[Node], _payload: object) -> Node | None:
     """A choice among constants is a table, however many there are."""
     index, *options = operands
     kinds = {option.kind for option in options}
@@ -202,18 +202,18 @@ def _constants(operands: Sequence[Node], _payload: Any) -> Node | None:
     return make_node(LOOKUP, [index], table)
 
 
-def _may_be_endless(operands: Sequence[Node], _payload: Any) -> bool:
+def _may_be_endless(operands: Sequence[Node], _payload: object) -> bool:
     """Return whether an end of a range may be infinite."""
     return not (is_finite(operands[1]) and is_finite(operands[2]))
 
 
-def _may_be_narrow(operands: Sequence[Node], _payload: Any) -> bool:
+def _may_be_narrow(operands: Sequence[Node], _payload: object) -> bool:
     """Return whether a deviation may be zero."""
     bounds = overall(operands[2])
     return bounds is None or bool(bounds.lower[0] <= 0 <= bounds.upper[0])
 
 
-def _may_be_large(operands: Sequence[Node], _payload: Any) -> bool:
+def _may_be_large(operands: Sequence[Node], _payload: object) -> bool:
     """Return whether an end of a range of integers may be too large for 64 bits."""
     return any(
         operand.kind is Kind.SCALAR and not _is_below(overall(operand), 2.0**61) for operand in operands[1:]
@@ -224,7 +224,7 @@ def _is_below(bounds: Bounds | None, limit: float) -> bool:
     return bounds is not None and bool(-limit < bounds.lower[0] <= bounds.upper[0] < limit)
 
 
-def _may_be_empty(operands: Sequence[Node], _payload: Any) -> bool:
+def _may_be_empty(operands: Sequence[Node], _payload: object) -> bool:
     """Return whether a range of integers may hold none."""
     low, high = (overall(operand) for operand in operands[1:])
     return low is None or high is None or bool(np.ceil(low.upper[0]) > np.floor(high.lower[0]))
@@ -285,7 +285,7 @@ def _range_rounding(low: Bounds, high: Bounds) -> Floats:
     return 4 * intervals.EPSILON * np.maximum(intervals.size(low), intervals.size(high))
 
 
-def _range_bounds(_payload: Any, axis: Bounds, low: Bounds, high: Bounds) -> Bounds:
+def _range_bounds(_payload: object, axis: Bounds, low: Bounds, high: Bounds) -> Bounds:
     # The value grows with either end, and runs straight from one to the other along the axis.
     bottoms = [low.lower + (high.lower - low.lower) * u for u in (axis.lower, axis.upper)]
     tops = [low.upper + (high.upper - low.upper) * u for u in (axis.lower, axis.upper)]
@@ -300,7 +300,7 @@ def _range_bounds(_payload: Any, axis: Bounds, low: Bounds, high: Bounds) -> Bou
 
 
 def _range_inverse(
-    _payload: Any, result: Bounds, _axis: Bounds, low: Bounds, high: Bounds
+    _payload: object, result: Bounds, _axis: Bounds, low: Bounds, high: Bounds
 ) -> list[Bounds | None]:
     exact = intervals.widened(result, _range_rounding(low, high))
     place = intervals.divide(intervals.subtract(exact, low), intervals.subtract(high, low))
@@ -319,7 +319,7 @@ def _range_inverse(
     return [place, new_low, new_high]
 
 
-def _range_solver(terms: Terms, _payload: Any, _axis: Any, low: Any, high: Any) -> Any:
+def _range_solver(terms: Terms, _payload: object, _axis: Any, low: Any, high: Any) -> Any:
     value = terms.fresh(Kind.SCALAR)
     low, high = terms.number(low), terms.number(high)
     first, last = terms.constant(low), terms.constant(high)
@@ -333,7 +333,7 @@ def _range_solver(terms: Terms, _payload: Any, _axis: Any, low: Any, high: Any) 
     return value
 
 
-def _normal_bounds(_payload: Any, axis: Bounds, mean: Bounds, deviation: Bounds) -> Bounds:
+def _normal_bounds(_payload: object, axis: Bounds, mean: Bounds, deviation: Bounds) -> Bounds:
     from scipy.special import ndtri
 
     inside = _opened(axis)
@@ -342,7 +342,7 @@ def _normal_bounds(_payload: Any, axis: Bounds, mean: Bounds, deviation: Bounds)
 
 
 def _normal_inverse(
-    _payload: Any, result: Bounds, axis: Bounds, mean: Bounds, deviation: Bounds
+    _payload: object, result: Bounds, axis: Bounds, mean: Bounds, deviation: Bounds
 ) -> list[Bounds | None]:
     from scipy.special import ndtr, ndtri
 
@@ -358,7 +358,7 @@ def _normal_inverse(
     return [place, intervals.subtract(before_rounding(result), product), intervals.divide(shift, drawn)]
 
 
-def _normal_solver(terms: Terms, _payload: Any, _axis: Any, _mean: Any, _deviation: Any) -> Any:
+def _normal_solver(terms: Terms, _payload: object, _axis: Any, _mean: Any, _deviation: Any) -> Any:
     return terms.fresh(Kind.SCALAR)
 
 
@@ -409,7 +409,7 @@ def _truncated_solver(terms: Terms, payload: Any, _axis: Any, _mean: Any, _devia
     return value
 
 
-def _discrete_bounds(_payload: Any, axis: Bounds, low: Bounds, high: Bounds) -> Bounds:
+def _discrete_bounds(_payload: object, axis: Bounds, low: Bounds, high: Bounds) -> Bounds:
     ends = Bounds(np.ceil(low.lower), np.floor(high.upper))
     # An empty range rejects its lane, so that whatever is said of its value is right.
     ends = Bounds(ends.lower, np.maximum(ends.lower, ends.upper))
@@ -420,7 +420,7 @@ def _discrete_bounds(_payload: Any, axis: Bounds, low: Bounds, high: Bounds) -> 
 
 
 def _discrete_inverse(
-    _payload: Any, result: Bounds, _axis: Bounds, low: Bounds, high: Bounds
+    _payload: object, result: Bounds, _axis: Bounds, low: Bounds, high: Bounds
 ) -> list[Bounds | None]:
     first, last = np.ceil(low.lower), np.floor(high.upper)
     fixed = _fixed(low, high)
@@ -435,7 +435,7 @@ def _discrete_inverse(
     return [_if_fixed(fixed & (count > 0), place, nothing), below, above]
 
 
-def _discrete_solver(terms: Terms, _payload: Any, _axis: Any, low: Any, high: Any) -> Any:
+def _discrete_solver(terms: Terms, _payload: object, _axis: Any, low: Any, high: Any) -> Any:
     value = terms.fresh(Kind.INTEGER)
     low, high = terms.number(low), terms.number(high)
     first, last = terms.constant(low), terms.constant(high)
@@ -538,7 +538,7 @@ def _weighted_cuts(payload: Any, _operands: Sequence[Node]) -> Floats:
     return _between_options(payload[1])
 
 
-def _discrete_cuts(_payload: Any, operands: Sequence[Node]) -> Floats | None:
+def _discrete_cuts(_payload: object, operands: Sequence[Node]) -> Floats | None:
     low, high = operands[1:]
     if not (low.is_constant and high.is_constant and is_finite(low) and is_finite(high)):
         return None
@@ -553,7 +553,7 @@ def _discrete_cuts(_payload: Any, operands: Sequence[Node]) -> Floats | None:
     return np.asarray(np.where(np.floor(cuts * count) < numbers, np.nextafter(cuts, 1.0), cuts))
 
 
-def _select_bounds(_payload: Any, index: Bounds, *options: Bounds | None) -> Bounds | None:
+def _select_bounds(_payload: object, index: Bounds, *options: Bounds | None) -> Bounds | None:
     return hull_of_possible(options, _possible(index, len(options)))
 
 
@@ -562,7 +562,7 @@ def _possible(index: Bounds, count: int) -> list[Mask]:
 
 
 def _select_inverse(
-    _payload: Any, result: Bounds, index: Bounds, *options: Bounds | None
+    _payload: object, result: Bounds, index: Bounds, *options: Bounds | None
 ) -> list[Bounds | None]:
     possible = [
         mask & can_give(option, result)
@@ -580,7 +580,7 @@ def _select_inverse(
     return narrowed
 
 
-def _select_solver(terms: Terms, _payload: Any, index: Any, *options: Any) -> Any:
+def _select_solver(terms: Terms, _payload: object, index: Any, *options: Any) -> Any:
     return chain(terms, index, options)
 
 

@@ -26,13 +26,13 @@ def _from_euler(_call: Call, yaw: Column, pitch: Column, roll: Column) -> Column
     return quaternions.from_euler(*(angle.astype(np.float64) for angle in (yaw, pitch, roll)))
 
 
-def _from_euler_scalar(_payload: Any, yaw: float, pitch: float, roll: float) -> Any:
+def _from_euler_scalar(_payload: object, yaw: float, pitch: float, roll: float) -> Any:
     if not math.isfinite(yaw + pitch + roll):
         return NotImplemented
     return quaternions.of_euler(float(yaw), float(pitch), float(roll))
 
 
-def _from_yaw_scalar(_payload: Any, yaw: float) -> Any:
+def _from_yaw_scalar(_payload: object, yaw: float) -> Any:
     if not math.isfinite(yaw):
         return NotImplemented
     half = yaw * 0.5
@@ -77,7 +77,7 @@ def _product(*factors: Bounds) -> Bounds:
     return result
 
 
-def _from_euler_bounds(_payload: Any, *angles: Bounds) -> Bounds:
+def _from_euler_bounds(_payload: object, *angles: Bounds) -> Bounds:
     halves = [Bounds(angle.lower / 2, angle.upper / 2) for angle in angles]
     (sy, sp, sr), (cy, cp, cr) = (
         [reading(None, half) for half in halves] for reading in (sin_bounds, cos_bounds)
@@ -101,7 +101,7 @@ def _from_euler_bounds(_payload: Any, *angles: Bounds) -> Bounds:
     )
 
 
-def _from_yaw_bounds(_payload: Any, yaw: Bounds) -> Bounds:
+def _from_yaw_bounds(_payload: object, yaw: Bounds) -> Bounds:
     half = Bounds(yaw.lower / 2, yaw.upper / 2)
     nothing = Bounds(np.zeros_like(half.lower), np.zeros_like(half.upper))
     return intervals.stacked([nothing, nothing, sin_bounds(None, half), cos_bounds(None, half)])
@@ -116,7 +116,7 @@ _COMPOSED: Final = (
 """Hamilton's product: the terms of each component, by components of the factors and sign."""
 
 
-def _compose_bounds(_payload: Any, outer: Bounds, inner: Bounds) -> Bounds:
+def _compose_bounds(_payload: object, outer: Bounds, inner: Bounds) -> Bounds:
     products = intervals.multiply(
         Bounds(outer.lower[:, :, np.newaxis], outer.upper[:, :, np.newaxis]),
         Bounds(inner.lower[:, np.newaxis], inner.upper[:, np.newaxis]),
@@ -134,11 +134,11 @@ def _conjugated(bounds: Bounds) -> Bounds:
     return intervals.stacked([*(intervals.negative(part) for part in (x, y, z)), w])
 
 
-def _inverse_bounds(_payload: Any, orientation: Bounds) -> Bounds:
+def _inverse_bounds(_payload: object, orientation: Bounds) -> Bounds:
     return _conjugated(orientation)
 
 
-def _inverse_inverse(_payload: Any, result: Bounds, _orientation: Bounds) -> list[Bounds]:
+def _inverse_inverse(_payload: object, result: Bounds, _orientation: Bounds) -> list[Bounds]:
     return [_conjugated(result)]
 
 
@@ -186,17 +186,17 @@ def turned_by(rotation: Bounds, vector: Bounds) -> Bounds:
     return Bounds(np.maximum(result.lower, -reach), np.minimum(result.upper, reach))
 
 
-def _rotate_bounds(_payload: Any, orientation: Bounds, vector: Bounds) -> Bounds:
+def _rotate_bounds(_payload: object, orientation: Bounds, vector: Bounds) -> Bounds:
     return turned(orientation, vector)
 
 
 def _rotate_inverse(
-    _payload: Any, result: Bounds, orientation: Bounds, _vector: Bounds
+    _payload: object, result: Bounds, orientation: Bounds, _vector: Bounds
 ) -> list[Bounds | None]:
     return [None, turned_by(matrix(_conjugated(orientation)), result)]
 
 
-def _rotate_solver(terms: Terms, _payload: Any, orientation: Any, vector: Any) -> Any:
+def _rotate_solver(terms: Terms, _payload: object, orientation: Any, vector: Any) -> Any:
     if any(terms.constant(part) is None for part in orientation):
         return terms.fresh(Kind.VECTOR)
     x, y, z, w = orientation
@@ -253,14 +253,14 @@ def _is_upright(orientation: Node) -> bool:
     return orientation.operation is FROM_YAW
 
 
-def _only_yaw(operands: Sequence[Node], _payload: Any) -> Node | None:
+def _only_yaw(operands: Sequence[Node], _payload: object) -> Node | None:
     yaw, pitch, roll = operands
     if yaw.is_constant or yaw.kind is not Kind.SCALAR or not (_is_nothing(pitch) and _is_nothing(roll)):
         return None
     return make_node(FROM_YAW, [yaw])
 
 
-def _with_identity(operands: Sequence[Node], _payload: Any) -> Node | None:
+def _with_identity(operands: Sequence[Node], _payload: object) -> Node | None:
     outer, inner = operands
     if _is_identity(outer):
         return inner
@@ -271,7 +271,7 @@ def _with_identity(operands: Sequence[Node], _payload: Any) -> Node | None:
     return None
 
 
-def _twice_inverse(operands: Sequence[Node], _payload: Any) -> Node | None:
+def _twice_inverse(operands: Sequence[Node], _payload: object) -> Node | None:
     (orientation,) = operands
     if orientation.operation.name == "inverse":
         return orientation.operands[0]
@@ -280,7 +280,7 @@ def _twice_inverse(operands: Sequence[Node], _payload: Any) -> Node | None:
     return None
 
 
-def _not_turned(operands: Sequence[Node], _payload: Any) -> Node | None:
+def _not_turned(operands: Sequence[Node], _payload: object) -> Node | None:
     orientation, vector = operands
     still = vector.is_constant and not vector.payload.column.any()
     return vector if still or _is_identity(orientation) else None

@@ -97,7 +97,7 @@ def _normalized(_call: Call, vector: Column) -> Column:
 # On plain numbers; vectors are triples. NumPy's functions, where the C library's may differ in the last bit.
 
 
-def _norm_scalar(_payload: Any, vector: Any) -> float:
+def _norm_scalar(_payload: object, vector: Any) -> float:
     x, y, z = vector
     length = math.sqrt(x * x + y * y + z * z)
     if _SMALL <= length <= _LARGE or length != length or not (x or y or z):
@@ -105,41 +105,41 @@ def _norm_scalar(_payload: Any, vector: Any) -> float:
     return float(_scaled_length(float(x), float(y), float(z)))
 
 
-def _dot_scalar(_payload: Any, a: Any, b: Any) -> Any:
+def _dot_scalar(_payload: object, a: Any, b: Any) -> Any:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def _cross_scalar(_payload: Any, a: Any, b: Any) -> Any:
+def _cross_scalar(_payload: object, a: Any, b: Any) -> Any:
     (ax, ay, az), (bx, by, bz) = a, b
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
-def _distance_scalar(_payload: Any, a: Any, b: Any) -> float:
+def _distance_scalar(_payload: object, a: Any, b: Any) -> float:
     return _norm_scalar(None, (a[0] - b[0], a[1] - b[1], a[2] - b[2]))
 
 
-def _azimuth_scalar(_payload: Any, vector: Any) -> float:
+def _azimuth_scalar(_payload: object, vector: Any) -> float:
     return normal_angle(float(np.arctan2(vector[1], vector[0])) - np.pi / 2)
 
 
-def _altitude_scalar(_payload: Any, vector: Any) -> float:
+def _altitude_scalar(_payload: object, vector: Any) -> float:
     return float(np.arctan2(vector[2], _norm_scalar(None, (vector[0], vector[1], 0.0))))
 
 
-def _normalized_scalar(_payload: Any, vector: Any) -> Any:
+def _normalized_scalar(_payload: object, vector: Any) -> Any:
     length = _norm_scalar(None, vector) or 1.0
     return vector[0] / length, vector[1] / length, vector[2] / length
 
 
-def _vector_bounds(_payload: Any, *parts: Bounds) -> Bounds:
+def _vector_bounds(_payload: object, *parts: Bounds) -> Bounds:
     return intervals.stacked(parts)
 
 
-def _vector_inverse(_payload: Any, result: Bounds, *_parts: Bounds) -> list[Bounds]:
+def _vector_inverse(_payload: object, result: Bounds, *_parts: Bounds) -> list[Bounds]:
     return intervals.components(result)
 
 
-def _vector_solver(terms: Terms, _payload: Any, *parts: Any) -> Any:
+def _vector_solver(terms: Terms, _payload: object, *parts: Any) -> Any:
     return tuple(terms.number(part) for part in parts)
 
 
@@ -156,24 +156,24 @@ def _component_solver(_terms: Terms, payload: Any, vector: Any) -> Any:
     return vector[payload]
 
 
-def _norm_bounds(_payload: Any, vector: Bounds) -> Bounds:
+def _norm_bounds(_payload: object, vector: Bounds) -> Bounds:
     return length_bounds(intervals.components(vector))
 
 
-def _norm_inverse(_payload: Any, result: Bounds, vector: Bounds) -> list[Bounds]:
+def _norm_inverse(_payload: object, result: Bounds, vector: Bounds) -> list[Bounds]:
     return [intervals.stacked(sides(result, intervals.components(vector)))]
 
 
-def _norm_solver(terms: Terms, _payload: Any, vector: Any) -> Any:
+def _norm_solver(terms: Terms, _payload: object, vector: Any) -> Any:
     return root_of_squares(terms, vector)
 
 
-def _dot_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+def _dot_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
     pairs = zip(intervals.components(a), intervals.components(b), strict=True)
     return intervals.total([intervals.multiply(x, y) for x, y in pairs])
 
 
-def _dot_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
+def _dot_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
     parts_a, parts_b = intervals.components(a), intervals.components(b)
     products = [intervals.multiply(x, y) for x, y in zip(parts_a, parts_b, strict=True)]
     # Each sum of the three may have been rounded by a unit in the last place of any partial sum.
@@ -190,7 +190,7 @@ def _dot_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> list[Bo
     return [intervals.stacked(new_a), intervals.stacked(new_b)]
 
 
-def _dot_solver(_terms: Terms, _payload: Any, a: Any, b: Any) -> Any:
+def _dot_solver(_terms: Terms, _payload: object, a: Any, b: Any) -> Any:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
@@ -198,7 +198,7 @@ _TURNS = ((1, 2), (2, 0), (0, 1))
 """Components that make each component of a vector product."""
 
 
-def _cross_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+def _cross_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
     p, q = intervals.components(a), intervals.components(b)
     return intervals.stacked(
         [
@@ -208,15 +208,15 @@ def _cross_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
     )
 
 
-def _cross_solver(_terms: Terms, _payload: Any, a: Any, b: Any) -> Any:
+def _cross_solver(_terms: Terms, _payload: object, a: Any, b: Any) -> Any:
     return tuple(a[i] * b[j] - a[j] * b[i] for i, j in _TURNS)
 
 
-def _distance_bounds(_payload: Any, a: Bounds, b: Bounds) -> Bounds:
+def _distance_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
     return length_bounds(intervals.components(intervals.subtract(a, b)))
 
 
-def _distance_inverse(_payload: Any, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
+def _distance_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds]:
     difference = intervals.subtract(a, b)
     narrowed = intervals.stacked(sides(result, intervals.components(difference)))
     difference = before_rounding(Bounds(*_met(narrowed, difference)))
@@ -230,7 +230,7 @@ def _met(first: Bounds, second: Bounds) -> tuple[Any, Any]:
     return np.where(empty, np.inf, met.lower), np.where(empty, -np.inf, met.upper)
 
 
-def _distance_solver(terms: Terms, _payload: Any, a: Any, b: Any) -> Any:
+def _distance_solver(terms: Terms, _payload: object, a: Any, b: Any) -> Any:
     return root_of_squares(terms, [x - y for x, y in zip(a, b, strict=True)])
 
 
@@ -245,7 +245,7 @@ def _angle_bounds(across: Bounds, along: Bounds) -> Bounds:
     return Bounds(lower, np.where(cut, math.pi, np.minimum(upper + margin, math.pi)))
 
 
-def _azimuth_bounds(_payload: Any, vector: Bounds) -> Bounds:
+def _azimuth_bounds(_payload: object, vector: Bounds) -> Bounds:
     x, y, _ = intervals.components(vector)
     # North, the zero of azimuths, is the y axis: a quarter turn takes it to where atan2 is zero.
     angle = _angle_bounds(intervals.negative(x), y)
@@ -255,7 +255,7 @@ def _azimuth_bounds(_payload: Any, vector: Bounds) -> Bounds:
     return intervals.doubtful(bounds, x, y)
 
 
-def _altitude_bounds(_payload: Any, vector: Bounds) -> Bounds:
+def _altitude_bounds(_payload: object, vector: Bounds) -> Bounds:
     x, y, z = intervals.components(vector)
     angle = _angle_bounds(z, length_bounds([x, y]))
     half = math.pi / 2
@@ -263,15 +263,15 @@ def _altitude_bounds(_payload: Any, vector: Bounds) -> Bounds:
     return intervals.doubtful(bounds, x, y, z)
 
 
-def _azimuth_solver(terms: Terms, _payload: Any, _vector: Any) -> Any:
+def _azimuth_solver(terms: Terms, _payload: object, _vector: Any) -> Any:
     return within(terms, -math.pi, math.pi)
 
 
-def _altitude_solver(terms: Terms, _payload: Any, _vector: Any) -> Any:
+def _altitude_solver(terms: Terms, _payload: object, _vector: Any) -> Any:
     return within(terms, -math.pi / 2, math.pi / 2)
 
 
-def _normalized_bounds(_payload: Any, vector: Bounds) -> Bounds:
+def _normalized_bounds(_payload: object, vector: Bounds) -> Bounds:
     length = intervals.spread(_norm_bounds(None, vector), 2)
     quotient = intervals.divide(vector, length)
     # No component is longer than the vector.
@@ -284,7 +284,7 @@ def _normalized_bounds(_payload: Any, vector: Bounds) -> Bounds:
     return intervals.doubtful(sign, *(intervals.spread(part, 2) for part in intervals.components(vector)))
 
 
-def _normalized_solver(terms: Terms, _payload: Any, _vector: Any) -> Any:
+def _normalized_solver(terms: Terms, _payload: object, _vector: Any) -> Any:
     return tuple(within(terms, -1.0, 1.0) for _ in range(3))
 
 

@@ -204,7 +204,7 @@ _PLANAR_INRADIUS = Operation(
 )
 
 
-def _gap_bounds(_payload: Any, *operands: Bounds | None) -> Bounds:
+def _gap_bounds(_payload: object, *operands: Bounds | None) -> Bounds:
     first, second = body_box(*operands[:3]), body_box(*operands[4:7])
     least = np.zeros(1) if first is None or second is None else np.maximum(separation(first, second), 0.0)
     return Bounds(least, np.full_like(least, np.inf))
@@ -274,11 +274,11 @@ def _intersect(
     return ~collide(bodies, np.array([[0, 1]]), lanes=lanes).free
 
 
-def _intersect_bounds(_payload: Any, *operands: Bounds | None) -> Bounds:
+def _intersect_bounds(_payload: object, *operands: Bounds | None) -> Bounds:
     return only_within(body_box(*operands[:3]), body_box(*operands[4:7]), np.zeros(1))
 
 
-def _intersect_inverse(_payload: Any, result: Bounds, *operands: Bounds | None) -> Sequence[Bounds | None]:
+def _intersect_inverse(_payload: object, result: Bounds, *operands: Bounds | None) -> Sequence[Bounds | None]:
     within = np.where(result.lower > 0, 0.0, np.inf)
     return _near_each_other(Bounds(within, within), operands)
 

@@ -628,13 +628,13 @@ def _follow_table(call: Call, points: Column, distance: Column) -> Column:
     return place
 
 
-def _follow_bounds(_payload: Any, points: Bounds | None, distance: Bounds | None) -> Bounds | None:
+def _follow_bounds(_payload: object, points: Bounds | None, distance: Bounds | None) -> Bounds | None:
     """Bound the end of a path along the field: no further from its start than its length, at the same height."""
     return _around(points, distance)
 
 
 def _follow_inverse(
-    _payload: Any, result: Bounds, _points: Bounds | None, distance: Bounds | None
+    _payload: object, result: Bounds, _points: Bounds | None, distance: Bounds | None
 ) -> Sequence[Bounds | None]:
     """Bound the start of a path along the field whose end is known."""
     return _around(result, distance), None

@@ -67,7 +67,7 @@ def _identical(_call: Call, left: Any, right: Any) -> Any:
     return np.frompyfunc(operator.is_, 2, 1)(left, right).astype(np.bool_)
 
 
-def _by_number(operands: Sequence[Node], _payload: Any) -> Node | None:
+def _by_number(operands: Sequence[Node], _payload: object) -> Node | None:
     """Between choices among constants it is a comparison of numbers, of which bounds are known."""
     options = [node.operands[1:] if node.operation is TABLE["select"] else (node,) for node in operands]
     if not all(option.is_constant and option.kind.is_boxed for each in options for option in each):
