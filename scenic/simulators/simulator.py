@@ -167,4 +167,4 @@ def _sourcing(source: PointSet | Sourcing, scene: Scene, attempt: int) -> Sourci
 
 
 def _in_silence(_: str) -> None:
-    """What is said is not printed."""
+    """Take a message and print nothing."""
