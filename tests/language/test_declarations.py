@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from scenic.language.keywords import HARD_KEYWORDS, PYTHON_KEYWORDS, SOFT_KEYWORDS, TEMPORAL_OPERATORS
+from scenic.compiler.generated import HARD_KEYWORDS, SOFT_KEYWORDS
+from scenic.language import keywords
+from scenic.language.keywords import PYTHON_KEYWORDS, TEMPORAL_OPERATORS
 from scenic.language.names import CONVERSIONS, LIFTED_FUNCTIONS, NAMES, RESERVED
 from scenic.language.operators import OPERATORS, SIDES
 from scenic.language.properties import CLASSES, PROPERTY_ATTRIBUTES, attributes_of, properties_of
@@ -35,9 +37,11 @@ def test_what_this_version_refuses(request: pytest.FixtureRequest) -> None:
 
 
 def test_keywords_are_those_of_the_specification() -> None:
-    assert set(SOFT_KEYWORDS) == set(SPECIFICATION_SOFT_KEYWORDS.split()) | OWN_SOFT_KEYWORDS
+    assert {*SOFT_KEYWORDS, *keywords.MEANINGS} == set(SPECIFICATION_SOFT_KEYWORDS.split()) | OWN_SOFT_KEYWORDS
     assert set(PYTHON_KEYWORDS) == set(keyword.kwlist)
-    assert set(HARD_KEYWORDS) == {"at", "by", "do", "new", "of", "on", "require", "to", "until"}
+    hard = {"at", "by", "do", "new", "of", "on", "require", "to", "until"}
+    assert set(HARD_KEYWORDS) == hard | set(PYTHON_KEYWORDS)
+    assert set(keywords.HARD_KEYWORDS) == hard
     assert set(TEMPORAL_OPERATORS) <= set(SOFT_KEYWORDS) | set(HARD_KEYWORDS)
 
 
