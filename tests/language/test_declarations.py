@@ -37,7 +37,9 @@ def test_what_this_version_refuses(request: pytest.FixtureRequest) -> None:
 
 
 def test_keywords_are_those_of_the_specification() -> None:
-    assert {*SOFT_KEYWORDS, *keywords.MEANINGS} == set(SPECIFICATION_SOFT_KEYWORDS.split()) | OWN_SOFT_KEYWORDS
+    assert {*SOFT_KEYWORDS, *keywords.MEANINGS} == set(
+        SPECIFICATION_SOFT_KEYWORDS.split()
+    ) | OWN_SOFT_KEYWORDS
     assert set(PYTHON_KEYWORDS) == set(keyword.kwlist)
     hard = {"at", "by", "do", "new", "of", "on", "require", "to", "until"}
     assert set(HARD_KEYWORDS) == hard | set(PYTHON_KEYWORDS)
