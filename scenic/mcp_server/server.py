@@ -59,6 +59,7 @@ def build_server(folder: str, *, run: bool = False) -> MCPServer:
     _add_reference(server, programs)
     if run:
         _add_running(server, programs)
+        _add_simulating(server, programs)
     _add_resources(server)
     _add_prompts(server)
     return server
@@ -222,6 +223,8 @@ def _add_running(server: MCPServer, programs: Programs) -> None:
             ]
         return _result(answer, pictures)
 
+
+def _add_simulating(server: MCPServer, programs: Programs) -> None:
     @server.tool(annotations=_RUNS)
     async def simulate(
         context: Context[Any, Any],
