@@ -9,14 +9,18 @@ from typing import Any
 from scenic.language.errors import UnsupportedError
 from scenic.language.extras import installation
 
-__all__ = ["library", "quietly"]
+__all__ = ["draw_without_window", "library", "quietly"]
+
+
+def draw_without_window() -> None:
+    """Let MuJoCo draw without a window where there is no display; it reads this when it is imported."""
+    if sys.platform == "linux" and not os.environ.get("DISPLAY"):
+        os.environ.setdefault("MUJOCO_GL", "egl")
 
 
 def library() -> Any:
     """The module ``mujoco``; raises `UnsupportedError` without it. It has no types, hence `Any`."""
-    if sys.platform == "linux" and not os.environ.get("DISPLAY"):
-        # The library reads this when it is imported; its own choice would need a window.
-        os.environ.setdefault("MUJOCO_GL", "egl")
+    draw_without_window()
     try:
         import mujoco  # optional, and slow to import
     except ImportError as error:

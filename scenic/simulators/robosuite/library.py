@@ -1,22 +1,19 @@
 """The package robosuite, which is optional: imported when a simulation is made. It has no types, hence `Any`."""
 
-import os
-import sys
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
 
 from scenic.language.errors import UnsupportedError
 from scenic.language.extras import installation
+from scenic.simulators.mujoco.library import draw_without_window
 
 __all__ = ["environment_class", "library"]
 
 
 def library() -> Any:
     """The module ``robosuite``; raises `UnsupportedError` without it."""
-    if sys.platform == "linux" and not os.environ.get("DISPLAY"):
-        # MuJoCo reads this when it is imported; its own choice would need a window.
-        os.environ.setdefault("MUJOCO_GL", "egl")
+    draw_without_window()
     try:
         import robosuite  # optional, and slow to import
         from robosuite.utils.log_utils import ROBOSUITE_DEFAULT_LOGGER
