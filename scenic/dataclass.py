@@ -124,7 +124,7 @@ class _Table:
         self._name = name
         self._make = make
 
-    def __get__(self, instance: Any, owner: type[Any]) -> Any:
+    def __get__(self, instance: object, owner: type[Any]) -> Any:
         if self._name == "__signature__":
             self._make("__init__")
             raise AttributeError(self._name)  # that of the method which is there now
@@ -144,7 +144,7 @@ def _set_defaults(cls: type[Any], made: Mapping[str, Any]) -> None:
 def _freeze(cls: type[Any]) -> None:
     """Forbid to assign to fields and to delete them."""
 
-    def refuse_to_assign(self: Any, name: str, value: Any) -> None:
+    def refuse_to_assign(self: Any, name: str, value: object) -> None:
         if type(self) is cls or name in cls.__dataclass_fields__:
             raise dataclasses.FrozenInstanceError(f"cannot assign to field {name!r}")
         super(cls, self).__setattr__(name, value)

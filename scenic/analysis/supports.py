@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -146,7 +146,7 @@ def _cells_left(domain: Domain, axis: int) -> list[tuple[Floats, Floats]]:
     ]
 
 
-def _shown(value: Any) -> str:
+def _shown(value: object) -> str:
     text = f"{value:.6g}" if isinstance(value, float) else repr(value)
     return text if len(text) < 30 else f"{text[:26]}..."
 

@@ -10,7 +10,7 @@ from collections.abc import Hashable, Sequence
 from copy import copy
 from itertools import product
 from types import BuiltinFunctionType, CodeType, FunctionType, MethodType
-from typing import Any, Final
+from typing import Final
 
 from scenic.runtime.description.declarations import Kept, Required
 from scenic.runtime.temporal.formulas import is_temporal
@@ -129,5 +129,5 @@ def _code_key(code: CodeType) -> Hashable:
     return code.co_code, code.co_names, code.co_varnames, constants
 
 
-def _value_key(value: Any) -> Hashable:
+def _value_key(value: object) -> Hashable:
     return (type(value), value) if isinstance(value, int | float | str) else id(value)

@@ -227,7 +227,7 @@ class Manifest:
         return cls(**{**values, "parts": tuple(parts), "accepted": tuple(values.get("accepted", ()))})
 
 
-def _check(content: Any, fields: "Mapping[str, _FieldRule]", path: Path, where: str) -> None:
+def _check(content: object, fields: "Mapping[str, _FieldRule]", path: Path, where: str) -> None:
     """Raise `DatasetError` for a field that is missing or of the wrong kind."""
     if not isinstance(content, dict):
         raise DatasetError(
@@ -253,11 +253,11 @@ _FieldRule = tuple[Callable[[Any], bool], str, bool]
 """A test of a value, words for the values that pass it, and whether there has to be one."""
 
 
-def _is_count(value: Any) -> bool:
+def _is_count(value: object) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and value >= 0
 
 
-def _is_name(value: Any) -> bool:
+def _is_name(value: object) -> bool:
     return isinstance(value, str) and value not in ("", ".", "..") and not set(value) & {"/", "\\"}
 
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from scenic.batch.encoding import Encoder
 from scenic.batch.folders.fingerprint import file_digests
@@ -97,7 +97,7 @@ def _compared(
             yield Damage(part.file, f"scene {k} differs from that of the program")
 
 
-def is_same(one: Any, other: Any) -> bool:
+def is_same(one: object, other: object) -> bool:
     """Return whether two rows are equal; NaN equals NaN."""
     if isinstance(one, float) and isinstance(other, float) and math.isnan(one):
         return math.isnan(other)

@@ -79,7 +79,7 @@ class BatchRequest:
 class OneOf(click.Choice[str]):
     """One of a few words; a word that is none of them is refused with the one that is probably meant."""
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """The word, if it is one of them; fails with a suggestion otherwise."""
         try:
             return super().convert(value, param, ctx)

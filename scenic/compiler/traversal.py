@@ -2,7 +2,7 @@
 
 import ast
 from collections.abc import Iterator
-from typing import Any, Final
+from typing import Final
 
 from scenic.compiler import tree
 
@@ -71,7 +71,7 @@ def walk(node: ast.AST) -> Iterator[ast.AST]:
         stack.extend(inner)
 
 
-def position(node: Any) -> tuple[int, int]:
+def position(node: object) -> tuple[int, int]:
     """Return the line and column at which a node begins, for comparisons; nodes without a place come first."""
     return getattr(node, "lineno", 0), getattr(node, "col_offset", 0)
 

@@ -268,7 +268,7 @@ class _Places:
         return name in self._uses
 
 
-def _is_settled(value: Any) -> bool:
+def _is_settled(value: object) -> bool:
     """Return whether a value is a constant or drawn with the scene, and not a thing that may change beneath its name."""
     if isinstance(value, RandomBase):
         return value.node.kind in _COMPUTED or value.node.kind is Kind.OTHER

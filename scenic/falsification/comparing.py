@@ -159,6 +159,6 @@ def _by_label(requirements: Any) -> dict[str, Any]:
     return {label: [item["verdict"], item["robustness"]] for label, item in items}
 
 
-def _short(value: Any) -> str:
+def _short(value: object) -> str:
     text = json.dumps(value)
     return text if len(text) <= 80 else f"{text[:77]}..."

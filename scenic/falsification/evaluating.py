@@ -180,5 +180,5 @@ class Evaluation:
             write(folder / "play.html", course_page(f"run {run}", [page]).encode())
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     return number(value) if isinstance(value, float) else value

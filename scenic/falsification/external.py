@@ -45,11 +45,11 @@ class ExternalSampler:
         )
         self.cachedSample: Any = None
 
-    def sample(self, feedback: Any) -> None:
+    def sample(self, feedback: object) -> None:
         """Take the next sample; ``feedback`` is about the one before."""
         self.cachedSample = self.nextSample(feedback)
 
-    def nextSample(self, feedback: Any) -> Any:
+    def nextSample(self, feedback: object) -> Any:
         """The next sample, in whatever form `valueFor` reads."""
         raise NotImplementedError("a class derived from `ExternalSampler` defines `nextSample`")
 
@@ -90,7 +90,7 @@ class VerifaiSampler(ExternalSampler):
         self._told = False
         self._warned = False
 
-    def nextSample(self, feedback: Any) -> Floats:
+    def nextSample(self, feedback: object) -> Floats:
         """The next point ``(1, d)``."""
         with preserved():
             if self.cachedSample is not None:
@@ -140,7 +140,7 @@ class _OneByOne:
     def __init__(self, sampler: ExternalSampler) -> None:
         self.sampler = sampler
 
-    def ahead(self, feedback: Any, count: int) -> dict[int, Floats]:
+    def ahead(self, feedback: object, count: int) -> dict[int, Floats]:
         """See `ExternalPoints.ahead`."""
         self.sampler.sample(feedback)
         return self.sampler.numbers()
@@ -159,7 +159,7 @@ class _Queue:
         self._space = Space(sampler.params)
         self._points = np.zeros((0, len(self._space)))
 
-    def ahead(self, feedback: Any, count: int) -> dict[int, Floats]:
+    def ahead(self, feedback: object, count: int) -> dict[int, Floats]:
         """See `ExternalPoints.ahead`."""
         self.sampler.value_of(feedback)
         missing = count - len(self._points)
@@ -189,7 +189,7 @@ class _Supposed:
         self._before: Sampler = sampler.sampler
         self._points = np.zeros((0, len(self._space)))
 
-    def ahead(self, feedback: Any, count: int) -> dict[int, Floats]:
+    def ahead(self, feedback: object, count: int) -> dict[int, Floats]:
         """See `ExternalPoints.ahead`."""
         outer = self.sampler
         if outer.cachedSample is not None:

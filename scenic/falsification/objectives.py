@@ -131,7 +131,7 @@ def _unknown(name: str, known: Sequence[str], words: str, added: str) -> Objecti
     return ObjectiveError(f"the objective {name!r} {words}", help=advice)
 
 
-def _values(record: Any) -> Any:
+def _values(record: object) -> Any:
     """The values of a series without their times; anything else as it is."""
     if (
         isinstance(record, Sequence)

@@ -312,7 +312,7 @@ def _search_again(
     return result
 
 
-def _anything(_result: Any) -> float:
+def _anything(_result: object) -> float:
     """Stand for an objective that is not known: a value that is kept."""
     return 0.0
 

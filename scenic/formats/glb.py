@@ -111,7 +111,7 @@ def _sun(scene: Scene, nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return [{"name": "sun", "type": "directional", "intensity": lux, "color": [1.0, 0.96, 0.9]}]
 
 
-def _product(p: Any, q: Any) -> npt.NDArray[np.float64]:
+def _product(p: object, q: object) -> npt.NDArray[np.float64]:
     """The product of two quaternions ``(x, y, z, w)``."""
     return np.asarray(quaternions.multiply(np.asarray(p, np.float64), np.asarray(q, np.float64)))
 

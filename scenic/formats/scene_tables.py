@@ -241,7 +241,7 @@ _LONE: Final = re.compile("[\ud800-\udfff]")
 """Lone halves of characters, which UTF-8 cannot hold."""
 
 
-def _names_objects(value: Any) -> bool:
+def _names_objects(value: object) -> bool:
     """Return whether a fixed value has objects in it, whose numbers are those of a scene."""
     if isinstance(value, Mapping):
         value = (*value, *value.values())

@@ -454,7 +454,7 @@ def _same(tree: ast.Module, tokens: Tokens, result: str) -> bool:
     return before == after and _equal(tree, again.tree)
 
 
-def _equal(one: Any, other: Any) -> bool:
+def _equal(one: object, other: object) -> bool:
     """Return whether two trees say the same, wherever their nodes stand."""
     pairs: list[tuple[Any, Any]] = [(one, other)]
     while pairs:

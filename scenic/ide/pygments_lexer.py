@@ -37,7 +37,7 @@ def _by_groups(categories: tuple[Category, ...]) -> Any:
     """Shows each group as its category and what is between them as text."""
     kinds = [_TOKENS[category] for category in categories]
 
-    def show(_lexer: Any, match: re.Match[str], _context: Any = None) -> Iterator[tuple[int, Any, str]]:
+    def show(_lexer: object, match: re.Match[str], _context: object = None) -> Iterator[tuple[int, Any, str]]:
         end = match.start()
         for number, kind in enumerate(kinds, 1):
             if match.start(number) > end:

@@ -3,7 +3,7 @@
 import ast
 from collections.abc import Callable, Iterator
 from functools import cache
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS
@@ -178,7 +178,7 @@ def _names(snapshot: Snapshot, imported: Callable[[str], str | None]) -> dict[tu
     found: dict[tuple[int, int], _What] = {}
     none: frozenset[str] = frozenset()
 
-    def put(node: Any, what: str, *modifiers: str, name: str | None = None) -> None:
+    def put(node: object, what: str, *modifiers: str, name: str | None = None) -> None:
         span = name_span(snapshot, node, name)
         place = (span.line, snapshot.source.byte(span.line, span.column))
         found[place] = (what, frozenset(modifiers))

@@ -85,7 +85,7 @@ def _of_block(
             stack.extend(reversed(inner))
 
 
-def _blocks_of(node: Any) -> list[ast.stmt] | None:
+def _blocks_of(node: object) -> list[ast.stmt] | None:
     """The statements within a statement that does not define anything; ``None`` for one that does."""
     if isinstance(node, _DEFINING):
         return None
@@ -102,7 +102,7 @@ def _blocks_of(node: Any) -> list[ast.stmt] | None:
 
 
 def _of_statement(
-    snapshot: Snapshot, node: Any, seen: set[str], depth: int, *, in_class: bool
+    snapshot: Snapshot, node: object, seen: set[str], depth: int, *, in_class: bool
 ) -> Iterator[Symbol]:
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
         kind = Kind.METHOD if in_class else Kind.FUNCTION

@@ -30,7 +30,7 @@ _REQUIRED_INSIDE: Final[Mapping[str, Mapping[str, Any]]] = MappingProxyType(
 """The same for objects that may be missing as a whole."""
 
 
-def completed(method: str, params: Any) -> Any:
+def completed(method: str, params: object) -> Any:
     """The parameters of a message, with the fields that some clients leave out."""
     if not isinstance(params, dict):
         return params

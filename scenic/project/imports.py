@@ -214,7 +214,7 @@ class Imports:
             f"{self._searched(found, node, 0)}; {how_to_get(node.name)}",
         )
 
-    def _searched(self, found: Found, node: Any, level: int) -> str:
+    def _searched(self, found: Found, node: object, level: int) -> str:
         own = os.path.dirname(os.path.abspath(self._source.filename))
         folders = [
             "beside the program" if each == own else f"in `{_shown(each, own)}`" for each in found.searched
@@ -227,7 +227,7 @@ class Imports:
         kind = ".scenic" if isinstance(node, scenic.Model) else ".scenic or .py"
         return f"there is no {kind} file of that name {places}" if folders else "correct the name"
 
-    def _unknown(self, node: Any, name: str, why: str) -> Diagnostic:
+    def _unknown(self, node: object, name: str, why: str) -> Diagnostic:
         return Diagnostic(
             "SC213",
             f"not all names that `{name}` brings are known: {why}",
@@ -349,7 +349,7 @@ class Imports:
         return word_span(self._source, alias, alias.name)
 
 
-def _judgement(found: Found, node: Any, level: int) -> tuple[Severity | None, str | None]:
+def _judgement(found: Found, node: object, level: int) -> tuple[Severity | None, str | None]:
     """Return the severity of a missing module (``None``: do not report it), and the name that may be meant.
 
     A library may be installed where the program runs and not here; whatever belongs to the program must be here.

@@ -103,7 +103,7 @@ def _occurrences(
         yield from _words(node, module)
 
 
-def _words(node: Any, module: Module) -> Iterator[Occurrence]:
+def _words(node: object, module: Module) -> Iterator[Occurrence]:
     """The names in a node that are not nodes of their own."""
     if not isinstance(node, _WITH_WORDS):
         return

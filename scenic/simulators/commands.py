@@ -36,7 +36,7 @@ class Command(Action):
 
     models: ClassVar[tuple[str, ...]]
 
-    def canBeTakenBy(self, agent: Any) -> bool:
+    def canBeTakenBy(self, agent: object) -> bool:
         """Return whether the agent's model understands the command."""
         return model_of(agent) in self.models
 
@@ -57,7 +57,7 @@ class SetVelocity(Command):
 
     models = POINTS
 
-    def __init__(self, velocity: Any) -> None:
+    def __init__(self, velocity: object) -> None:
         self.velocity = to_vector(velocity, "SetVelocity")
 
     def commands(self) -> Mapping[str, float]:
@@ -73,7 +73,7 @@ class SetAcceleration(Command):
 
     models = POINTS
 
-    def __init__(self, acceleration: Any) -> None:
+    def __init__(self, acceleration: object) -> None:
         self.acceleration = to_vector(acceleration, "SetAcceleration")
 
     def commands(self) -> Mapping[str, float]:
@@ -150,6 +150,6 @@ class Fly(Command):
         return f"Fly({self.thrust:g}, {self.pitch:g}, {self.roll:g}, {self.turn:g})"
 
 
-def model_of(obj: Any) -> str:
+def model_of(obj: object) -> str:
     """The model of an object."""
     return str(getattr(obj, "dynamics", "point"))

@@ -18,10 +18,10 @@ class DummySimulation(Simulation):
         self.drift = drift
         super().__init__(scene, **options)
 
-    def createObjectInSimulator(self, obj: Any) -> None:
+    def createObjectInSimulator(self, obj: object) -> None:
         """There is nothing to do."""
 
-    def actionsAreCompatible(self, agent: Any, actions: Sequence[Any]) -> bool:
+    def actionsAreCompatible(self, agent: object, actions: Sequence[Any]) -> bool:
         """Any are."""
         return True
 

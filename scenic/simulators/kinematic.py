@@ -58,7 +58,7 @@ class _Group:
         self.rows: dict[int, int] = {}
         self.columns: dict[str, Floats] = {name: np.empty(0) for name in (*_STATE, *_COMMANDS)}
 
-    def add(self, obj: Any, values: Mapping[str, float]) -> None:
+    def add(self, obj: object, values: Mapping[str, float]) -> None:
         self.rows[id(obj)] = len(self.rows)
         for name, column in self.columns.items():
             self.columns[name] = np.append(column, values.get(name, 0.0))
@@ -112,13 +112,13 @@ class KinematicSimulation(Simulation):
             },
         )
 
-    def command(self, agent: Any, values: Mapping[str, float]) -> None:
+    def command(self, agent: object, values: Mapping[str, float]) -> None:
         """Set commands, or parts of the state, of an agent."""
         group = self._group(agent)
         for column, value in values.items():
             group[column][group.rows[id(agent)]] = value
 
-    def _group(self, obj: Any) -> _Group:
+    def _group(self, obj: object) -> _Group:
         model = model_of(obj)
         if model in _POINTS:
             return self._groups["point"]

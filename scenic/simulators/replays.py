@@ -182,7 +182,7 @@ class Tape:
                 number = simulation.objects.index(obj)
                 self._diverged(f"{name} of object {number} is {new!r}, was {old!r}")
 
-    def differ(self, expected: Any, actual: Any) -> bool:
+    def differ(self, expected: object, actual: object) -> bool:
         """Return whether two values of a property differ by more than the tolerance."""
         first, second = _numbers(expected), _numbers(actual)
         if first is None or second is None or len(first) != len(second):
@@ -207,7 +207,7 @@ class _Switch(Seeded):
         return self._tape.draw(place, what)
 
 
-def _numbers(value: Any) -> list[float] | None:
+def _numbers(value: object) -> list[float] | None:
     if is_number(value):
         return [float(value)]
     if isinstance(value, Vector):
@@ -217,7 +217,7 @@ def _numbers(value: Any) -> list[float] | None:
     return None
 
 
-def _shaped(numbers: Sequence[float], like: Any) -> Any:
+def _shaped(numbers: Sequence[float], like: object) -> Any:
     if isinstance(like, Vector) and len(numbers) == 3:
         return Vector.of(tuple(numbers))
     if isinstance(like, Orientation) and len(numbers) == 4:

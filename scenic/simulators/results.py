@@ -29,7 +29,7 @@ class TerminationType(Enum):
 class ActionsTaken(dict[Any, tuple[Any, ...]]):
     """The actions of each agent in a step; whatever else is asked for, an object without a behavior perhaps, did nothing."""
 
-    def __missing__(self, key: Any) -> tuple[Any, ...]:
+    def __missing__(self, key: object) -> tuple[Any, ...]:
         return ()
 
 
@@ -85,7 +85,7 @@ class Latest(Sequence[Any]):
         self.missed = False
         """True if a member that is not kept has been read."""
 
-    def append(self, value: Any) -> None:
+    def append(self, value: object) -> None:
         """The next member."""
         self.newest = [value]
         self._count += 1

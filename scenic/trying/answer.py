@@ -387,5 +387,5 @@ def _too_large(error: MemoryError) -> Diagnostic:
     )
 
 
-def _finite(value: Any) -> float | None:
+def _finite(value: object) -> float | None:
     return value if isinstance(value, int | float) and math.isfinite(value) else None

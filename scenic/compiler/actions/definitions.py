@@ -11,7 +11,7 @@ from scenic.compiler.actions.targets import TargetActions
 Parameter: TypeAlias = tuple[Any, Any]
 
 
-def _disorder(earlier: ast.arguments, key: Any, value: Any, *, starred: bool) -> tuple[str, str] | None:
+def _disorder(earlier: ast.arguments, key: object, value: object, *, starred: bool) -> tuple[str, str] | None:
     """The message and the help for an item of a signature that cannot follow the earlier ones."""
     if earlier.kwarg is not None:
         return "nothing can follow a parameter with `**`", "move it to the front"

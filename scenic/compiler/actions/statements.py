@@ -229,14 +229,14 @@ class StatementActions(DefinitionActions, ExpressionActions):
                     stack += [each for each in value if isinstance(each, ast.AST)]
 
 
-def _annotated(statement: Any) -> str | None:
+def _annotated(statement: object) -> str | None:
     """The name that a statement annotates: the word before its colon."""
     if isinstance(statement, ast.AnnAssign) and statement.simple and isinstance(statement.target, ast.Name):
         return statement.target.id
     return None
 
 
-def _guard_word(statement: Any) -> str | None:
+def _guard_word(statement: object) -> str | None:
     """The word of what reads like a guard."""
     name = _annotated(statement)
     return name if name in tree.GUARDS else None

@@ -366,7 +366,7 @@ class _Program:
 
     # Local names of running instances that other nodes than names bind
 
-    def _kept(self, site: ast.AST, lowered: Any) -> Any:
+    def _kept(self, site: ast.AST, lowered: object) -> Any:
         """A definition, stored on the running instance if it is local to one."""
         return [lowered, self._store(site)] if site in self._bound_by else lowered
 

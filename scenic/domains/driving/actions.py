@@ -75,7 +75,7 @@ def _velocity(heading: float, speed: float) -> Vector:
 class SetPositionAction(Action):
     """Teleport to a position."""
 
-    def __init__(self, pos: Any) -> None:
+    def __init__(self, pos: object) -> None:
         self.pos = to_vector(pos, "the position")
 
     def applyTo(self, agent: Any, simulation: Any) -> None:
@@ -86,7 +86,7 @@ class SetPositionAction(Action):
 class SetOrientationAction(Action):
     """Turn to an orientation, or to a heading (radians, anticlockwise from north)."""
 
-    def __init__(self, orientation: Any) -> None:
+    def __init__(self, orientation: object) -> None:
         self.orientation = to_orientation(orientation)
 
     def applyTo(self, agent: Any, simulation: Any) -> None:
@@ -97,7 +97,7 @@ class SetOrientationAction(Action):
 class OffsetAction(Action):
     """Teleport by an offset in the agent's own frame (metres)."""
 
-    def __init__(self, offset: Any) -> None:
+    def __init__(self, offset: object) -> None:
         self.offset = offset
 
     def applyTo(self, agent: Any, simulation: Any) -> None:
@@ -130,7 +130,7 @@ class SetSpeedAction(Action):
 class SteeringAction(Action):
     """Base of actions of agents that steer."""
 
-    def canBeTakenBy(self, agent: Any) -> bool:
+    def canBeTakenBy(self, agent: object) -> bool:
         """Return whether the agent steers."""
         return isinstance(agent, Steers)
 
@@ -232,7 +232,7 @@ class RegulatedControlAction(SteeringAction):
 class WalkingAction(Action):
     """Base of actions of agents that walk."""
 
-    def canBeTakenBy(self, agent: Any) -> bool:
+    def canBeTakenBy(self, agent: object) -> bool:
         """Return whether the agent walks."""
         return isinstance(agent, Walks)
 

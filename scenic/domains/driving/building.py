@@ -175,7 +175,7 @@ def _folded(strip: _Strip) -> Any:
     return area_of(shapely.union_all(parts))
 
 
-def area_of(geometry: Any) -> Any:
+def area_of(geometry: object) -> Any:
     """The polygons of a geometry without slivers; ``None`` if there are none."""
     import shapely
 
@@ -266,7 +266,7 @@ class _RoadBuilder:
         )
         return built
 
-    def _register(self, cls: type[Any], uid: str, polygon: Any, **named: Any) -> Any:
+    def _register(self, cls: type[Any], uid: str, polygon: object, **named: Any) -> Any:
         element: NetworkElement = cls(self._network, uid, polygon, **named)
         self._network.elements[uid] = element
         return element

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -63,12 +63,12 @@ def _style() -> str:
     return f"{areas} {lines} .way {{ stroke-dasharray: 1.5 1.5; stroke-opacity: .7 }}"
 
 
-def _way(line: Any) -> str:
+def _way(line: object) -> str:
     points = np.round(np.asarray(line), 2).tolist()
     return "M" + "L".join(f"{x:g} {-y:g}" for x, y in points)
 
 
-def _area(polygon: Any) -> str:
+def _area(polygon: object) -> str:
     rings = []
     for part in getattr(polygon, "geoms", [polygon]):
         rings += [part.exterior, *part.interiors]
@@ -96,7 +96,7 @@ def png(network: "RoadNetwork", width: int = 1600) -> bytes:
     image = library.new("RGB", size, _GROUND)
     draw = ImageDraw.Draw(image)
 
-    def pixels(line: Any) -> list[tuple[float, float]]:
+    def pixels(line: object) -> list[tuple[float, float]]:
         points = np.asarray(line)[:, :2]
         return [(2 * scale * (x - left), 2 * scale * (top - y)) for x, y in points.tolist()]
 

@@ -47,7 +47,7 @@ Floats = NDArray[np.float64]
 CARS = frozenset({VehicleType.CAR})
 
 
-def _required(value: Any, what: str) -> Any:
+def _required(value: object, what: str) -> Any:
     """A value that is there; rejects the sample otherwise."""
     if value is None:
         raise RejectionException(what)
@@ -131,7 +131,7 @@ class NetworkElement(Frozen, Surface):
     def random_parts(self) -> list[Any]:
         return []
 
-    def sampled(self, sample: Any) -> Region:
+    def sampled(self, sample: object) -> Region:
         return self
 
     def _guides(self) -> Sequence["LinearElement"]:
@@ -171,11 +171,11 @@ class NetworkElement(Frozen, Surface):
             chosen[lost] = distances.argmin(axis=0)
         return chosen
 
-    def nominalDirectionsAt(self, point: Any) -> tuple[Orientation, ...]:
+    def nominalDirectionsAt(self, point: object) -> tuple[Orientation, ...]:
         """The directions of traffic that are possible at a point; here one."""
         return (self.orientation[point],)
 
-    def elevationAt(self, point: Any) -> Any:
+    def elevationAt(self, point: object) -> Any:
         """The height in metres of this element's own road at a point, whatever passes above or below; ``None`` off the road."""
         return self.network.elevationAt(point, self)
 
@@ -268,7 +268,7 @@ class LinearElement(NetworkElement):
         ),
         faults=True,
     )
-    def flowFrom(self, point: Any, distance: Any, steps: int | None = None, stepSize: float = 5) -> Any:
+    def flowFrom(self, point: object, distance: object, steps: int | None = None, stepSize: float = 5) -> Any:
         """The point reached by following the element's direction from a point for a distance in metres."""
         return self.orientation.followFrom(point, distance, steps=steps, stepSize=stepSize)
 
@@ -353,7 +353,7 @@ class Lane(LinearElement):
             if signal.isTrafficLight or signal.isStopSign or signal.isYieldSign or signal.isStopLine
         )
 
-    def haltPointAhead(self, position: Any, lookahead: float = 80) -> Any:
+    def haltPointAhead(self, position: object, lookahead: float = 80) -> Any:
         """The point at which traffic may have to halt for the first signal ahead of a position; ``None`` if there is none.
 
         Args:
@@ -364,7 +364,7 @@ class Lane(LinearElement):
         found = halt_point_ahead(self, getattr(position, "position", position), lookahead)
         return None if found is None else self.centerline.pointAlongBy(found[1])
 
-    def sectionAt(self, point: Any, reject: Any = False) -> LaneSection | None:
+    def sectionAt(self, point: object, reject: object = False) -> LaneSection | None:
         """The section at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
         found: LaneSection | None = self.network.findPointIn(point, self.sections, reject)
         return found
@@ -413,7 +413,7 @@ class LaneGroup(LinearElement):
         found: LaneGroup = _required(self._opposite, f"{self.uid} has no opposite group")
         return found
 
-    def laneAt(self, point: Any, reject: Any = False) -> Lane | None:
+    def laneAt(self, point: object, reject: object = False) -> Lane | None:
         """The lane at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
         found: Lane | None = self.network.findPointIn(point, self.lanes, reject)
         return found
@@ -431,7 +431,7 @@ class RoadSection(LinearElement):
     def _guides(self) -> Sequence[LinearElement]:
         return self.lanes or (self,)
 
-    def laneAt(self, point: Any, reject: Any = False) -> LaneSection | None:
+    def laneAt(self, point: object, reject: object = False) -> LaneSection | None:
         """The lane section at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
         found: LaneSection | None = self.network.findPointIn(point, self.lanes, reject)
         return found
@@ -466,32 +466,32 @@ class Road(LinearElement):
         """All of its sidewalks."""
         return self.network.region_of(self.sidewalks)
 
-    def sectionAt(self, point: Any, reject: Any = False) -> RoadSection | None:
+    def sectionAt(self, point: object, reject: object = False) -> RoadSection | None:
         """The road section at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
         found: RoadSection | None = self.network.findPointIn(point, self.sections, reject)
         return found
 
-    def laneSectionAt(self, point: Any, reject: Any = False) -> LaneSection | None:
+    def laneSectionAt(self, point: object, reject: object = False) -> LaneSection | None:
         """The lane section at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
         lane = self.laneAt(point, reject)
         return None if lane is None else lane.sectionAt(point, reject)
 
-    def laneAt(self, point: Any, reject: Any = False) -> Lane | None:
+    def laneAt(self, point: object, reject: object = False) -> Lane | None:
         """The lane at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
         found: Lane | None = self.network.findPointIn(point, self.lanes, reject)
         return found
 
-    def laneGroupAt(self, point: Any, reject: Any = False) -> LaneGroup | None:
+    def laneGroupAt(self, point: object, reject: object = False) -> LaneGroup | None:
         """The lane group at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
         found: LaneGroup | None = self.network.findPointIn(point, self.laneGroups, reject)
         return found
 
-    def crossingAt(self, point: Any, reject: Any = False) -> "PedestrianCrossing | None":
+    def crossingAt(self, point: object, reject: object = False) -> "PedestrianCrossing | None":
         """The crossing at a point; ``None`` (or a rejection if ``reject``) elsewhere."""
         found: PedestrianCrossing | None = self.network.findPointIn(point, self.crossings, reject)
         return found
 
-    def shiftLanes(self, point: Any, offset: int) -> Any:
+    def shiftLanes(self, point: object, offset: int) -> Any:
         """The point at the same share of its lane section, ``offset`` lanes to the left; ``None`` if no such lane exists."""
         section = self.laneSectionAt(point)
         if section is None:
@@ -599,7 +599,7 @@ class Intersection(NetworkElement):
         """Return whether there is a traffic light."""
         return any(signal.isTrafficLight for signal in self.signals)
 
-    def maneuversAt(self, point: Any) -> list["Maneuver"]:
+    def maneuversAt(self, point: object) -> list["Maneuver"]:
         """The maneuvers whose connecting lane holds a point."""
         found = []
         for maneuver in self.maneuvers:
@@ -608,7 +608,7 @@ class Intersection(NetworkElement):
                 found.append(maneuver)
         return found
 
-    def nominalDirectionsAt(self, point: Any) -> tuple[Orientation, ...]:
+    def nominalDirectionsAt(self, point: object) -> tuple[Orientation, ...]:
         """The directions of the maneuvers that are possible at a point; that of the nearest one where none is."""
         lanes = [maneuver.connectingLane for maneuver in self.maneuversAt(point)]
         if not lanes:

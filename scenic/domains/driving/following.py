@@ -53,7 +53,7 @@ class Driver:
 
     """
 
-    def __init__(self, agent: Any, comfort: Comfort | None = None, gap: Gap | None = None) -> None:
+    def __init__(self, agent: object, comfort: Comfort | None = None, gap: Gap | None = None) -> None:
         if not isinstance(agent, Steers):
             raise InvalidScenarioError(
                 f"{agent!r} cannot be driven: it has no throttle, brakes and steering wheel",
@@ -81,7 +81,7 @@ class Driver:
         self._accelerations: list[float] = []
         self._time = self._simulation.currentTime
 
-    def follow_only(self, other: Any) -> None:
+    def follow_only(self, other: object) -> None:
         """Keep the gap to one car alone."""
         self._only = other
 

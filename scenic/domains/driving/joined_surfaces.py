@@ -143,7 +143,7 @@ class JoinedSurface(Surface):
         found: Polygons = known[owner]
         return found
 
-    def union(self, other: Any) -> Region:
+    def union(self, other: object) -> Region:
         """The points that lie in either region; with another surface of the network, a surface again."""
         if isinstance(other, JoinedSurface) and other.network is self.network:
             elements = dict.fromkeys((*self.elements, *other.elements))

@@ -64,7 +64,7 @@ class LaneDriver(Driver):
 
     def __init__(
         self,
-        agent: Any,
+        agent: object,
         target: float,
         lane: Lane | None = None,
         comfort: Comfort | None = None,
@@ -200,7 +200,7 @@ class LaneChanger(LaneDriver):
 
     def __init__(
         self,
-        agent: Any,
+        agent: object,
         section: LaneSection | Lane,
         target: float,
         *,
@@ -249,7 +249,7 @@ class RouteDriver(Driver):
 
     def __init__(
         self,
-        agent: Any,
+        agent: object,
         route: Route,
         target: float,
         turn: float | None = None,

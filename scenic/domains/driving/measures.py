@@ -30,7 +30,7 @@ def _extent(thing: Any, dx: float, dy: float) -> float:
     return float(thing.length * ahead + thing.width * aside) / 2
 
 
-def bumper_gap(car: Any, other: Any) -> float:
+def bumper_gap(car: object, other: object) -> float:
     """The distance from the front of a car to the rear of another object in its way, along its lane; infinite if it is not ahead.
 
     The way is the lane of the car and the lanes straight after it; beside the way, by more than half of both widths, nobody is ahead.
@@ -77,7 +77,7 @@ def _along_lane(car: Any, other: Any) -> tuple[float, float, float] | None:
     return max(gap, 0.0), float(speeds[0]), float(speeds[1])
 
 
-def time_to_collision(car: Any, other: Any) -> float:
+def time_to_collision(car: object, other: object) -> float:
     """The time until a car runs into an object ahead if both keep their speeds: gap / (v - v_other).
 
     J. C. Hayward, Near-miss determination through use of a scale of danger, Highway Research Record 384, 1972.
@@ -89,7 +89,7 @@ def time_to_collision(car: Any, other: Any) -> float:
     return gap / (own - ahead) if own - ahead > 1e-9 else math.inf
 
 
-def time_headway(car: Any, other: Any) -> float:
+def time_headway(car: object, other: object) -> float:
     """The time until the front of a car is where the rear of an object ahead is now: gap / v."""
     found = _along_lane(car, other)
     if found is None:
@@ -98,7 +98,7 @@ def time_headway(car: Any, other: Any) -> float:
     return gap / own if own > 1e-9 else math.inf
 
 
-def required_deceleration(car: Any, other: Any) -> float:
+def required_deceleration(car: object, other: object) -> float:
     """The constant deceleration by which a car just does not run into an object ahead that keeps its speed: (v - v_other)^2 / (2 gap).
 
     It is 0 where none is required, and infinite at contact.

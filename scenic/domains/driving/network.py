@@ -127,7 +127,7 @@ class RoadNetwork(Frozen):
                 found[signal.uid] = (*found.get(signal.uid, ()), maneuver)
         return found
 
-    def speedLimitAt(self, point: Any) -> float | None:
+    def speedLimitAt(self, point: object) -> float | None:
         """The speed limit in m/s at a point: that of the lane there; ``None`` where there is none."""
         lane = self.laneAt(point)
         if lane is None:
@@ -263,11 +263,11 @@ class RoadNetwork(Frozen):
 
     # What is where
 
-    def vector(self, point: Any) -> Any:
+    def vector(self, point: object) -> Any:
         """A point as a vector; its height does not count."""
         return to_vector(point, "a point of the map")
 
-    def findPointIn(self, point: Any, elems: Sequence[NetworkElement], reject: Any = False) -> Any:
+    def findPointIn(self, point: object, elems: Sequence[NetworkElement], reject: object = False) -> Any:
         """The first of some elements that contains a point; if none does, the first within the tolerance.
 
         Args:
@@ -301,45 +301,45 @@ class RoadNetwork(Frozen):
         """Return for each place ``(n, 2)`` whether an intersection holds it."""
         return self._finder(self.intersections).holding(places) < len(self.intersections)
 
-    def elementAt(self, point: Any, reject: Any = False) -> Any:
+    def elementAt(self, point: object, reject: object = False) -> Any:
         """The intersection, road, shoulder or sidewalk at a point, the first of these."""
         return self.findPointIn(
             point, (*self.intersections, *self.roads, *self.shoulders, *self.sidewalks), reject
         )
 
-    def roadAt(self, point: Any, reject: Any = False) -> Any:
+    def roadAt(self, point: object, reject: object = False) -> Any:
         """The road at a point: an ordinary one first, then a connecting one."""
         return self.findPointIn(point, self.allRoads, reject)
 
-    def laneAt(self, point: Any, reject: Any = False) -> Any:
+    def laneAt(self, point: object, reject: object = False) -> Any:
         """The lane at a point."""
         return self.findPointIn(point, self.lanes, reject)
 
-    def laneSectionAt(self, point: Any, reject: Any = False) -> Any:
+    def laneSectionAt(self, point: object, reject: object = False) -> Any:
         """The lane section at a point."""
         return self._through(point, reject, self.lanes, "sections")
 
-    def laneGroupAt(self, point: Any, reject: Any = False) -> Any:
+    def laneGroupAt(self, point: object, reject: object = False) -> Any:
         """The lane group at a point."""
         return self._through(point, reject, self.allRoads, "laneGroups")
 
-    def crossingAt(self, point: Any, reject: Any = False) -> Any:
+    def crossingAt(self, point: object, reject: object = False) -> Any:
         """The pedestrian crossing at a point."""
         return self.findPointIn(point, self.crossings, reject)
 
-    def intersectionAt(self, point: Any, reject: Any = False) -> Any:
+    def intersectionAt(self, point: object, reject: object = False) -> Any:
         """The intersection at a point."""
         return self.findPointIn(point, self.intersections, reject)
 
-    def sidewalkAt(self, point: Any, reject: Any = False) -> Any:
+    def sidewalkAt(self, point: object, reject: object = False) -> Any:
         """The sidewalk at a point."""
         return self.findPointIn(point, self.sidewalks, reject)
 
-    def shoulderAt(self, point: Any, reject: Any = False) -> Any:
+    def shoulderAt(self, point: object, reject: object = False) -> Any:
         """The shoulder at a point."""
         return self.findPointIn(point, self.shoulders, reject)
 
-    def _through(self, point: Any, reject: Any, elems: Sequence[NetworkElement], parts: str) -> Any:
+    def _through(self, point: object, reject: object, elems: Sequence[NetworkElement], parts: str) -> Any:
         """A part of the element at a point."""
         place = self.vector(point)
         if isinstance(place, Lazy):
@@ -356,7 +356,7 @@ class RoadNetwork(Frozen):
             finder = self._nested_finders[parts] = NestedFinder(self._finder(tuple(elems)), inner)
         return finder
 
-    def nominalDirectionsAt(self, point: Any, reject: Any = False) -> Any:
+    def nominalDirectionsAt(self, point: object, reject: object = False) -> Any:
         """The directions of traffic that are possible at a point: several in an intersection, none off the road."""
         place = self.vector(point)
         if isinstance(place, Lazy):
@@ -366,7 +366,7 @@ class RoadNetwork(Frozen):
         found = self.findPointIn(place, (*self.intersections, *self.roads, *self.shoulders), reject)
         return () if found is None else found.nominalDirectionsAt(place)
 
-    def elevationAt(self, point: Any, element: NetworkElement | None = None) -> Any:
+    def elevationAt(self, point: object, element: NetworkElement | None = None) -> Any:
         """The height in metres of the road at a point, ``None`` off the road.
 
         Args:
@@ -396,7 +396,7 @@ class RoadNetwork(Frozen):
     def __repr__(self) -> str:
         return f"<Network of {len(self.roads)} roads, {len(self.intersections)} intersections>"
 
-    def __deepcopy__(self, _memo: Any) -> "RoadNetwork":
+    def __deepcopy__(self, _memo: object) -> "RoadNetwork":
         return self
 
     def __copy__(self) -> "RoadNetwork":

@@ -33,7 +33,7 @@ class OpenDriveWorkspace(DrivingWorkspace):
 
     """
 
-    def __init__(self, path: Any, n: int = 20, tolerance: float | None = None) -> None:
+    def __init__(self, path: object, n: int = 20, tolerance: float | None = None) -> None:
         options: dict[str, Any] = {} if tolerance is None else {"tolerance": tolerance}
         network = Network.fromFile(path, ref_points=n, **options)
         for problem in network.problems:

@@ -98,7 +98,7 @@ class RightOfWay:
         assert claim.maneuver.intersection is not None
         self._claims.setdefault(claim.maneuver.intersection.uid, {})[id(claim.agent)] = claim
 
-    def holds(self, agent: Any, maneuver: Maneuver) -> bool:
+    def holds(self, agent: object, maneuver: Maneuver) -> bool:
         """Return whether a car has taken a way."""
         assert maneuver.intersection is not None
         own = self._taken.get(maneuver.intersection.uid, {}).get(id(agent))
@@ -134,7 +134,7 @@ class RightOfWay:
         waited = own.at - own.since
         return not (other.since < math.inf and waited > _PATIENCE and own.since <= other.since)
 
-    def leave(self, agent: Any, maneuver: Maneuver) -> None:
+    def leave(self, agent: object, maneuver: Maneuver) -> None:
         """Give a way back."""
         assert maneuver.intersection is not None
         self._taken.get(maneuver.intersection.uid, {}).pop(id(agent), None)

@@ -60,7 +60,7 @@ class Network(RoadNetwork):
     @classmethod
     def fromFile(
         cls,
-        path: Any,
+        path: object,
         useCache: bool = True,
         writeCache: bool = True,
         elevated: bool = False,
@@ -84,7 +84,7 @@ class Network(RoadNetwork):
         return load_network(path, {"useCache": useCache, "writeCache": writeCache, **options}, cls, elevated)
 
     @classmethod
-    def fromOpenDrive(cls, path: Any, **options: Any) -> "Network":
+    def fromOpenDrive(cls, path: object, **options: Any) -> "Network":
         """The network of an OpenDRIVE file; see `fromFile`."""
         return cls.fromFile(path, **options)
 

@@ -75,7 +75,7 @@ class RulesDriver(LaneDriver):
 
     def __init__(
         self,
-        agent: Any,
+        agent: object,
         target: float | None = None,
         ignore: Iterable[str] = (),
         comfort: Comfort | None = None,

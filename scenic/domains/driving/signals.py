@@ -212,7 +212,7 @@ class TrafficLights:
             self._frozen = None
 
 
-def _color(color: Any) -> str:
+def _color(color: object) -> str:
     name = str(color).lower()
     if name not in COLORS:
         raise InvalidScenarioError(

@@ -53,11 +53,11 @@ class DrivingSimulation(Simulation):
     def _law_abiding(self) -> set[int]:
         return set()
 
-    def obeys_rules(self, agent: Any) -> bool:
+    def obeys_rules(self, agent: object) -> bool:
         """Return whether a car takes its way through intersections by `right_of_way`."""
         return id(agent) in self._law_abiding
 
-    def note_rules(self, agent: Any, obeys: bool) -> None:
+    def note_rules(self, agent: object, obeys: bool) -> None:
         """Note whether a car takes its way through intersections by `right_of_way`."""
         if obeys:
             self._law_abiding.add(id(agent))
@@ -89,12 +89,12 @@ class DrivingSimulation(Simulation):
                 best = away, signal
         return None if best is None else best[1]
 
-    def closest_traffic_light(self, vehicle: Any, distance: float) -> str:
+    def closest_traffic_light(self, vehicle: object, distance: float) -> str:
         """The colour of the traffic light ahead of a vehicle within a distance in metres; ``none`` if there is none."""
         signal = self._light_ahead(vehicle, distance)
         return "none" if signal is None else self.signalState(signal)
 
-    def set_closest_traffic_light(self, vehicle: Any, color: str, distance: float) -> None:
+    def set_closest_traffic_light(self, vehicle: object, color: str, distance: float) -> None:
         """Set the traffic light ahead of a vehicle within a distance in metres, if there is one."""
         signal = self._light_ahead(vehicle, distance)
         if signal is not None:
@@ -105,7 +105,7 @@ class DrivingSimulation(Simulation):
         """Return whether the simulation overrides a method for controllers."""
         return getattr(type(self), name) is not getattr(DrivingSimulation, name)
 
-    def _controllers(self, agent: Any, kind: str, others: tuple[float, float, float]) -> Controllers:
+    def _controllers(self, agent: object, kind: str, others: tuple[float, float, float]) -> Controllers:
         is_car = bool(getattr(agent, "isCar", False))
         dt = float(self.timestep)
         along = (0.5, 0.1, 0.7) if is_car else (0.25, 0.025, 0.0)
@@ -144,15 +144,15 @@ class DrivingSimulation(Simulation):
         """The acceleration (m/s^2) of an agent by a throttle (0 to 1) or brake (-1 to 0)."""
         return pedal * float(agent.maxAcceleration if pedal > 0 else agent.maxDeceleration)
 
-    def getLaneFollowingControllers(self, agent: Any) -> Controllers:
+    def getLaneFollowingControllers(self, agent: object) -> Controllers:
         """Controllers that keep an agent in its lane."""
         return self._controllers(agent, "keep", (0.2, 0.1, 0.0))
 
-    def getTurningControllers(self, agent: Any) -> Controllers:
+    def getTurningControllers(self, agent: object) -> Controllers:
         """Controllers that take an agent round a turn."""
         return self._controllers(agent, "turn", (0.4, 0.1, 0.0))
 
-    def getLaneChangingControllers(self, agent: Any) -> Controllers:
+    def getLaneChangingControllers(self, agent: object) -> Controllers:
         """Controllers that take an agent to another lane."""
         return self._controllers(agent, "change", (0.1, 0.3, 0.0))
 

@@ -236,7 +236,7 @@ def _elevation(arrays: Arrays, rows: Sequence[Any]) -> Elevation:
     )
 
 
-def _element(network: RoadNetwork, row: Sequence[Any], polygon: Any) -> NetworkElement:
+def _element(network: RoadNetwork, row: Sequence[Any], polygon: object) -> NetworkElement:
     kind, uid, key, name, speed, vehicles, tags = row[:7]
     return _CLASSES[kind](
         network,

@@ -68,7 +68,7 @@ class Route:
 
     """
 
-    def __init__(self, trajectory: Any) -> None:
+    def __init__(self, trajectory: object) -> None:
         self._speeds: tuple[float, ...] | None = None
         if isinstance(trajectory, Trajectory):
             parts: Sequence[Any] = (trajectory,)
@@ -107,7 +107,7 @@ def _vertices(part: Any) -> Floats:
     return np.array([point[:2] for point in part.points])
 
 
-def _is_way(part: Any) -> bool:
+def _is_way(part: object) -> bool:
     return isinstance(part, LinearElement | PolylineRegion | Trajectory)
 
 

@@ -51,7 +51,7 @@ class Nearness:
         return self._distance < limit
 
 
-def _polygon_of(target: Any) -> Any:
+def _polygon_of(target: object) -> Any:
     if isinstance(target, NetworkElement):
         return target.polygon
     return getattr(target, "polygons", None)

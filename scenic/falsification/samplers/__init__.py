@@ -40,7 +40,7 @@ RESTORABLE: Final = (CrossEntropy, Bandit, EpsilonGreedy, Annealing)
 """Samplers that learn, and can be set back: a copy goes on as they do."""
 
 
-def make_sampler(name: str, space: Space, seed: int, given: Any = None) -> Sampler:
+def make_sampler(name: str, space: Space, seed: int, given: object = None) -> Sampler:
     """The sampler of a name; raises `SamplerError` if there is none, or its library is missing."""
     if name not in SAMPLERS:
         near = nearest_option(name, SAMPLERS)

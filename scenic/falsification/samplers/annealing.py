@@ -1,7 +1,7 @@
 """Simulated annealing."""
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -28,7 +28,7 @@ class Annealing:
 
     batch = None
 
-    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+    def __init__(self, space: Space, seed: int, given: object = None) -> None:
         chosen = options(
             given, {"T": 1.0, "decay_rate": 0.97, "iterations": 100, "num_epoch": 1_000_000}, "sa"
         )

@@ -29,7 +29,7 @@ class Bayesian:
 
     batch = 1
 
-    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+    def __init__(self, space: Space, seed: int, given: object = None) -> None:
         chosen = options(given, {"init_num": 5}, "bo")
         _library()
         self._first = int(chosen["init_num"])
@@ -112,7 +112,7 @@ class Bayesian:
             self._kernel, self._fitted_at = process.kernel_, told
         return process
 
-    def _fitted(self, kernel: Any, points: Floats, values: Floats, *, again: bool) -> Any:
+    def _fitted(self, kernel: object, points: Floats, values: Floats, *, again: bool) -> Any:
         regressor = _library().GaussianProcessRegressor(
             kernel, optimizer="fmin_l_bfgs_b" if again else None, alpha=1e-8
         )

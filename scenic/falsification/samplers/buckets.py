@@ -16,7 +16,7 @@ _BUCKETS: Final = 5
 _DEFAULTS: Final[Mapping[str, Any]] = {"alpha": 0.9, "thres": 0.0, "cont": {}, "disc": {}}
 
 
-def _attribute(given: Any, name: str, default: Any) -> Any:
+def _attribute(given: object, name: str, default: object) -> Any:
     found = given.get(name) if isinstance(given, Mapping) else getattr(given, name, None)
     return default if found is None else found
 
@@ -27,7 +27,7 @@ class _Buckets:
     batch: int | None = None
     name = "ce"
 
-    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+    def __init__(self, space: Space, seed: int, given: object = None) -> None:
         chosen = options(given, _DEFAULTS, self.name)
         self.alpha = float(chosen["alpha"])
         self.threshold = float(chosen["thres"])
@@ -106,7 +106,7 @@ class EpsilonGreedy(CrossEntropy):
 
     name = "eg"
 
-    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+    def __init__(self, space: Space, seed: int, given: object = None) -> None:
         super().__init__(space, seed, given)
         self._updates = 0
 
@@ -135,7 +135,7 @@ class Bandit(_Buckets):
 
     name = "mab"
 
-    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+    def __init__(self, space: Space, seed: int, given: object = None) -> None:
         super().__init__(space, seed, given)
         self.counts = [np.ones(len(item)) for item in self.distributions]
         self.errors = [np.zeros(len(item)) for item in self.distributions]

@@ -24,7 +24,7 @@ class Evolution:
     their generation.
     """
 
-    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+    def __init__(self, space: Space, seed: int, given: object = None) -> None:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")

@@ -17,7 +17,7 @@ class Parzen:
 
     batch: int | None = None
 
-    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+    def __init__(self, space: Space, seed: int, given: object = None) -> None:
         options(given, {}, "tpe")
         optuna = _library()
         with warnings.catch_warnings():

@@ -18,7 +18,7 @@ class Random:
 
     batch = None
 
-    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+    def __init__(self, space: Space, seed: int, given: object = None) -> None:
         options(given, {}, "random")
         self._dimension = len(space)
         self._generator = np.random.default_rng(seed)
@@ -36,7 +36,7 @@ class Halton:
 
     batch = None
 
-    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+    def __init__(self, space: Space, seed: int, given: object = None) -> None:
         chosen = options(given, {"sample_index": 0, "bases_skipped": 0}, "halton")
         self._continuous = [place for place, item in enumerate(space.coordinates) if item.is_continuous]
         self._dimension = len(space)
@@ -85,7 +85,7 @@ class Sobol:
 
     batch = None
 
-    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+    def __init__(self, space: Space, seed: int, given: object = None) -> None:
         from scipy.stats import qmc
 
         options(given, {}, "sobol")
@@ -115,7 +115,7 @@ class Grid:
 
     batch = None
 
-    def __init__(self, space: Space, seed: int, given: Any = None) -> None:
+    def __init__(self, space: Space, seed: int, given: object = None) -> None:
         chosen = options(given, {"N": _POINTS, "repeat": False}, "grid")
         continuous = [item for item in space.coordinates if item.is_continuous]
         wanted = chosen["N"]

@@ -53,7 +53,7 @@ def ids(element: Element, tag: str, attribute: str) -> Iterator[str]:
             yield item.attributes[attribute]
 
 
-def number_or(element: Element, name: str, default: Any) -> Any:
+def number_or(element: Element, name: str, default: object) -> Any:
     """A number of an element; the default where it is none."""
     try:
         value = float(element.attributes[name])

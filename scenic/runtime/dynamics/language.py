@@ -163,7 +163,7 @@ class Dynamics:
         """By how much ``a < b <= c`` or the like holds, the least of its parts; ``None`` where that is not known."""
         return margins.margin(symbols, operands)
 
-    def at_present(self, value: Any) -> Any:
+    def at_present(self, value: object) -> Any:
         """A value, at the present place of the agent whose behavior is running, if there is one."""
         run = self._run
         if run is None or run.agent is None or not is_lazy(value):

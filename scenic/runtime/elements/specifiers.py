@@ -147,7 +147,7 @@ class _Declared:
         )
 
 
-def _same(value: Any) -> Any:
+def _same(value: object) -> Any:
     return value
 
 
@@ -177,7 +177,7 @@ def _specifier(
 # The specifiers
 
 
-def with_(property: str, value: Any) -> Specifier:
+def with_(property: str, value: object) -> Specifier:
     """The one specifier that declares no priority: giving a property by name is the strongest way."""
     name, priorities, kind = _giving(property)
     return Specifier(name, priorities, _NOTHING, lambda _: {property: value}, kind=kind)
@@ -192,7 +192,7 @@ def _giving(property: str) -> tuple[str, Mapping[str, int], Hashable]:
 _NOTHING: Final[frozenset[str]] = frozenset()
 
 
-def at(position: Any) -> Specifier:
+def at(position: object) -> Specifier:
     return _specifier("at", lambda _: {"position": position})
 
 
@@ -240,7 +240,7 @@ def _standing(name: str, target: Any, base: Callable[[Any], tuple[Any, Mapping[s
             raise wrong_type((REGION, OBJECT, VECTOR), surface, f"`{name}`")
         place = to_vector(surface, f"`{name}`")
 
-    def rest(instance: Any, anchor: Any, orientation: Any) -> Mapping[str, Any]:
+    def rest(instance: object, anchor: object, orientation: object) -> Mapping[str, Any]:
         offset, properties = base(instance)
         if orientation is not None:
             offset = operate("rotate", orientation, offset)
@@ -264,12 +264,12 @@ def _standing(name: str, target: Any, base: Callable[[Any], tuple[Any, Mapping[s
     return _specifier(name, evaluate, modify=modify, conditional=is_oriented)
 
 
-def _may_be_surface(value: Any) -> bool:
+def _may_be_surface(value: object) -> bool:
     """Return whether some option of a choice is a region or an object."""
     return any(isinstance(option, Region | Object) or _may_be_surface(option) for option in options_of(value))
 
 
-def _surface(target: Any) -> Region:
+def _surface(target: object) -> Region:
     """Return the surface that the drawn operand of `on` denotes: of an object its ``onSurface``, of a point
     the region of that point.
     """
@@ -361,7 +361,7 @@ def _directional(name: str, sign: int) -> Callable[..., Specifier]:
     return build
 
 
-def following(field: VectorField, start: Any, distance: Any) -> Specifier:
+def following(field: VectorField, start: object, distance: object) -> Specifier:
     end = field.followFrom(start, distance)
     orientation = field[end]
 

@@ -36,7 +36,7 @@ class ExternalPoints(Protocol):
     def answerless(self) -> bool:
         """True if no point depends on what has become of those before it."""
 
-    def ahead(self, feedback: Any, count: int) -> Columns:
+    def ahead(self, feedback: object, count: int) -> Columns:
         """The numbers ``(n,)`` of the next points, by address, at least one and at most ``count``.
 
         They are those that come one after the other if all but the last are rejected; ``feedback`` is about the one before them.
@@ -75,7 +75,7 @@ class ExternalCandidates:
         self._waiting: deque[tuple[int, Result]] = deque()
         """Candidates that are evaluated and not rejected, with their numbers."""
 
-    def take(self, seed: int, most: int, feedback: Any) -> tuple[Result | None, int]:
+    def take(self, seed: int, most: int, feedback: object) -> tuple[Result | None, int]:
         """The next candidate that nothing rejects, if it is one of ``most``; and the number of those tried.
 
         Args:
@@ -112,7 +112,7 @@ class ExternalCandidates:
         self._waiting.clear()
         self._given = self._next = self._end = 0
 
-    def _fill(self, feedback: Any, most: int) -> None:
+    def _fill(self, feedback: object, most: int) -> None:
         """Evaluate the next candidates."""
         if self.points.answerless:
             count = self._lanes_for(min(max(1, 2 * self._given), _MOST_SCENES))

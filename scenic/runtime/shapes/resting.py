@@ -19,7 +19,7 @@ _DIGITS: Final = 9
 """Digits of the ratios of extents by which poses are kept."""
 
 
-def resting_pose(shape: Any, width: Any, length: Any, height: Any) -> Any:
+def resting_pose(shape: object, width: object, length: object, height: object) -> Any:
     """A random stable pose of a shape at a size: the vector of pitch, roll (radians) and height of the middle (metres).
 
     Raises:
@@ -29,7 +29,7 @@ def resting_pose(shape: Any, width: Any, length: Any, height: Any) -> Any:
     draw = uniform()
     sizes = [to_scalar(extent) for extent in (width, length, height)]
 
-    def of_option(option: Any) -> Any:
+    def of_option(option: object) -> Any:
         if not isinstance(option, Shape):
             raise ScenicTypeError(
                 "`resting on` needs a shape that is known before the draw",

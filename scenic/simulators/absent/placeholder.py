@@ -22,7 +22,7 @@ class AbsentSimulator(DrivingSimulator):
         self.name = name
         self.needed = needed
 
-    def createSimulation(self, scene: Any, **options: Any) -> Any:
+    def createSimulation(self, scene: object, **options: Any) -> Any:
         """Raises `UnsupportedError`, always."""
         raise UnsupportedError(
             f"there is no adapter to {self.name}: {self.needed}",

@@ -243,7 +243,7 @@ class CarlaSimulation(DrivingSimulation):
         x, y, z = (math.degrees(part) for part in velocity)
         self._actors[id(obj)].set_target_angular_velocity(self._carla.Vector3D(x=-x, y=y, z=-z))
 
-    def control(self, obj: Any, **values: Any) -> None:
+    def control(self, obj: object, **values: Any) -> None:
         """Set parts of a vehicle's control."""
         for name, value in values.items():
             setattr(self._controls[id(obj)], name, value)
@@ -304,12 +304,12 @@ class CarlaSimulation(DrivingSimulation):
         stored = obj.__dict__
         return {name: values[name] if name in values else stored[name] for name in properties}
 
-    def closest_traffic_light(self, vehicle: Any, distance: float) -> str:
+    def closest_traffic_light(self, vehicle: object, distance: float) -> str:
         """The colour of the light that governs a vehicle within a distance, in small letters; ``none`` if there is none."""
         light = self._closest(vehicle, distance)
         return "none" if light is None else str(light.get_state()).rpartition(".")[2].lower()
 
-    def set_closest_traffic_light(self, vehicle: Any, color: str, distance: float) -> None:
+    def set_closest_traffic_light(self, vehicle: object, color: str, distance: float) -> None:
         """Set the light that governs a vehicle within a distance."""
         light = self._closest(vehicle, distance)
         if light is not None:

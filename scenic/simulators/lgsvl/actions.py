@@ -1,7 +1,5 @@
 """The actions of LGSVL's actors; that simulator is discontinued, so that they do nothing anywhere."""
 
-from typing import Any
-
 from scenic.domains.driving.actions import *  # noqa: F403 - programs import them from here
 from scenic.simulators.actions import Action
 
@@ -11,11 +9,11 @@ __all__ = ["CancelWaypointsAction", "FollowWaypointsAction", "SetDestinationActi
 class _ActorAction(Action):
     """An action of an actor of LGSVL."""
 
-    def canBeTakenBy(self, agent: Any) -> bool:
+    def canBeTakenBy(self, agent: object) -> bool:
         """Return whether the agent is an actor of LGSVL."""
         return hasattr(agent, "lgsvlObject")
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: object) -> None:
         """Raises `NotImplementedError`: nothing runs LGSVL."""
         raise NotImplementedError("LGSVL is discontinued: its actions cannot be taken")
 
@@ -23,14 +21,14 @@ class _ActorAction(Action):
 class SetDestinationAction(_ActorAction):
     """Drive to a destination."""
 
-    def __init__(self, dest: Any) -> None:
+    def __init__(self, dest: object) -> None:
         self.dest = dest
 
 
 class FollowWaypointsAction(_ActorAction):
     """Follow waypoints."""
 
-    def __init__(self, waypoints: Any) -> None:
+    def __init__(self, waypoints: object) -> None:
         self.waypoints = waypoints
 
 
@@ -41,5 +39,5 @@ class CancelWaypointsAction(_ActorAction):
 class TrackWaypointsAction(_ActorAction):
     """Steer along waypoints at a cruising speed in m/s."""
 
-    def __init__(self, waypoints: Any, cruising_speed: float = 10) -> None:
+    def __init__(self, waypoints: object, cruising_speed: float = 10) -> None:
         self.waypoints, self.cruising_speed = waypoints, cruising_speed

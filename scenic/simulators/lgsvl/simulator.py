@@ -10,7 +10,7 @@ __all__ = ["LGSVLSimulator"]
 class LGSVLSimulator(AbsentSimulator):
     """Stands for LGSVL; the arguments are accepted for compatibility."""
 
-    def __init__(self, sceneID: Any = None, *_: Any, **__: Any) -> None:
+    def __init__(self, sceneID: object = None, *_: Any, **__: Any) -> None:
         super().__init__(
             "LGSVL", "it is discontinued, and would need its server, its maps and the package lgsvl"
         )

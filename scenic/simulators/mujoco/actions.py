@@ -36,7 +36,7 @@ class ApplyForce(Command):
 
     models = ("point", "free")
 
-    def __init__(self, force: Any, torque: Any = (0, 0, 0)) -> None:
+    def __init__(self, force: object, torque: object = (0, 0, 0)) -> None:
         self.force = to_vector(force, "ApplyForce")
         self.torque = to_vector(torque, "ApplyForce")
 
@@ -51,7 +51,7 @@ class ApplyForce(Command):
 class _Grip(Action):
     """An action for grippers."""
 
-    def canBeTakenBy(self, agent: Any) -> bool:
+    def canBeTakenBy(self, agent: object) -> bool:
         """Return whether the agent is a guided body."""
         return model_of(agent) == "guided"
 
@@ -59,7 +59,7 @@ class _Grip(Action):
 class Grasp(_Grip):
     """Hold an object as it is, until `Release`; nothing is held that is further away than the gripper's ``reach``."""
 
-    def __init__(self, target: Any) -> None:
+    def __init__(self, target: object) -> None:
         if not isinstance(target, Object):
             raise wrong_type(OBJECT, target, "Grasp")
         self.target = target
@@ -99,7 +99,7 @@ class _JointAction(Action):
             )
         self.values = {str(name): float(value) for name, value in values.items()}
 
-    def canBeTakenBy(self, agent: Any) -> bool:
+    def canBeTakenBy(self, agent: object) -> bool:
         """Return whether the agent has joints."""
         return model_of(agent) == "articulated"
 
@@ -161,12 +161,12 @@ class MoveTo(Action):
 
     """
 
-    def __init__(self, frame: str, position: Any, down: bool = False) -> None:
+    def __init__(self, frame: str, position: object, down: bool = False) -> None:
         self.frame = frame
         self.position = to_vector(position, "MoveTo")
         self.down = bool(down)
 
-    def canBeTakenBy(self, agent: Any) -> bool:
+    def canBeTakenBy(self, agent: object) -> bool:
         """Return whether the agent has joints."""
         return model_of(agent) == "articulated"
 

@@ -81,7 +81,7 @@ class Images:
         self._renderers.clear()
 
 
-def _can_draw(model: Any) -> bool:
+def _can_draw(model: object) -> bool:
     try:
         _renderer(model, 8, 8).close()
     except Exception:  # noqa: BLE001 - whatever the reason is, there are rays

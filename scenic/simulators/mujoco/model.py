@@ -154,7 +154,7 @@ class Builder:
 
     # Forms
 
-    def _weight(self, thing: Any) -> dict[str, float]:
+    def _weight(self, thing: object) -> dict[str, float]:
         """Mass or density as arguments of a geom."""
         for name in ("mass", "density"):
             value = getattr(thing, name, None)
@@ -223,7 +223,7 @@ class Builder:
             self._parted[key] = (mesh, tuple(names))
         return self._parted[key][1]
 
-    def _surface(self, thing: Any) -> dict[str, Any]:
+    def _surface(self, thing: object) -> dict[str, Any]:
         """Friction, contacts and colour as arguments of a geom."""
         color = getattr(thing, "color", None)
         red, green, blue, *alpha = _COLOR if color is None else (float(part) for part in color)

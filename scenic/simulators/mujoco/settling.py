@@ -152,7 +152,7 @@ def require_rest(program: Program, settling: Settling, *, keep: bool) -> Any:
     return settled
 
 
-def keep_poses(program: Program, outlined: Outline, settled: Any) -> Outline:
+def keep_poses(program: Program, outlined: Outline, settled: object) -> Outline:
     """Let the objects of scenes have settled poses; the requirements, which are outlined already, are about the poses before.
 
     Args:

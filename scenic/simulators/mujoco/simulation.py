@@ -163,7 +163,7 @@ class MujocoSimulation(Simulation):
             place = self._joint(part)[1]
             self.data.qvel[place : place + 3] = [values["vx"], values["vy"], values["vz"]]
 
-    def grasp(self, gripper: Any, target: Any) -> None:
+    def grasp(self, gripper: object, target: object) -> None:
         """Let a gripper hold an object as it stands to it now, if it is within reach."""
         mujoco = library()
         hand, held = self._parts[id(gripper)], self._parts.get(id(target))
@@ -194,7 +194,7 @@ class MujocoSimulation(Simulation):
         found: float = library().mj_geomDistance(self.model, self.data, first, second, reach + 1e-6, ends)
         return found <= reach
 
-    def release(self, gripper: Any) -> None:
+    def release(self, gripper: object) -> None:
         """Let a gripper open."""
         for number in self._grips(self._parts[id(gripper)]):
             self.data.eq_active[number] = False
@@ -328,7 +328,7 @@ class MujocoSimulation(Simulation):
                 speeds[self._name(part.thing)] = speed if math.isfinite(speed) else math.inf
         return f"where {max(speeds, key=lambda name: speeds[name])} moved fastest" if speeds else ""
 
-    def _name(self, obj: Any) -> str:
+    def _name(self, obj: object) -> str:
         number = next(index for index, other in enumerate(self.objects) if other is obj)
         originals = self._original.objects
         known = self._original.names.get(originals[number]) if number < len(originals) else None
@@ -383,7 +383,7 @@ class MujocoSimulation(Simulation):
             values = {"position": Vector.of(tuple(place.tolist())), "yaw": yaw, "pitch": pitch, "roll": roll}
         return {name: values[name] if name in values else stored[name] for name in properties}
 
-    def jointed(self, agent: Any) -> Jointed:
+    def jointed(self, agent: object) -> Jointed:
         """The joints of an agent."""
         return self._jointed[id(agent)]
 

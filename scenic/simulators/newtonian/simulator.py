@@ -88,7 +88,7 @@ class NewtonianSimulation(DrivingSimulation):
         if self._terrain is not None:
             self._terrain.stand([self._states[id(obj)]])
 
-    def turn(self, obj: Any, heading: float) -> None:
+    def turn(self, obj: object, heading: float) -> None:
         """Turn an object to a heading in radians; a car drives on at its speed in the new direction."""
         self._states[id(obj)].heading = heading
 
@@ -103,7 +103,7 @@ class NewtonianSimulation(DrivingSimulation):
         """The objects that `step` moves."""
         return self.objects
 
-    def state_of(self, obj: Any) -> State:
+    def state_of(self, obj: object) -> State:
         """The state of an object."""
         return self._states[id(obj)]
 
@@ -169,15 +169,15 @@ class NewtonianSimulation(DrivingSimulation):
         """The curvature that a car of this simulator drives by a position of the steering wheel."""
         return -math.sin(steering * math.pi / 2) / float(agent.length)
 
-    def pivot_of(self, agent: Any) -> float:
+    def pivot_of(self, agent: object) -> float:
         """Cars of this simulator turn about their middle."""
         return 0.0
 
-    def pedal_for(self, agent: Any, acceleration: float) -> float:
+    def pedal_for(self, agent: object, acceleration: float) -> float:
         """The throttle or brake by which a car of this simulator reaches an acceleration."""
         return min(1.0, max(-1.0, acceleration / (_ACCELERATION if acceleration > 0 else _BRAKING)))
 
-    def acceleration_of(self, agent: Any, pedal: float) -> float:
+    def acceleration_of(self, agent: object, pedal: float) -> float:
         """The acceleration of a car of this simulator by a throttle or brake."""
         return pedal * (_ACCELERATION if pedal > 0 else _BRAKING)
 
@@ -194,7 +194,7 @@ class NewtonianSimulator(DrivingSimulator):
 
     deterministic = True
 
-    def __init__(self, network: Any = None, render: bool = False, export_gif: bool = False) -> None:
+    def __init__(self, network: object = None, render: bool = False, export_gif: bool = False) -> None:
         super().__init__()
         self.network = network
         self.render = render

@@ -29,7 +29,7 @@ class RobotAction(Action):
             )
         self.parts = {str(part): tuple(map(float, values)) for part, values in parts.items()}
 
-    def canBeTakenBy(self, agent: Any) -> bool:
+    def canBeTakenBy(self, agent: object) -> bool:
         """Return whether the agent is a robot."""
         return getattr(agent, "robot_type", None) is not None
 

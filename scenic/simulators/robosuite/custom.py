@@ -15,7 +15,7 @@ from scenic.runtime.shapes.shapes import BoxShape, Shape
 __all__ = ["check_mjcf", "geoms_of_shape", "shape_of_mjcf", "wrapped"]
 
 
-def shape_of_mjcf(mjcf: Any) -> Shape:
+def shape_of_mjcf(mjcf: object) -> Shape:
     """The shape of a thing that MJCF describes; a box if there is none, or if `check_mjcf` refuses it.
 
     Args:
@@ -28,7 +28,7 @@ def shape_of_mjcf(mjcf: Any) -> Shape:
         return BoxShape((0.05, 0.05, 0.05))
 
 
-def check_mjcf(mjcf: Any) -> None:
+def check_mjcf(mjcf: object) -> None:
     """Raise `DescriptionError` if the MJCF of a thing cannot be read."""
     if mjcf is not None:
         _shape(str(mjcf))

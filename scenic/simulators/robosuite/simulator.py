@@ -182,7 +182,7 @@ class RobosuiteSimulation(Simulation):
 
     # Steps
 
-    def control(self, agent: Any, parts: Mapping[str, Sequence[float]]) -> None:
+    def control(self, agent: object, parts: Mapping[str, Sequence[float]]) -> None:
         """Set inputs of a robot's controllers for the next step; grippers keep theirs."""
         known = self._robot(agent)._action_split_indexes
         for part, values in parts.items():
@@ -194,7 +194,7 @@ class RobosuiteSimulation(Simulation):
                 )
         self._controls.setdefault(id(agent), {}).update(parts)
 
-    def _robot(self, thing: Any) -> Any:
+    def _robot(self, thing: object) -> Any:
         return self.env.robots[next(i for i, robot in enumerate(self._robots) if robot is thing)]
 
     def step(self) -> None:
@@ -226,7 +226,7 @@ class RobosuiteSimulation(Simulation):
         values = self._robot_properties(obj) if obj in self._robots else self._body_properties(obj)
         return {name: values[name] if name in values else stored[name] for name in properties}
 
-    def _robot_properties(self, obj: Any) -> dict[str, Any]:
+    def _robot_properties(self, obj: object) -> dict[str, Any]:
         robot = self._robot(obj)
         arm = robot.arms[0]
         grip = robot._ref_gripper_joint_pos_indexes.get(arm) if robot.has_gripper[arm] else None

@@ -20,7 +20,7 @@ class SumoDrivingAction(Action):
             raise RuntimeError(f"a factor of the speed limit must be positive, not {speedFactor}")
         self.speedFactor = float(speedFactor)
 
-    def canBeTakenBy(self, agent: Any) -> bool:
+    def canBeTakenBy(self, agent: object) -> bool:
         """Return whether the agent is a vehicle."""
         return bool(getattr(agent, "isVehicle", False))
 

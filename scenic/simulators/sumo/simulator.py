@@ -68,7 +68,7 @@ class SumoSimulation(NewtonianSimulation):
         max_speed = float(getattr(obj, "maxSpeed", 0) or 1)
         self._bodies[id(obj)] = self._traffic.add(f"object{len(self._bodies)}", size, max_speed)
 
-    def let_drive(self, agent: Any, speed_factor: float) -> None:
+    def let_drive(self, agent: object, speed_factor: float) -> None:
         """Let SUMO drive a vehicle in the coming step.
 
         Args:
@@ -78,7 +78,7 @@ class SumoSimulation(NewtonianSimulation):
         """
         self._released[id(agent)] = speed_factor
 
-    def place_in_sumo(self, obj: Any) -> Pose | None:
+    def place_in_sumo(self, obj: object) -> Pose | None:
         """Return the pose of an object in SUMO after the last step; ``None`` after it has left the map at a dead end."""
         return self._traffic.pose(self._bodies[id(obj)])
 
@@ -86,7 +86,7 @@ class SumoSimulation(NewtonianSimulation):
         """The objects that SUMO does not drive already."""
         return [obj for obj in self.objects if not self._drives(obj)]
 
-    def _drives(self, obj: Any) -> bool:
+    def _drives(self, obj: object) -> bool:
         return id(obj) in self._released and self._bodies[id(obj)].speed_factor is not None
 
     def step(self) -> None:
@@ -110,7 +110,7 @@ class SumoSimulation(NewtonianSimulation):
                 traffic.release(body, x, y, state.heading, state.speed, factor)
         traffic.step(list(self._bodies.values()))
 
-    def _read(self, obj: Any) -> None:
+    def _read(self, obj: object) -> None:
         state, pose = self.state_of(obj), self.place_in_sumo(obj)
         if pose is None:
             state.rest()

@@ -86,7 +86,7 @@ _CAR_COLORS: Final = tuple(
 
 
 def NoisyColorDistribution(
-    baseColor: Any, hueNoise: Any = None, lightnessNoise: Any = None, saturationNoise: Any = None
+    baseColor: object, hueNoise: object = None, lightnessNoise: object = None, saturationNoise: object = None
 ) -> Any:
     """A colour about ``baseColor``: hue, lightness and saturation shifted by independent normal draws and clamped to [0, 1]."""
     noise = [

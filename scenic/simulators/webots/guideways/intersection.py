@@ -75,7 +75,7 @@ class Intersection:
     conflictZones: tuple[PolygonalRegion, ...]
     roadDirection: PolygonalVectorField
 
-    def guidewayWithID(self, id: Any) -> Guideway:
+    def guidewayWithID(self, id: object) -> Guideway:
         """The guideway with an id; raises `KeyError` if there is none."""
         ways = (self.mainGuideway, *self.vehicleGuideways, *self.bikeGuideways, *self.railGuideways)
         found = next((way for way in ways if way.id == id), None)
@@ -203,5 +203,5 @@ def _polygon(points: Array) -> Any:
     return polygon if polygon.is_valid else polygon.buffer(0)
 
 
-def _region(polygon: Any, direction: PolygonalVectorField | None = None) -> PolygonalRegion:
+def _region(polygon: object, direction: PolygonalVectorField | None = None) -> PolygonalRegion:
     return PolygonalRegion(polygon=polygon, orientation=direction)

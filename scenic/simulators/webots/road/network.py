@@ -88,14 +88,14 @@ def _union(polygons: Any) -> Any:
     return unary_union(list(polygons))
 
 
-def _region(polygon: Any, direction: PolygonalVectorField | None = None) -> PolygonalRegion | None:
+def _region(polygon: object, direction: PolygonalVectorField | None = None) -> PolygonalRegion | None:
     from shapely.geometry import MultiPolygon
 
     parts = [part for part in getattr(polygon, "geoms", [polygon]) if part.area > 1e-9]
     return PolygonalRegion(polygon=MultiPolygon(parts), orientation=direction) if parts else None
 
 
-def _curb(lines: Any) -> PolylineRegion | None:
+def _curb(lines: object) -> PolylineRegion | None:
     from shapely.geometry import MultiLineString
 
     return PolylineRegion(polyline=MultiLineString(lines)) if lines else None
