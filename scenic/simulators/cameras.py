@@ -62,6 +62,6 @@ class Present:
         self.params: Mapping[str, object] = scene.params
         self.folder = scene.folder
 
-    def origin(self, thing: Any) -> Any:
+    def origin(self, thing: object) -> Any:
         """Raise ``KeyError``: origins of objects are not needed while images are made."""
         raise KeyError(thing)

@@ -40,7 +40,7 @@ class Command(Action):
         """Return whether the agent's model understands the command."""
         return model_of(agent) in self.models
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Give the command; it stays in force until the next one."""
         simulation.command(agent, self.commands())
 

@@ -163,7 +163,7 @@ class Tape:
         if self._keep_states:
             self._states.append(self._state)
 
-    def note(self, simulation: Any, obj: Any, names: Sequence[str]) -> None:
+    def note(self, simulation: Any, obj: object, names: Sequence[str]) -> None:
         """The properties of one object; raises `DivergenceError` where they differ from the replayed ones."""
         if not self._keep_states:
             return

@@ -148,6 +148,6 @@ def where_of(node: object, scope: Scope) -> Where:
     return Where(Place.TOP, function)
 
 
-def in_compose(node: Any, scenario: Any) -> bool:
+def in_compose(node: object, scenario: Any) -> bool:
     """Return whether a node of a scenario stands in its compose block, which is always the last."""
     return bool(scenario.compose) and position(node) >= position(scenario.compose[0])

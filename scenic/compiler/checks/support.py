@@ -117,5 +117,5 @@ def _carried(node: ast.AST, scope: Scope) -> bool:
     return False
 
 
-def _within(node: Any, outer: Any) -> bool:
+def _within(node: object, outer: Any) -> bool:
     return position(outer) <= position(node) < (outer.end_lineno, outer.end_col_offset)

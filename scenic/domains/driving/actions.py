@@ -78,7 +78,7 @@ class SetPositionAction(Action):
     def __init__(self, pos: object) -> None:
         self.pos = to_vector(pos, "the position")
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: Any, simulation: object) -> None:
         """Move the agent."""
         agent.setPosition(self.pos, agent.elevation)
 
@@ -89,7 +89,7 @@ class SetOrientationAction(Action):
     def __init__(self, orientation: object) -> None:
         self.orientation = to_orientation(orientation)
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: Any, simulation: object) -> None:
         """Turn the agent."""
         agent.setOrientation(self.orientation)
 
@@ -100,7 +100,7 @@ class OffsetAction(Action):
     def __init__(self, offset: object) -> None:
         self.offset = offset
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: Any, simulation: object) -> None:
         """Move the agent."""
         agent.setPosition(agent.relativePosition(self.offset), agent.elevation)
 
@@ -111,7 +111,7 @@ class SetVelocityAction(Action):
     def __init__(self, xVel: float, yVel: float, zVel: float = 0) -> None:
         self.xVel, self.yVel, self.zVel = xVel, yVel, zVel
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: Any, simulation: object) -> None:
         """Set it."""
         agent.setVelocity(Vector(self.xVel, self.yVel, self.zVel))
 
@@ -122,7 +122,7 @@ class SetSpeedAction(Action):
     def __init__(self, speed: float) -> None:
         self.speed = speed
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: Any, simulation: object) -> None:
         """Set it."""
         agent.setVelocity(_velocity(agent.heading, self.speed))
 
@@ -141,7 +141,7 @@ class SetThrottleAction(SteeringAction):
     def __init__(self, throttle: float) -> None:
         self.throttle = _within("throttle", throttle, 0, 1)
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: Any, simulation: object) -> None:
         """Set it."""
         agent.setThrottle(self.throttle)
 
@@ -152,7 +152,7 @@ class SetSteerAction(SteeringAction):
     def __init__(self, steer: float) -> None:
         self.steer = _within("steer", steer, -1, 1)
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: Any, simulation: object) -> None:
         """Set it."""
         agent.setSteering(self.steer)
 
@@ -163,7 +163,7 @@ class SetBrakeAction(SteeringAction):
     def __init__(self, brake: float) -> None:
         self.brake = _within("brake", brake, 0, 1)
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: Any, simulation: object) -> None:
         """Set it."""
         agent.setBraking(self.brake)
 
@@ -174,7 +174,7 @@ class SetHandBrakeAction(SteeringAction):
     def __init__(self, handBrake: bool) -> None:
         self.handbrake = _flag("hand brake", handBrake)
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: Any, simulation: object) -> None:
         """Set it."""
         agent.setHandbrake(self.handbrake)
 
@@ -185,7 +185,7 @@ class SetReverseAction(SteeringAction):
     def __init__(self, reverse: bool) -> None:
         self.reverse = _flag("reverse gear", reverse)
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: Any, simulation: object) -> None:
         """Set it."""
         agent.setReverse(self.reverse)
 
@@ -222,7 +222,7 @@ class RegulatedControlAction(SteeringAction):
         steer = min(max(steer, past_steer - 0.1), past_steer + 0.1)
         self.steer = min(max(steer, -max_steer), max_steer)
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: Any, simulation: object) -> None:
         """Set all three."""
         agent.setThrottle(self.throttle)
         agent.setBraking(self.brake)
@@ -243,7 +243,7 @@ class SetWalkingDirectionAction(WalkingAction):
     def __init__(self, heading: float) -> None:
         self.heading = heading
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: Any, simulation: object) -> None:
         """Set it."""
         agent.setWalkingDirection(self.heading)
 
@@ -254,7 +254,7 @@ class SetWalkingSpeedAction(WalkingAction):
     def __init__(self, speed: float) -> None:
         self.speed = speed
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: Any, simulation: object) -> None:
         """Set it."""
         agent.setWalkingSpeed(self.speed)
 

@@ -124,7 +124,7 @@ class PathPieces:
         key = (opens, closes, *(lane.uid for lane in lanes))
         return self._known(key, lambda: self._through(lanes, opens=opens, closes=closes))
 
-    def _known(self, key: Any, make: Any) -> Piece:
+    def _known(self, key: object, make: Any) -> Piece:
         piece = self._pieces.get(key)
         if piece is None:
             piece = self._pieces[key] = make()

@@ -233,7 +233,7 @@ class SetTrafficLightAction(Action):
     def __init__(self, signal: Signal, color: str) -> None:
         self.signal, self.color = signal, _color(color)
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Set it."""
         simulation.traffic_lights.set(self.signal, self.color)
 
@@ -244,6 +244,6 @@ class FreezeTrafficLightsAction(Action):
     def __init__(self, frozen: bool = True) -> None:
         self.frozen = frozen
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Do it."""
         simulation.traffic_lights.freeze(self.frozen)

@@ -5,7 +5,7 @@ pruning possible.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -27,6 +27,15 @@ from scenic.graph.operations.possibilities import is_finite
 FIRST: Final = 5e-324
 LAST: Final = 1 - 2.0**-53
 """The outermost points of the open unit interval."""
+
+_Shares = Sequence[float]
+"""The cumulative shares of the options of a choice."""
+
+_Weighted = tuple[int, _Shares]
+"""The first of consecutive integers, and their cumulative shares."""
+
+_Window = tuple[float, float]
+"""The ends of a truncated distribution."""
 
 
 def _range(call: Call, axis: Column, low: Column, high: Column) -> Column:
@@ -69,7 +78,7 @@ def _discrete_range(call: Call, axis: Column, low: Column, high: Column) -> Colu
     return np.asarray(first + np.minimum((axis * count).astype(np.int64), np.maximum(count, 1) - 1))
 
 
-def _rounded(call: Call, end: Column, function: Any) -> Column:
+def _rounded(call: Call, end: Column, function: Callable[[Column], Column]) -> Column:
     if end.dtype != np.float64:
         return end.astype(np.int64)
     rounded = function(end)
@@ -90,7 +99,7 @@ def _piecewise(call: Call, axis: Column) -> Column:
     return np.asarray(np.interp(axis, sums, edges))
 
 
-def _piecewise_bounds(payload: Any, axis: Bounds) -> Bounds:
+def _piecewise_bounds(payload: tuple[Floats, Floats], axis: Bounds) -> Bounds:
     sums, edges = payload
     ends = (np.interp(end, sums, edges) for end in (axis.lower, axis.upper))
     margin = 4 * intervals.EPSILON * max(map(abs, edges))
@@ -102,7 +111,7 @@ def _choice(call: Call, axis: Column) -> Column:
     return _position(axis, call.payload)
 
 
-def _position(axis: Column, cumulative: Any) -> Column:
+def _position(axis: Column, cumulative: _Shares) -> Column:
     """Return the index of the option that each point of the axis draws; an option of weight zero is never drawn."""
     limits = np.asarray(cumulative, dtype=np.float64)
     found = np.searchsorted(limits, axis, side="right")
@@ -319,7 +328,7 @@ def _range_inverse(
     return [place, new_low, new_high]
 
 
-def _range_solver(terms: Terms, _payload: object, _axis: Any, low: Any, high: Any) -> Any:
+def _range_solver(terms: Terms, _payload: object, _axis: object, low: Any, high: Any) -> Any:
     value = terms.fresh(Kind.SCALAR)
     low, high = terms.number(low), terms.number(high)
     first, last = terms.constant(low), terms.constant(high)
@@ -358,11 +367,11 @@ def _normal_inverse(
     return [place, intervals.subtract(before_rounding(result), product), intervals.divide(shift, drawn)]
 
 
-def _normal_solver(terms: Terms, _payload: object, _axis: Any, _mean: Any, _deviation: Any) -> Any:
+def _normal_solver(terms: Terms, _payload: object, _axis: object, _mean: object, _deviation: object) -> Any:
     return terms.fresh(Kind.SCALAR)
 
 
-def _standardised(payload: Any, mean: Bounds, deviation: Bounds) -> tuple[Floats, Floats, Floats, Mask]:
+def _standardised(payload: _Window, mean: Bounds, deviation: Bounds) -> tuple[Floats, Floats, Floats, Mask]:
     """The window in deviations from the mean, the deviation, and where both parameters are fixed."""
     low, high = payload
     fixed = _fixed(mean, deviation) & (deviation.lower != 0)
@@ -371,7 +380,7 @@ def _standardised(payload: Any, mean: Bounds, deviation: Bounds) -> tuple[Floats
     return (low - centre) / scale, (high - centre) / scale, scale, fixed
 
 
-def _truncated_bounds(payload: Any, axis: Bounds, mean: Bounds, deviation: Bounds) -> Bounds:
+def _truncated_bounds(payload: _Window, axis: Bounds, mean: Bounds, deviation: Bounds) -> Bounds:
     low, high = payload
     a, b, scale, fixed = _standardised(payload, mean, deviation)
     inside = _opened(axis)
@@ -383,7 +392,7 @@ def _truncated_bounds(payload: Any, axis: Bounds, mean: Bounds, deviation: Bound
 
 
 def _truncated_inverse(
-    payload: Any, result: Bounds, _axis: Bounds, mean: Bounds, deviation: Bounds
+    payload: _Window, result: Bounds, _axis: Bounds, mean: Bounds, deviation: Bounds
 ) -> list[Bounds | None]:
     low, high = payload
     a, b, scale, fixed = _standardised(payload, mean, deviation)
@@ -399,7 +408,7 @@ def _truncated_inverse(
     return [_if_fixed(fixed, place, nothing), None, None]
 
 
-def _truncated_solver(terms: Terms, payload: Any, _axis: Any, _mean: Any, _deviation: Any) -> Any:
+def _truncated_solver(terms: Terms, payload: _Window, _axis: object, _mean: object, _deviation: object) -> Any:
     low, high = payload
     value = terms.fresh(Kind.SCALAR)
     if np.isfinite(low):
@@ -435,7 +444,7 @@ def _discrete_inverse(
     return [_if_fixed(fixed & (count > 0), place, nothing), below, above]
 
 
-def _discrete_solver(terms: Terms, _payload: object, _axis: Any, low: Any, high: Any) -> Any:
+def _discrete_solver(terms: Terms, _payload: object, _axis: object, low: Any, high: Any) -> Any:
     value = terms.fresh(Kind.INTEGER)
     low, high = terms.number(low), terms.number(high)
     first, last = terms.constant(low), terms.constant(high)
@@ -448,13 +457,13 @@ def _discrete_solver(terms: Terms, _payload: object, _axis: Any, low: Any, high:
     return value
 
 
-def _position_bounds(axis: Bounds, cumulative: Any) -> Bounds:
+def _position_bounds(axis: Bounds, cumulative: _Shares) -> Bounds:
     inside = _opened(axis)
     first, last = (_position(end, cumulative).astype(np.float64) for end in (inside.lower, inside.upper))
     return Bounds(first, last)
 
 
-def _position_inverse(result: Bounds, cumulative: Any) -> Bounds:
+def _position_inverse(result: Bounds, cumulative: _Shares) -> Bounds:
     """The stretch of the axis that draws the options within ``result``; exact, since nothing is rounded."""
     limits = np.asarray(cumulative, dtype=np.float64)
     last = int(np.searchsorted(limits, limits[-1], side="left"))
@@ -468,31 +477,31 @@ def _position_inverse(result: Bounds, cumulative: Any) -> Bounds:
     return Bounds(np.where(impossible, np.inf, lower), np.where(impossible, -np.inf, upper))
 
 
-def _weighted_bounds(payload: Any, axis: Bounds) -> Bounds:
+def _weighted_bounds(payload: _Weighted, axis: Bounds) -> Bounds:
     first, cumulative = payload
     place, room = _position_bounds(axis, cumulative), _room(first, cumulative)
     return Bounds(first + place.lower - room, first + place.upper + room)
 
 
-def _weighted_inverse(payload: Any, result: Bounds, _axis: Bounds) -> list[Bounds]:
+def _weighted_inverse(payload: _Weighted, result: Bounds, _axis: Bounds) -> list[Bounds]:
     first, cumulative = payload
     room = _room(first, cumulative)
     place = Bounds(result.lower - first - room, result.upper - first + room)
     return [_position_inverse(place, cumulative)]
 
 
-def _room(first: int, cumulative: Any) -> float:
+def _room(first: int, cumulative: _Shares) -> float:
     """Return the largest distance of floats from the whole numbers from ``first`` on, one for each weight."""
     most = max(abs(first), abs(first + len(cumulative)))
     return math.ulp(most) if most > EXACT else 0.0
 
 
-def _weighted_solver(terms: Terms, payload: Any, _axis: Any) -> Any:
+def _weighted_solver(terms: Terms, payload: _Weighted, _axis: object) -> Any:
     first, cumulative = payload
     return _drawn(terms, first, cumulative)
 
 
-def _drawn(terms: Terms, first: int, cumulative: Any) -> Any:
+def _drawn(terms: Terms, first: int, cumulative: _Shares) -> Any:
     value = terms.fresh(Kind.INTEGER)
     weights = np.diff(np.asarray(cumulative, dtype=np.float64), prepend=0.0)
     places = [first + place for place in range(len(weights)) if weights[place] > 0]
@@ -504,15 +513,15 @@ def _drawn(terms: Terms, first: int, cumulative: Any) -> Any:
     return value
 
 
-def _choice_bounds(payload: Any, axis: Bounds) -> Bounds:
+def _choice_bounds(payload: _Shares, axis: Bounds) -> Bounds:
     return _position_bounds(axis, payload)
 
 
-def _choice_inverse(payload: Any, result: Bounds, _axis: Bounds) -> list[Bounds]:
+def _choice_inverse(payload: _Shares, result: Bounds, _axis: Bounds) -> list[Bounds]:
     return [_position_inverse(result, payload)]
 
 
-def _choice_solver(terms: Terms, payload: Any, _axis: Any) -> Any:
+def _choice_solver(terms: Terms, payload: _Shares, _axis: object) -> Any:
     value = terms.fresh(Kind.INTEGER)
     weights = np.diff(np.asarray(payload, dtype=np.float64), prepend=0.0)
     options = [value == terms.real(place) for place in range(len(weights)) if weights[place] > 0]
@@ -524,17 +533,17 @@ MOST_CUTS: Final = 4096
 """Values of a discrete distribution, at most, between which its axis is cut."""
 
 
-def _between_options(cumulative: Any) -> Floats:
+def _between_options(cumulative: _Shares) -> Floats:
     # Without the index NumPy would import its masked arrays, which takes longer than the rest of a small program.
     limits, _ = np.unique(np.asarray(cumulative, dtype=np.float64), return_index=True)
     return np.asarray(limits[(limits > 0) & (limits < limits[-1])])
 
 
-def _choice_cuts(payload: Any, _operands: Sequence[Node]) -> Floats:
+def _choice_cuts(payload: _Shares, _operands: Sequence[Node]) -> Floats:
     return _between_options(payload)
 
 
-def _weighted_cuts(payload: Any, _operands: Sequence[Node]) -> Floats:
+def _weighted_cuts(payload: _Weighted, _operands: Sequence[Node]) -> Floats:
     return _between_options(payload[1])
 
 

@@ -54,7 +54,7 @@ def _not(_call: Call, value: Column) -> Column:
     return ~value
 
 
-def _if_kind(operands: Any, payload: Any) -> Kind:
+def _if_kind(operands: Any, payload: object) -> Kind:
     return joined_kind(operands[1:], payload)
 
 

@@ -210,20 +210,20 @@ def _quaternion(call: Call, orientation: Column) -> Column:
     return np.ascontiguousarray(orientation[..., call.payload])
 
 
-def _quaternion_bounds(payload: Any, orientation: Bounds) -> Bounds:
+def _quaternion_bounds(payload: int, orientation: Bounds) -> Bounds:
     return intervals.component(orientation, payload)
 
 
-def _quaternion_solver(_terms: Terms, payload: Any, orientation: Any) -> Any:
+def _quaternion_solver(_terms: Terms, payload: int, orientation: Any) -> Any:
     return orientation[payload]
 
 
-def _euler_bounds(payload: Any, _orientation: Bounds) -> Bounds:
+def _euler_bounds(payload: int, _orientation: Bounds) -> Bounds:
     limit = math.pi / 2 if payload == 1 else math.pi
     return Bounds(np.array([-limit - _SLACK]), np.array([limit + _SLACK]))
 
 
-def _euler_solver(terms: Terms, payload: Any, _orientation: Any) -> Any:
+def _euler_solver(terms: Terms, payload: int, _orientation: object) -> Any:
     limit = math.pi / 2 if payload == 1 else math.pi
     return within(terms, -limit, limit)
 
@@ -286,7 +286,7 @@ def _not_turned(operands: Sequence[Node], _payload: object) -> Node | None:
     return vector if still or _is_identity(orientation) else None
 
 
-def _angle_of_yaw(operands: Sequence[Node], payload: Any) -> Node | None:
+def _angle_of_yaw(operands: Sequence[Node], payload: int) -> Node | None:
     (orientation,) = operands
     if not _is_upright(orientation):
         return None

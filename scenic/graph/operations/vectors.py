@@ -38,6 +38,8 @@ def _parts(vector: Column) -> tuple[Column, Column, Column]:
     return x, y, z
 
 
+_Triple = tuple[float, float, float]
+
 _SMALL, _LARGE = 2.0**-460, 2.0**500
 """Lengths between these come from squares that neither vanish nor overflow, whatever the components."""
 
@@ -50,14 +52,14 @@ def _length(x: Column, y: Column, z: Column) -> Column:
     return length
 
 
-def _scaled_length(x: Any, y: Any, z: Any) -> Any:
+def _scaled_length(x: Column | float, y: Column | float, z: Column | float) -> Column:
     """The length by way of components whose squares are of a usual size; scaling by powers of two rounds nothing."""
     largest = np.maximum(np.maximum(np.abs(x), np.abs(y)), np.abs(z))
     # Tiny ones all grow by the same factor: that of the largest component might overflow.
     _, exponent = np.frexp(np.where(np.isfinite(largest) & (largest > 0), largest, 1.0))
     exponent = np.maximum(exponent, -1000)
     a, b, c = (np.ldexp(part, -exponent) for part in (x, y, z))
-    return np.ldexp(np.sqrt(a * a + b * b + c * c), exponent)
+    return np.asarray(np.ldexp(np.sqrt(a * a + b * b + c * c), exponent))
 
 
 def _norm(_call: Call, vector: Column) -> Column:
@@ -97,7 +99,7 @@ def _normalized(_call: Call, vector: Column) -> Column:
 # On plain numbers; vectors are triples. NumPy's functions, where the C library's may differ in the last bit.
 
 
-def _norm_scalar(_payload: object, vector: Any) -> float:
+def _norm_scalar(_payload: object, vector: _Triple) -> float:
     x, y, z = vector
     length = math.sqrt(x * x + y * y + z * z)
     if _SMALL <= length <= _LARGE or length != length or not (x or y or z):
@@ -105,28 +107,28 @@ def _norm_scalar(_payload: object, vector: Any) -> float:
     return float(_scaled_length(float(x), float(y), float(z)))
 
 
-def _dot_scalar(_payload: object, a: Any, b: Any) -> Any:
+def _dot_scalar(_payload: object, a: _Triple, b: _Triple) -> Any:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def _cross_scalar(_payload: object, a: Any, b: Any) -> Any:
+def _cross_scalar(_payload: object, a: _Triple, b: _Triple) -> Any:
     (ax, ay, az), (bx, by, bz) = a, b
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
-def _distance_scalar(_payload: object, a: Any, b: Any) -> float:
+def _distance_scalar(_payload: object, a: _Triple, b: _Triple) -> float:
     return _norm_scalar(None, (a[0] - b[0], a[1] - b[1], a[2] - b[2]))
 
 
-def _azimuth_scalar(_payload: object, vector: Any) -> float:
+def _azimuth_scalar(_payload: object, vector: _Triple) -> float:
     return normal_angle(float(np.arctan2(vector[1], vector[0])) - np.pi / 2)
 
 
-def _altitude_scalar(_payload: object, vector: Any) -> float:
+def _altitude_scalar(_payload: object, vector: _Triple) -> float:
     return float(np.arctan2(vector[2], _norm_scalar(None, (vector[0], vector[1], 0.0))))
 
 
-def _normalized_scalar(_payload: object, vector: Any) -> Any:
+def _normalized_scalar(_payload: object, vector: _Triple) -> Any:
     length = _norm_scalar(None, vector) or 1.0
     return vector[0] / length, vector[1] / length, vector[2] / length
 
@@ -143,16 +145,16 @@ def _vector_solver(terms: Terms, _payload: object, *parts: Any) -> Any:
     return tuple(terms.number(part) for part in parts)
 
 
-def _component_bounds(payload: Any, vector: Bounds) -> Bounds:
+def _component_bounds(payload: int, vector: Bounds) -> Bounds:
     return intervals.component(vector, payload)
 
 
-def _component_inverse(payload: Any, result: Bounds, _vector: Bounds) -> list[Bounds]:
+def _component_inverse(payload: int, result: Bounds, _vector: Bounds) -> list[Bounds]:
     rest = intervals.unbounded(result)
     return [intervals.stacked([result if index == payload else rest for index in range(3)])]
 
 
-def _component_solver(_terms: Terms, payload: Any, vector: Any) -> Any:
+def _component_solver(_terms: Terms, payload: int, vector: Any) -> Any:
     return vector[payload]
 
 
@@ -263,11 +265,11 @@ def _altitude_bounds(_payload: object, vector: Bounds) -> Bounds:
     return intervals.doubtful(bounds, x, y, z)
 
 
-def _azimuth_solver(terms: Terms, _payload: object, _vector: Any) -> Any:
+def _azimuth_solver(terms: Terms, _payload: object, _vector: object) -> Any:
     return within(terms, -math.pi, math.pi)
 
 
-def _altitude_solver(terms: Terms, _payload: object, _vector: Any) -> Any:
+def _altitude_solver(terms: Terms, _payload: object, _vector: object) -> Any:
     return within(terms, -math.pi / 2, math.pi / 2)
 
 
@@ -284,11 +286,11 @@ def _normalized_bounds(_payload: object, vector: Bounds) -> Bounds:
     return intervals.doubtful(sign, *(intervals.spread(part, 2) for part in intervals.components(vector)))
 
 
-def _normalized_solver(terms: Terms, _payload: object, _vector: Any) -> Any:
+def _normalized_solver(terms: Terms, _payload: object, _vector: object) -> Any:
     return tuple(within(terms, -1.0, 1.0) for _ in range(3))
 
 
-def _part_of_vector(operands: Sequence[Node], payload: Any) -> Node | None:
+def _part_of_vector(operands: Sequence[Node], payload: int) -> Node | None:
     """A component of a vector that was made of numbers is that number."""
     (vector,) = operands
     if vector.operation.name != "vector":

@@ -49,11 +49,11 @@ def _degrees(value: object) -> Any:
     return operate("multiply", value, 0.017453292519943295)
 
 
-def _field_at(field: Any, position: Any) -> Any:
+def _field_at(field: Any, position: object) -> Any:
     return field[position]
 
 
-def _follow(field: Any, start: Any, distance: Any) -> Any:
+def _follow(field: Any, start: object, distance: object) -> Any:
     end = field.followFrom(start, distance)
     return oriented_point(end, field[end])
 
@@ -66,11 +66,11 @@ def _relative_heading(heading: object, base: object) -> Any:
     return _normal(_minus(heading, base))
 
 
-def _apparent_heading(target: Any, viewpoint: Any) -> Any:
+def _apparent_heading(target: Any, viewpoint: object) -> Any:
     return _normal(_minus(target.heading, _azimuth(_minus(target.position, viewpoint))))
 
 
-def _apparent_heading_to(target: Any, viewer: Any) -> Any:
+def _apparent_heading_to(target: object, viewer: Any) -> Any:
     """From -pi, exclusive, to pi."""
     bearing = _normal(_minus(_azimuth(_minus(target, viewer.position)), viewer.heading))
     return operate("if", operate("greater", bearing, -math.pi), bearing, math.pi)
@@ -100,7 +100,7 @@ def _distance(start: object, end: object) -> Any:
     return _distance_between(start, end)
 
 
-def _distance_past(target: Any, base: Any) -> Any:
+def _distance_past(target: object, base: Any) -> Any:
     return base.distancePast(target)
 
 
@@ -112,7 +112,7 @@ def _altitude(start: object, end: object) -> Any:
     return _slope(_minus(end, start))
 
 
-def _intersects(first: Any, second: Any) -> Any:
+def _intersects(first: Any, second: object) -> Any:
     return first.intersects(second)
 
 

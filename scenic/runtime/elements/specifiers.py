@@ -204,7 +204,7 @@ def in_(region: Region, *, name: str = "in") -> Specifier:
     return _specifier(name, evaluate, conditional=region.has_orientation)
 
 
-def on(target: Any) -> Specifier:
+def on(target: object) -> Specifier:
     """Section 6.3: the base point touches the target, with a gap of half the contact tolerance."""
 
     def base(instance: Any) -> tuple[Any, Mapping[str, Any]]:
@@ -214,7 +214,7 @@ def on(target: Any) -> Specifier:
     return _standing("on", target, base)
 
 
-def resting_on(target: Any) -> Specifier:
+def resting_on(target: object) -> Specifier:
     """A stable pose of the shape touches the target, with a gap of half the contact tolerance."""
 
     def base(instance: Any) -> tuple[Any, Mapping[str, Any]]:
@@ -281,14 +281,14 @@ def _surface(target: object) -> Region:
     raise wrong_type((REGION, OBJECT, VECTOR), surface, "`on`")
 
 
-def offset_by(ego: Any, offset: Any) -> Specifier:
+def offset_by(ego: Any, offset: object) -> Specifier:
     def evaluate(_: Any) -> Mapping[str, Any]:
         return {"position": ego.relativePosition(offset), "parentOrientation": ego.orientation}
 
     return _specifier("offset by", evaluate)
 
 
-def offset_along(ego: Any, direction: Any, offset: Any) -> Specifier:
+def offset_along(ego: Any, direction: object, offset: object) -> Specifier:
     frame = frame_at(direction, ego.position, "`offset along`")
 
     def evaluate(_: Any) -> Mapping[str, Any]:
@@ -298,7 +298,7 @@ def offset_along(ego: Any, direction: Any, offset: Any) -> Specifier:
     return _specifier("offset along", evaluate)
 
 
-def beyond(place: Any, offset: Any, observer: Any) -> Specifier:
+def beyond(place: object, offset: object, observer: Any) -> Specifier:
     step = scalar_or_vector(offset, "`beyond ... by`", axis=1)
     line = operate("subtract", place, to_vector(observer, "`beyond ... from`"))
     frame = operate("from euler", operate("azimuth", line), operate("altitude", line), 0)
@@ -332,7 +332,7 @@ def _directional(name: str, sign: int) -> Callable[..., Specifier]:
     axis = ("width", "length", "height").index(extent)
     beside_vector = SPECIFIERS[name].needs_beside_vector
 
-    def build(target: Any, distance: Any) -> Specifier:
+    def build(target: Any, distance: object) -> Specifier:
         is_object, is_oriented = is_kind(target, Object), is_kind(target, OrientedPoint)
         centre = target.position if is_oriented else to_vector(target, f"`{name}`")
         reference = to_scalar(getattr(target, extent)) if is_object else 0.0
@@ -371,7 +371,7 @@ def following(field: VectorField, start: object, distance: object) -> Specifier:
     return _specifier("following", evaluate)
 
 
-def facing(orientation: Any) -> Specifier:
+def facing(orientation: object) -> Specifier:
     if isinstance(orientation, tuple | list) and len(orientation) == 2:
         raise ScenicTypeError(
             f"`facing` takes a heading, an orientation or three Euler angles, not {describe(orientation)}",
@@ -395,7 +395,7 @@ def facing(orientation: Any) -> Specifier:
 def _facing_point(name: str, *, away: bool = False) -> Callable[..., Specifier]:
     directly = "pitch" in _DECLARED[name].always
 
-    def build(place: Any) -> Specifier:
+    def build(place: object) -> Specifier:
         def evaluate(instance: Any) -> Mapping[str, Any]:
             ends = (place, instance.position) if away else (instance.position, place)
             line = operate("subtract", ends[1], ends[0])
@@ -408,7 +408,7 @@ def _facing_point(name: str, *, away: bool = False) -> Callable[..., Specifier]:
     return build
 
 
-def apparently_facing(angle: Any, observer: Any) -> Specifier:
+def apparently_facing(angle: object, observer: object) -> Specifier:
     def evaluate(instance: Any) -> Mapping[str, Any]:
         line = operate("subtract", instance.position, observer)
         return {"yaw": operate("add", operate("azimuth", line), angle)}
@@ -416,7 +416,7 @@ def apparently_facing(angle: Any, observer: Any) -> Specifier:
     return _specifier("apparently facing", evaluate)
 
 
-def visible(workspace: Region, observer: Any, *, wanted: bool = True) -> Specifier:
+def visible(workspace: Region, observer: object, *, wanted: bool = True) -> Specifier:
     """Section 11.4: the observer who must see the object, or must not; and, without another position, any position in its container."""
     name = "visible" if wanted else "not visible"
     context = current.get()

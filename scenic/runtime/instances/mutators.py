@@ -22,7 +22,7 @@ class Mutator:
         raise NotImplementedError(f"{type(self).__name__} does not say what it does (`appliedTo`)")
 
 
-def applied(mutator: Any, instance: Any) -> tuple[Any, bool]:
+def applied(mutator: Any, instance: object) -> tuple[Any, bool]:
     """The result of a mutator for an instance; raises `ScenicTypeError` where it gives something else."""
     result = mutator.appliedTo(instance)
     if isinstance(result, tuple) and len(result) == 2:
@@ -64,7 +64,7 @@ class _NormalNoise(Mutator):
 class PositionMutator(_NormalNoise):
     """Normal noise on the position; ``stddevs`` per axis, in metres, for a scale of 1."""
 
-    def noisy(self, instance: Any, scale: Any) -> Mapping[str, Any]:
+    def noisy(self, instance: Any, scale: object) -> Mapping[str, Any]:
         """The properties that change."""
         return {"position": operate("add", instance.position, vector(*_noise(self.stddevs, scale)))}
 

@@ -26,6 +26,6 @@ def hides(item: Any) -> Any:
     return item.occluding if is_always_present(item) else operate("and", item.occluding, item.present)
 
 
-def seen_if_present(item: Any, seen: Any) -> Any:
+def seen_if_present(item: Any, seen: object) -> Any:
     """Return whether an object is seen that would be if it took part."""
     return seen if is_always_present(item) else operate("and", item.present, seen)

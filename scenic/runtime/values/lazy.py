@@ -160,7 +160,7 @@ def is_lazy(value: object) -> bool:
     return isinstance(value, Lazy) or (type(value) in (tuple, list, dict, slice) and bool(reads_of(value)))
 
 
-def resolve(value: Any, instance: Any) -> Any:
+def resolve(value: Any, instance: object) -> Any:
     """A value for one instance: lazy values in it evaluated, everything else as it is."""
     if isinstance(value, Lazy):
         return value.value_for(instance)

@@ -29,7 +29,7 @@ class SetAngularVelocityAction(_ActorAction):
     def __init__(self, angularVel: object) -> None:
         self.angularVel = angularVel
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Set it."""
         simulation.set_angular_velocity(agent, self.angularVel)
 
@@ -40,7 +40,7 @@ class SetTransformAction(_ActorAction):
     def __init__(self, pos: object, heading: float) -> None:
         self.pos, self.heading = pos, heading
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Move the actor."""
         simulation.set_transform(agent, self.pos, self.heading)
 
@@ -54,7 +54,7 @@ class SetAutopilotAction(_ActorAction):
         self.enabled = enabled
         self.options = options
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Set it."""
         simulation.set_autopilot(agent, self.enabled, **self.options)
 
@@ -78,7 +78,7 @@ class SetTrafficLightAction(_ActorAction):
             raise RuntimeError(f"a traffic light is green, yellow, red, off or unknown, not {color!r}")
         self.color, self.distance, self.group = color, distance, group
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Set it."""
         simulation.set_closest_traffic_light(agent, self.color, self.distance)
 
@@ -89,6 +89,6 @@ class TrackWaypointsAction(_ActorAction):
     def __init__(self, waypoints: Any, cruising_speed: float = 10) -> None:
         self.waypoints, self.cruising_speed = tuple(waypoints), cruising_speed
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Set the controls."""
         simulation.track_waypoints(agent, self.waypoints, self.cruising_speed)

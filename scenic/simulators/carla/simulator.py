@@ -238,7 +238,7 @@ class CarlaSimulation(DrivingSimulation):
         else:
             self._actors[id(obj)].set_target_velocity(self._carla.Vector3D(x=x, y=-y, z=z))
 
-    def set_angular_velocity(self, obj: Any, velocity: Any) -> None:
+    def set_angular_velocity(self, obj: object, velocity: Any) -> None:
         """Set an actor's angular velocity (radians a second)."""
         x, y, z = (math.degrees(part) for part in velocity)
         self._actors[id(obj)].set_target_angular_velocity(self._carla.Vector3D(x=-x, y=y, z=-z))

@@ -64,7 +64,7 @@ class Grasp(_Grip):
             raise wrong_type(OBJECT, target, "Grasp")
         self.target = target
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Close the gripper."""
         simulation.grasp(agent, self.target)
 
@@ -75,7 +75,7 @@ class Grasp(_Grip):
 class Release(_Grip):
     """Let go of what is held."""
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Open the gripper."""
         simulation.release(agent)
 
@@ -110,7 +110,7 @@ class _JointAction(Action):
 class SetJointPositions(_JointAction):
     """Move joints to values (radians or metres) at the agent's ``jointSpeed``."""
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Set the targets of the servos."""
         simulation.jointed(agent).aim(self.values)
 
@@ -118,7 +118,7 @@ class SetJointPositions(_JointAction):
 class SetJointVelocities(_JointAction):
     """Move joints at speeds (radians or metres per second) until the next action on them."""
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Let the targets of the servos move."""
         simulation.jointed(agent).run(self.values)
 
@@ -126,7 +126,7 @@ class SetJointVelocities(_JointAction):
 class SetJointTorques(_JointAction):
     """Let torques (newton metres) or forces (newtons) act on joints until the next action on them."""
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Apply the torques."""
         simulation.jointed(agent).push(self.values)
 
@@ -170,7 +170,7 @@ class MoveTo(Action):
         """Return whether the agent has joints."""
         return model_of(agent) == "articulated"
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Set the targets of the servos to the nearest solution."""
         jointed = simulation.jointed(agent)
         place = np.array([float(part) for part in self.position])

@@ -49,7 +49,7 @@ class Images:
                 sensor.deliver(self._image(simulation.data, sensor, cameras[id(owner), name]))
         self._cameras.deliver(simulation, leave=_DRAWN)
 
-    def _image(self, data: Any, sensor: Any, camera: str) -> Any:
+    def _image(self, data: object, sensor: Any, camera: str) -> Any:
         """Colours ``(height, width, 3)``, or depth ``(height, width)``, metres, infinite where nothing is."""
         renderer = self._renderer((sensor.height, sensor.width))
         if sensor.outputs == ("rgb",):

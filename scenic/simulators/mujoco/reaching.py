@@ -25,7 +25,7 @@ _DEEP: Final = 1e-3
 """Metres that links may enter each other: geoms of neighbours often do."""
 
 
-def reaches(thing: Any, target: Any, frame: str, down: bool, tolerance: float) -> Any:
+def reaches(thing: Any, target: object, frame: str, down: bool, tolerance: float) -> Any:
     """Return whether a frame of a thing with joints can be within a tolerance (metres) of a place.
 
     Links may not touch each other there. Other objects are not looked at.

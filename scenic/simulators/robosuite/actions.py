@@ -33,7 +33,7 @@ class RobotAction(Action):
         """Return whether the agent is a robot."""
         return getattr(agent, "robot_type", None) is not None
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Set the inputs of the controllers."""
         simulation.control(agent, self.parts)
 
@@ -41,7 +41,7 @@ class RobotAction(Action):
         return f"{type(self).__name__}({self.parts})"
 
 
-def hand_step(robot: Any, place: Any) -> tuple[float, float, float]:
+def hand_step(robot: Any, place: object) -> tuple[float, float, float]:
     """Return the input of `OSCPositionAction` that moves a robot's hand towards a place."""
     away = to_vector(place, "hand_step") - robot.hand_position
     # The base looks along +Y here, and along +X in robosuite.

@@ -24,6 +24,6 @@ class SumoDrivingAction(Action):
         """Return whether the agent is a vehicle."""
         return bool(getattr(agent, "isVehicle", False))
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Leave the vehicle to SUMO."""
         simulation.let_drive(agent, self.speedFactor)

@@ -37,7 +37,7 @@ class ApplyForceAction(Action):
         self.force = to_vector(force, "ApplyForceAction")
         self.relative = bool(relative)
 
-    def applyTo(self, agent: Any, simulation: Any) -> None:
+    def applyTo(self, agent: object, simulation: Any) -> None:
         """Push."""
         simulation.push(agent, self.force, self.relative)
 

@@ -81,7 +81,7 @@ class States:
             node.loadState(_STATE)
 
 
-def field_of(obj: Any, node: Any, name: str) -> Any:
+def field_of(obj: object, node: Any, name: str) -> Any:
     """A field of the node of an object; raises `SimulationCreationError` if it has none of the name."""
     field = node.getField(name)
     if field is None:

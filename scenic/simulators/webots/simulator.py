@@ -233,7 +233,7 @@ class WebotsSimulation(Simulation):
 
     # Commands
 
-    def move(self, obj: Any, position: Any) -> None:
+    def move(self, obj: object, position: Any) -> None:
         """Put an object at a position (metres)."""
         place = Vector(*position) + Vector(*getattr(obj, "positionOffset", (0, 0, 0)))
         self._moved(obj).getField("translation").setSFVec3f(self.axes.place(place))
