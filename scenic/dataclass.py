@@ -132,7 +132,7 @@ class _Table:
         return getattr(owner, self._name)
 
 
-def _set_defaults(cls: type[Any], made: Mapping[str, Any]) -> None:
+def _set_defaults(cls: type[Any], made: Mapping[str, object]) -> None:
     """Leave the defaults of fields in a class without slots, but none that were given as fields."""
     for name in cls.__annotations__:
         if name in made:

@@ -140,7 +140,9 @@ def _diagnostics_html(diagnostics: Sequence[Diagnostic]) -> str:
     )
 
 
-def _explain(shell: Any, kind: type, error: Exception, traceback: object, tb_offset: int | None = None) -> None:
+def _explain(
+    shell: Any, kind: type, error: Exception, traceback: object, tb_offset: int | None = None
+) -> None:
     """Show the diagnostics of an error of Scenic in place of a traceback."""
     if isinstance(error, ParseCompileError):
         found: Sequence[Diagnostic] = error.diagnostics

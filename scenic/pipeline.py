@@ -114,7 +114,7 @@ class Scenario(scenarios.Scenario):
         return external_points(self)
 
     def _compiled_again(
-        self, params: Mapping[str, Any], settle: tuple[float, float, bool] | None = None
+        self, params: Mapping[str, object], settle: tuple[float, float, bool] | None = None
     ) -> "Scenario":
         options = _Options.of(self.options)
         changed = replace(options, params={**options.params, **params}, settle=settle or options.settle)

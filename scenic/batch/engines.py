@@ -220,7 +220,7 @@ class DaskCluster:
             for future in busy:
                 future.cancel()
 
-    def _fetched(self, ended: Sequence[Any]) -> list[bytes | None]:
+    def _fetched(self, ended: Sequence[object]) -> list[bytes | None]:
         """The results of tasks that have ended, ``None`` where their workers have died; raises what a task has raised.
 
         They are fetched together. Where that takes long, the scheduler may be lost, or a result with its worker, so that Dask

@@ -116,7 +116,7 @@ class Kept:
             self._looked_back |= any(isinstance(course, Latest) and course.missed for course in courses)
         return self._looked_back
 
-    def finish(self, simulation: "Simulation", about: Mapping[str, Any]) -> dict[str, Any] | None:
+    def finish(self, simulation: "Simulation", about: Mapping[str, object]) -> dict[str, Any] | None:
         """Complete the file; returns the data for the page."""
         from scenic.formats.course_page import course_data
 

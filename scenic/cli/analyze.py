@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -37,7 +37,7 @@ __all__ = ["analyze"]
 )
 def analyze(
     file: str,
-    parameters: Mapping[str, Any],
+    parameters: Mapping[str, object],
     scenario: str | None,
     model: str | None,
     mode_2d: bool,

@@ -68,7 +68,7 @@ class BatchRequest:
         """The program's file."""
         return Path(self.file)
 
-    def load(self, parameters: Mapping[str, Any], **options: Any) -> "Scenario":
+    def load(self, parameters: Mapping[str, object], **options: Any) -> "Scenario":
         """The program with values of its parameters; ``options`` are those of `scenic.load`."""
         from scenic.pipeline import load
 

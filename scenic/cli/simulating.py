@@ -151,7 +151,7 @@ def _total(rows: "Sequence[SimulationRow]", max_steps: int) -> str:
     return ", ".join(parts)
 
 
-def _is_late(about: Mapping[str, Any]) -> bool:
+def _is_late(about: Mapping[str, object]) -> bool:
     """Return whether the limit of the command ended a simulation, rather than one of the program."""
     return bool(about["reason"] == f"reached time limit ({about['steps']} steps)")
 

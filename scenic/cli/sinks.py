@@ -146,7 +146,7 @@ def images(
     stem: str,
     count: int,
     size: tuple[int, int] | None,
-    outlook: Mapping[str, Any],
+    outlook: Mapping[str, object],
     first: int = 0,
 ) -> Sink:
     """A PNG image of each scene: at ``path`` if that ends in ``.png``, else in the folder of that name.

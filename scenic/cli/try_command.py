@@ -6,7 +6,7 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Final
 
 import click
 
@@ -102,7 +102,7 @@ def try_command(
     paths: tuple[str, ...],
     form: str | None,
     seed: int | None,
-    parameters: Mapping[str, Any],
+    parameters: Mapping[str, object],
     model: str | None,
     scenario: str | None,
     mode_2d: bool,
@@ -179,7 +179,7 @@ def _picture(png: str, filename: str, programs: int) -> str:
     return str(folder / f"{Path(filename).stem}.png")
 
 
-def _show(found: Mapping[str, Any], source: Source) -> None:
+def _show(found: Mapping[str, object], source: Source) -> None:
     """Print an answer for people."""
     from rich.console import Console
 

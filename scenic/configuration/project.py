@@ -197,7 +197,7 @@ class _Reader:
         self._folder = folder
         self._problems: list[Diagnostic] = []
 
-    def read(self, table: Mapping[str, Any]) -> Configuration:
+    def read(self, table: Mapping[str, object]) -> Configuration:
         for key in table:
             if key not in _KEYS:
                 meant = nearest(key.replace("_", "-"), _KEYS) or (
@@ -222,7 +222,7 @@ class _Reader:
     def _report(self, message: str, advice: str, *keys: str, value: str | None = None) -> None:
         self._problems.append(_problem(self._source, message, advice, (*_TABLE, *keys), value))
 
-    def _strings(self, table: Mapping[str, Any], *keys: str) -> tuple[str, ...]:
+    def _strings(self, table: Mapping[str, object], *keys: str) -> tuple[str, ...]:
         """The strings of an array; of one that is none, nothing."""
         value = table.get(keys[-1], [])
         name = ".".join(keys)
@@ -238,7 +238,7 @@ class _Reader:
                 self._report(f"`{name}` must hold strings, not {_kind(each)}", "write it in quotes", *keys)
         return tuple(each for each in value if isinstance(each, str))
 
-    def _selectors(self, table: Mapping[str, Any], *keys: str) -> tuple[str, ...]:
+    def _selectors(self, table: Mapping[str, object], *keys: str) -> tuple[str, ...]:
         return tuple(
             text for text in self._strings(table, *keys) if self._is_selector(text, *keys, value=text)
         )
@@ -257,14 +257,14 @@ class _Reader:
         self._report("an empty pattern matches nothing", "remove it", *keys, value=text)
         return False
 
-    def _table(self, table: Mapping[str, Any], key: str, example: str) -> Mapping[str, Any]:
+    def _table(self, table: Mapping[str, object], key: str, example: str) -> Mapping[str, Any]:
         value = table.get(key, {})
         if isinstance(value, dict):
             return value
         self._report(f"`{key}` must be a table, not {_kind(value)}", f"for example: {example}", key)
         return {}
 
-    def _severities(self, table: Mapping[str, Any]) -> Iterator[tuple[str, Severity]]:
+    def _severities(self, table: Mapping[str, object]) -> Iterator[tuple[str, Severity]]:
         names = [severity.value for severity in Severity]
         for code, name in self._table(table, "severity", 'severity = { SC300 = "error" }').items():
             if not self._is_selector(code, "severity", code):
@@ -287,7 +287,7 @@ class _Reader:
                 value = name if isinstance(name, str) else None
                 self._report(f"{shown} is no severity", advice, "severity", code, value=value)
 
-    def _per_file(self, table: Mapping[str, Any]) -> Iterator[tuple[str, tuple[str, ...]]]:
+    def _per_file(self, table: Mapping[str, object]) -> Iterator[tuple[str, tuple[str, ...]]]:
         key = "per-file-ignores"
         patterns = self._table(table, key, 'per-file-ignores = { "old/**" = ["SC3"] }')
         for pattern in patterns:

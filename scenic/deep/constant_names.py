@@ -275,7 +275,7 @@ def _is_settled(value: object) -> bool:
     return isinstance(value, bool | int | float | str)
 
 
-def _operates_on_values(test: ast.expr, values: Mapping[str, Any]) -> bool:
+def _operates_on_values(test: ast.expr, values: Mapping[str, object]) -> bool:
     """Return whether the operators of Scenic in a condition read nothing but numbers, vectors and orientations."""
     for operation in walk(test):
         if not isinstance(operation, scenic.Operation):

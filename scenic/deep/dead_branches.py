@@ -147,7 +147,7 @@ def _is_dead(
 
 
 def _condition(
-    test: ast.expr, holds: bool, values: Mapping[str, Any], program: Program, source: Source
+    test: ast.expr, holds: bool, values: Mapping[str, object], program: Program, source: Source
 ) -> Node:
     """The node of a condition over values of a program, or of its negation."""
     written = f"({_over_parameters(test, values, source)})"

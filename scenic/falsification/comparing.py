@@ -15,7 +15,7 @@ _LEFT_OUT: Final = ("settings", "origin", "objects", "records")
 
 
 def row_departures(
-    kept: Mapping[str, Any], made: Mapping[str, Any], *, without: Sequence[str] = ()
+    kept: Mapping[str, object], made: Mapping[str, object], *, without: Sequence[str] = ()
 ) -> list[str]:
     """Return where two rows of a search differ; what is in ``without`` is not compared."""
     return list(differences(kept, made, [name for name in _COMPARED if name not in without]))
@@ -45,7 +45,9 @@ def file_departures(kept: Path, made: Path, form: Form, *, without: Sequence[str
     return found or list(differences(about, again, ("records",)))
 
 
-def differences(before: Mapping[str, Any], after: Mapping[str, Any], names: Sequence[str]) -> Iterator[str]:
+def differences(
+    before: Mapping[str, object], after: Mapping[str, object], names: Sequence[str]
+) -> Iterator[str]:
     """Return the fields of these names in which two documents differ, with both values."""
     for name in names:
         if name == "requirements" and before.get(name) and after.get(name):

@@ -167,7 +167,7 @@ class Evaluation:
         scene.save(folder / "scene.json")
 
     def _keep_course(
-        self, scene: Scene, kept: Kept, done: Any, about: Mapping[str, Any], run: int, waiting: Path
+        self, scene: Scene, kept: Kept, done: Any, about: Mapping[str, object], run: int, waiting: Path
     ) -> None:
         from scenic.formats.course_page import course_page
 

@@ -37,7 +37,7 @@ class ExternalSampler:
     rejectionFeedback: Any = None
     """The feedback after a candidate that was rejected."""
 
-    def __init__(self, params: Sequence[Coordinate], globalParams: Mapping[str, Any]) -> None:
+    def __init__(self, params: Sequence[Coordinate], globalParams: Mapping[str, object]) -> None:
         self.params = tuple(params)
         self.globalParams = dict(globalParams)
         self.rejectionFeedback = self.globalParams.get(
@@ -77,7 +77,7 @@ class VerifaiSampler(ExternalSampler):
 
     rejectionFeedback = _REJECTED
 
-    def __init__(self, params: Sequence[Coordinate], globalParams: Mapping[str, Any]) -> None:
+    def __init__(self, params: Sequence[Coordinate], globalParams: Mapping[str, object]) -> None:
         super().__init__(params, globalParams)
         seed = random.getrandbits(63)
         with preserved():  # libraries draw while they are imported

@@ -60,7 +60,7 @@ class Objective:
             return getattr(self.function, "__name__", "function")
         return self.expression or self.name or "robustness"
 
-    def of_simulation(self, result: Any, params: Mapping[str, Any]) -> float:
+    def of_simulation(self, result: Any, params: Mapping[str, object]) -> float:
         """The value of a simulation's result; raises `ObjectiveError`."""
         if self.function is not None:
             return _number(self.function(result), self.label)
@@ -104,7 +104,7 @@ class Objective:
             raise _unknown(self.name, list(params), "is not a parameter of the program", "param {} = ...")
         return _number(params[self.name], self.name)
 
-    def _evaluated(self, names: Mapping[str, Any]) -> float:
+    def _evaluated(self, names: Mapping[str, object]) -> float:
         assert self.expression is not None
         try:
             code = compile(self.expression, "<objective>", "eval")

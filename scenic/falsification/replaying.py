@@ -166,7 +166,7 @@ def _simulation(file: Path) -> KeptRun:
     return KeptRun(number, _origin(about, file), settings, None, file)
 
 
-def _origin(about: Mapping[str, Any], place: Path) -> Mapping[str, Any]:
+def _origin(about: Mapping[str, object], place: Path) -> Mapping[str, Any]:
     origin = about.get("origin")
     if not isinstance(origin, dict):
         raise ReplayError(

@@ -57,7 +57,7 @@ class SearchFolder(WrittenFolder):
     """
 
     def __init__(
-        self, path: Path, settings: Mapping[str, Any], *, resume: bool, accept_changes: bool = False
+        self, path: Path, settings: Mapping[str, object], *, resume: bool, accept_changes: bool = False
     ) -> None:
         super().__init__(path, SEARCH)
         self._settings: dict[str, Any] = json.loads(json.dumps(settings))
@@ -175,5 +175,5 @@ def number(value: float) -> Any:
     return value if math.isfinite(value) else str(value)
 
 
-def _line(row: Mapping[str, Any]) -> str:
+def _line(row: Mapping[str, object]) -> str:
     return json.dumps(row, allow_nan=False, separators=(",", ":")) + "\n"

@@ -113,7 +113,7 @@ class Page:
         return page_text(self._title, self.data())
 
 
-def page_text(title: str, data: Mapping[str, Any]) -> str:
+def page_text(title: str, data: Mapping[str, object]) -> str:
     """The text of a page that holds this data, as `Page.data` gives it."""
     text = json.dumps(data, allow_nan=False, separators=(",", ":"))
     parts = {

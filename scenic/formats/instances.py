@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -61,7 +61,7 @@ class Surface:
     faces: npt.NDArray[np.int64]
     _known: dict[str, npt.NDArray[np.float32] | None] = field(default_factory=dict, repr=False, compare=False)
 
-    def coordinates(self, source: Mapping[str, Any]) -> npt.NDArray[np.float32] | None:
+    def coordinates(self, source: Mapping[str, object]) -> npt.NDArray[np.float32] | None:
         """Texture coordinates of its triangles ``(f, 3, 2)``, found once; see `coordinates_of`."""
         key = repr(source)
         if key not in self._known:

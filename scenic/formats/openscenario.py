@@ -74,7 +74,7 @@ class _Entity:
 
 
 def openscenario_document(
-    things: Sequence[Any],
+    things: Sequence[object],
     poses: Sequence[Poses],
     *,
     timestep: float,
@@ -250,7 +250,7 @@ def _euler(orientation: Orientation) -> tuple[float, float, float]:
     return yaw, pitch, roll
 
 
-def _followed(xosc: Any, name: str, times: Sequence[float], places: Sequence[Any]) -> Any:
+def _followed(xosc: Any, name: str, times: Sequence[float], places: Sequence[object]) -> Any:
     """The group by which one entity follows its states."""
     trajectory = xosc.Trajectory(f"{name} trajectory", closed=False)
     trajectory.add_shape(xosc.Polyline(list(times), list(places)))
@@ -294,7 +294,7 @@ class OpenScenarioFile:
         """Take the next state: position and orientation of each object."""
         self._poses.append(poses)
 
-    def finish(self, simulation: Any, about: Mapping[str, Any]) -> None:
+    def finish(self, simulation: Any, about: Mapping[str, object]) -> None:
         """Write the file.
 
         Raises:

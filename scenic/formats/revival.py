@@ -89,7 +89,7 @@ class Revival:
             self._classes[name] = type(name, (RevivedObject,), {})
         return self._classes[name]
 
-    def _shape(self, told: Mapping[str, Any]) -> Shape:
+    def _shape(self, told: Mapping[str, object]) -> Shape:
         key = json.dumps(told, sort_keys=True)
         if key not in self._shapes:
             try:

@@ -329,7 +329,7 @@ def _struct_fields(arrow: Any, name: str, fields: Mapping[str, _Field]) -> list[
     return [(name, arrow.struct([(key, field.type) for key, field in fields.items()]))] if fields else []
 
 
-def _struct(arrow: Any, kind: Any, parts: Sequence[Any]) -> Any:
+def _struct(arrow: Any, kind: Any, parts: Sequence[object]) -> Any:
     return arrow.StructArray.from_arrays(parts, fields=list(kind))
 
 

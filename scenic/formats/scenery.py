@@ -65,7 +65,7 @@ USUAL: Final = Scenery()
 """The scenery of scenes that say nothing about it."""
 
 
-def scenery_of(params: Mapping[str, Any]) -> Scenery:
+def scenery_of(params: Mapping[str, object]) -> Scenery:
     """The scenery that a scene's parameters say.
 
     Raises:

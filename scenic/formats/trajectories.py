@@ -104,10 +104,10 @@ def step_document(
 class TrajectoryFile(Protocol):
     """A file of a simulation, into which states are put while it runs; there is no file before it is finished."""
 
-    def add(self, state: Mapping[str, Any]) -> None:
+    def add(self, state: Mapping[str, object]) -> None:
         """The next state, as `step_document` gives it."""
 
-    def finish(self, about: Mapping[str, Any]) -> None:
+    def finish(self, about: Mapping[str, object]) -> None:
         """Complete the file with the data of `course_document` about the whole simulation."""
 
     def close(self) -> None:
@@ -125,11 +125,11 @@ class LinesFile:
         self._path = path
         self._waiting = Waiting(path)
 
-    def add(self, state: Mapping[str, Any]) -> None:
+    def add(self, state: Mapping[str, object]) -> None:
         """The next state."""
         self._waiting.write(_line(state))
 
-    def finish(self, about: Mapping[str, Any]) -> None:
+    def finish(self, about: Mapping[str, object]) -> None:
         """Complete the file."""
         with writing(self._path) as stream:
             stream.write(_line(about))
@@ -140,5 +140,5 @@ class LinesFile:
         self._waiting.close()
 
 
-def _line(document: Mapping[str, Any]) -> bytes:
+def _line(document: Mapping[str, object]) -> bytes:
     return json.dumps(document, allow_nan=False, separators=(",", ":")).encode() + b"\n"

@@ -84,7 +84,7 @@ class ParquetFile:
         for column in self._columns.values():
             column.clear()
 
-    def finish(self, about: Mapping[str, Any]) -> None:
+    def finish(self, about: Mapping[str, object]) -> None:
         """Complete the file."""
         self._flush()
         with refusing(self._path):

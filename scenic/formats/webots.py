@@ -74,7 +74,7 @@ def webots_world(
     stem: str,
     *,
     program: str | Path | None = None,
-    params: Mapping[str, Any] = MappingProxyType({}),
+    params: Mapping[str, object] = MappingProxyType({}),
 ) -> World:
     """A scene as a world.
 
@@ -137,7 +137,7 @@ def _extended(world: WorldFile, protos: Sequence[str], nodes: str) -> str:
     return f"{text}{nodes}"
 
 
-def def_names(objects: Sequence[Any]) -> dict[int, str]:
+def def_names(objects: Sequence[object]) -> dict[int, str]:
     """The DEF names of the nodes of a scene's objects, by the identities of the objects.
 
     It is an object's ``webotsName``; otherwise ``TYPE_0``, ``TYPE_1`` and so on for objects of one ``webotsType``, and
@@ -191,7 +191,7 @@ def write_world(
     path: Path,
     *,
     program: str | Path | None = None,
-    params: Mapping[str, Any] = MappingProxyType({}),
+    params: Mapping[str, object] = MappingProxyType({}),
 ) -> None:
     """Write `webots_world` to a ``.wbt`` file and the folder beside it; raises ``OutputError``."""
     world = webots_world(scene, path.stem, program=program, params=params)
@@ -345,7 +345,7 @@ def _surroundings(scene: Scene, instances: Sequence[Instance]) -> str:
     )
 
 
-def _supervisor(scene: Scene, program: Path, params: Mapping[str, Any], files: dict[str, bytes]) -> str:
+def _supervisor(scene: Scene, program: Path, params: Mapping[str, object], files: dict[str, bytes]) -> str:
     """A robot that runs the program's behaviors in this world, and its controller."""
     script = f'''"""Runs the behaviors of a Scenic program in this world, on its scene {scene.k} of seed {scene.seed}."""
 

@@ -43,7 +43,7 @@ def completed(method: str, params: object) -> Any:
     return _with_defaults(params, {**required, **inside}) if required or inside else params
 
 
-def _with_defaults(given: Mapping[str, Any], defaults: Mapping[str, Any]) -> dict[str, Any]:
+def _with_defaults(given: Mapping[str, object], defaults: Mapping[str, object]) -> dict[str, Any]:
     result = dict(given)
     for name, default in defaults.items():
         value = result.get(name)

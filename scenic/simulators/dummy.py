@@ -21,7 +21,7 @@ class DummySimulation(Simulation):
     def createObjectInSimulator(self, obj: object) -> None:
         """There is nothing to do."""
 
-    def actionsAreCompatible(self, agent: object, actions: Sequence[Any]) -> bool:
+    def actionsAreCompatible(self, agent: object, actions: Sequence[object]) -> bool:
         """Any are."""
         return True
 

@@ -103,7 +103,7 @@ class Latest(Sequence[Any]):
         )
 
 
-def kept(series: Sequence[Any]) -> Sequence[Any]:
+def kept(series: Sequence[object]) -> Sequence[Any]:
     """The kept part of a series."""
     return series.newest if isinstance(series, Latest) else series
 
@@ -123,11 +123,11 @@ class SimulationResult:
 
     def __init__(
         self,
-        trajectory: Sequence[Any],
+        trajectory: Sequence[object],
         actions: Sequence[Mapping[Any, Any]],
         terminationType: TerminationType,
         terminationReason: str,
-        records: Mapping[str, Any],
+        records: Mapping[str, object],
         requirements: Sequence[Any] = (),
     ) -> None:
         self.trajectory = tuple(trajectory)

@@ -210,7 +210,7 @@ class Simulation(ABC):
         with self._isolated:
             return next(self._loop, None) is not None
 
-    def take(self, agent: object, actions: Sequence[Any]) -> None:
+    def take(self, agent: object, actions: Sequence[object]) -> None:
         """Let an agent take actions from outside in the present step, on top of what its behavior has done.
 
         For simulations that are advanced step by step, before `advanceOnce`.
@@ -382,7 +382,7 @@ class Simulation(ABC):
         """The agents, in the order in which they choose their actions."""
         return self.agents
 
-    def actionsAreCompatible(self, agent: object, actions: Sequence[Any]) -> bool:
+    def actionsAreCompatible(self, agent: object, actions: Sequence[object]) -> bool:
         """Return whether an agent can take these actions in one step."""
         return all(
             hasattr(action, "canBeTakenBy") and action.canBeTakenBy(agent)

@@ -14,7 +14,7 @@ _COUNT: Final = {"type": "integer", "minimum": 0}
 _POSITION: Final = {"type": "integer", "minimum": 1}
 
 
-def _object(properties: Mapping[str, Any], *, optional: tuple[str, ...] = ()) -> dict[str, Any]:
+def _object(properties: Mapping[str, object], *, optional: tuple[str, ...] = ()) -> dict[str, Any]:
     return {
         "type": "object",
         "properties": dict(properties),
@@ -23,11 +23,11 @@ def _object(properties: Mapping[str, Any], *, optional: tuple[str, ...] = ()) ->
     }
 
 
-def _or_null(schema: Mapping[str, Any]) -> dict[str, Any]:
+def _or_null(schema: Mapping[str, object]) -> dict[str, Any]:
     return {"anyOf": [dict(schema), {"type": "null"}]}
 
 
-def _list(items: Mapping[str, Any]) -> dict[str, Any]:
+def _list(items: Mapping[str, object]) -> dict[str, Any]:
     return {"type": "array", "items": dict(items)}
 
 

@@ -130,7 +130,7 @@ class WrittenFolder:
         """The manifest as plain data; see `FolderKind.document`."""
         return self.kind.document(self.path)
 
-    def save(self, content: Mapping[str, Any]) -> None:
+    def save(self, content: Mapping[str, object]) -> None:
         """Write the manifest; raises ``OutputError``."""
         head = {"format": self.kind.format, "version": self.kind.version}
         write(self.path / NAME, (json.dumps({**head, **content}, indent=1) + "\n").encode())

@@ -127,7 +127,7 @@ class ExpressionActions(CommonActions):
     def string_kind(self, index: int) -> str | None:
         return "u" if self._texts[index][0] == "u" else None
 
-    def strings(self, pieces: Sequence[Any], place: Place) -> ast.expr | None:
+    def strings(self, pieces: Sequence[object], place: Place) -> ast.expr | None:
         """Adjacent strings and f-strings as one node."""
         return formatted.joined(self, self._tokens, pieces, place)
 

@@ -60,7 +60,7 @@ def check_flow(context: Context) -> Iterator[Diagnostic]:
     yield from _timeless(context, endless)
 
 
-def _after_end(statements: Sequence[Any], where: Where, context: Context) -> Iterator[Diagnostic]:
+def _after_end(statements: Sequence[object], where: Where, context: Context) -> Iterator[Diagnostic]:
     last = len(statements) - 1
     for index, statement in enumerate(statements):
         if index < last and _ends(statement, where):

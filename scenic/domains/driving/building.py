@@ -189,7 +189,7 @@ def area_of(geometry: object) -> Any:
     return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
 
 
-def union_of(polygons: Iterable[Any]) -> Any:
+def union_of(polygons: Iterable[object]) -> Any:
     """The union of polygons; ``None`` if there are none."""
     import shapely
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -37,7 +37,7 @@ class JoinedSurface(Surface):
     """
 
     def __init__(
-        self, network: "RoadNetwork", elements: Sequence[NetworkElement], fillings: Sequence[Any] = ()
+        self, network: "RoadNetwork", elements: Sequence[NetworkElement], fillings: Sequence[object] = ()
     ) -> None:
         import shapely
 

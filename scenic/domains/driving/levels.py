@@ -36,7 +36,7 @@ class Levels:
 
     """
 
-    def __init__(self, elevation: Elevation, polygons: Sequence[Any], roads: Sequence[int]) -> None:
+    def __init__(self, elevation: Elevation, polygons: Sequence[object], roads: Sequence[int]) -> None:
         self.elevation = elevation
         self._polygons = np.array(polygons, dtype=object)
         self._roads = np.array(roads, dtype=np.intp)

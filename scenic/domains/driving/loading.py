@@ -93,7 +93,7 @@ class MapOptions:
 
 
 def load_network(
-    path: object, given: Mapping[str, Any], cls: type[_Network], elevated: bool = False
+    path: object, given: Mapping[str, object], cls: type[_Network], elevated: bool = False
 ) -> _Network:
     """The network of a map file, of a class; see `Network.fromFile`."""
     options = MapOptions.of(given)

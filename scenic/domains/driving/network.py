@@ -200,7 +200,7 @@ class RoadNetwork(Frozen):
             lines, joined_ground(self.levels, [curb for curb in curbs if isinstance(curb, GroundedLine)])
         )
 
-    def region_of(self, elements: Sequence[NetworkElement], fillings: Sequence[Any] = ()) -> Region:
+    def region_of(self, elements: Sequence[NetworkElement], fillings: Sequence[object] = ()) -> Region:
         """The union of elements as a region with their directions; the empty region if there are none.
 
         Args:

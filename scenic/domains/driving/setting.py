@@ -123,7 +123,7 @@ def standing(spot: Any) -> Lazy:
     return Lazy(frozenset({"baseOffset", "contactTolerance"}), place)
 
 
-def nearer(objects: Iterable[Any], agent: Any, threshold: float, kind: Any) -> list[Any]:
+def nearer(objects: Iterable[object], agent: Any, threshold: float, kind: Any) -> list[Any]:
     """The objects of a class, others than an agent, whose centres are nearer to it than a threshold in metres."""
     x, y, z = agent.position
     limit = threshold * threshold

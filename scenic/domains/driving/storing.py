@@ -326,11 +326,11 @@ def _lines(element: NetworkElement) -> Iterable[NDArray[np.float64]]:
         yield element._curb
 
 
-def _at(elements: Sequence[Any], index: int) -> Any:
+def _at(elements: Sequence[object], index: int) -> Any:
     return None if index < 0 else elements[index]
 
 
-def _distinct(items: Iterable[Any]) -> list[Any]:
+def _distinct(items: Iterable[object]) -> list[Any]:
     """The items, each but once, by identity."""
     return list({id(item): item for item in items}.values())
 
@@ -343,7 +343,7 @@ def _cubics(rows: Iterable[Sequence[float]]) -> tuple[Cubic, ...]:
     return tuple(Cubic(*row) for row in rows)
 
 
-def _binary(name: str, geometries: Sequence[Any]) -> Arrays:
+def _binary(name: str, geometries: Sequence[object]) -> Arrays:
     """Geometries as two arrays: their well-known binary end to end, and the lengths of the parts."""
     import shapely
 

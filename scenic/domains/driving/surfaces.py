@@ -183,7 +183,7 @@ class GroundedLine(Frozen, PolylineRegion):
         points, known = super().draw_points(uniforms, keys, *columns)
         return self._raised(points), known
 
-    def orientation_drawn(self, point: Any, numbers: Sequence[Any]) -> Any:
+    def orientation_drawn(self, point: Any, numbers: Sequence[object]) -> Any:
         return self.orientation_at(point)
 
     def orientations(self, points: Points, *columns: Column) -> Column:

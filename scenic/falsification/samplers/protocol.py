@@ -33,7 +33,7 @@ class Sampler(Protocol):
         """Take the values of points ``(n, d)``: ``(n,)``, smaller ones better, NaN where a point was rejected."""
 
 
-def options(given: object, defaults: Mapping[str, Any], name: str) -> dict[str, Any]:
+def options(given: object, defaults: Mapping[str, object], name: str) -> dict[str, Any]:
     """The options of a sampler, from a mapping or from the attributes of an object.
 
     Raises `SamplerError` for an option that the sampler does not have.

@@ -168,7 +168,7 @@ class CommonRoadFile:
         source = _source(simulation.scene)
         self._colors.append(source.light_colors(simulation))
 
-    def finish(self, simulation: Any, about: Mapping[str, Any]) -> None:
+    def finish(self, simulation: Any, about: Mapping[str, object]) -> None:
         """Write the file.
 
         Raises:

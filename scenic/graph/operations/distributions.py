@@ -408,7 +408,9 @@ def _truncated_inverse(
     return [_if_fixed(fixed, place, nothing), None, None]
 
 
-def _truncated_solver(terms: Terms, payload: _Window, _axis: object, _mean: object, _deviation: object) -> Any:
+def _truncated_solver(
+    terms: Terms, payload: _Window, _axis: object, _mean: object, _deviation: object
+) -> Any:
     low, high = payload
     value = terms.fresh(Kind.SCALAR)
     if np.isfinite(low):

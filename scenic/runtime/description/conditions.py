@@ -110,7 +110,7 @@ def in_time(operator: str, parts: Sequence[Condition]) -> Condition:
 def leaf(
     symbolic: Callable[..., Any] | None,
     concrete: Callable[..., Any],
-    captured: Sequence[Any],
+    captured: Sequence[object],
     *,
     awaits: bool = False,
 ) -> Callable[[], Node]:

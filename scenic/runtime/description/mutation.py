@@ -28,7 +28,7 @@ from scenic.runtime.values.values import (
 )
 
 
-def request(targets: Iterable[Any], scale: object) -> None:
+def request(targets: Iterable[object], scale: object) -> None:
     """Set the scale of the noise of instances: what ``mutate`` does."""
     if not is_number(scale):
         raise ScenicTypeError(

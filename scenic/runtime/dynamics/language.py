@@ -125,7 +125,7 @@ class Dynamics:
         return Termination(simulation=simulation, span=here())
 
     def do(
-        self, instance: Invocable, targets: Sequence[Any], limit: object = None, unit: str | None = None
+        self, instance: Invocable, targets: Sequence[object], limit: object = None, unit: str | None = None
     ) -> Any:
         """``do``: what to delegate to."""
         return statements.do(instance._activation, targets, limit, unit)
@@ -159,7 +159,7 @@ class Dynamics:
         """Return whether a block ended by ``return``."""
         return outcome is not None and outcome.way == "return"
 
-    def margin(self, symbols: Sequence[str], operands: Sequence[Any]) -> float | None:
+    def margin(self, symbols: Sequence[str], operands: Sequence[object]) -> float | None:
         """By how much ``a < b <= c`` or the like holds, the least of its parts; ``None`` where that is not known."""
         return margins.margin(symbols, operands)
 
@@ -194,7 +194,7 @@ class Dynamics:
             self._program.declared.monitors.append(use)
 
     def terminate_when(
-        self, concrete: Callable[..., Any], captured: Sequence[Any], *, simulation: bool, name: object
+        self, concrete: Callable[..., Any], captured: Sequence[object], *, simulation: bool, name: object
     ) -> None:
         """``terminate when``."""
         label = label_of(name) or _numbered("termination condition")
@@ -213,7 +213,7 @@ class Dynamics:
     def record(
         self,
         concrete: Callable[..., Any],
-        captured: Sequence[Any],
+        captured: Sequence[object],
         *,
         moment: str | None,
         name: object,

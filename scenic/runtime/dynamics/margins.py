@@ -7,7 +7,6 @@ measured by shares and angles (`scenic.runtime.regions.visibility_margins`).
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -30,7 +29,7 @@ from scenic.runtime.values.values import Vector, is_number, is_vector, to_vector
 __all__ = ["margin"]
 
 
-def margin(symbols: Sequence[str], operands: Sequence[Any]) -> float | None:
+def margin(symbols: Sequence[str], operands: Sequence[object]) -> float | None:
     """The least margin of ``a SYMBOL b SYMBOL c ...``; ``None`` where one of the parts has none.
 
     Args:

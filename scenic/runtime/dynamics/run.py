@@ -284,7 +284,7 @@ class Run:
         for instance in awaited or ():
             self._enter(instance)
 
-    def check_mutable(self, targets: Sequence[Any]) -> None:
+    def check_mutable(self, targets: Sequence[object]) -> None:
         """Warn of objects that are in the simulator already, and stay where they are."""
         for target in targets:
             if id(target) in self._numbers:

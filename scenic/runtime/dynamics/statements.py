@@ -92,7 +92,7 @@ def begin(owner: Running, target: object) -> Running:
     raise ScenicTypeError(f"`do`: expected {expected}, not {describe(target)}", span=here(), help=hint)
 
 
-def do(owner: Running, targets: Sequence[Any], limit: object = None, unit: str | None = None) -> Steps:
+def do(owner: Running, targets: Sequence[object], limit: object = None, unit: str | None = None) -> Steps:
     """``do``, with ``for`` or ``until``."""
     stop = _stop_test(owner, limit, unit)
     started: list[Running] = []
@@ -154,14 +154,14 @@ def wait(owner: Running, limit: object, unit: str) -> Steps:
     owner.check_invariants()
 
 
-def choose(owner: Running, targets: Sequence[Any]) -> Steps:
+def choose(owner: Running, targets: Sequence[object]) -> Steps:
     """``do choose``."""
     options = _weighted(targets, "choose")
     index = _drawn(owner, options, "choose")
     yield from do(owner, [options[index][0]])
 
 
-def shuffle(owner: Running, targets: Sequence[Any]) -> Steps:
+def shuffle(owner: Running, targets: Sequence[object]) -> Steps:
     """``do shuffle``."""
     options = _weighted(targets, "shuffle")
     while options:
@@ -169,7 +169,7 @@ def shuffle(owner: Running, targets: Sequence[Any]) -> Steps:
         yield from do(owner, [target])
 
 
-def _weighted(targets: Sequence[Any], what: str) -> list[tuple[Any, float]]:
+def _weighted(targets: Sequence[object], what: str) -> list[tuple[Any, float]]:
     """The targets with their weights."""
     if len(targets) == 1 and isinstance(targets[0], dict):
         options = list(targets[0].items())

@@ -41,7 +41,7 @@ _BUCKETS: Final = 5
 """Default number of buckets that approximate a prior."""
 
 
-def _make(operation: str, operands: Sequence[Any], payload: object, choosable: Choosable) -> Any:
+def _make(operation: str, operands: Sequence[object], payload: object, choosable: Choosable) -> Any:
     """A value whose axis a search may choose; in a simulation it is drawn at once."""
     context = current.get()
     if context is None or not context.is_symbolic or context.evaluating:

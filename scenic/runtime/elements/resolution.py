@@ -150,7 +150,7 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
     return instance
 
 
-def _reads(offered: Mapping[str, Any], names: Sequence[str]) -> frozenset[str]:
+def _reads(offered: Mapping[str, object], names: Sequence[str]) -> frozenset[str]:
     """The properties that lazy values among those offered read."""
     lazy = [value for name in names if type(value := offered[name]) not in _PLAIN]
     return reads_of(lazy) if lazy else frozenset()

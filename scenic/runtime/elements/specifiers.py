@@ -542,7 +542,7 @@ def specifier(
     return lambda function: UserSpecifier(function, priorities, reads, modifies)
 
 
-def _converted(declared: _Declared, ego: Ego, workspace: Space, operands: Sequence[Any]) -> Sequence[Any]:
+def _converted(declared: _Declared, ego: Ego, workspace: Space, operands: Sequence[object]) -> Sequence[Any]:
     """Return the arguments that a specifier is built from: the ego or the workspace where it reads them, then
     its converted operands.
     """

@@ -94,7 +94,7 @@ def active(instance: object) -> list[Any]:
     return [item for item in (given if isinstance(given, tuple | list) else (given,)) if item is not None]
 
 
-def is_built_in(mutators: Iterable[Any]) -> bool:
+def is_built_in(mutators: Iterable[object]) -> bool:
     """Return whether all mutators are those of the language."""
     return all(type(mutator) in BUILT_IN for mutator in mutators)
 

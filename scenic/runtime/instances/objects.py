@@ -124,7 +124,7 @@ class Point(Instance):
         _combine_properties(cls)
 
     @classmethod
-    def _make(cls, values: Mapping[str, Any]) -> Self:
+    def _make(cls, values: Mapping[str, object]) -> Self:
         """An instance with these property values; for the runtime, not for programs."""
         instance = object.__new__(cls)
         instance.__dict__ = dict(
@@ -192,7 +192,7 @@ class Point(Instance):
     def __copy__(self) -> Any:
         return self._alike(self._copied())
 
-    def _alike(self, values: Mapping[str, Any]) -> Self:
+    def _alike(self, values: Mapping[str, object]) -> Self:
         """An instance with these values whose methods see the same sample."""
         made = self._make(values)
         if "_sample" in self.__dict__:

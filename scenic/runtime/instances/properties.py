@@ -332,7 +332,7 @@ def _colours(values: list[Any]) -> list[Any] | None:
     return values if fine else None
 
 
-def update(instance: Any, changes: Mapping[str, Any]) -> None:
+def update(instance: Any, changes: Mapping[str, object]) -> None:
     """Give properties new values, and those that always follow from others the values that follow now."""
     values = instance.__dict__
     for name, value in changes.items():

@@ -289,7 +289,7 @@ class Prelude(Symbolic, Dynamics):
         """``int(x)``, ``float(x)``, ``str(x)``."""
         return convert(name, *args)
 
-    def spread(self, function: Any, parts: Sequence[tuple[bool, Any]], keywords: Mapping[str, Any]) -> Any:
+    def spread(self, function: Any, parts: Sequence[tuple[bool, Any]], keywords: Mapping[str, object]) -> Any:
         """``function(a, *b, k=c)``; ``parts`` marks the starred arguments."""
         return spread(function, parts, keywords)
 
@@ -297,7 +297,7 @@ class Prelude(Symbolic, Dynamics):
 
     # Statements
 
-    def param(self, values: Mapping[str, Any]) -> None:
+    def param(self, values: Mapping[str, object]) -> None:
         """``param name = value, ...``."""
         if self._context.evaluating or not self._context.is_symbolic:
             raise InvalidScenarioError(
@@ -382,7 +382,7 @@ class Prelude(Symbolic, Dynamics):
         self,
         symbolic: Callable[..., Any] | None,
         concrete: Callable[..., Any],
-        captured: Sequence[Any],
+        captured: Sequence[object],
         margin: Callable[..., Any] | None = None,
         *,
         awaits: bool = False,

@@ -26,7 +26,7 @@ Parts = Sequence[tuple[bool, Any]]
 """Positional arguments, each with whether it is starred."""
 
 
-def spread(function: Callable[..., Any], parts: Parts, keywords: Mapping[str, Any]) -> Any:
+def spread(function: Callable[..., Any], parts: Parts, keywords: Mapping[str, object]) -> Any:
     """``function(a, *b, k=c)``.
 
     ``Uniform(*xs)`` of a random list draws one of its elements, each equally likely; a sample in which it has none is
@@ -51,8 +51,8 @@ def spread(function: Callable[..., Any], parts: Parts, keywords: Mapping[str, An
 def _spread_values(
     function: Callable[..., Any],
     flags: Sequence[bool],
-    values: Sequence[Any],
-    keywords: Mapping[str, Any],
+    values: Sequence[object],
+    keywords: Mapping[str, object],
 ) -> Any:
     """`spread`, of values that no longer depend on the object being specified."""
     return spread(function, tuple(zip(flags, values, strict=True)), keywords)

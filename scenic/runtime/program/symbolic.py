@@ -113,7 +113,7 @@ class Symbolic:
             return not value
         return as_value(connect("not", [truth(value)]))
 
-    def _logic(self, operation: str, values: Sequence[Any]) -> Any:
+    def _logic(self, operation: str, values: Sequence[object]) -> Any:
         nodes = [as_node(value) for value in values]
         if not all(node.kind is Kind.BOOLEAN for node in nodes):
             raise NotSymbolicError  # Python's `and` and `or` give an operand, not a truth value.

@@ -22,7 +22,7 @@ _COMPENSATES: Final = sys.version_info >= (3, 12)
 """True if Python's ``sum`` compensates rounding, and so differs from adding floats in turn."""
 
 
-def iterated(function: Callable[..., Any], sequences: Sequence[Any]) -> list[Any]:
+def iterated(function: Callable[..., Any], sequences: Sequence[object]) -> list[Any]:
     """The elements of ``range``, ``zip``, ``enumerate`` or ``reversed``, of fixed arguments."""
     given = [item if isinstance(item, int) else _fixed(item) for item in sequences]
     return _fixed(list(_few(function(*given))))
@@ -80,7 +80,7 @@ def _fixed(sequence: Any) -> list[Any]:
     return elements
 
 
-def _few(items: Iterable[Any]) -> Iterable[Any]:
+def _few(items: Iterable[object]) -> Iterable[Any]:
     for number, item in enumerate(items):
         if number == MOST:
             raise NotSymbolicError

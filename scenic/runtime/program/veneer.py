@@ -125,7 +125,7 @@ def workspace(workspace: object = None) -> Any:
     return language.workspace
 
 
-def param(params: Mapping[str, Any]) -> None:
+def param(params: Mapping[str, object]) -> None:
     """Set global parameters."""
     _needed("program to set parameters of").param(params)
 

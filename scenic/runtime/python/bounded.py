@@ -47,7 +47,7 @@ def bounded(reading: Callable[..., tuple[Any, ...]]) -> Callable[[_Told], _Told]
 
 
 def bounds_of_call(
-    function: Callable[..., Any], args: Sequence[Any], known: Callable[[Any], Bounds | None]
+    function: Callable[..., Any], args: Sequence[object], known: Callable[[Any], Bounds | None]
 ) -> Bounds | None:
     """Bounds of what a function gives, box by box, if it is a `bounded` one.
 

@@ -61,8 +61,8 @@ class OpaqueCode(Reach):
 def later(
     operation: Operation,
     function: Callable[..., Any],
-    args: Sequence[Any],
-    keywords: Mapping[str, Any] = MappingProxyType({}),
+    args: Sequence[object],
+    keywords: Mapping[str, object] = MappingProxyType({}),
     *,
     names: Globals | None = None,
 ) -> Node:

@@ -189,12 +189,12 @@ def may_return_instances(value: object) -> bool:
     return any(call.instances for call in calls)
 
 
-def dependencies(values: Iterable[Any], names: Globals | None = None) -> list[Node]:
+def dependencies(values: Iterable[object], names: Globals | None = None) -> list[Node]:
     """The nodes whose values decide the sampled values of ``values``, in order of discovery."""
     return nodes_of(reachable(values, Globals() if names is None else names))
 
 
-def nodes_of(walk: Iterable[Any]) -> list[Node]:
+def nodes_of(walk: Iterable[object]) -> list[Node]:
     """The nodes of the random values among what `reachable` gives, each once."""
     return list(dict.fromkeys(value.node for value in walk if isinstance(value, Random)))
 
@@ -246,7 +246,7 @@ def mentions(code: CodeType, word: str) -> bool:
     )
 
 
-def reachable(values: Iterable[Any], names: Globals) -> Iterator[Any]:
+def reachable(values: Iterable[object], names: Globals) -> Iterator[Any]:
     """Everything that the values are made of as far as sampling goes, themselves included, each once."""
     seen: dict[int, Any] = {}
     stack = list(values)[::-1]

@@ -34,7 +34,7 @@ class Originals:
 
     """
 
-    def __init__(self, roots: Iterable[Any]) -> None:
+    def __init__(self, roots: Iterable[object]) -> None:
         self._user: ref[Any] | None = None
         self._kept: dict[int, tuple[Any, _Contents]] = {
             id(item): (item, _contents(item)) for item in _shareable(list(roots))

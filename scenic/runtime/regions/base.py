@@ -269,7 +269,7 @@ class Region(metaclass=_RegionType):
         point = apply(_DRAW, *numbers, random_key(), *self.parameters, payload=self)
         return point, self.orientation_drawn(point, numbers)
 
-    def orientation_drawn(self, point: Any, numbers: Sequence[Any]) -> Any:
+    def orientation_drawn(self, point: Any, numbers: Sequence[object]) -> Any:
         """`orientation_at` a point that uniform numbers drew."""
         return self.orientation_at(point)
 
@@ -581,7 +581,7 @@ def _point_extent(region: Region, *operands: Bounds | None) -> Bounds | None:
     return None if found is None else Bounds(found.lower - SLACK, found.upper + SLACK)
 
 
-def _may_find_none(_operands: Sequence[Any], payload: Any) -> bool:
+def _may_find_none(_operands: Sequence[object], payload: Any) -> bool:
     return bool(payload.may_find_none)
 
 

@@ -97,7 +97,7 @@ def meshed(region: object) -> Any:
 
 
 @singledispatch
-def joint_field(first: object, members: Sequence[Any]) -> Any:  # noqa: ARG001
+def joint_field(first: object, members: Sequence[object]) -> Any:  # noqa: ARG001
     """The preferred orientation of the union of some members, of which ``first`` is one; ``None`` if none has any."""
     raise _missing("the field", first)
 

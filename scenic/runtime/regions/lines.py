@@ -78,7 +78,7 @@ class LineRegion(Region):
         first = np.clip(ways.lower * length - SLACK, 0.0, length)
         return Bounds(*self.pieces.boxes_between(first, np.clip(ways.upper * length + SLACK, 0.0, length)))
 
-    def orientation_drawn(self, point: Any, numbers: Sequence[Any]) -> Any:
+    def orientation_drawn(self, point: Any, numbers: Sequence[object]) -> Any:
         if self._follows_segments:
             return apply(_ALONG, *numbers, payload=self.pieces)
         return super().orientation_drawn(point, numbers)
@@ -144,7 +144,7 @@ _ALONG = Operation(
 )
 
 
-def _fixed_points(points: Iterable[Any], what: str) -> list[tuple[float, float, float]]:
+def _fixed_points(points: Iterable[object], what: str) -> list[tuple[float, float, float]]:
     listed = list(points)
     if is_random(listed):
         raise ScenicTypeError(f"{what} needs fixed points", span=here())

@@ -240,13 +240,13 @@ class PolygonalRegion(PlanarRegion):
 
     def __init__(
         self,
-        points: Sequence[Any] = (),
+        points: Sequence[object] = (),
         polygon: Any = None,
         z: float = 0,
         orientation: Any = None,
         *,
         name: str | None = None,
-        additionalDeps: Sequence[Any] = (),
+        additionalDeps: Sequence[object] = (),
     ) -> None:
         if is_random(points) or is_random(z):
             raise ScenicTypeError("`PolygonalRegion` needs fixed points", span=here())

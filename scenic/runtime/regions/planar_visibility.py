@@ -18,7 +18,7 @@ FULL_ANGLE = 2 * np.pi - 0.017
 """View angles from here on count as all around (section 11.2)."""
 
 
-def sees_in_plane(observer: object, target: object, occluders: Iterable[Any] = ()) -> Any:
+def sees_in_plane(observer: object, target: object, occluders: Iterable[object] = ()) -> Any:
     """Return whether the disc or sector that an observer sees meets the bounding polygon of an object, or holds a point.
 
     Where something may hide others, which in 2D mode has to be asked for, rays decide as in space.
@@ -42,7 +42,7 @@ def sees_in_plane(observer: object, target: object, occluders: Iterable[Any] = (
     return per_option(observer, lambda viewer: per_option(target, lambda thing: seen(viewer, thing)))
 
 
-def sees_in_mode(observer: object, target: object, occluders: Iterable[Any], *, mode_2d: bool) -> Any:
+def sees_in_mode(observer: object, target: object, occluders: Iterable[object], *, mode_2d: bool) -> Any:
     """Return whether an observer sees something: in the plane where the program is in 2D mode, otherwise in space."""
     return (sees_in_plane if mode_2d else sees)(observer, target, occluders)
 

@@ -33,7 +33,7 @@ class PointSetRegion(Region):
     def __init__(
         self,
         name: str | None,
-        points: Sequence[Any],
+        points: Sequence[object],
         kdTree: object = None,
         orientation: object = None,
         tolerance: float = 1e-6,

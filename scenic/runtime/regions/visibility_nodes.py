@@ -46,7 +46,7 @@ VIEW_OPERANDS: Final = TARGET
 """Number of values that describe an observer."""
 
 
-def sees(observer: Any, target: Any, occluders: Iterable[Any], *, certain: bool = False) -> Any:
+def sees(observer: Any, target: Any, occluders: Iterable[object], *, certain: bool = False) -> Any:
     """Return whether an observer sees a vector, a point or an object past others: true or false, or a random truth value.
 
     The observer and the target hide nothing, even if they are among the occluders. With ``certain``, no rays are sampled:
@@ -58,7 +58,7 @@ def sees(observer: Any, target: Any, occluders: Iterable[Any], *, certain: bool 
     )
 
 
-def _sees(observer: Any, target: Any, occluders: Sequence[Any], certain: bool) -> Any:
+def _sees(observer: Any, target: Any, occluders: Sequence[object], certain: bool) -> Any:
     if is_open(observer) or is_open(target):
         # Which of the objects it is, if any, only the draw shows.
         return call_later(sees, observer, target, occluders, certain=certain)
@@ -68,7 +68,7 @@ def _sees(observer: Any, target: Any, occluders: Sequence[Any], certain: bool) -
     return seen_if_present(target, found)
 
 
-def _at_once(observer: Any, target: Any, occluders: Sequence[Any]) -> bool | None:
+def _at_once(observer: Any, target: Any, occluders: Sequence[object]) -> bool | None:
     """Return whether it is seen, if that needs no closer look; ``None`` also where something is random."""
     camera, orientation = camera_of(observer)
     angles = observer.viewAngles if _is_turned(observer) else (2 * np.pi, np.pi)
@@ -108,7 +108,7 @@ def _in_the_way(thing: Any, start: Triple, end: Triple, radius: float) -> Placed
     return placed_of(thing) if is_near_way(start, end, position.row, reach) else False
 
 
-def _looked(observer: Any, target: Any, occluders: Sequence[Any], certain: bool) -> Any:
+def _looked(observer: Any, target: Any, occluders: Sequence[object], certain: bool) -> Any:
     operands = list(view_operands(observer))
     is_object = is_body(target)
     operands += body_operands(target) if is_object else [to_vector(target, "`can see`")]

@@ -43,7 +43,7 @@ class NoLiteralError(Exception):
 
 
 def program_of(
-    objects: tuple[Any, ...], ego: object, params: Mapping[str, Any], names: Mapping[Any, str]
+    objects: tuple[Any, ...], ego: object, params: Mapping[str, object], names: Mapping[Any, str]
 ) -> str:
     """The text of a program whose only scene has these objects and parameters.
 

@@ -264,12 +264,12 @@ def polygonUnion(
     return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
 
 
-def argsToString(args: Sequence[Any], kwargs: Mapping[str, Any] = MappingProxyType({})) -> str:
+def argsToString(args: Sequence[object], kwargs: Mapping[str, object] = MappingProxyType({})) -> str:
     """The arguments of a call as text."""
     return ", ".join([*map(repr, args), *(f"{name}={value!r}" for name, value in kwargs.items())])
 
 
-def batched(iterable: Iterable[Any], n: int) -> Iterator[tuple[Any, ...]]:
+def batched(iterable: Iterable[object], n: int) -> Iterator[tuple[Any, ...]]:
     """Tuples of ``n`` successive items; the last may be shorter."""
     items = iter(iterable)
     while part := tuple(itertools.islice(items, n)):
@@ -302,7 +302,7 @@ def plotPolygon(polygon: object, plt: Any, style: str = "r-", **options: Any) ->
 
 
 def makeDelayedFunctionCall(
-    func: Callable[..., Any], args: Sequence[Any], kwargs: Mapping[str, Any] = MappingProxyType({})
+    func: Callable[..., Any], args: Sequence[object], kwargs: Mapping[str, object] = MappingProxyType({})
 ) -> Any:
     """A call that is made when the object that its arguments depend on is being specified."""
     return defer(func, *args, **kwargs)

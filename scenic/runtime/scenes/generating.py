@@ -76,7 +76,7 @@ class Generating(Restoring, ABC):
         raise TypeError(_BY_HAND)
 
     def _compiled_again(
-        self, params: Mapping[str, Any], settle: tuple[float, float, bool] | None = None
+        self, params: Mapping[str, object], settle: tuple[float, float, bool] | None = None
     ) -> Any:
         """The scenario of the same program with other values of parameters, or with settled objects."""
         raise TypeError(_BY_HAND)

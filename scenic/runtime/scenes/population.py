@@ -34,7 +34,7 @@ class Populations:
 
     """
 
-    def __init__(self, objects: Sequence[Object], others: Iterable[Any], names: Globals) -> None:
+    def __init__(self, objects: Sequence[Object], others: Iterable[object], names: Globals) -> None:
         self.objects = tuple(objects)
         self.names = names
         self.optional = tuple(

@@ -129,7 +129,7 @@ def fixed_draws(numbers: Mapping[int, float], words: Mapping[int, int], rest: So
     return Points(rows(numbers, np.float64), rest, rows(words, np.uint64))
 
 
-def program_digest(text: str, options: Mapping[str, Any]) -> str:
+def program_digest(text: str, options: Mapping[str, object]) -> str:
     """The digest of a program in its saved scenes: of the text and of how it was compiled."""
     digest = hashlib.sha256(text.encode("utf-8", "surrogatepass"))
     digest.update(repr(sorted(options.items())).encode("utf-8", "surrogatepass"))

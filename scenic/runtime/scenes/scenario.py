@@ -98,7 +98,7 @@ class Scenario(Generating):
         regions: Mapping[str, Region],
         sampler: Sampler,
         digest: Callable[[], str] = str,
-        options: Mapping[str, Any] = MappingProxyType({}),
+        options: Mapping[str, object] = MappingProxyType({}),
     ) -> None:
         self.filename = filename
         self.text = text
@@ -580,7 +580,7 @@ class Scenario(Generating):
     def conditionOn(
         self,
         scene: Scene | None = None,
-        objects: Sequence[Any] = (),
+        objects: Sequence[object] = (),
         params: Mapping[str, Any] | Sequence[str] = (),
     ) -> None:
         """Fix the values of objects and parameters in all later scenes; the others vary as before.
@@ -622,7 +622,7 @@ class Scenario(Generating):
         self._foreseen = Foreseen(self._foresee)
         vars(self).pop("recipe_bytes", None)
 
-    def _take_parameters(self, given: Mapping[str, Any]) -> None:
+    def _take_parameters(self, given: Mapping[str, object]) -> None:
         """Go on as the same program with other values of parameters, under the conditions so far."""
         other = self._compiled_again(given)
         other._sampler = self._sampler.on(other._sampler)

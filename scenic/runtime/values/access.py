@@ -159,7 +159,7 @@ def attribute(value: RandomBase, name: str) -> Any:
     return call_later(getattr, value, name) if holds_instances(node) else apply(_GETATTR, value, name)
 
 
-def called(value: RandomBase, args: Sequence[Any], kwargs: dict[str, Any]) -> Any:
+def called(value: RandomBase, args: Sequence[object], kwargs: dict[str, Any]) -> Any:
     """The result of calling a random value. A choice among functions calls each with the arguments."""
     node = value.node
     if node.operation is TABLE["select"]:
@@ -183,7 +183,9 @@ def called(value: RandomBase, args: Sequence[Any], kwargs: dict[str, Any]) -> An
     return call_later(value, *args, **kwargs)
 
 
-def _shared(index: Node, options: Sequence[Node], args: Sequence[Any], kwargs: dict[str, Any]) -> Node | None:
+def _shared(
+    index: Node, options: Sequence[Node], args: Sequence[object], kwargs: dict[str, Any]
+) -> Node | None:
     """The call of all options at once where their method can be evaluated in many lanes; ``None`` for other options.
 
     What depends on the option alone is a table of results instead, unless that would take long to make.
@@ -197,7 +199,7 @@ def _shared(index: Node, options: Sequence[Node], args: Sequence[Any], kwargs: d
     return node_over_lanes(index, options, args, kwargs)
 
 
-def _is_called_once(options: Sequence[Node], args: Sequence[Any], kwargs: dict[str, Any]) -> bool:
+def _is_called_once(options: Sequence[Node], args: Sequence[object], kwargs: dict[str, Any]) -> bool:
     """Return whether a sample calls the option that it draws alone: a method of objects that never change, of no random argument.
 
     Other functions have a call for each option, with a source of randomness of its own.
@@ -233,7 +235,7 @@ def _is_of_runtime(function: object) -> bool:
     return module.startswith("scenic.runtime.")
 
 
-def _traced(function: Any, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
+def _traced(function: Any, args: Sequence[object], kwargs: dict[str, Any]) -> Node:
     """The result of a call; an error of it counts only where this option is drawn, and with the arguments of that sample."""
     try:
         return as_node(function(*args, **kwargs))
@@ -243,7 +245,7 @@ def _traced(function: Any, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
         return construction.make_node(MISSING, (), error, here())
 
 
-def _call_in_lanes(function: Node, args: Sequence[Any], kwargs: dict[str, Any]) -> Node:
+def _call_in_lanes(function: Node, args: Sequence[object], kwargs: dict[str, Any]) -> Node:
     operands = [function, *(as_node(item) for item in (*args, *kwargs.values()))]
     names, positional = tuple(kwargs), len(args)
 

@@ -56,7 +56,7 @@ def apply(operation: Operation, *operands: Any, payload: object = None) -> Any:
     return as_value(construction.make_node(operation, nodes, payload, here()))
 
 
-def _is_of_code(operation: Operation, operands: Sequence[Any]) -> bool:
+def _is_of_code(operation: Operation, operands: Sequence[object]) -> bool:
     """Return whether classes of the program define what Python's function gives for an operand: of samples it has to be asked."""
     # Python's operators and functions have the names of the methods that they call: `operator.add`, `len`.
     name = operation.python.__name__.strip("_")  # type: ignore[union-attr] # it has one

@@ -181,7 +181,7 @@ def Discrete(options: Mapping[Any, Any] | Iterable[Any]) -> Any:
 Options = Discrete
 
 
-def choose_among(options: Sequence[Any], weights: Sequence[float], name: str, index: Any = None) -> Any:
+def choose_among(options: Sequence[object], weights: Sequence[float], name: str, index: Any = None) -> Any:
     if is_lazy(tuple(options)):
         return defer(choose_among, tuple(options), weights, name, index)
     possible = [(option, weight) for option, weight in zip(options, weights, strict=True) if weight > 0]

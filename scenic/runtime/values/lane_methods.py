@@ -133,7 +133,7 @@ def over_lanes(
     return decorate
 
 
-def are_open(args: Iterable[Any], keywords: Mapping[str, Any]) -> bool:
+def are_open(args: Iterable[object], keywords: Mapping[str, object]) -> bool:
     """Return whether some arguments are random or lazy, or instances with such a position."""
     return any(
         isinstance(value, Lazy | RandomBase)
@@ -144,7 +144,7 @@ def are_open(args: Iterable[Any], keywords: Mapping[str, Any]) -> bool:
 
 
 def node_over_lanes(
-    index: Node, functions: Sequence[Node], args: Sequence[Any], keywords: Mapping[str, Any]
+    index: Node, functions: Sequence[Node], args: Sequence[object], keywords: Mapping[str, object]
 ) -> Node | None:
     """The call of a choice among bound methods with such a declaration, as one node; ``None`` for other functions.
 
@@ -174,7 +174,11 @@ def node_over_lanes(
 
 
 def _node(
-    declared: _Declared, index: Node, owners: Sequence[Any], args: Sequence[Any], keywords: Mapping[str, Any]
+    declared: _Declared,
+    index: Node,
+    owners: Sequence[object],
+    args: Sequence[object],
+    keywords: Mapping[str, object],
 ) -> Node | Lazy | None:
     converted = declared.operands(*args, **keywords)
     if converted is None:

@@ -183,7 +183,7 @@ def assemble(thing: Any, part: type[Any]) -> None:
 
 
 def _pose(
-    thing: Any, values: Mapping[str, Any], chain: tuple[Segment, ...], point: Floats, origin: Floats
+    thing: Any, values: Mapping[str, object], chain: tuple[Segment, ...], point: Floats, origin: Floats
 ) -> tuple[Any, Any]:
     """The place of a point of a frame, and the frame's orientation, in the world."""
     frame = _Frame(chain, point, origin)

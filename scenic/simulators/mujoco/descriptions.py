@@ -81,7 +81,7 @@ class Description:
         """The chain to a frame; raises `DescriptionError` if there is none of the name."""
         return self._known(self.frames, name, "frame")  # type: ignore[no-any-return] # the mapping is of chains
 
-    def _known(self, table: Mapping[str, Any], name: str, kind: str) -> Any:
+    def _known(self, table: Mapping[str, object], name: str, kind: str) -> Any:
         if name in table:
             return table[name]
         meant = nearest(str(name), table)

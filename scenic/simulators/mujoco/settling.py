@@ -88,14 +88,14 @@ class Settling:
         self.angle = angle
         self.tally = Tally()
 
-    def stays(self, things: Sequence[Any]) -> bool:
+    def stays(self, things: Sequence[object]) -> bool:
         """Return whether none of the objects of a scene moves."""
         world = _World(things)
         before = world.poses()
         world.run(self.seconds)
         return self._compared(before, world.poses())
 
-    def settled(self, things: Sequence[Any]) -> tuple[Any, ...]:
+    def settled(self, things: Sequence[object]) -> tuple[Any, ...]:
         """The poses in which objects come to rest, and whether they do.
 
         Returns:
@@ -187,7 +187,7 @@ _Pose = tuple[Floats, Floats]
 class _World:
     """Objects of a scene in MuJoCo, above a ground just below their lowest point: what stands on nothing falls on it."""
 
-    def __init__(self, things: Sequence[Any]) -> None:
+    def __init__(self, things: Sequence[object]) -> None:
         builder = Builder(_STEP, GRAVITY)
         present = [thing for thing in things if getattr(thing, "present", True)]
         parts = [builder.add(thing) for thing in present]

@@ -1,7 +1,7 @@
 """The polygon, among many, that holds a point: by a grid of bins over their boxes."""
 
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -24,7 +24,7 @@ class CellIndex:
 
     """
 
-    def __init__(self, polygons: Sequence[Any]) -> None:
+    def __init__(self, polygons: Sequence[object]) -> None:
         import shapely
 
         self._polygons = np.array(polygons, dtype=object)

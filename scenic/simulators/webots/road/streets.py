@@ -128,7 +128,7 @@ def _way(world: WorldFile, node: WorldNode) -> Array:
     return node.points("wayPoints", ())
 
 
-def _street(world: WorldFile, node: WorldNode, crossroads: Sequence[Any], keeps_left: bool) -> Street:
+def _street(world: WorldFile, node: WorldNode, crossroads: Sequence[object], keeps_left: bool) -> Street:
     from shapely.geometry import Polygon
 
     name = str(node.fields.get("id", node.fields.get("name", node.name or "")))
