@@ -1,6 +1,6 @@
 """Finds out what a scenario is like to sample."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -48,14 +48,7 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
         tries = max(1, candidates // _SHOWN)
         scenes = scenario.stream(_SHOWN, seed=seed, approximate=_SHOWN, max_attempts=tries)
     found = [scene for scene in scenes if isinstance(scene, Scene)]
-    places = []
-    instances, draws = scenario.instance_names, scenario.draw_names
-    for number, item in enumerate(scenario.objects):
-        lower, upper = places_of(as_node(item.position), graph, domain)
-        seen = [list(scene.cast[number].position) for scene in found]
-        places.append(
-            Whereabouts(instances[id(item)], lower, upper, np.array(seen, dtype=np.float64).reshape(-1, 3))
-        )
+    draws = scenario.draw_names
     values = tuple(
         ValueRow(
             _text(scenario.text, row),
@@ -68,13 +61,22 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
     return Assessment(
         scenario.filename,
         values,
-        tuple(places),
+        tuple(_whereabouts(scenario, found)),
         domain.volume,
         estimates,
         tuple(impossible),
         found[0].approximation if found else None,
         () if impossible else findings(decision_of(scenario.outline), scenario.outline.checks),
     )
+
+
+def _whereabouts(scenario: Scenario, scenes: Sequence[Scene]) -> Iterator[Whereabouts]:
+    """Yield the bounds of the position of each object, and its positions in some scenes."""
+    graph, domain, names = scenario.outline.graph, scenario.domain, scenario.instance_names
+    for number, item in enumerate(scenario.objects):
+        lower, upper = places_of(as_node(item.position), graph, domain)
+        seen = [list(scene.cast[number].position) for scene in scenes]
+        yield Whereabouts(names[id(item)], lower, upper, np.array(seen, dtype=np.float64).reshape(-1, 3))
 
 
 def _text(program: str, row: DrawnSupport) -> str:

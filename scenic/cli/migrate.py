@@ -71,24 +71,26 @@ def migrate(
     files += convert_files(names, _roots(paths), flat=flat)
     problems += [file.problem for file in files if file.problem is not None]
     if diff:
-        for file in files:
-            sys.stdout.write(_patch(file))
+        sys.stdout.write("".join(map(_patch, files)))
     written = 0
     if writing:
-        for file in files:
-            if file.changes and file.problem is None and file.name != "<stdin>":
-                refusal = write_file(file)
-                written += refusal is None
-                problems += [] if refusal is None else [refusal]
+        written, refusals = _write(files)
+        problems += refusals
     if as_json:
-        json.dump(_report(files, problems), sys.stdout, indent=2)
-        sys.stdout.write("\n")
+        sys.stdout.write(json.dumps(_report(files, problems), indent=2) + "\n")
     else:
         sys.stderr.write("".join(_decisions(files)))
         show_diagnostics(problems)
         sys.stderr.write("".join(_summary(files, written if writing else None)))
     changes = any(file.changes for file in files)
     return exit_code(problems) or (FINDINGS if changes and check else 0)
+
+
+def _write(files: Sequence[File]) -> tuple[int, list[Diagnostic]]:
+    """Write the files that change; return how many were written, and why others could not be."""
+    changed = [file for file in files if file.changes and file.problem is None and file.name != "<stdin>"]
+    refusals = [refusal for refusal in map(write_file, changed) if refusal is not None]
+    return len(changed) - len(refusals), refusals
 
 
 def _roots(paths: Sequence[str]) -> list[str]:

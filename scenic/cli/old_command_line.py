@@ -95,17 +95,16 @@ def translated(arguments: Sequence[str], commands: Sequence[str]) -> list[str] |
             return None
         else:
             files.append(item)
-    if len(files) != 1:
+    if len(files) != 1 or (simulate and "simulate" not in commands):
         return None
     if command != "sample":
         return [command, *files]
     if simulate:
-        if "simulate" not in commands:
-            return None
-        options = [item for item in options if item != "--no-prune"]  # simulations know no such option
-        return ["simulate", *files, *options, *more, *(() if steps is None else ("--time", steps))]
-    options = [item for item in options if item != "--show-records"]  # scenes have none
-    return ["sample", *files, *options, *more]
+        command, unknown = "simulate", "--no-prune"
+        more += () if steps is None else ("--time", steps)
+    else:
+        unknown = "--show-records"  # scenes have none
+    return [command, *files, *(item for item in options if item != unknown), *more]
 
 
 def _whole(value: str) -> str:

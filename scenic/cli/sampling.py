@@ -169,10 +169,7 @@ def sample_into_sinks(
         if folder is not None:
             _write_folder(batch, folder, form, part_size)
         elif "table" in names:
-            from scenic.batch.datasets import Run, write_table
-
-            run = Run(batch.engine, deadline, batch.advance)
-            batch.missing.extend(write_table(scenario, place, batch.manifest("parquet", 65536), run).missing)
+            _write_table(batch, place)
         elif not names.keys() & {"output", "lines"}:
             _give(batch, done, takers)
         elif to_terminal:
@@ -180,6 +177,13 @@ def sample_into_sinks(
         else:
             _write_lines(batch, done, lines, put, takers)
     return batch.missing, batch.lost
+
+
+def _write_table(batch: _Batch, target: Path) -> None:
+    from scenic.batch.datasets import Run, write_table
+
+    run = Run(batch.engine, batch.deadline, batch.advance)
+    batch.missing.extend(write_table(batch.scenario, target, batch.manifest("parquet", 65536), run).missing)
 
 
 def _lock_files(stack: ExitStack, request: SampleRequest, output: Path | None) -> None:

@@ -3,7 +3,7 @@
 import sys
 import threading
 import webbrowser
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from itertools import chain, islice
 from pathlib import Path
@@ -98,7 +98,12 @@ def view(
     title = "scenes" if file == _STANDARD_INPUT else source.name
     # One scene has the very name, of several each has its number.
     chosen = [_sink(Path(name), title, len(head), image_size, outlook) for name in outputs]
+    _deliver(file, chain(head, scenes), chosen)
+    return CLEAN
 
+
+def _deliver(file: str, scenes: Iterable[ReadScene], chosen: Sequence[sinks.Sink]) -> None:
+    """Hand scenes of a file to sinks; boxes stand for forms that are missing."""
     # These bring in NumPy and the geometry libraries.
     from scenic.formats.revival import Revival
 
@@ -106,7 +111,7 @@ def view(
     numbers: dict[int, int] = {}
     with ExitStack() as stack:
         takers = [stack.enter_context(sink) for sink in chosen]
-        for read in chain(head, scenes):
+        for read in scenes:
             if numbers.setdefault(read.k, read.seed) != read.seed:
                 raise SceneFileError(
                     f"'{file}' holds several scenes of number {read.k}, of seeds {numbers[read.k]} and {read.seed}",
@@ -117,7 +122,6 @@ def view(
                 take(scene)
     for reason in dict.fromkeys(revival.substituted.values()):
         sys.stderr.write(f"warning: {reason}: boxes stand for what has this form\n")
-    return CLEAN
 
 
 def _watch(program: Path, count: int, seed: int, no_browser: bool) -> int:

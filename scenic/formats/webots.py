@@ -105,26 +105,29 @@ def webots_world(
     for instance, label in zip(instances, _labels(instances), strict=True):
         thing: Any = instance.thing
         name = names[id(thing)]
-        if program is not None and getattr(thing, "webotsAdhoc", None) is not None:
-            continue
-        if world is not None and name in world.names:
+        made_later = program is not None and getattr(thing, "webotsAdhoc", None) is not None
+        if made_later or (world is not None and name in world.names):
             continue
         proto = getattr(thing, "webotsProto", None)
         if proto is not None:
-            address = _ADDRESSES.get(str(proto), str(proto))
-            address = address if address.endswith(".proto") else f"../protos/{proto}.proto"
+            address = _address(str(proto))
             if address not in protos:
                 protos.append(address)
             nodes.append(_robot(thing, PurePosixPath(address).stem, name, label, frame))
             continue
         nodes.append(solid(thing, stem, files, name, label, instance.color, frame=frame))
-    externals = "".join(f"EXTERNPROTO {_text(address)}\n" for address in protos)
     supervisor = "" if program is None else _supervisor(scene, Path(program).absolute(), params, files)
     if world is not None:
         return World(_extended(world, protos, "".join(nodes) + supervisor), files)
+    externals = "".join(f"EXTERNPROTO {_text(address)}\n" for address in protos)
     return World(
         f"{_HEADER}\n{externals}\n{_surroundings(scene, instances)}{''.join(nodes)}{supervisor}", files
     )
+
+
+def _address(proto: str) -> str:
+    address = _ADDRESSES.get(proto, proto)
+    return address if address.endswith(".proto") else f"../protos/{proto}.proto"
 
 
 def _extended(world: WorldFile, protos: Sequence[str], nodes: str) -> str:

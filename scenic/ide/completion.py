@@ -245,8 +245,22 @@ def _find(
     places = _places(snapshot, line)
     if not before and Place.CLASS in places:
         yield from _inherited(project, snapshot, line, column)
+    yield from _continued(project, module, snapshot, (line, column), before, found)
+
+
+def _continued(
+    project: Project,
+    module: Module,
+    snapshot: Snapshot,
+    at: tuple[int, int],
+    before: tuple[str, ...],
+    found: Continuations,
+) -> Iterator[Completion]:
+    """What the grammar lets follow, in the order of its rules."""
+    line, column = at
+    places = _places(snapshot, line)
     begun: set[str] = set()
-    run = last in _RUNNING or (last == "," and first == "do")
+    run = bool(before) and (before[-1] in _RUNNING or (before[-1] == "," and before[0] == "do"))
     for item in found.items:
         if run and item.kind is PhraseKind.OPERATOR:
             continue

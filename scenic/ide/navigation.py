@@ -278,12 +278,7 @@ def rename(
     prepared = prepare_rename(project, snapshot, line, column)
     if prepared is None:
         raise RenameError("there is no name here")
-    if not name.isidentifier():
-        raise RenameError(f"`{name}` is not a name")
-    if keyword.iskeyword(name) or name in HARD_KEYWORDS:
-        raise RenameError(f"`{name}` is a keyword")
-    if name in RESERVED:
-        raise RenameError(f"`{name}` belongs to the language")
+    _refuse_word(name)
     module, found = _occurrence(project, snapshot, line, column)
     assert module is not None
     assert found is not None
@@ -323,6 +318,16 @@ def rename(
 
 
 # Helpers
+
+
+def _refuse_word(name: str) -> None:
+    """Raise `RenameError` if a text is no name that a program may bind."""
+    if not name.isidentifier():
+        raise RenameError(f"`{name}` is not a name")
+    if keyword.iskeyword(name) or name in HARD_KEYWORDS:
+        raise RenameError(f"`{name}` is a keyword")
+    if name in RESERVED:
+        raise RenameError(f"`{name}` belongs to the language")
 
 
 def _refuse_capture(names: Resolution, binding: Binding, name: str) -> None:

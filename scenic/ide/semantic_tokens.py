@@ -1,8 +1,9 @@
 """Categories of the words of a document, for editors to colour: by the tree and the scopes, not only the spelling."""
 
 import ast
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
+from types import MappingProxyType
 from typing import Final, NamedTuple
 
 from scenic.compiler import tree as scenic
@@ -172,6 +173,17 @@ def _imported(snapshot: Snapshot, project: Project | None) -> Callable[[str], st
     return kind_of
 
 
+_DEFINITIONS: Final[Mapping[type[ast.AST], str]] = MappingProxyType(
+    {
+        ast.ClassDef: "class",
+        scenic.BehaviorDef: "event",
+        scenic.MonitorDef: "event",
+        scenic.ScenarioDef: "macro",
+    }
+)
+"""Definitions whose kind does not depend on where they stand."""
+
+
 def _names(snapshot: Snapshot, imported: Callable[[str], str | None]) -> dict[tuple[int, int], _What]:
     """By line and column in bytes: what the names and strings there are that are more than their spelling says."""
     resolution = snapshot.resolution
@@ -198,16 +210,12 @@ def _names(snapshot: Snapshot, imported: Callable[[str], str | None]) -> dict[tu
         elif isinstance(node, ast.Call):
             if isinstance(node.func, ast.Attribute):
                 outer[node.func] = "method"
-        elif isinstance(node, ast.ClassDef):
-            put(node, "class", "definition")
+        elif type(node) in _DEFINITIONS:
+            put(node, _DEFINITIONS[type(node)], "definition")
         elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             scope = resolution.scopes.get(node)
             in_class = scope is not None and scope.parent is not None and scope.parent.kind is ScopeKind.CLASS
             put(node, "method" if in_class else "function", "definition")
-        elif isinstance(node, scenic.BehaviorDef | scenic.MonitorDef):
-            put(node, "event", "definition")
-        elif isinstance(node, scenic.ScenarioDef):
-            put(node, "macro", "definition")
         elif isinstance(node, ast.arg):
             found[node.lineno, node.col_offset] = ("parameter", frozenset({"declaration"}))
         elif isinstance(node, ast.keyword) and node.arg is not None:

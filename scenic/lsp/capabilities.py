@@ -33,20 +33,7 @@ WATCHED: Final = ("**/*.scenic", "**/*.sc", "**/*.py", "**/pyproject.toml")
 
 def options_for(client: types.ClientCapabilities) -> Mapping[str, Any]:
     """By method: the options with which it is offered to a client."""
-    files = types.FileOperationRegistrationOptions(
-        [
-            types.FileOperationFilter(
-                types.FileOperationPattern(
-                    "**/*.{scenic,sc,py}", matches=types.FileOperationPatternKind.File
-                ),
-                scheme="file",
-            ),
-            types.FileOperationFilter(
-                types.FileOperationPattern("**", matches=types.FileOperationPatternKind.Folder),
-                scheme="file",
-            ),
-        ]
-    )
+    files = _modules_and_folders()
     found: dict[str, Any] = {
         types.TEXT_DOCUMENT_DID_SAVE: types.SaveOptions(include_text=False),
         types.TEXT_DOCUMENT_COMPLETION: types.CompletionOptions(
@@ -85,6 +72,18 @@ def options_for(client: types.ClientCapabilities) -> Mapping[str, Any]:
             ranges_support=True
         )
     return found
+
+
+def _modules_and_folders() -> types.FileOperationRegistrationOptions:
+    """The files and folders whose creation, renaming and deletion matter."""
+    kinds = types.FileOperationPatternKind
+    patterns = (
+        types.FileOperationPattern("**/*.{scenic,sc,py}", matches=kinds.File),
+        types.FileOperationPattern("**", matches=kinds.Folder),
+    )
+    return types.FileOperationRegistrationOptions(
+        [types.FileOperationFilter(pattern, scheme="file") for pattern in patterns]
+    )
 
 
 def registrations(client: types.ClientCapabilities) -> list[types.Registration]:

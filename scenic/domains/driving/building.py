@@ -325,6 +325,27 @@ class _RoadBuilder:
         sections: list[dict[int, LaneSection]],
     ) -> None:
         """Join lane sections to lanes by their links, and give each its successor within the road."""
+        begun, merging = self._chains(sections)
+        # Of the lanes that begin in one section the rightmost, as seen along the road, comes first, whatever their order in the file.
+        lanes = [
+            self._lane(road, number, chain)
+            for number, (*_, chain) in enumerate(sorted(begun, key=lambda each: each[:2]))
+        ]
+        for section, after in merging:
+            # In the direction of the road the lane ends there; against it, traffic begins there.
+            if section.isForward:
+                section._successor = after
+                section.lane._successor = after.lane
+            else:
+                section._predecessor = after
+                section.lane._predecessor = after.lane
+        road.lanes = tuple(lanes)
+        built.lanes_by_section = [{key: part.lane for key, part in row.items()} for row in sections]
+
+    def _chains(
+        self, sections: list[dict[int, LaneSection]]
+    ) -> tuple[list[tuple[int, int, list[LaneSection]]], list[tuple[LaneSection, LaneSection]]]:
+        """The sections of each lane, with where it begins; and pairs of which the first leads into a lane that has begun."""
         lane_of: dict[int, list[LaneSection]] = {}
         begun: list[tuple[int, int, list[LaneSection]]] = []
         taken: set[int] = set()
@@ -348,42 +369,32 @@ class _RoadBuilder:
                 taken.add(id_of(after))
                 chain.append(after)
                 lane_of[id_of(after)] = chain
-        lanes = []
-        # Of the lanes that begin in one section the rightmost, as seen along the road, comes first, whatever their order in the file.
-        for number, (*_, chain) in enumerate(sorted(begun, key=lambda each: each[:2])):
-            forward = chain[0].isForward
-            parts = chain if forward else chain[::-1]
-            lane: Lane = self._register(
-                Lane,
-                f"{self._uid}_lane{number}",
-                union_of(part.polygon for part in chain),
-                speed=lowest(ranges := ranges_of(parts)),
-                vehicles=frozenset().union(*(part.vehicleTypes for part in chain)),
-                tags=frozenset().union(*(part.tags for part in chain)),
-            )
-            lane.road = road
-            lane.speedLimitRanges = ranges
-            lane.sections = tuple(parts)
-            lane.place(
-                joined([part.line for part in parts]),
-                joined([part.left for part in parts]),
-                joined([part.right for part in parts]),
-            )
-            for part in parts:
-                part.lane = lane
-            for before, after in pairwise(parts):
-                before._successor, after._predecessor = after, before
-            lanes.append(lane)
-        for section, after in merging:
-            # In the direction of the road the lane ends there; against it, traffic begins there.
-            if section.isForward:
-                section._successor = after
-                section.lane._successor = after.lane
-            else:
-                section._predecessor = after
-                section.lane._predecessor = after.lane
-        road.lanes = tuple(lanes)
-        built.lanes_by_section = [{key: part.lane for key, part in row.items()} for row in sections]
+        return begun, merging
+
+    def _lane(self, road: Road, number: int, chain: list[LaneSection]) -> Lane:
+        """Make the lane of some sections, which stand in the order of the road."""
+        parts = chain if chain[0].isForward else chain[::-1]
+        lane: Lane = self._register(
+            Lane,
+            f"{self._uid}_lane{number}",
+            union_of(part.polygon for part in chain),
+            speed=lowest(ranges := ranges_of(parts)),
+            vehicles=frozenset().union(*(part.vehicleTypes for part in chain)),
+            tags=frozenset().union(*(part.tags for part in chain)),
+        )
+        lane.road = road
+        lane.speedLimitRanges = ranges
+        lane.sections = tuple(parts)
+        lane.place(
+            joined([part.line for part in parts]),
+            joined([part.left for part in parts]),
+            joined([part.right for part in parts]),
+        )
+        for part in parts:
+            part.lane = lane
+        for before, after in pairwise(parts):
+            before._successor, after._predecessor = after, before
+        return lane
 
     def _following(self, number: int, sections: list[dict[int, LaneSection]]) -> dict[int, int]:
         """For lanes of a section, by id, the lane of the next section that they lead into along the reference line."""

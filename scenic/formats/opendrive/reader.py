@@ -114,6 +114,23 @@ class _Reader:
     def map(self, root: Element, reference: str) -> MapRecords:
         header = root.first("header") or Element("header", {}, root.line)
         version = f"{header.attributes.get('revMajor', '1')}.{header.attributes.get('revMinor', '?')}"
+        roads, junctions = self._roads(root), self._junctions(root)
+        if not roads:
+            raise self._without_roads(root)
+        return MapRecords(
+            self._filename,
+            version,
+            header.attributes.get("vendor", ""),
+            reference,
+            offset(header),
+            roads,
+            junctions,
+            (*self._told(), *unknown_references(root)),
+            frozenset(self._left_out),
+        )
+
+    def _roads(self, root: Element) -> tuple[Road, ...]:
+        """The roads that can be used, without those of a number that is taken."""
         roads: dict[str, Road] = {}
         for element in root.all("road"):
             try:
@@ -133,6 +150,10 @@ class _Reader:
                 )
             else:
                 roads[road.id] = road
+        return tuple(roads.values())
+
+    def _junctions(self, root: Element) -> tuple[Junction, ...]:
+        """The junctions that can be used, without those of a number that is taken."""
         junctions: dict[str, Junction] = {}
         groups = junction_groups(root)
         for element in root.all("junction"):
@@ -149,27 +170,18 @@ class _Reader:
                 self._tell("SC624", message, junction.line, "twice")
             else:
                 junctions[junction.id] = replace(junction, groups=groups.get(junction.id, frozenset()))
-        if not roads:
-            # Whatever is wrong with the first road says more than that there is none.
-            told = [problem for problem in self._problems if problem.kind == "road"] or self._told()
-            first = next(iter(told), None)
-            line = root.line if first is None else first.line
-            raise MapError(
-                "the map has no road that can be used" + (f": {first.message}" if first else ""),
-                filename=self._filename,
-                span=Span(line, 0, line, 1),
-                help="is the file complete?" if first is None else "mend the road, or save the map again",
-            )
-        return MapRecords(
-            self._filename,
-            version,
-            header.attributes.get("vendor", ""),
-            reference,
-            offset(header),
-            tuple(roads.values()),
-            tuple(junctions.values()),
-            (*self._told(), *unknown_references(root)),
-            frozenset(self._left_out),
+        return tuple(junctions.values())
+
+    def _without_roads(self, root: Element) -> MapError:
+        # Whatever is wrong with the first road says more than that there is none.
+        problems = [problem for problem in self._problems if problem.kind == "road"] or self._told()
+        first = next(iter(problems), None)
+        line = root.line if first is None else first.line
+        return MapError(
+            "the map has no road that can be used" + (f": {first.message}" if first else ""),
+            filename=self._filename,
+            span=Span(line, 0, line, 1),
+            help="is the file complete?" if first is None else "mend the road, or save the map again",
         )
 
     def _told(self) -> list[Problem]:
@@ -323,6 +335,15 @@ class _Reader:
             if longest.length <= 0:
                 raise _Wrong("its reference line has no length", plan)
             pieces = [longest]
+        self._measure(road, pieces)
+        end = pieces[-1].s + pieces[-1].length
+        if abs(declared - end) > max(_AGREEMENT, 1e-3 * end):
+            message = f"road {road} is declared {declared:.3f} m long, its reference line is {end:.3f} m"
+            self._tell("SC621", message, plan.line, "length")
+        return tuple(pieces)
+
+    def _measure(self, road: str, pieces: list[Geometry]) -> None:
+        """Let each piece end where the next one begins, and the first one begin at 0."""
         for index, (piece, after) in enumerate(pairwise(list(pieces))):
             real = after.s - piece.s
             if abs(real - piece.length) > _AGREEMENT:
@@ -340,11 +361,6 @@ class _Reader:
                 self._tell("SC621", f"road {road} begins at s = {first:g}, not 0", pieces[0].line, "start")
             for index in range(1, len(pieces)):
                 pieces[index] = replace(pieces[index], s=pieces[index].s - first)
-        end = pieces[-1].s + pieces[-1].length
-        if abs(declared - end) > max(_AGREEMENT, 1e-3 * end):
-            message = f"road {road} is declared {declared:.3f} m long, its reference line is {end:.3f} m"
-            self._tell("SC621", message, plan.line, "length")
-        return tuple(pieces)
 
     # Lanes
 

@@ -79,6 +79,11 @@ _KEPT: Final = frozenset({"_foreseen", "_external_candidates"})
 """Attributes of a scenario that conditions do not replace."""
 
 
+def _is_drawn(region: Region, outline: Outline) -> bool:
+    """Return whether scenes depend on every draw of a region; one on which none does is not drawn, and has no value."""
+    return all(node in outline.graph.index for node in Graph(dependencies([region])).nodes if node.is_drawn)
+
+
 class Scenario(Generating):
     """A compiled program, which samples scenes and simulates them.
 
@@ -110,14 +115,7 @@ class Scenario(Generating):
         self._program = program
         self.options = options
         """The keyword arguments of `scenic.load` with which the program was compiled."""
-        # A region that nothing in the scenes depends on is not drawn, and has no value there.
-        self._regions = {
-            name: region
-            for name, region in regions.items()
-            if all(
-                node in outline.graph.index for node in Graph(dependencies([region])).nodes if node.is_drawn
-            )
-        }
+        self._regions = {name: region for name, region in regions.items() if _is_drawn(region, outline)}
         self._names = names
         self._sampler = sampler
         self._foreseen = Foreseen(self._foresee)
@@ -312,19 +310,23 @@ class Scenario(Generating):
                 raise ValueError(
                     "approximate scenes are made two or more together, without `lanes`, `source` and `time_limit`"
                 )
-            results = self._sampler.approximate(seed, first, n, lanes=approximate, max_attempts=max_attempts)
-            for result in self._scenes(results):
-                if isinstance(result, Scene):
-                    self._approximation = result.approximation
-                yield result
+            yield from self._approximated(seed, first, n, approximate, max_attempts)
             return
         tasks = zip(repeat(seed), range(first, first + n))  # one of them has no end
         deadline = None if time_limit is None else time.monotonic() + time_limit
-        yield from self._scenes(
-            self._sampler.find(
-                tasks, max_attempts=max_attempts, deadline=deadline, lanes=lanes, source=source
-            )
+        results = self._sampler.find(
+            tasks, max_attempts=max_attempts, deadline=deadline, lanes=lanes, source=source
         )
+        yield from self._scenes(results)
+
+    def _approximated(
+        self, seed: int, first: int, n: int, together: int, max_attempts: int | None
+    ) -> Iterator[Scene | Exhausted]:
+        results = self._sampler.approximate(seed, first, n, lanes=together, max_attempts=max_attempts)
+        for result in self._scenes(results):
+            if isinstance(result, Scene):
+                self._approximation = result.approximation
+            yield result
 
     def _foresee(
         self, tasks: Iterable[tuple[int, int]], max_attempts: int, more: bool
