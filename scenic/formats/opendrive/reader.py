@@ -19,6 +19,20 @@ from scenic.formats.opendrive.attributes import (
     speed,
     validity,
 )
+from scenic.formats.opendrive.parts import (
+    NUMBERS_OF_SHAPES,
+    UnusablePart,
+    contact_of,
+    crosswalk_of,
+    cubics_of,
+    geometry_of,
+    integer_of,
+    lane_of,
+    lateral_shapes_of,
+    number_of,
+    profile_of,
+    text_of,
+)
 from scenic.formats.opendrive.records import (
     Connection,
     Crosswalk,
@@ -28,17 +42,15 @@ from scenic.formats.opendrive.records import (
     Lane,
     LaneLinks,
     LaneSection,
-    LateralShape,
     Link,
     MapRecords,
     Problem,
     Road,
-    Shape,
     Signal,
     SignalReference,
     Speed,
 )
-from scenic.formats.opendrive.schema import LARGEST, faults_of
+from scenic.formats.opendrive.schema import faults_of
 from scenic.formats.opendrive.signal_references import unknown_references
 from scenic.formats.opendrive.xml_tree import Element, MapError, read_tree
 from scenic.language.spans import Span
@@ -54,22 +66,6 @@ _AGREEMENT: Final = 1e-3
 _BEHIND: Final = 0.1
 """Metres by which something may lie behind the end of its road without a word."""
 _CODES: Final = MappingProxyType({"road": "SC621", "lane": "SC622", "link": "SC623", "junction": "SC624"})
-
-
-class _Wrong(Exception):
-    """A part of the file that cannot be used, and why.
-
-    Args:
-        message: what is wrong.
-        element: the element in which it is.
-        part: the attribute or child that is concerned.
-
-    """
-
-    def __init__(self, message: str, element: Element, part: str = "") -> None:
-        super().__init__(message)
-        self.line = element.line
-        self.about = (element, part)
 
 
 class _NoLanes(Exception):
@@ -138,7 +134,7 @@ class _Reader:
             except _NoLanes:
                 self._left_out.add(f"road {element.attributes['id']}")
                 continue
-            except _Wrong as wrong:
+            except UnusablePart as wrong:
                 name = element.attributes.get("id") or "?"
                 self._left_out.add(f"road {name}")
                 self._tell_of(wrong.about, "SC621", f"road {name} is left out: {wrong}", "road")
@@ -159,7 +155,7 @@ class _Reader:
         for element in root.all("junction"):
             try:
                 junction = self._junction(element)
-            except _Wrong as wrong:
+            except UnusablePart as wrong:
                 name = element.attributes.get("id") or "?"
                 self._left_out.add(f"junction {name}")
                 self._tell_of(wrong.about, "SC624", f"junction {name} is left out: {wrong}", "junction")
@@ -201,23 +197,23 @@ class _Reader:
     # Roads
 
     def _road(self, element: Element) -> Road:
-        name = _text(element, "id")
+        name = text_of(element, "id")
         self._lost.clear()
         plan = element.first("planView")
         if plan is None:
             self._faults.pop((element, "lanes"), None)
-            raise _Wrong("it has no planView", element, "planView")
+            raise UnusablePart("it has no planView", element, "planView")
         # Without a usable length only the reference line counts.
-        declared = math.nan if (element, "length") in self._faults else _number(element, "length")
+        declared = math.nan if (element, "length") in self._faults else number_of(element, "length")
         geometry = self._plan(name, plan, declared)
         ends = geometry[-1].s + geometry[-1].length
         lanes = element.first("lanes")
         if lanes is None:
-            raise _Wrong("it has no lanes", element, "lanes")
+            raise UnusablePart("it has no lanes", element, "lanes")
         self._within(name, element.all("type"), ends)
         type_ = element.first("type")
         speeds = tuple(
-            Speed(_number(item, "s", 0.0), speed(item.first("speed"))) for item in element.all("type")
+            Speed(number_of(item, "s", 0.0), speed(item.first("speed"))) for item in element.all("type")
         )
         junction = element.attributes.get("junction", "-1")
         return Road(
@@ -231,11 +227,11 @@ class _Reader:
             self._link(element, "predecessor"),
             self._link(element, "successor"),
             geometry,
-            _profile(element.first("elevationProfile"), "elevation"),
-            _profile(element.first("lateralProfile"), "superelevation"),
+            profile_of(element.first("elevationProfile"), "elevation"),
+            profile_of(element.first("lateralProfile"), "superelevation"),
             self._crossfall(element.first("lateralProfile")),
-            _lateral_shapes(element.first("lateralProfile")),
-            tuple(_cubics(lanes, "laneOffset", "s")),
+            lateral_shapes_of(element.first("lateralProfile")),
+            tuple(cubics_of(lanes, "laneOffset", "s")),
             self._sections(name, lanes, ends),
             tuple(self._signals(name, element.first("signals"), ends)),
             tuple(self._crosswalks(element.first("objects"))),
@@ -249,7 +245,7 @@ class _Reader:
             return (), ()
         left, right = (
             tuple(
-                _cubics(
+                cubics_of(
                     Element(
                         "",
                         {},
@@ -300,15 +296,15 @@ class _Reader:
         if element == "road" and contact not in ("start", "end"):
             message = f"the {which} of road {name} has no 'contactPoint': the links of the other road decide"
             self._tell_of((end, "contactPoint"), "SC623", message, "contact")
-        return Link(element, end.attributes["elementId"], _contact(contact), end.line)
+        return Link(element, end.attributes["elementId"], contact_of(contact), end.line)
 
     def _plan(self, road: str, plan: Element, declared: float) -> tuple[Geometry, ...]:
         pieces: list[Geometry] = []
         short: list[Geometry] = []
         elements = list(plan.all("geometry"))
         for element, following in zip_longest(elements, elements[1:]):
-            piece = _geometry(element)
-            shapes = [part for part in element.children if part.tag in _NUMBERS]
+            piece = geometry_of(element)
+            shapes = [part for part in element.children if part.tag in NUMBERS_OF_SHAPES]
             if len(shapes) > 1:
                 message = f"a piece of road {road} has {len(shapes)} shapes: the first counts"
                 self._tell("SC621", message, shapes[1].line, "repeated")
@@ -317,7 +313,7 @@ class _Reader:
                 and piece.length > 0
                 and abs(piece.numbers[1] - piece.numbers[0]) / piece.length > _SHARPEST
             )
-            if following is not None and _number(following, "s") - piece.s > _AGREEMENT > piece.length:
+            if following is not None and number_of(following, "s") - piece.s > _AGREEMENT > piece.length:
                 self._faults.pop((element, "length"), None)  # the next piece says how long it is
             elif piece.length < _SHORTEST or is_sharp:
                 what = "bends too sharply" if is_sharp else "has no length"
@@ -326,14 +322,14 @@ class _Reader:
                 short.append(piece)
                 continue
             if pieces and piece.s <= pieces[-1].s:
-                raise _Wrong("the pieces of its reference line are out of order", element, "s")
+                raise UnusablePart("the pieces of its reference line are out of order", element, "s")
             pieces.append(piece)
         if not pieces:
             if not short:
-                raise _Wrong("its planView has no geometry", plan, "geometry")
+                raise UnusablePart("its planView has no geometry", plan, "geometry")
             longest = max(short, key=lambda piece: piece.length)
             if longest.length <= 0:
-                raise _Wrong("its reference line has no length", plan)
+                raise UnusablePart("its reference line has no length", plan)
             pieces = [longest]
         self._measure(road, pieces)
         end = pieces[-1].s + pieces[-1].length
@@ -367,7 +363,7 @@ class _Reader:
     def _sections(self, road: str, lanes: Element, end: float) -> tuple[LaneSection, ...]:
         sections: list[LaneSection] = []
         for element in lanes.all("laneSection"):
-            start = _number(element, "s", 0.0)
+            start = number_of(element, "s", 0.0)
             if not sections and abs(start) > _BEHIND:
                 message = (
                     f"the first lane section of road {road} begins at s = {start:g}, not 0: it counts from 0"
@@ -403,7 +399,7 @@ class _Reader:
         if sections and not any(section.lanes or section.is_whole for section in sections):
             raise _NoLanes
         if not sections or not any(section.lanes for section in sections):
-            raise _Wrong("it has no lanes", lanes, "laneSection")
+            raise UnusablePart("it has no lanes", lanes, "laneSection")
         return tuple(sections)
 
     def _middle(self, road: str, center: Element | None) -> None:
@@ -425,8 +421,8 @@ class _Reader:
         found: dict[int, Lane] = {}
         for element in () if side is None else side.all("lane"):
             try:
-                lane = _lane(element)
-            except _Wrong as wrong:
+                lane = lane_of(element)
+            except UnusablePart as wrong:
                 self._tell_of(wrong.about, "SC622", f"a lane of road {road} is left out: {wrong}", "lane")
                 continue
             if lane.id == 0:
@@ -490,8 +486,8 @@ class _Reader:
                 )
                 continue
             try:
-                place = _number(element, "s", 0.0), _number(element, "t", 0.0)
-            except _Wrong as wrong:
+                place = number_of(element, "s", 0.0), number_of(element, "t", 0.0)
+            except UnusablePart as wrong:
                 self._tell_of(wrong.about, "SC621", f"a signal of road {road} is left out: {wrong}", "signal")
                 continue
             yield Signal(
@@ -516,8 +512,8 @@ class _Reader:
             if element.attributes.get("type") != "crosswalk":
                 continue
             try:
-                found = _crosswalk(element)
-            except _Wrong as wrong:
+                found = crosswalk_of(element)
+            except UnusablePart as wrong:
                 self._tell_of(
                     wrong.about,
                     "SC621",
@@ -530,7 +526,7 @@ class _Reader:
     # Junctions
 
     def _junction(self, element: Element) -> Junction:
-        name = _text(element, "id")
+        name = text_of(element, "id")
         kind = element.attributes.get("type", "default")
         if kind not in ("default", "direct", "virtual", "common"):
             message = f"junction {name} is of the unknown type {kind!r}"
@@ -546,8 +542,8 @@ class _Reader:
             links: list[LaneLinks] = []
             for link in item.all("laneLink"):
                 try:
-                    made = LaneLinks(_integer(link, "from"), _integer(link, "to"), link.line)
-                except _Wrong as wrong:
+                    made = LaneLinks(integer_of(link, "from"), integer_of(link, "to"), link.line)
+                except UnusablePart as wrong:
                     message = f"a lane link of junction {name} is left out: {wrong}"
                     self._tell_of(wrong.about, "SC624", message, "link")
                     continue
@@ -560,7 +556,7 @@ class _Reader:
                 message = f"a connection of junction {name} has no 'contactPoint': start counts"
                 self._tell_of((item, "contactPoint"), "SC624", message, "contact of connection")
             connecting = given.get("connectingRoad", given.get("linkedRoad", ""))
-            contact = _contact(given.get("contactPoint")) or "start"
+            contact = contact_of(given.get("contactPoint")) or "start"
             connections.append(
                 Connection(
                     given.get("id", ""),
@@ -572,131 +568,3 @@ class _Reader:
                 )
             )
         return Junction(name, element.attributes.get("name", ""), kind, tuple(connections), element.line)
-
-
-# Parts of elements
-
-
-def _text(element: Element, name: str) -> str:
-    value = element.attributes.get(name, "").strip()
-    if not value:
-        raise _Wrong(f"<{element.tag}> has no {name!r}", element, name)
-    return value
-
-
-def _number(element: Element, name: str, default: float | None = None) -> float:
-    text = element.attributes.get(name)
-    if text is None:
-        if default is None:
-            raise _Wrong(f"<{element.tag}> has no {name!r}", element, name)
-        return default
-    try:
-        value = float(text)
-    except ValueError:
-        raise _Wrong(f"{name!r} of <{element.tag}> is {text!r}, not a number", element, name) from None
-    if not math.isfinite(value) or abs(value) > LARGEST:
-        raise _Wrong(f"{name!r} of <{element.tag}> is {text}, not a finite number", element, name)
-    return value
-
-
-def _integer(element: Element, name: str) -> int:
-    value = _number(element, name)
-    if value != int(value):
-        raise _Wrong(f"{name!r} of <{element.tag}> is not an integer", element, name)
-    return int(value)
-
-
-def _contact(text: str | None) -> Literal["start", "end"] | None:
-    return "start" if text == "start" else "end" if text == "end" else None
-
-
-def _cubics(element: Element, tag: str, start: str) -> Iterator[Cubic]:
-    found = {}
-    for item in element.all(tag):
-        cubic = Cubic(_number(item, start, 0.0), *(_number(item, name, 0.0) for name in ("a", "b", "c", "d")))
-        found[cubic.start] = cubic
-    yield from (found[key] for key in sorted(found))
-
-
-def _profile(element: Element | None, tag: str) -> tuple[Cubic, ...]:
-    return () if element is None else tuple(_cubics(element, tag, "s"))
-
-
-def _lateral_shapes(profile: Element | None) -> tuple[LateralShape, ...]:
-    if profile is None:
-        return ()
-    places: dict[float, list[Element]] = {}
-    for item in profile.all("shape"):
-        places.setdefault(_number(item, "s", 0.0), []).append(item)
-    return tuple(
-        LateralShape(s, tuple(_cubics(Element("", {}, 0, places[s]), "shape", "t"))) for s in sorted(places)
-    )
-
-
-def _geometry(element: Element) -> Geometry:
-    shapes = [child for child in element.children if child.tag in _NUMBERS]
-    if not shapes:
-        raise _Wrong("a piece of its reference line has no shape", element)
-    shape = shapes[0]
-    numbers = tuple(_number(shape, name) for name in _NUMBERS[shape.tag])
-    normalized = shape.tag == "paramPoly3" and shape.attributes.get("pRange", "normalized") != "arcLength"
-    kind: Shape = shape.tag  # type: ignore[assignment] # it is one of the keys of the table
-    s, x, y, heading, length = (_number(element, name) for name in ("s", "x", "y", "hdg", "length"))
-    return Geometry(s, x, y, heading, length, kind, numbers, normalized, element.line)
-
-
-_NUMBERS: Final[dict[str, tuple[str, ...]]] = {
-    "line": (),
-    "arc": ("curvature",),
-    "spiral": ("curvStart", "curvEnd"),
-    "poly3": ("a", "b", "c", "d"),
-    "paramPoly3": ("aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV"),
-}
-
-
-def _lane(element: Element) -> Lane:
-    link = element.first("link")
-    lost = set()
-
-    def neighbour(which: str) -> int | None:
-        end = None if link is None else link.first(which)
-        if end is None:
-            return None
-        try:
-            return _integer(end, "id")
-        except _Wrong:
-            lost.add(which)
-            return None
-
-    access = frozenset(
-        f"{item.attributes.get('rule', 'allow')} {item.attributes.get('restriction', '')}"
-        for item in element.all("access")
-    )
-    speeds = tuple(Speed(_number(item, "sOffset", 0.0), speed(item)) for item in element.all("speed"))
-    return Lane(
-        _integer(element, "id"),
-        element.attributes.get("type", "none"),
-        neighbour("predecessor"),
-        neighbour("successor"),
-        tuple(_cubics(element, "width", "sOffset")),
-        tuple(_cubics(element, "border", "sOffset")),
-        tuple(sorted(speeds, key=lambda item: item.start)),
-        access,
-        element.line,
-        frozenset(lost),
-    )
-
-
-def _crosswalk(element: Element) -> Crosswalk:
-    outlines = list(element.all("outline"))
-    for several in element.all("outlines"):
-        outlines += several.all("outline")
-    for outline in outlines:
-        along = [(_number(c, "s"), _number(c, "t")) for c in outline.all("cornerRoad")]
-        local = [(_number(c, "u"), _number(c, "v")) for c in outline.all("cornerLocal")]
-        corners = along or local
-        if len(corners) >= 3:
-            s, t, heading = (_number(element, name, 0.0) for name in ("s", "t", "hdg"))
-            name = element.attributes.get("id", "")
-            return Crosswalk(name, s, t, heading, tuple(corners), bool(along), element.line)
-    raise _Wrong("it has no outline with three corners", element)
