@@ -256,7 +256,7 @@ def _continued(
     before: tuple[str, ...],
     found: Continuations,
 ) -> Iterator[Completion]:
-    """What the grammar lets follow, in the order of its rules."""
+    """Yield the completions that the grammar lets follow, in the order of its rules."""
     line, column = at
     places = _places(snapshot, line)
     begun: set[str] = set()
