@@ -58,11 +58,16 @@ def _meshes_of(shape: Column) -> tuple[tuple[Mesh, ...], Indices | None]:
     Where no shape could be drawn, the lane has a fault; a box stands in for it.
     """
     numbers: dict[Mesh, int] = {}
-    meshes = (primitives.box() if item is None else item.mesh for item in shape.ravel().tolist())
-    choice = [numbers.setdefault(mesh, len(numbers)) for mesh in meshes]
+    items = shape.ravel().tolist()
+    # Lanes share a few shapes, which are counted without a line of Python for each lane.
+    of_shape = {
+        item: numbers.setdefault(primitives.box() if item is None else item.mesh, len(numbers))
+        for item in dict.fromkeys(items)
+    }
     if len(numbers) == 1:
         return tuple(numbers), None
-    return tuple(numbers), np.array(choice, dtype=np.intp).reshape(shape.shape)
+    choice = np.fromiter(map(of_shape.__getitem__, items), dtype=np.intp, count=len(items))
+    return tuple(numbers), choice.reshape(shape.shape)
 
 
 class Stack:

@@ -9,8 +9,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from scenic.dataclass import dataclass
-from scenic.graph import quaternions
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError
@@ -19,7 +17,7 @@ from scenic.runtime.instances.objects import OrientedPoint
 from scenic.runtime.program.veneer import At, With, new
 from scenic.runtime.shapes.shapes import BoxShape, MeshShape, Shape
 from scenic.runtime.values.generic import support_of
-from scenic.runtime.values.values import apply, operate, to_scalar
+from scenic.runtime.values.values import Vector, apply, operate, to_scalar
 from scenic.simulators.mujoco.descriptions import BASE, Description, DescriptionError, Link, read_description
 from scenic.simulators.mujoco.kinematics import Floats, Segment, forward
 
@@ -38,40 +36,29 @@ _MARK: Final = 0.02
 """Size of the box that stands for a base without geoms, metres."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Frame:
-    """A frame at the end of a chain: the payload of the operations on joint values.
-
-    ``offset`` is a point in the frame, ``(3,)``, and ``origin`` the place of the base's middle in the description, ``(3,)``, metres.
-    """
-
-    chain: tuple[Segment, ...]
-    offset: Floats
-    origin: Floats
-
-    def evaluate(self, values: tuple[Column, ...]) -> tuple[Floats, Floats]:
-        """Positions ``(n, 3)`` of the point in the base object's frame, and orientations ``(n, 4)`` in it."""
-        lanes = [np.atleast_1d(value) for value in np.broadcast_arrays(*values)] if values else []
-        position, turn = forward(self.chain, lanes)
-        return position + quaternions.rotate(turn, self.offset) - self.origin, turn
+def _place(call: Call, position: Column, turn: Column, *values: Column) -> Column:
+    return forward(call.payload, _lanes(values), position, turn)[0]
 
 
-def _place(call: Call, *values: Column) -> Column:
-    return call.payload.evaluate(values)[0]  # type: ignore[no-any-return] # an array
+def _turn(call: Call, turn: Column, *values: Column) -> Column:
+    return forward(call.payload, _lanes(values), turn=turn)[1]
 
 
-def _turn(call: Call, *values: Column) -> Column:
-    return call.payload.evaluate(values)[1]  # type: ignore[no-any-return] # an array
+def _lanes(values: tuple[Column, ...]) -> list[Floats]:
+    return [np.atleast_1d(value) for value in values]
 
 
 _PLACE: Final = Operation(
-    "place in a chain", always(Kind.VECTOR), _place, "A point on a link, from the joints of its chain."
+    "place in a chain",
+    always(Kind.VECTOR),
+    _place,
+    "The middle of a link, from a frame before and the joints between.",
 )
 _TURN: Final = Operation(
     "orientation in a chain",
     always(Kind.ORIENTATION),
     _turn,
-    "The orientation of a link, from the joints of its chain.",
+    "The orientation of a link, from that of a frame before and the joints between.",
 )
 
 
@@ -154,17 +141,16 @@ def joint_values(description: Description, given: Any) -> dict[str, Any]:
 def assemble(thing: Any, part: type[Any]) -> None:
     """Make the links of an object with joints, which has just been made, as objects of the class ``part``."""
     description = description_of(thing.description)
-    values = joint_values(description, thing.joints)
+    thing.__dict__["jointValues"] = joint_values(description, thing.joints)
     thing.__dict__["description"] = str(description.path)
-    thing.__dict__["jointValues"] = values
     thing.__dict__["_assembly"] = thing
-    origin = _formed(description.links[0])[1]
+    frames = _Frames(thing, origin_of(description))
     links: dict[str, Any] = {BASE: thing}
     for link in description.links[1:]:
         if link.mesh is None:
             continue
         shape, middle = _formed(link)
-        position, orientation = _pose(thing, values, link.chain, middle, origin)
+        position, orientation = frames.point(link.chain, middle)
         made = new(
             part,
             [
@@ -182,37 +168,47 @@ def assemble(thing: Any, part: type[Any]) -> None:
     thing.__dict__["links"] = links
 
 
-def _pose(
-    thing: Any, values: Mapping[str, object], chain: tuple[Segment, ...], point: Floats, origin: Floats
-) -> tuple[Any, Any]:
-    """The place of a point of a frame, and the frame's orientation, in the world."""
-    frame = _Frame(chain, point, origin)
-    joints = [values[joint.name] for segment in chain for joint in segment.joints]
-    if joints:
-        place, turn = apply(_PLACE, *joints, payload=frame), apply(_TURN, *joints, payload=frame)
-    else:
-        place, turn = apply(_PLACE, 0.0, payload=_Still(frame)), apply(_TURN, 0.0, payload=_Still(frame))
-    position = operate("add", thing.position, operate("rotate", thing.orientation, place))
-    return position, operate("compose", thing.orientation, turn)
+class _Frames:
+    """Frames of a thing's links in the world, each computed from the nearest frame before it.
+
+    Args:
+        thing: the object.
+        origin: the place of its middle in the description, ``(3,)``, metres.
+
+    """
+
+    def __init__(self, thing: Any, origin: Floats) -> None:
+        self._values = thing.jointValues
+        start = operate("subtract", thing.position, operate("rotate", thing.orientation, _vector(origin)))
+        self._known: dict[tuple[Segment, ...], tuple[Any, Any]] = {(): (start, thing.orientation)}
+
+    def at(self, chain: tuple[Segment, ...]) -> tuple[Any, Any]:
+        """The place and the orientation of the frame at the end of a chain."""
+        if chain not in self._known:
+            known = max(end for end in range(len(chain)) if chain[:end] in self._known)
+            place, turn = self._known[chain[:known]]
+            rest = chain[known:]
+            joints = [self._values[joint.name] for segment in rest for joint in segment.joints]
+            self._known[chain] = (
+                apply(_PLACE, place, turn, *joints, payload=rest),
+                apply(_TURN, turn, *joints, payload=rest),
+            )
+        return self._known[chain]
+
+    def point(self, chain: tuple[Segment, ...], point: Floats) -> tuple[Any, Any]:
+        """The place of a point of a frame ``(3,)``, metres, and the frame's orientation."""
+        place, turn = self.at(chain)
+        return operate("add", place, operate("rotate", turn, _vector(point))) if point.any() else place, turn
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Still:
-    """A frame that no joint moves."""
-
-    frame: _Frame
-
-    def evaluate(self, _values: tuple[Column, ...]) -> tuple[Floats, Floats]:
-        """The same as of a `_Frame`."""
-        return self.frame.evaluate(())
+def _vector(point: Floats) -> Vector:
+    return Vector.of(tuple(point.tolist()))
 
 
 def frame_of(thing: Any, name: str) -> Any:
     """The frame of a body or a site of an object with joints, as an oriented point."""
     description = description_of(thing.description)
-    chain = description.frame(name)
-    origin = _formed(description.links[0])[1]
-    position, orientation = _pose(thing, thing.jointValues, chain, np.zeros(3), origin)
+    position, orientation = _Frames(thing, origin_of(description)).at(description.frame(name))
     return new(OrientedPoint, [At(position), With("parentOrientation", orientation)])
 
 

@@ -4,6 +4,7 @@ A chain is what MuJoCo makes of a description: bodies in the frames of their par
 """
 
 from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,8 @@ from scenic.graph import quaternions
 __all__ = ["Joint", "Segment", "forward"]
 
 Floats = NDArray[np.float64]
+
+_UNTURNED: Final = (0.0, 0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,31 +52,46 @@ class Segment:
     joints: tuple[Joint, ...]
 
 
-def forward(segments: Sequence[Segment], values: Sequence[Floats]) -> tuple[Floats, Floats]:
-    """The frame of the last segment of a chain in the frame that the chain begins in.
+def forward(
+    segments: Sequence[Segment],
+    values: Sequence[Floats],
+    position: Floats | None = None,
+    turn: Floats | None = None,
+) -> tuple[Floats, Floats]:
+    """The frame of the last segment of a chain.
 
     Args:
         segments: from the base outwards.
         values: of their joints in order, ``(n,)`` each, radians or metres.
+        position: of the frame that the chain begins in, ``(n, 3)`` or ``(1, 3)``, metres; zero by default.
+        turn: orientation of that frame, ``(n, 4)`` or ``(1, 4)``, ``(x, y, z, w)``; none by default.
 
     Returns:
-        Positions ``(n, 3)`` and orientations ``(n, 4)``, ``(x, y, z, w)``; one row if the chain has no joints.
+        Positions ``(n, 3)`` and orientations ``(n, 4)``; one row if all operands have one.
 
     """
-    count = len(values[0]) if values else 1
-    position, turn = np.zeros((count, 3)), np.tile([0.0, 0.0, 0.0, 1.0], (count, 1))
+    position = np.zeros((1, 3)) if position is None else position
+    turn = np.array([_UNTURNED]) if turn is None else turn
     upcoming = iter(values)
     for segment in segments:
         position = position + quaternions.rotate(turn, np.asarray(segment.position))
-        turn = quaternions.multiply(turn, np.asarray(segment.quaternion))
+        if segment.quaternion != _UNTURNED:
+            turn = quaternions.multiply(turn, np.asarray(segment.quaternion))
         for joint in segment.joints:
             change = next(upcoming) - joint.home
             axis, anchor = np.asarray(joint.axis), np.asarray(joint.anchor)
             if joint.slides:
                 position = position + quaternions.rotate(turn, axis) * change[:, None]
                 continue
+            if not anchor.any():  # on the axis, whose points the joint leaves where they are
+                turn = quaternions.multiply(turn, _hinged(axis, change))
+                continue
             fixed = position + quaternions.rotate(turn, anchor)
-            sine = np.sin(change / 2)[:, None] * axis
-            turn = quaternions.multiply(turn, np.concatenate([sine, np.cos(change / 2)[:, None]], axis=1))
+            turn = quaternions.multiply(turn, _hinged(axis, change))
             position = fixed - quaternions.rotate(turn, anchor)
     return position, turn
+
+
+def _hinged(axis: Floats, angle: Floats) -> Floats:
+    """The orientations ``(n, 4)`` of turns about an axis ``(3,)`` by angles ``(n,)``, radians."""
+    return np.concatenate([np.sin(angle / 2)[:, None] * axis, np.cos(angle / 2)[:, None]], axis=1)
