@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.formats.instances import Instance, Surface, distinct_labels, picture
-from scenic.formats.poses import Four
+from scenic.formats.poses import Four, Triple
 from scenic.formats.scenery import scenery_of
 from scenic.formats.scenes import Scene
 from scenic.formats.sensors import viewpoints
@@ -46,8 +46,15 @@ def glb(scene: Scene) -> bytes:
         key = (instance.surface, instance.color)
         if key not in meshes:
             meshes[key] = len(mesh_list)
-            material = materials.setdefault(instance.color, len(materials))
-            mesh_list.append({"primitives": [{**primitives[instance.surface], "material": material}]})
+            mesh_list.append(
+                {
+                    "primitives": [
+                        {**part, "material": materials.setdefault(color, len(materials))}
+                        for paint, part in primitives[instance.surface]
+                        for color in [instance.color if paint is None else (*paint, instance.color[3])]
+                    ]
+                }
+            )
         nodes.append(_node(instance, index, meshes[key], names[index]))
     cameras, lights = _cameras(scene, nodes), _sun(scene, nodes)
     root = {
@@ -160,24 +167,26 @@ class _Buffers:
         self.views: list[dict[str, Any]] = []
         self.accessors: list[dict[str, Any]] = []
 
-    def surface(self, surface: Surface) -> dict[str, Any]:
-        """Store a surface; returns the primitive that uses it, without a material."""
+    def surface(self, surface: Surface) -> list[tuple[Triple | None, dict[str, Any]]]:
+        """Store a surface; returns the primitives that use it, without a material, with their colours if they have their own."""
         vertices = surface.vertices.astype("<f4")
-        small = len(vertices) < 0xFFFF
-        indices = surface.faces.reshape(-1).astype("<u2" if small else "<u4")
         positions = self._add(vertices, "VEC3", _FLOAT, _ARRAY_BUFFER)
         # Limits are required of positions.
         self.accessors[positions] |= {
             "min": vertices.min(axis=0).tolist(),
             "max": vertices.max(axis=0).tolist(),
         }
-        return {
-            "attributes": {
-                "POSITION": positions,
-                "NORMAL": self._add(surface.normals.astype("<f4"), "VEC3", _FLOAT, _ARRAY_BUFFER),
-            },
-            "indices": self._add(indices, "SCALAR", _UINT16 if small else _UINT32, _ELEMENT_BUFFER),
-        }
+        normals = self._add(surface.normals.astype("<f4"), "VEC3", _FLOAT, _ARRAY_BUFFER)
+        attributes = {"POSITION": positions, "NORMAL": normals}
+        return [
+            (paint, {"attributes": attributes, "indices": self._indices(faces, len(vertices))})
+            for paint, faces in surface.painted()
+        ]
+
+    def _indices(self, faces: npt.NDArray[np.int64], count: int) -> int:
+        small = count < 0xFFFF
+        indices = faces.reshape(-1).astype("<u2" if small else "<u4")
+        return self._add(indices, "SCALAR", _UINT16 if small else _UINT32, _ELEMENT_BUFFER)
 
     def _add(self, values: npt.NDArray[Any], kind: str, component: int, target: int) -> int:
         content = values.tobytes()

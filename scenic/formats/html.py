@@ -15,6 +15,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from scenic.formats.colors import linear
 from scenic.formats.instances import Array, Gallery, Instance, Piece, Surface, places_of, resting
 from scenic.formats.json_lines import plain
 from scenic.formats.poses import euler_angles, rotation_matrix
@@ -135,14 +136,23 @@ def page(scenes: Iterable[Scene], title: str) -> str:
 
 
 def _mesh(surface: Surface) -> dict[str, str]:
-    """Corners as 32-bit floats; normals as four 16-bit integers, the last for alignment; 32-bit indices."""
+    """Corners as 32-bit floats; normals as four 16-bit integers, the last for alignment; 32-bit indices.
+
+    Colours of corners, where some have their own, are four bytes of linear light, the last 0 for those that have none.
+    """
     normals = np.zeros((len(surface.normals), 4), "<i2")
     normals[:, :3] = np.round(surface.normals * 32767)
-    return {
+    mesh = {
         "points": packed(surface.vertices.astype("<f4")),
         "normals": packed(normals),
         "indices": packed(surface.faces.astype("<u4")),
     }
+    if surface.paints is not None:
+        paints = np.zeros((len(surface.paints), 4), np.uint8)
+        own = ~np.isnan(surface.paints[:, 0])
+        paints[own, :3], paints[own, 3] = np.round(linear(surface.paints[own]) * 255), 255
+        mesh["paints"] = packed(paints)
+    return mesh
 
 
 def packed(values: npt.NDArray[Any]) -> str:

@@ -15,7 +15,9 @@ import numpy.typing as npt
 
 from scenic.dataclass import dataclass
 from scenic.formats.mesh_coordinates import coordinates_of
+from scenic.formats.painted_solids import Appearance
 from scenic.formats.poses import Four, Triple, quaternion_of, rotation_matrix
+from scenic.formats.road_users import AppearanceError, appearance_of
 from scenic.formats.scenes import Scene, SceneObject, UnitMesh
 from scenic.runtime.geometry.patches import Patch
 from scenic.runtime.regions.spaces import Workspace
@@ -53,12 +55,15 @@ CREASE = np.cos(np.radians(35))
 class Surface:
     """A mesh in the unit box with a normal for every corner; corners at sharp edges occur several times.
 
-    ``vertices`` and ``normals`` have shape ``(v, 3)``, ``faces`` ``(f, 3)``.
+    ``vertices`` and ``normals`` have shape ``(v, 3)``, ``faces`` ``(f, 3)``. ``paints``, ``(v, 3)``, are the colours in sRGB of
+    corners that do not take the object's colour, NaN for those that do; all corners of a face have the same one. ``None`` where
+    everything takes the object's colour.
     """
 
     vertices: Array
     normals: Array
     faces: npt.NDArray[np.int64]
+    paints: Array | None = None
     _known: dict[str, npt.NDArray[np.float32] | None] = field(default_factory=dict, repr=False, compare=False)
 
     def coordinates(self, source: Mapping[str, object]) -> npt.NDArray[np.float32] | None:
@@ -67,6 +72,22 @@ class Surface:
         if key not in self._known:
             self._known[key] = coordinates_of(source, self.vertices, self.faces)
         return self._known[key]
+
+    def face_paints(self) -> Array | None:
+        """The colours of faces, ``(f, 3)``, as ``paints`` has them for corners."""
+        return None if self.paints is None else self.paints[self.faces[:, 0]]
+
+    def painted(self) -> list[tuple[Triple | None, npt.NDArray[np.int64]]]:
+        """The faces ``(f, 3)`` of each colour of its own, and those of the object's colour with ``None``; none is empty."""
+        paints = self.face_paints()
+        if paints is None:
+            return [(None, self.faces)]
+        # Not a number is not equal to itself, but -1 is.
+        colors, number = np.unique(np.nan_to_num(paints, nan=-1.0), axis=0, return_inverse=True)
+        return [
+            (None if red < 0 else (red, green, blue), self.faces[number.reshape(-1) == k])
+            for k, (red, green, blue) in enumerate(colors.tolist())
+        ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,9 +156,9 @@ class Surfaces:
 
     def __init__(self) -> None:
         # The mesh is kept beside its surface: its identity stays taken while the entry lives.
-        self._known: dict[tuple[int, Triple], tuple[UnitMesh, Surface]] = {}
+        self._known: dict[tuple[int, Triple], tuple[UnitMesh | Appearance, Surface]] = {}
 
-    def of(self, mesh: UnitMesh, size: Triple) -> Surface:
+    def of(self, mesh: UnitMesh | Appearance, size: Triple) -> Surface:
         """The surface of a mesh that is used at a size."""
         found = self._known.pop((id(mesh), size), None) or (mesh, surface_of(mesh, size))
         self._known[id(mesh), size] = found
@@ -159,7 +180,7 @@ class Gallery:
         self._made = Surfaces() if surfaces is None else surfaces
         self._surfaces: list[Surface] = []
         # The mesh is kept beside its number: its identity stays taken while the table lives.
-        self._known: dict[int, tuple[UnitMesh, int]] = {}
+        self._known: dict[int, tuple[UnitMesh | Appearance, int]] = {}
         self._patches: dict[int, tuple[Patch, Piece]] = {}
         self._colors: dict[str, Triple] = {}
         for name in classes:
@@ -177,13 +198,16 @@ class Gallery:
         return tuple(self._surfaces)
 
     def add(self, scene: Scene) -> tuple[Instance, ...]:
-        """Add a scene: all objects but those with ``render`` false and those of no size."""
+        """Add a scene: all objects but those with ``render`` false and those of no size.
+
+        Raises `AppearanceError`, at the object's place where the scene knows it, for an unknown appearance.
+        """
         instances = []
         names = scene.names
         # Scenes that were read back do not know where their program was.
         folder: Path | None = getattr(scene, "folder", None)
         shades: Counter[str] = Counter()
-        for thing in scene.objects:
+        for number, thing in enumerate(scene.objects):
             class_name = type(thing).__name__
             size = (float(thing.width), float(thing.length), float(thing.height))
             if not thing.properties.get("render", True) or min(size) <= 0:
@@ -193,7 +217,7 @@ class Gallery:
             shades[class_name] += thing.color is None
             instances.append(
                 Instance(
-                    surface=self._number(thing.shape.mesh, size),
+                    surface=self._number(_appearance(scene, number) or thing.shape.mesh, size),
                     thing=thing,
                     name=names.get(thing),
                     class_name=class_name,
@@ -239,11 +263,22 @@ class Gallery:
     def _class_color(self, class_name: str) -> Triple:
         return self._colors.setdefault(class_name, PALETTE[len(self._colors) % len(PALETTE)])
 
-    def _number(self, mesh: UnitMesh, size: Triple) -> int:
+    def _number(self, mesh: UnitMesh | Appearance, size: Triple) -> int:
         if id(mesh) not in self._known:
             self._known[id(mesh)] = (mesh, len(self._surfaces))
             self._surfaces.append(self._made.of(mesh, size))
         return self._known[id(mesh)][1]
+
+
+def _appearance(scene: Scene, number: int) -> Appearance | None:
+    """The appearance of an object, with the object's place in errors."""
+    try:
+        return appearance_of(scene.objects[number])
+    except AppearanceError as error:
+        place = getattr(scene, "place", None)
+        if place is not None:
+            error.at(place(number))
+        raise
 
 
 def picture(scenes: Iterable[Scene], *, ground: bool = False) -> Picture:
@@ -260,17 +295,25 @@ def picture(scenes: Iterable[Scene], *, ground: bool = False) -> Picture:
 def resting(instances: Sequence[Instance]) -> tuple[Instance, ...]:
     """Objects of the 2D mode as they are shown on a map: no higher than cars are, and on the ground.
 
-    That mode gives objects the height of their longest side, and puts their middles on the plane.
+    That mode gives objects the height of their longest side, and puts their middles on the plane. Those with an appearance
+    are as high as what they look like, if their own height is that of the mode.
     """
     return tuple(
-        replace(instance, size=(width, length, shown), position=(x, y, z + shown / 2))
+        replace(instance, size=(*instance.size[:2], shown), position=(x, y, z + shown / 2))
         if getattr(instance.thing, "_planar", False)
         else instance
         for instance in instances
-        for width, length, height in [instance.size]
         for x, y, z in [instance.position]
-        for shown in [min(height, _LOW * min(width, length))]
+        for shown in [_shown_height(instance)]
     )
+
+
+def _shown_height(instance: Instance) -> float:
+    width, length, height = instance.size
+    appearance = appearance_of(instance.thing)
+    if appearance is None:
+        return min(height, _LOW * min(width, length))
+    return appearance.size[2] if height == max(width, length) else height
 
 
 def places_of(instances: Iterable[Instance]) -> Array:
@@ -297,7 +340,7 @@ def _color(thing: SceneObject, default: Triple) -> Four:
     return (red, green, blue, alpha[0] if alpha else 1.0)
 
 
-def surface_of(mesh: UnitMesh, size: Triple) -> Surface:
+def surface_of(mesh: UnitMesh | Appearance, size: Triple) -> Surface:
     """The mesh with normals that are shared across smooth edges and split at sharp ones.
 
     ``size`` is a size the mesh is used at: angles between faces are those of the mesh at that size. The normals are
@@ -310,9 +353,17 @@ def surface_of(mesh: UnitMesh, size: Triple) -> Surface:
     # At the given size a normal n is n * size in the unit box (the inverse transpose of the scaling).
     unit = corner_normals * size
     unit /= np.maximum(np.linalg.norm(unit, axis=1, keepdims=True), 1e-30)
-    keys = np.column_stack([faces.reshape(-1), np.round(unit * 1024).astype(np.int64)])
-    _, first, index = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    return Surface(vertices[faces.reshape(-1)[first]], unit[first], index.reshape(-1, 3).astype(np.int64))
+    columns = [faces.reshape(-1), np.round(unit * 1024).astype(np.int64)]
+    paints = np.repeat(mesh.paints, 3, axis=0) if isinstance(mesh, Appearance) else None
+    if paints is not None:
+        columns.append(np.nan_to_num(paints * 255, nan=-1.0).astype(np.int64))
+    _, first, index = np.unique(np.column_stack(columns), axis=0, return_index=True, return_inverse=True)
+    return Surface(
+        vertices[faces.reshape(-1)[first]],
+        unit[first],
+        index.reshape(-1, 3).astype(np.int64),
+        None if paints is None else paints[first],
+    )
 
 
 def _face_normals(vertices: Array, faces: npt.NDArray[np.int64]) -> tuple[Array, Array]:

@@ -28,18 +28,26 @@ def obj(scene: Scene, library: str) -> tuple[bytes, bytes]:
     instances = drawn.scenes[0]
     materials: dict[Four, str] = {}
     for instance in instances:
-        materials.setdefault(instance.color, f"color{len(materials)}")
+        for color in _colors(instance, drawn.surfaces[instance.surface]):
+            materials.setdefault(color, f"color{len(materials)}")
     lines = [f"# scene {scene.k} of seed {scene.seed}; metres, Z up", f"mtllib {library}"]
     first = 1
     for instance, name in zip(instances, distinct_labels(instances), strict=True):
         surface = drawn.surfaces[instance.surface]
-        lines += [f"o {name}".replace("\n", " "), f"usemtl {materials[instance.color]}"]
-        lines += _surface(instance, surface, first)
+        lines.append(f"o {name}".replace("\n", " "))
+        lines += _surface(instance, surface, first, materials)
         first += len(surface.vertices)
     return _encoded(lines), _encoded(_materials(materials))
 
 
-def _surface(instance: Instance, surface: Surface, first: int) -> Iterator[str]:
+def _colors(instance: Instance, surface: Surface) -> list[Four]:
+    """The colours of the object's faces, in the order of `Surface.painted`."""
+    return [
+        instance.color if paint is None else (*paint, instance.color[3]) for paint, _ in surface.painted()
+    ]
+
+
+def _surface(instance: Instance, surface: Surface, first: int, materials: dict[Four, str]) -> Iterator[str]:
     """The lines of an object whose corners are numbered from ``first`` on."""
     matrix = instance.matrix()
     corners = surface.vertices @ matrix[:3, :3].T + matrix[:3, 3]
@@ -48,8 +56,10 @@ def _surface(instance: Instance, surface: Surface, first: int) -> Iterator[str]:
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
     yield from (f"v {x:{_DIGITS}} {y:{_DIGITS}} {z:{_DIGITS}}" for x, y, z in corners.tolist())
     yield from (f"vn {x:.6f} {y:.6f} {z:.6f}" for x, y, z in normals.tolist())
-    for a, b, c in (surface.faces + first).tolist():
-        yield f"f {a}//{a} {b}//{b} {c}//{c}"
+    for color, (_, faces) in zip(_colors(instance, surface), surface.painted(), strict=True):
+        yield f"usemtl {materials[color]}"
+        for a, b, c in (faces + first).tolist():
+            yield f"f {a}//{a} {b}//{b} {c}//{c}"
 
 
 def _materials(materials: dict[Four, str]) -> Iterator[str]:

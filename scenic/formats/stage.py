@@ -121,13 +121,23 @@ class Stage:
         # Images bring their own colours.
         rgba[[k for k, item in self.textures.items() if isinstance(item, ImageTexture)], :3] = 1
         albedo = linear(rgba[:, :3])[self.owner]
+        painted = np.zeros(len(albedo), np.int32)
+        for index, instance in enumerate(instances):
+            paints = surfaces[instance.surface].face_paints()
+            if paints is not None:
+                own = np.flatnonzero(~np.isnan(paints[:, 0]))
+                places = own + sum(map(len, owners[:index]))
+                albedo[places] = linear(paints[own])
+                painted[places] = 1 + np.unique(paints[own], axis=0, return_inverse=True)[1].reshape(-1)
         self.sunny, self.shady = _light_on(scenery, corner_normals, albedo)
         # Flat triangles are most of the pixels; entries of one array after the other are quick to take.
         flat = np.concatenate([self.sunny[:, 0], self.shady[:, 0]], axis=1).T
         self.flat = np.concatenate([flat, np.zeros((6, 1), np.float32)], axis=1)
         rough = np.rint(mean * np.float32(2)).astype(np.int32) + 2
         code = (rough[:, 0] * 5 + rough[:, 1]) * 5 + rough[:, 2]
-        self._groups = np.append(self.owner * 125 + code + 1, np.int32(SKY))
+        # Surfaces of two colours are two surfaces.
+        kind = self.owner * (painted.max(initial=0) + 1) + painted
+        self._groups = np.append(kind * 125 + code + 1, np.int32(SKY))
         self.rays = RayScene(np.concatenate([*triangles, np.zeros((0, 3, 3), np.float32)]))
 
     def group_of(self, triangle: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:

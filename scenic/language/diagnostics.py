@@ -193,6 +193,7 @@ CODES: Final = MappingProxyType(
         "SC613": "texture cannot be used",
         "SC614": "description of a thing with joints cannot be used",
         "SC615": "folder or file is in use",
+        "SC616": "appearance cannot be shown",
         "SC620": "map cannot be used",
         "SC621": "road of a map repaired or omitted",
         "SC622": "lane of a map repaired or omitted",

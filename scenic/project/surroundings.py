@@ -13,6 +13,8 @@ from scenic.compiler.semantics.names import DEFINITIONS
 from scenic.compiler.surroundings import Foreign, Property, Surroundings, SurroundingsOf
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.source import Source
+from scenic.project.agents import agent_findings
+from scenic.project.appearances import appearance_findings
 from scenic.project.classes import Class, class_of_symbol
 from scenic.project.imports import Imports
 from scenic.project.index import Exported, Exports, Project
@@ -107,6 +109,8 @@ class _Surroundings:
         yield from self._imports.findings()
         yield from map_findings(self._tree, self._source)
         yield from texture_findings(self._tree, self._source)
+        yield from appearance_findings(self._tree, self._source)
+        yield from agent_findings(self._project, self._tree, self._source, self._resolution, self._names)
         yield from member_findings(self._project, self._tree, self._source, self._resolution, self._names)
 
 

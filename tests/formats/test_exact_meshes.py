@@ -151,7 +151,7 @@ def test_indices_take_two_bytes_as_long_as_none_is_the_last_number(count: int) -
     faces = np.concatenate([faces, [[0, 1, count - 1]]])
     loose = Surface(vertices, np.tile([0.0, 0.0, 1.0], (count, 1)), faces)
     buffers = _Buffers()
-    primitive = buffers.surface(loose)
+    ((_, primitive),) = buffers.surface(loose)
     accessor = buffers.accessors[primitive["indices"]]
     view = buffers.views[accessor["bufferView"]]
     size = {5123: 2, 5125: 4}[accessor["componentType"]]

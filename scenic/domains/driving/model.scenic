@@ -153,6 +153,7 @@ class Vehicle(DrivingObject):
     length: 4.5
     height: 1.5
     color: Color.defaultCarColor()
+    appearance: 'car'
     wheelbase: 0.6 * self.length
     maxSteeringAngle: 35 deg
     wheelDiameter: 0.7
@@ -192,6 +193,7 @@ class NPCCar(Car):
 class Bicycle(Vehicle):
     """A bicycle with its rider."""
 
+    appearance: 'bicycle'
     width: 0.6
     length: 1.8
     height: 1.7
@@ -204,6 +206,7 @@ class Bicycle(Vehicle):
 class Motorcycle(Vehicle):
     """A motorcycle with its rider."""
 
+    appearance: 'motorcycle'
     width: 0.8
     length: 2.2
     height: 1.6
@@ -216,6 +219,7 @@ class Motorcycle(Vehicle):
 class Truck(Vehicle):
     """A truck."""
 
+    appearance: 'truck'
     width: 2.5
     length: 7.5
     height: 3.2
@@ -229,6 +233,7 @@ class Truck(Vehicle):
 class Bus(Vehicle):
     """A bus."""
 
+    appearance: 'bus'
     width: 2.5
     length: 11
     height: 3.1
@@ -250,6 +255,7 @@ class Pedestrian(DrivingObject):
     width: 0.75
     length: 0.75
     color: [0, 0.5, 1]
+    appearance: 'pedestrian'
     mass: 65
 
     @property

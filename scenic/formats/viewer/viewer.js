@@ -69,11 +69,14 @@
   const SOLID_VERTEX = `#version 300 es
     layout(location = 0) in vec3 place;
     layout(location = 1) in vec3 normal;
+    layout(location = 2) in vec4 paint;
     uniform mat4 camera, sunCamera, model;
     uniform vec3 size;
     out vec3 worldNormal, world, sunPlace;
+    out vec4 own;
     void main() {
       vec4 point = model * vec4(place, 1.0);
+      own = paint;
       world = point.xyz;
       // The model's columns are long as the size is; a normal needs the inverse.
       worldNormal = mat3(model) * (normal / (size * size));
@@ -108,6 +111,7 @@
   const SOLID_FRAGMENT = `#version 300 es
     precision highp float;
     in vec3 worldNormal, world, sunPlace;
+    in vec4 own;
     uniform vec4 color;
     uniform vec3 eye;
     uniform float glow;
@@ -117,7 +121,7 @@
       vec3 toEye = normalize(eye - world);
       vec3 normal = normalize(worldNormal);
       if (dot(normal, toEye) < 0.0) normal = -normal;
-      vec3 light = illuminate(color.rgb, normal, sunPlace);
+      vec3 light = illuminate(mix(color.rgb, own.rgb, own.a), normal, sunPlace);
       float rim = pow(1.0 - max(dot(normal, toEye), 0.0), 2.0);
       vec3 mark = glow > 0.75 ? vec3(0.15, 0.45, 1.0) : vec3(0.9, 0.75, 0.3);
       light = mix(light, mark, glow * (0.25 + 0.6 * rim));
@@ -191,7 +195,7 @@
 
   const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 
-  function mesh(points, normals, indices) {
+  function mesh(points, normals, indices, paints) {
     const array = gl.createVertexArray();
     gl.bindVertexArray(array);
     const store = (target, content) => {
@@ -206,6 +210,11 @@
       gl.enableVertexAttribArray(1);
       gl.vertexAttribPointer(1, 3, gl.SHORT, true, 8, 0);
     }
+    if (paints) {
+      store(gl.ARRAY_BUFFER, paints);
+      gl.enableVertexAttribArray(2);
+      gl.vertexAttribPointer(2, 4, gl.UNSIGNED_BYTE, true, 0, 0);
+    }
     store(gl.ELEMENT_ARRAY_BUFFER, indices);
     gl.bindVertexArray(null);
     return { array, count: indices.length };
@@ -214,8 +223,11 @@
   const meshes = data.meshes.map((item) => {
     const points = new Float32Array(bytes(item.points).buffer);
     const indices = new Uint32Array(bytes(item.indices).buffer);
-    return { ...mesh(points, new Int16Array(bytes(item.normals).buffer), indices), points, indices };
+    const paints = item.paints && bytes(item.paints);
+    return { ...mesh(points, new Int16Array(bytes(item.normals).buffer), indices, paints), points, indices };
   });
+  // Meshes without colours of their own have the object's.
+  gl.vertexAttrib4f(2, 0, 0, 0, 0);
   const square = mesh(
     new Float32Array([-0.5, -0.5, 0, 0.5, -0.5, 0, 0.5, 0.5, 0, -0.5, 0.5, 0]), null, new Uint32Array([0, 1, 2, 0, 2, 3]));
   const cubeEdges = mesh(

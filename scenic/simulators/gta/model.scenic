@@ -36,6 +36,7 @@ class Bus(Car):
     """A bus."""
 
     model: CarModel.models['BUS']
+    appearance: 'bus'
 
 
 class Compact(Car):

@@ -48,6 +48,7 @@ class Car(WebotsObject):
     roadDeviation: 0
     parentOrientation: (roadDirection at self.position) + self.roadDeviation
     model: Uniform(*carModels)
+    appearance: 'car'
     width: self.model.width
     length: self.model.length
     webotsType: self.model.name
@@ -85,10 +86,12 @@ class ToyotaPrius(Car):
 
 class Bus(Car):
     model: modelWithName['Bus']
+    appearance: 'bus'
 
 
 class Truck(Car):
     model: modelWithName['Truck']
+    appearance: 'truck'
 
 
 class Tractor(Car):
@@ -99,6 +102,7 @@ class Motorcycle(Car):
     """A motorcycle in two colours."""
 
     model: modelWithName['MotorBikeSimple']
+    appearance: 'motorcycle'
     primaryColor: self.color
     secondaryColor: Color.defaultCarColor()
 
@@ -108,6 +112,7 @@ class Pedestrian(WebotsObject):
 
     position: new Point on walkway
     parentOrientation: Range(0, 360) deg
+    appearance: 'pedestrian'
     width: 0.5
     length: 0.5
     webotsType: 'Pedestrian'

@@ -1,0 +1,145 @@
+"""Behaviors of the driving domain given to objects that cannot take their actions: a pedestrian that follows a lane.
+
+What a behavior needs follows from the classes of the actions it takes, itself and in the behaviors it runs.
+"""
+
+import ast
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
+from typing import Final
+
+from scenic.compiler import tree as scenic
+from scenic.compiler.scopes import Resolution
+from scenic.compiler.traversal import walk
+from scenic.language.diagnostics import Diagnostic
+from scenic.language.source import Source
+from scenic.project.classes import LIBRARY, class_of, class_of_symbol, meaning
+from scenic.project.index import Exported, Project
+from scenic.project.modules import Module
+from scenic.project.symbols import Symbol, SymbolKind
+
+__all__ = ["agent_findings"]
+
+_NEEDS: Final[Mapping[str, str]] = MappingProxyType({"SteeringAction": "drive", "WalkingAction": "walk"})
+"""The ability that agents need, by the base class of actions."""
+_ABLE: Final[Mapping[str, str]] = MappingProxyType(
+    {"Vehicle": "drive", "Steers": "drive", "Pedestrian": "walk", "Walks": "walk"}
+)
+"""The abilities of instances of classes; those of the general model have no methods for it before a simulator adds them."""
+_DEEPEST: Final = 8
+"""Length to which behaviors that run others are followed."""
+_ADVICE: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "drive": "give behaviors of cars to vehicles of the model; pedestrians have `WalkTo` and `Walk`",
+        "walk": "give behaviors of pedestrians to pedestrians of the model; vehicles have `FollowLaneBehavior`",
+    }
+)
+
+
+def agent_findings(
+    project: Project,
+    tree: ast.Module,
+    source: Source,
+    resolution: Resolution,
+    brought: Mapping[str, Exported],
+) -> Iterator[Diagnostic]:
+    """Reports objects whose behaviors take actions of the driving domain that they cannot take; ``brought`` are the names of imports."""
+    if "behavior" not in source.text or not any(name in brought for name in _NEEDS):
+        return
+    module = Module(source, tree, resolution, is_scenic=True, broken=False)
+    for cls, value in _given(tree):
+        agent = meaning(project, module, cls)
+        call = value.func if isinstance(value, ast.Call) else value
+        behavior = meaning(project, module, call) if isinstance(call, ast.Name | ast.Attribute) else None
+        if agent is None or behavior is None or behavior.kind is not SymbolKind.BEHAVIOR:
+            continue
+        able = _abilities(project, agent)
+        needed = _needs(project, behavior, 0)
+        # A behavior for several kinds of agents asks which one it has.
+        if able is None or len(needed) != 1 or needed.keys() <= able or not all(needed.values()):
+            continue
+        (need,) = needed
+        yield Diagnostic(
+            "SC314",
+            f"objects of the class `{agent.name}` cannot {need}, as `{behavior.name}` does",
+            source.span(value),
+            filename=source.filename,
+            help=_ADVICE[need],
+        )
+
+
+def _given(tree: ast.Module) -> Iterator[tuple[ast.expr, ast.expr]]:
+    """Names of classes with the behaviors that ``new`` gives to their instances."""
+    for node in walk(tree):
+        if isinstance(node, scenic.New):
+            for phrase in node.specifiers:
+                match phrase:
+                    case scenic.SpecifierPhrase(property="behavior", operands=[ast.expr() as value, *_]):
+                        yield node.cls, value
+
+
+def _abilities(project: Project, agent: Symbol) -> frozenset[str] | None:
+    """The abilities of the instances of a class; ``None`` where that is not known."""
+    able: set[str] = set()
+    waiting, seen = [agent], set[Symbol]()
+    while waiting:
+        symbol = waiting.pop()
+        known = class_of_symbol(project, symbol)
+        if known is None or not known.complete:
+            return None
+        # A class that extends one of the same name is another symbol in another file.
+        if symbol.filename is not None and symbol.filename.startswith(LIBRARY) and symbol.name in _ABLE:
+            able.add(_ABLE[symbol.name])
+        if known.member("setThrottle") is not None:
+            able.add("drive")
+        if known.member("setWalkingSpeed") is not None:
+            able.add("walk")
+        seen.add(symbol)
+        waiting += [base for base in known.bases if base not in seen]
+    return frozenset(able)
+
+
+def _needs(project: Project, behavior: Symbol, depth: int) -> dict[str, bool]:
+    """The abilities that agents of a behavior need, and whether that is so whatever the behavior asks with ``if``."""
+    module, node = behavior.module, behavior.node
+    if module is None or not isinstance(node, scenic.BehaviorDef) or depth > _DEEPEST:
+        return {}
+    guarded = {id(part) for branch in walk(node) if isinstance(branch, ast.If) for part in walk(branch)}
+    needs: dict[str, bool] = {}
+    for part in walk(node):
+        inner: dict[str, bool] = {}
+        if isinstance(part, scenic.Take):
+            for action in part.actions:
+                cls = class_of(project, module, action)
+                need = None if cls is None else _need_of_action(project, cls)
+                if need is not None:
+                    inner[need] = True
+        elif isinstance(part, scenic.Do | scenic.DoChoose):
+            for target in part.targets:
+                run = _behavior_of(project, module, target)
+                if run is not None and run != behavior:
+                    inner |= _needs(project, run, depth + 1)
+        for need, always in inner.items():
+            needs[need] = needs.get(need, False) or (always and id(part) not in guarded)
+    return needs
+
+
+def _behavior_of(project: Project, module: Module, target: ast.expr) -> Symbol | None:
+    call = target.func if isinstance(target, ast.Call) else target
+    if not isinstance(call, ast.Name | ast.Attribute):
+        return None
+    found = meaning(project, module, call)
+    return found if found is not None and found.kind is SymbolKind.BEHAVIOR else None
+
+
+def _need_of_action(project: Project, action: Symbol) -> str | None:
+    waiting = [action]
+    for _ in range(_DEEPEST):
+        if not waiting:
+            break
+        cls = waiting.pop()
+        if cls.name in _NEEDS and cls.filename is not None and cls.filename.startswith(LIBRARY):
+            return _NEEDS[cls.name]
+        known = class_of_symbol(project, cls)
+        waiting += () if known is None else known.bases
+    return None
