@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from scenic.compiler.check import check_text, in_order
-from scenic.compiler.markdown import SUFFIXES, program_blocks
+from scenic.compiler.markdown import SUFFIXES, check_blocks, repair_blocks
 from scenic.compiler.suppression_comments import apply_ignores
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.dataclass import dataclass
@@ -91,7 +91,7 @@ class Checker:
 
 def _outcome(task: Task, surroundings_of: SurroundingsOf) -> Outcome:
     try:
-        if task.fixing is Fixing.NONE or task.filename.lower().endswith((MAP_SUFFIX, *SUFFIXES)):
+        if task.fixing is Fixing.NONE or task.filename.lower().endswith(MAP_SUFFIX):
             return Outcome(_check(task, surroundings_of))
         return _repair(task, surroundings_of)
     except Located as error:
@@ -120,20 +120,12 @@ def _check(task: Task, surroundings_of: SurroundingsOf) -> tuple[Diagnostic, ...
         return task.rules.apply(_check_map(task))
     source = Source(task.text, task.filename) if task.text is not None else read_source(task.filename)
     if task.filename.lower().endswith(SUFFIXES):
-        return task.rules.apply(_check_blocks(source, surroundings_of))
+        blocks = check_blocks(source.text, filename=task.filename, surroundings_of=surroundings_of)
+        return task.rules.apply(blocks)
     found = check_text(source.text, filename=task.filename, surroundings_of=surroundings_of)
     if task.deep and not any(item.severity is Severity.ERROR or item.code == UNSUPPORTED for item in found):
         found = in_order((*found, *_deep(task, source)), filename=task.filename)
     return task.rules.apply(found)
-
-
-def _check_blocks(source: Source, surroundings_of: SurroundingsOf) -> tuple[Diagnostic, ...]:
-    """Return the problems of the programs in a Markdown file, each of which is a program by itself."""
-    return tuple(
-        item
-        for block in program_blocks(source.text)
-        for item in check_text(block.in_place, filename=source.filename, surroundings_of=surroundings_of)
-    )
 
 
 def _check_map(task: Task) -> tuple[Diagnostic, ...]:
@@ -167,7 +159,8 @@ def _repair(task: Task, surroundings_of: SurroundingsOf) -> Outcome:
         before = Path(task.filename).read_bytes().decode("utf-8")
     else:
         before = task.text
-    repaired = repair(before, filename=task.filename, shown=task.rules.apply, surroundings_of=surroundings_of)
+    make = repair_blocks if task.filename.lower().endswith(SUFFIXES) else repair
+    repaired = make(before, filename=task.filename, shown=task.rules.apply, surroundings_of=surroundings_of)
     changed = repaired.text != before
     if task.fixing is Fixing.SHOW:
         diff = _diff(before, repaired.text, task.filename) if changed else ""

@@ -8,9 +8,10 @@ import click
 
 from scenic.cli.discovery import STANDARD_INPUT, discover
 from scenic.cli.output import FINDINGS, exit_code, show_diagnostics
+from scenic.compiler.markdown import SUFFIXES
 from scenic.configuration.project import Configurations
 from scenic.formats.files import write
-from scenic.ide.formatting import format_text
+from scenic.ide.formatting import format_blocks, format_text
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import ScenicError
 from scenic.language.source import Source, read_source
@@ -30,7 +31,7 @@ def format_command(paths: tuple[str, ...], check: bool, diff: bool, stdin_filena
 
     Each PATH is a file, a folder that is searched for *.scenic and *.sc, or - for standard input, whose formatted text
     is written to standard output; by default the current folder is searched. Programs with syntax
-    errors are not changed.
+    errors are not changed. Of Markdown files (*.md) the blocks of ```scenic are formatted.
 
     Exit codes: 0 all is in the usual style now, 1 a program has mistakes, or would change (--check, --diff), 2 wrong
     usage, or a file that cannot be read or written.
@@ -52,7 +53,8 @@ def format_command(paths: tuple[str, ...], check: bool, diff: bool, stdin_filena
         except ScenicError as error:
             problems.append(error.diagnostic())
             continue
-        result = format_text(source.text)
+        is_markdown = source.filename.lower().endswith(SUFFIXES)
+        result = (format_blocks if is_markdown else format_text)(source.text)
         if result is None:
             problems.append(_mistaken(source.filename))
             if name == STANDARD_INPUT and not (check or diff):

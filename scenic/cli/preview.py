@@ -1,5 +1,6 @@
 """``scenic preview``: one page with scenes of a program that is read from standard input, for editors."""
 
+import json
 import os
 import sys
 from typing import Final
@@ -23,7 +24,12 @@ _MEMORY: Final = 8 << 30
 @click.option("--seed", type=int, default=0, help="The seed of the scenes.")
 @click.option("-n", "count", type=click.IntRange(1, 100), default=1, help="The number of scenes.")
 @click.option("--time-limit", type=click.FloatRange(min=0, min_open=True), default=20.0, help="In seconds.")
-def preview(filename: str, scenario: str | None, seed: int, count: int, time_limit: float) -> int:
+@click.option(
+    "--remarks", "wants_remarks", is_flag=True, help="Write what analysis says of the lines, as JSON."
+)
+def preview(
+    filename: str, scenario: str | None, seed: int, count: int, time_limit: float, wants_remarks: bool
+) -> int:
     """Write a page with scenes of a program from standard input to standard output, within limits of time and memory."""
     _limit(time_limit)
     text = sys.stdin.buffer.read().decode()
@@ -37,10 +43,19 @@ def preview(filename: str, scenario: str | None, seed: int, count: int, time_lim
     from scenic.runtime.sampling.report import Exhausted
 
     page = Page(os.path.basename(filename))
+    missing: list[Exhausted] = []
     try:
         loaded = scenarioFromString(text, scenario=scenario, filename=filename)
+        if wants_remarks:
+            from scenic.assessment.remarks import remarks
+
+            with output:
+                output.write(json.dumps(remarks(loaded)).encode())
+            return 0
         for result in loaded.stream(count, seed=seed, time_limit=time_limit):
-            if not isinstance(result, Exhausted):
+            if isinstance(result, Exhausted):
+                missing.append(result)
+            else:
                 page.add(result)
     except Exception as error:
         told = diagnose(error)
@@ -51,7 +66,7 @@ def preview(filename: str, scenario: str | None, seed: int, count: int, time_lim
         show_diagnostics(found, Sources([Source(text, filename)]))
         return exit_code(found)
     if not len(page):
-        click.echo("no scene was found that meets all requirements within the limits", err=True)
+        click.echo(missing[0].message(), err=True)
         return 3
     with output:
         output.write(page.text().encode())

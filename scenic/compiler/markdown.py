@@ -1,10 +1,15 @@
 """Programs in Markdown files: the blocks that begin with three backticks and ``scenic``."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Final, NamedTuple
 
-__all__ = ["SUFFIXES", "Block", "program_blocks"]
+from scenic.compiler.check import check_text
+from scenic.compiler.fixes import Repaired, repair
+from scenic.compiler.surroundings import SurroundingsOf
+from scenic.language.diagnostics import Diagnostic
+
+__all__ = ["SUFFIXES", "Block", "check_blocks", "program_blocks", "repair_blocks", "with_blocks"]
 
 SUFFIXES: Final = (".md", ".markdown")
 _FENCE: Final = re.compile(r"^(?P<indent> {0,3})(?P<fence>`{3,}|~{3,})(?P<info>[^`]*)$")
@@ -36,3 +41,46 @@ def program_blocks(text: str) -> Iterator[Block]:
             if is_program and number > first:
                 yield Block(first, "\n".join(lines[first:number]) + "\n")
             fence = ""
+
+
+def with_blocks(text: str, change: Callable[[str], str | None]) -> str:
+    """The Markdown text with other programs in its blocks; ``change`` gives ``None`` for a program that stays."""
+    lines = text.split("\n")
+    for block in reversed(list(program_blocks(text))):
+        changed = change(block.text)
+        if changed is not None:
+            last = block.lines_before + block.text.count("\n")
+            lines[block.lines_before : last] = changed.removesuffix("\n").split("\n")
+    return "\n".join(lines)
+
+
+def check_blocks(
+    text: str, *, filename: str, surroundings_of: SurroundingsOf | None = None
+) -> tuple[Diagnostic, ...]:
+    """The findings of `check_text` in the blocks of a Markdown text, each of which is a program by itself."""
+    return tuple(
+        item
+        for block in program_blocks(text)
+        for item in check_text(block.in_place, filename=filename, surroundings_of=surroundings_of)
+    )
+
+
+def repair_blocks(
+    text: str,
+    *,
+    filename: str,
+    shown: Callable[[Sequence[Diagnostic]], Sequence[Diagnostic]],
+    surroundings_of: SurroundingsOf | None = None,
+) -> Repaired:
+    """Make the certain repairs in the blocks of a Markdown text, as `repair` does in a program."""
+    count = 0
+
+    def change(program: str) -> str:
+        nonlocal count
+        repaired = repair(program, filename=filename, shown=shown, surroundings_of=surroundings_of)
+        count += repaired.count
+        return repaired.text
+
+    changed = with_blocks(text, change)
+    found = check_blocks(changed, filename=filename, surroundings_of=surroundings_of)
+    return Repaired(changed, count, tuple(shown(found)))

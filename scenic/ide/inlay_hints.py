@@ -1,4 +1,4 @@
-"""Hints for editors to show between the words of a program: units, defaults, names of parameters, priorities."""
+"""Hints for editors to show between the words of a program: units, defaults, parameters, priorities, narrowed ranges."""
 
 import ast
 from collections.abc import Iterator
@@ -10,6 +10,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.traversal import walk
 from scenic.dataclass import dataclass
 from scenic.ide.places import span_of
+from scenic.ide.remarks import Remarks, ranges
 from scenic.ide.snapshot import Snapshot
 from scenic.language.names import NAMES
 from scenic.language.operators import OPERATORS, Operand
@@ -42,6 +43,7 @@ class HintKind(StrEnum):
     DEFAULT = "default"
     PARAMETER = "parameter"
     PRIORITY = "priority"
+    RANGE = "range"
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,10 +57,14 @@ class Hint:
     tooltip: str
 
 
-def hints(snapshot: Snapshot, within: Span | None = None) -> tuple[Hint, ...]:
-    """The hints for a document, or for a part of it, in order of place."""
+def hints(snapshot: Snapshot, within: Span | None = None, remarks: Remarks | None = None) -> tuple[Hint, ...]:
+    """The hints for a document, or for a part of it, in order of place; ``remarks`` are those of its last run."""
     every = snapshot.derived(
-        "hints", lambda: tuple(sorted(_find(snapshot), key=lambda each: (each.line, each.column)))
+        "hints",
+        lambda: tuple(
+            sorted([*_find(snapshot), *_ranges(snapshot, remarks)], key=lambda each: (each.line, each.column))
+        ),
+        stamp=id(remarks),
     )
     if within is None:
         return every
@@ -165,6 +171,13 @@ def _priorities(snapshot: Snapshot, node: scenic.New) -> Iterator[Hint]:
                     f"`{given.property}` comes from `{winner}` (priority {priority}); here it would have priority "
                     f"{given.priority}",
                 )
+
+
+def _ranges(snapshot: Snapshot, remarks: Remarks | None) -> Iterator[Hint]:
+    """Ranges that narrowing leaves of random values."""
+    for each in () if remarks is None else ranges(snapshot, remarks):
+        tooltip = f"the requirements leave {each.left} of {each.before}: nothing else is drawn"
+        yield Hint(each.span.end_line, each.span.end_column, f" → {each.left}", HintKind.RANGE, tooltip)
 
 
 def _is_number(node: ast.expr) -> bool:

@@ -1,5 +1,6 @@
 """Running a program at its user's request: in a process of its own, within limits on time and size."""
 
+import json
 import os
 import signal
 import subprocess
@@ -10,7 +11,9 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import IO, Final
 
-__all__ = ["RunError", "analysis_text", "sample_page", "simulation_page"]
+from scenic.ide.remarks import Remarks
+
+__all__ = ["RunError", "analysis_text", "run_remarks", "sample_page", "simulation_page"]
 
 TIME_LIMIT: Final = 20.0
 """Seconds in which scenes must be found."""
@@ -20,10 +23,19 @@ _LARGEST: Final = 64 << 20
 _LONGEST: Final = 1 << 20
 """Bytes of a message that are shown."""
 _INTERVAL: Final = 0.02
+_PARTIAL: Final = 3
+"""The exit code of commands that did not find all scenes."""
 
 
 class RunError(Exception):
-    """The reason why there is no page: the errors of the program, or the limit that it exceeded."""
+    """The reason why there is no page: the errors of the program, or the limit that it exceeded.
+
+    ``is_rejected`` tells that the program is right, but no scene was found within the limits.
+    """
+
+    def __init__(self, reason: str, *, is_rejected: bool = False) -> None:
+        super().__init__(reason)
+        self.is_rejected = is_rejected
 
 
 def sample_page(
@@ -61,6 +73,15 @@ def simulation_page(
         view = os.path.join(folder, "simulation.html")
         command = ["simulate", filename, "--view", view, "--seed", str(seed), "--time", str(steps)]
         return _run([*command, *_chosen(scenario)], "", os.path.dirname(filename), view, go_on)
+
+
+def run_remarks(
+    text: str, filename: str, *, scenario: str | None = None, go_on: Callable[[], None] = lambda: None
+) -> Remarks:
+    """Shares of requirements and narrowed ranges of a program. **Runs the program.** Arguments and errors as for `sample_page`."""
+    command = ["preview", "--filename", filename, "--time-limit", str(TIME_LIMIT), "--remarks"]
+    written = _run([*command, *_chosen(scenario)], text, os.path.dirname(filename), None, go_on)
+    return Remarks(text, scenario, json.loads(written))
 
 
 def analysis_text(filename: str, *, go_on: Callable[[], None] = lambda: None) -> str:
@@ -104,7 +125,7 @@ def _run(arguments: list[str], text: str, folder: str, view: str | None, go_on: 
         if code != 0 or view is not None:
             said.seek(0)
             reason = said.read(_LONGEST).decode(errors="replace").strip()
-            raise RunError(reason or f"the program ended with code {code}")
+            raise RunError(reason or f"the program ended with code {code}", is_rejected=code == _PARTIAL)
         page.seek(0)
         found = page.read(_LARGEST).decode()
         if not found.strip():

@@ -11,7 +11,17 @@ from pygls.capabilities import get_capability
 
 from scenic.ide.semantic_tokens import MODIFIERS, TYPES
 
-__all__ = ["COMMANDS", "FIX_ALL", "ORGANIZE", "SAMPLE", "SIMULATE", "WATCHED", "options_for", "registrations"]
+__all__ = [
+    "COMMANDS",
+    "FIX_ALL",
+    "ORGANIZE",
+    "SAMPLE",
+    "SHOW",
+    "SIMULATE",
+    "WATCHED",
+    "options_for",
+    "registrations",
+]
 
 FIX_ALL: Final = "source.fixAll.scenic"
 """The kind of the action that makes all repairs of a document, which editors can make when they save it."""
@@ -19,13 +29,16 @@ FIX_ALL: Final = "source.fixAll.scenic"
 ORGANIZE: Final = types.CodeActionKind.SourceOrganizeImports
 """The kind of the action that puts the imports of a document in order."""
 
+SHOW: Final = "scenic.show"
+"""The command that shows one scene; its arguments are the document's address and maybe an object with options."""
+
 SAMPLE: Final = "scenic.sample"
-"""The command that runs a program; its arguments are the document's address and maybe an object with options."""
+"""The command that shows several scenes, with the same arguments."""
 
 SIMULATE: Final = "scenic.simulate"
 """The command that simulates a program, with the same arguments; it takes the program as it was saved."""
 
-COMMANDS: Final = (SAMPLE, SIMULATE)
+COMMANDS: Final = (SHOW, SAMPLE, SIMULATE)
 
 WATCHED: Final = ("**/*.scenic", "**/*.sc", "**/*.py", "**/pyproject.toml")
 """The files whose changes on the disk matter."""

@@ -225,11 +225,14 @@ def found_in_document(
     session: Session, document: Document, project: Project, stamp: int, go_on: GoOn
 ) -> Found:
     """The faults of a document, and of its settings; ``stamp`` is the generation that ``project`` is of."""
-    if not document.is_program:
+    if not document.programs:
         return [], ()
     configurations, rules = session.rules(document.snapshot.filename)
-    found = found_in(document.snapshot, rules, project, stamp=stamp, go_on=go_on)
-    return _protocol(found, document.lines, document.uri, session), configurations.problems
+    shown: list[types.Diagnostic] = []
+    for each in document.programs:
+        found = found_in(each.snapshot, rules, project, stamp=stamp, go_on=go_on)
+        shown += _protocol(found, each.lines, document.uri, session)
+    return shown, configurations.problems
 
 
 def _protocol(

@@ -50,11 +50,15 @@ def units(text: str, encoding: Encoding) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Lines:
-    """The lines of a text, and where the protocol sees them; ``marks`` is how many byte order marks it begins with."""
+    """The lines of a text, and where the protocol sees them.
+
+    ``marks`` is how many byte order marks it begins with, ``before`` how many lines of its document precede it.
+    """
 
     source: Source
     encoding: Encoding
     marks: int = 0
+    before: int = 0
     _lead: int = field(init=False, default=0)
 
     def __post_init__(self) -> None:
@@ -63,7 +67,7 @@ class Lines:
     def to_position(self, line: int, column: int) -> types.Position:
         """A place as a position."""
         character = units(self.source.line(line)[:column], self.encoding)
-        return types.Position(line - 1, character + (self._lead if line == 1 else 0))
+        return types.Position(self.before + line - 1, character + (self._lead if line == 1 else 0))
 
     def to_range(self, span: Span) -> types.Range:
         """A span as a range."""
@@ -77,7 +81,9 @@ class Lines:
         Inside a character, the column of that character; past the end of a line, its end; past the end of the text,
         the end of that.
         """
-        line, character = position.line, position.character
+        line, character = position.line - self.before, position.character
+        if line < 0:
+            return 1, 0
         if line >= len(self.source.lines):
             return len(self.source.lines), len(self.source.lines[-1])
         content = self.source.line(line + 1)

@@ -8,6 +8,7 @@ from typing import Final
 
 from lsprotocol import types
 
+from scenic.compiler.markdown import SUFFIXES, program_blocks
 from scenic.dataclass import dataclass
 from scenic.ide.snapshot import Snapshot
 from scenic.language.errors import ScenicError
@@ -15,10 +16,10 @@ from scenic.language.source import read_source
 from scenic.lsp.convert import Encoding, Lines, units
 from scenic.lsp.uris import to_path
 
-__all__ = ["Document", "changed", "snapshot_of"]
+__all__ = ["Document", "changed", "is_markdown", "snapshot_of"]
 
 _LINE_END: Final = re.compile(r"\r\n|\n|\r")
-_OTHERS: Final = frozenset({"python", "toml"})
+_OTHERS: Final = frozenset({"python", "toml", "markdown"})
 _MARK: Final = "\ufeff"
 
 
@@ -26,7 +27,8 @@ _MARK: Final = "\ufeff"
 class Document:
     """One version of a document: the client's text, and what we make of it.
 
-    ``version`` is ``None`` for a file that is not open.
+    ``version`` is ``None`` for a file that is not open. A Markdown document has an empty snapshot, and a document of its own
+    for each block of Scenic, with ``before`` lines of the whole before it.
     """
 
     uri: str
@@ -35,17 +37,52 @@ class Document:
     text: str
     encoding: Encoding
     snapshot: Snapshot
+    before: int = 0
 
     @cached_property
     def lines(self) -> Lines:
         """The lines of the document with their places in the protocol."""
         marks = len(self.text) - len(self.text.lstrip(_MARK))
-        return Lines(self.snapshot.source, self.encoding, marks)
+        return Lines(self.snapshot.source, self.encoding, marks, self.before)
+
+    @cached_property
+    def programs(self) -> tuple["Document", ...]:
+        """The programs of the document: itself, or the blocks of a Markdown text."""
+        if self.before or not is_markdown(self.uri, self.language):
+            return (self,) if self.is_program else ()
+        name = self.snapshot.filename
+        return tuple(
+            Document(
+                self.uri,
+                "scenic",
+                self.version,
+                block.text,
+                self.encoding,
+                Snapshot(block.text, f"{name}#{number}.scenic"),
+                block.lines_before,
+            )
+            for number, block in enumerate(program_blocks(_LINE_END.sub("\n", self.text)), 1)
+        )
+
+    def at(self, line: int) -> "Document":
+        """The program on a line, counted from 0 as the protocol does; else the document itself."""
+        for each in self.programs:
+            if each.before <= line < each.before + each.text.count("\n"):
+                return each
+        return self
+
+    def has_part_of(self, place: types.Range) -> bool:
+        """Return whether a range touches this document: always, but for blocks."""
+        return not self.before or (
+            place.end.line >= self.before and place.start.line < self.before + self.text.count("\n")
+        )
 
     @property
     def is_program(self) -> bool:
         """Return whether it is a Scenic program: an editor may also show us the Python modules beside it."""
-        return self.language not in _OTHERS and not self.snapshot.filename.endswith((".py", ".pyi", ".toml"))
+        return self.language not in _OTHERS and not self.snapshot.filename.endswith(
+            (".py", ".pyi", ".toml", *SUFFIXES)
+        )
 
     @property
     def line_end(self) -> str:
@@ -61,8 +98,15 @@ class Document:
             return False
 
 
-def snapshot_of(text: str, uri: str) -> Snapshot:
-    """The snapshot of a text."""
+def is_markdown(uri: str, language: str) -> bool:
+    """Return whether a document is a Markdown text, with programs in blocks."""
+    return language == "markdown" or uri.lower().endswith(SUFFIXES)
+
+
+def snapshot_of(text: str, uri: str, language: str = "scenic") -> Snapshot:
+    """The snapshot of a text; of a Markdown text, that of an empty program."""
+    if is_markdown(uri, language):
+        text = ""
     # What is no file gets a name that is none either, and that no file has.
     path = to_path(uri) or os.path.abspath(os.sep + re.sub(r"[/\\]", "_", uri))
     return Snapshot(text, path)

@@ -13,6 +13,7 @@ from pygls.capabilities import ServerCapabilitiesBuilder, get_capability
 from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 
 from scenic.configuration.project import Configurations
+from scenic.ide.remarks import Remarks
 from scenic.ide.snapshot import PythonSnapshot, Snapshot
 from scenic.language.errors import ScenicError
 from scenic.language.selection import Rules
@@ -92,6 +93,8 @@ class Session:
         self.runs = Workers("runs", idle, threads=4)
         """For work that mostly waits."""
         self.tokens = Results()
+        self.remarks: dict[str, Remarks] = {}
+        """By address: what the last run of a document says about its text."""
         self.generation = 0
         """A number that grows whenever the facts that one document implies for others may have changed."""
         self.project = Project()
@@ -148,7 +151,7 @@ class Session:
     def open(self, uri: str, language: str, version: int, text: str) -> Document:
         """Take a document, or a new version of it, into the keeping of the server."""
         self.generation += 1
-        snapshot = snapshot_of(text, uri)
+        snapshot = snapshot_of(text, uri, language)
         document = Document(uri, language, version, text, self.encoding, snapshot)
         self.documents[uri] = document
         return document
@@ -160,8 +163,10 @@ class Session:
             return False
         self.generation += 1
         self.tokens.forget(uri)
-        filename = document.snapshot.filename
-        if self._in_project.pop(filename, None) is not None:
+        self.remarks.pop(uri, None)
+        whole = document.snapshot.filename
+        for filename in [each for each in self._in_project if each == whole or each.startswith(f"{whole}#")]:
+            del self._in_project[filename]
             self.project.close(filename)
         return True
 
@@ -193,7 +198,8 @@ class Session:
 
     def project_beside(self, document: Document | None) -> Project:
         """The project, with the present texts of the open documents other than this one."""
-        for each in self.documents.values():
+        opened = [one for each in self.documents.values() for one in (each.programs or (each,))]
+        for each in opened:
             if each is document:
                 continue
             filename = each.snapshot.filename
@@ -260,9 +266,8 @@ class Session:
 
     def _opened_as(self, filename: str) -> Document | None:
         # The list is made at once, whatever the loop does to the documents meanwhile.
-        return next(
-            (each for each in list(self.documents.values()) if each.snapshot.filename == filename), None
-        )
+        opened = [one for each in list(self.documents.values()) for one in (each, *each.programs)]
+        return next((each for each in opened if each.snapshot.filename == filename), None)
 
     def workspace_edit(self, changes: Mapping[str, list[types.TextEdit]]) -> types.WorkspaceEdit:
         """Changes of documents, with their versions if the client knows of such."""

@@ -33,7 +33,7 @@ def paths(value: Any) -> list[str]:
 
 def test_the_extension_has_all_its_files() -> None:
     found = paths(manifest())
-    assert len(found) == 3
+    assert len(found) == 4
     for path in found:
         json.loads((VSCODE / path).read_text(encoding="utf-8"))
 
@@ -49,11 +49,11 @@ def test_the_extension_runs_nothing_where_nobody_is_trusted() -> None:
 
 
 def test_the_extension_uses_the_commands_of_the_server() -> None:
-    from scenic.lsp.capabilities import SAMPLE, SIMULATE
+    from scenic.lsp.capabilities import COMMANDS
 
     client = (VSCODE / "src" / "extension.ts").read_text(encoding="utf-8")
     plugin = (ROOT / "editors" / "neovim" / "lua" / "scenic" / "init.lua").read_text(encoding="utf-8")
-    for command in (SAMPLE, SIMULATE):
+    for command in COMMANDS:
         assert f'"{command}"' in client
         assert f'"{command}"' in plugin
     offered = {each["command"] for each in manifest()["contributes"]["commands"]}

@@ -473,3 +473,67 @@ def test_a_program_of_scenic_2_can_be_converted(client: Client) -> None:
     assert applied("ego = Object at 1 @ 2\nObject offset by 3 @ 4\n", change["edits"]) == (
         "ego = new Object at 1 @ 2\nnew Object at ego offset by 3 @ 4\n"
     )
+
+
+MARKDOWN = """\
+# Rooms 😀
+
+ego = 3 is no program here
+
+```scenic
+import random
+ego=new Object at (1, 2)
+x = new Object lef of ego
+```
+
+- and
+
+```scenic
+chair = new Object
+ego=new Objct left of chair
+```
+"""
+
+
+def test_programs_in_markdown(client: Client, tmp_path: Path) -> None:
+    """Each block is a program by itself, at its place in the page."""
+    client.start({**FULL, "general": {"positionEncodings": ["utf-16"]}})
+    uri = (tmp_path / "page.md").as_uri()
+    text = MARKDOWN.replace("\n", "\r\n")
+    client.open(uri, text)
+    found = {each["code"]: each["range"]["start"] for each in client.published(uri, version=1)}
+    assert found["SC118"] == {"line": 7, "character": 15}
+    assert found["SC203"] == {"line": 14, "character": 8}
+    document = {"textDocument": {"uri": uri}}
+
+    def asked(method: str, line: int, character: int) -> Any:
+        place = {"line": line, "character": character}
+        return client.request(f"textDocument/{method}", {**document, "position": place})
+
+    # What a name means is said within its block; prose has no completions.
+    (chair,) = asked("definition", 14, 24)
+    assert chair["targetUri"] == uri
+    assert chair["targetSelectionRange"]["start"] == {"line": 13, "character": 0}
+    assert asked("hover", 13, 15) is not None
+    assert asked("hover", 2, 1) is None
+    assert asked("completion", 2, 3)["items"] == []
+    assert "chair" in {each["label"] for each in asked("completion", 14, 22)["items"]}
+    assert client.request("textDocument/documentSymbol", document) == []
+    edits = client.request(
+        "textDocument/formatting", {**document, "options": {"tabSize": 4, "insertSpaces": True}}
+    )
+    normal = [{**each, "newText": each["newText"].replace("\r\n", "\n")} for each in edits]
+    # A block with a mistake of syntax stays.
+    assert applied(MARKDOWN, normal) == MARKDOWN.replace("ego=new Objct", "ego = new Objct")
+    everywhere = {"start": {"line": 0, "character": 0}, "end": {"line": 99, "character": 0}}
+    (action,) = client.request(
+        "textDocument/codeAction",
+        {**document, "range": everywhere, "context": {"diagnostics": [], "only": ["source.fixAll.scenic"]}},
+    )
+    (changed,) = action["edit"]["documentChanges"]
+    edits = [{**each, "newText": each["newText"].replace("\r\n", "\n")} for each in changed["edits"]]
+    expected = MARKDOWN.replace("import random\n", "").replace("lef of", "left of").replace("Objct", "Object")
+    assert applied(MARKDOWN, edits) == expected
+    client.change(uri, expected)
+    assert client.published(uri, version=2) == []
+    assert client.leave() == 0

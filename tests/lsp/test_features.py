@@ -122,7 +122,11 @@ def test_what_is_offered(project: Project) -> None:
         "change": 2,
         "save": {"includeText": False},
     }
-    assert project.offered["executeCommandProvider"]["commands"] == ["scenic.sample", "scenic.simulate"]
+    assert project.offered["executeCommandProvider"]["commands"] == [
+        "scenic.show",
+        "scenic.sample",
+        "scenic.simulate",
+    ]
 
 
 # Information
@@ -648,8 +652,8 @@ def test_lenses(project: Project) -> None:
     lenses = project.ask("codeLens")
     for lens, title, command in zip(
         lenses,
-        ("Sample a scene of Main", "Simulate Main"),
-        ("scenic.sample", "scenic.simulate"),
+        ("Show a scene of Main", "Sample Main", "Simulate Main"),
+        ("scenic.show", "scenic.sample", "scenic.simulate"),
         strict=True,
     ):
         arguments = [project.main, {"scenario": "Main"}]
@@ -677,6 +681,50 @@ def test_formatting(project: Project) -> None:
 
 
 # Running
+
+
+def test_a_run_leaves_shares_and_ranges(tmp_path: Path) -> None:
+    uri = (tmp_path / "room.scenic").as_uri()
+    text = "x = Range(-10, 10)\nego = new Object at (x, 0)\nrequire x > 5\nrequire (ego.x * ego.x) % 2 > 1\n"
+    refreshing = {"codeLens": {"refreshSupport": True}, "inlayHint": {"refreshSupport": True}}
+    client = Client()
+    try:
+        client.start({**FULL, "workspace": refreshing}, initializationOptions={"trusted": True})
+        client.open(uri, text)
+        document: dict[str, Any] = {"textDocument": {"uri": uri}}
+        everywhere = {
+            **document,
+            "range": {"start": {"line": 0, "character": 0}, "end": {"line": 9, "character": 0}},
+        }
+
+        def words() -> tuple[dict[int, str], list[str]]:
+            lenses = client.request("textDocument/codeLens", document)
+            hints = client.request("textDocument/inlayHint", everywhere)
+            shown = {
+                each["range"]["start"]["line"] + 1: each["command"]["title"]
+                for each in lenses
+                if not each["command"]["command"]
+            }
+            return shown, [each["label"] for each in hints if "→" in each["label"]]
+
+        assert words() == ({}, [])
+        page = client.request(
+            "workspace/executeCommand", {"command": "scenic.sample", "arguments": [uri, {"seed": 1}]}
+        )
+        assert page.count('"seed":"1"') == 9
+        for what in ("codeLens", "inlayHint"):
+            client.wait(lambda each, what=what: each.get("method") == f"workspace/{what}/refresh")  # type: ignore[misc]
+        shares, ranges = words()
+        assert shares[3] == "rejects none of 2,000 candidates, after narrowing"
+        share = int(shares[4].removeprefix("rejects ").removesuffix("% of candidates"))
+        assert 40 < share < 60  # about one half of the squares between 25 and 100
+        assert ranges == ["→ 5 to 10"]
+        client.change(uri, f"{text}# more\n")
+        assert words() == ({}, [])
+        client.change(uri, text)
+        assert words() == (shares, ranges)
+    finally:
+        client.end()
 
 
 @pytest.mark.slow

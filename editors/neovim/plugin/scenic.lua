@@ -14,9 +14,13 @@ vim.api.nvim_create_autocmd("FileType", {
   end,
 })
 
+vim.api.nvim_create_user_command("ScenicShow", function(command)
+  require("scenic").show(tonumber(command.args))
+end, { nargs = "?", desc = "Sample a scene of the program, and show it in the browser" })
+
 vim.api.nvim_create_user_command("ScenicSample", function(command)
   require("scenic").sample(tonumber(command.args))
-end, { nargs = "?", desc = "Sample a scene of the program, and show it in the browser" })
+end, { nargs = "?", desc = "Sample several scenes of the program, and show them in the browser" })
 
 vim.api.nvim_create_user_command("ScenicSimulate", function(command)
   require("scenic").simulate(tonumber(command.args))

@@ -3,7 +3,8 @@ import * as vscode from "vscode";
 import { LanguageClient, State, Trace } from "vscode-languageclient/node";
 import { ScenePanel } from "./panel";
 
-/** The server's commands that run a program, and answer with a page: of a scene, or of a simulation. */
+/** The server's commands that run a program, and answer with a page: of a scene, of several, or of a simulation. */
+const SHOW = "scenic.show";
 const SAMPLE = "scenic.sample";
 const SIMULATE = "scenic.simulate";
 
@@ -14,7 +15,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   context.subscriptions.push(
     panel,
     vscode.commands.registerCommand("scenic.restart", () => restart(panel)),
-    vscode.commands.registerCommand("scenic.preview", () => run(SAMPLE, "Sampling a scene")),
+    vscode.commands.registerCommand("scenic.preview", () => run(SHOW, "Sampling a scene")),
     vscode.commands.registerCommand("scenic.play", () => run(SIMULATE, "Simulating")),
     vscode.workspace.onDidGrantWorkspaceTrust(() =>
       client?.sendNotification("workspace/didChangeConfiguration", { settings: { scenic: settings() } }),
@@ -47,13 +48,14 @@ async function start(panel: ScenePanel): Promise<void> {
     "Scenic",
     { command, args },
     {
-      documentSelector: [{ language: "scenic" }],
+      // Of Markdown files the server reads the blocks of ```scenic.
+      documentSelector: [{ language: "scenic" }, { language: "markdown" }],
       initializationOptions: settings,
       middleware: {
         // What comes back is a page: commands of the server have no other place to show it.
         executeCommand: async (name, given, next) => {
           const answer: unknown = await next(name, given);
-          if ((name === SAMPLE || name === SIMULATE) && typeof answer === "string") {
+          if ([SHOW, SAMPLE, SIMULATE].includes(name) && typeof answer === "string") {
             panel.show(answer, title(name, given[0]));
           }
           return answer;
@@ -105,7 +107,7 @@ async function run(command: string, doing: string): Promise<void> {
 
 /** The name of the program that an argument of the server's command tells of. */
 function title(command: string, argument: unknown): string {
-  const what = command === SIMULATE ? "Simulation" : "Scene";
+  const what = command === SIMULATE ? "Simulation" : command === SAMPLE ? "Scenes" : "Scene";
   const uri = typeof argument === "string" ? argument : (argument as { uri?: string } | undefined)?.uri;
   return uri === undefined ? what : `${what} of ${uri.slice(uri.lastIndexOf("/") + 1)}`;
 }

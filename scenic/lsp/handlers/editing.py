@@ -34,31 +34,44 @@ _INLINE: Final = types.CodeActionKind.RefactorInline
 
 def _actions(session: Session, params: types.CodeActionParams) -> list[types.CodeAction]:
     """Return the repairs at a place, and on request also the repairs of the whole document."""
-    document = session.document(params.text_document.uri)
-    span = document.lines.from_range(params.range)
+    whole = session.document(params.text_document.uri)
     only = params.context.only or ()
-    _, rules = session.rules(document.snapshot.filename)
-    found = found_in(document.snapshot, rules, session.project_beside(document), stamp=session.generation)
-    actions: list[types.CodeAction] = []
-    if _wanted(_QUICK_FIX, only):
-        actions += _quick_fixes(session, document, found, span)
-        for item, edit in ignoring(document.snapshot, found, span):
-            title = f"Silence {item.code} on this line"
-            actions.append(_action(session, document, title, _QUICK_FIX, [edit], item))
-        if is_old(found):
-            actions += _of_document(session, document, _QUICK_FIX, "Convert this program to Scenic 3")
-    if _wanted(_EXTRACT, only):
-        actions += _refactoring(session, document, _EXTRACT, extract_variable(document.snapshot, span))
-    if _wanted(_INLINE, only):
-        inlined = inline_variable(document.snapshot, span.line, span.column)
-        actions += _refactoring(session, document, _INLINE, inlined)
+    _, rules = session.rules(whole.snapshot.filename)
+    project = session.project_beside(whole)
     # An editor asks with each move of the cursor what is offered there.
     automatic = params.context.trigger_kind is types.CodeActionTriggerKind.Automatic and not only
-    if not automatic and _wanted(FIX_ALL, only) and can_repair_all(found):
-        actions += _of_document(session, document, FIX_ALL, "Make all repairs of scenic")
-    if not automatic and _wanted(ORGANIZE, only) and can_organize(document.snapshot, found):
-        actions += _of_document(session, document, ORGANIZE, "Organize imports")
+    actions: list[types.CodeAction] = []
+    repairable = False
+    for document in whole.programs:
+        if not document.has_part_of(params.range):
+            continue
+        span = document.lines.from_range(params.range)
+        found = found_in(document.snapshot, rules, project, stamp=session.generation)
+        repairable |= can_repair_all(found)
+        actions += _at_place(session, document, found, span, only)
+        if not automatic and _wanted(ORGANIZE, only) and can_organize(document.snapshot, found):
+            actions += _of_document(session, document, ORGANIZE, "Organize imports")
+    if not automatic and _wanted(FIX_ALL, only) and repairable:
+        actions += _of_document(session, whole, FIX_ALL, "Make all repairs of scenic")
     return actions
+
+
+def _at_place(
+    session: Session, document: Document, found: Sequence[Diagnostic], span: Span, only: Sequence[str]
+) -> Iterator[types.CodeAction]:
+    """Repairs and refactorings of a part of a program."""
+    if _wanted(_QUICK_FIX, only):
+        yield from _quick_fixes(session, document, found, span)
+        for item, edit in ignoring(document.snapshot, found, span):
+            title = f"Silence {item.code} on this line"
+            yield _action(session, document, title, _QUICK_FIX, [edit], item)
+        if is_old(found):
+            yield from _of_document(session, document, _QUICK_FIX, "Convert this program to Scenic 3")
+    if _wanted(_EXTRACT, only):
+        yield from _refactoring(session, document, _EXTRACT, extract_variable(document.snapshot, span))
+    if _wanted(_INLINE, only):
+        inlined = inline_variable(document.snapshot, span.line, span.column)
+        yield from _refactoring(session, document, _INLINE, inlined)
 
 
 def _refactoring(
@@ -88,13 +101,26 @@ def _of_document(session: Session, document: Document, kind: str, title: str) ->
     """An action on the whole document; its changes are worked out when it is chosen, if the client can wait."""
     can_wait = "edit" in session.lists("text_document.code_action.resolve_support.properties")
     if can_wait and session.can("text_document.code_action.data_support"):
-        data = {"uri": document.uri, "version": document.version, "kind": kind}
+        data = {"uri": document.uri, "version": document.version, "kind": kind, "line": document.before}
         return [types.CodeAction(title, kind, data=data)]
-    edit = _edit_of_document(session, document, kind)
-    return [] if edit is None else [_action(session, document, title, kind, [edit])]
+    edits = _edits_of_document(session, document, kind)
+    return (
+        [types.CodeAction(title, kind, edit=session.workspace_edit({document.uri: edits}))] if edits else []
+    )
 
 
-def _edit_of_document(session: Session, document: Document, kind: str) -> Edit | None:
+def _edits_of_document(session: Session, document: Document, kind: str) -> list[types.TextEdit]:
+    """Return the changes that an action makes to the whole document, one for each of its programs."""
+    edits = [(each, _edit_of_program(session, each, kind)) for each in document.programs]
+    return [
+        change
+        for each, edit in edits
+        if edit is not None
+        for change in each.lines.to_edits([edit], document.line_end)
+    ]
+
+
+def _edit_of_program(session: Session, document: Document, kind: str) -> Edit | None:
     """Return the change that an action makes to the whole document, computed once for each version."""
     snapshot = document.snapshot
     _, rules = session.rules(snapshot.filename)
@@ -116,12 +142,13 @@ def _resolve_action(session: Session, action: types.CodeAction) -> types.CodeAct
     uri = data.get("uri")
     if not isinstance(uri, str) or action.edit is not None:
         return action
-    document = session.document(uri)
+    line = data.get("line")
+    document = session.document(uri).at(line if isinstance(line, int) else 0)
     if document.version != data.get("version"):
         raise JsonRpcException("the document has changed", types.LSPErrorCodes.ContentModified)
-    edit = _edit_of_document(session, document, str(data.get("kind")))
-    if edit is not None:
-        action.edit = _changes(session, document, [edit])
+    edits = _edits_of_document(session, document, str(data.get("kind")))
+    if edits:
+        action.edit = session.workspace_edit({document.uri: edits})
     return action
 
 
@@ -154,20 +181,29 @@ def _wanted(kind: str, only: Sequence[str]) -> bool:
 
 def _format(session: Session, params: types.DocumentFormattingParams) -> list[types.TextEdit]:
     document = session.document(params.text_document.uri)
-    return document.lines.to_edits(formatting(document.snapshot), document.line_end)
+    return [
+        edit
+        for each in document.programs
+        for edit in each.lines.to_edits(formatting(each.snapshot), document.line_end)
+    ]
 
 
 def _format_range(session: Session, params: types.DocumentRangeFormattingParams) -> list[types.TextEdit]:
-    document = session.document(params.text_document.uri)
-    edits = formatting(document.snapshot, _lines(document, params.range))
-    return document.lines.to_edits(edits, document.line_end)
+    return _format_parts(session, params.text_document.uri, [params.range])
 
 
 def _format_ranges(session: Session, params: types.DocumentRangesFormattingParams) -> list[types.TextEdit]:
-    document = session.document(params.text_document.uri)
-    ranges = [_lines(document, each) for each in params.ranges]
-    edits = formatting(document.snapshot, *ranges) if ranges else ()
-    return document.lines.to_edits(edits, document.line_end)
+    return _format_parts(session, params.text_document.uri, params.ranges)
+
+
+def _format_parts(session: Session, uri: str, ranges: Sequence[types.Range]) -> list[types.TextEdit]:
+    document = session.document(uri)
+    edits: list[types.TextEdit] = []
+    for each in document.programs:
+        lines = [_lines(each, one) for one in ranges if each.has_part_of(one)]
+        changes = formatting(each.snapshot, *lines) if lines else ()
+        edits += each.lines.to_edits(changes, document.line_end)
+    return edits
 
 
 def _lines(document: Document, place: types.Range) -> tuple[int, int]:

@@ -9,7 +9,8 @@ from scenic.ide.inlay_hints import HintKind, hints
 from scenic.ide.inline_values import inline_values
 from scenic.ide.lenses import lenses
 from scenic.ide.links import links
-from scenic.lsp.capabilities import SAMPLE, SIMULATE
+from scenic.ide.remarks import shares
+from scenic.lsp.capabilities import SAMPLE, SHOW, SIMULATE
 from scenic.lsp.session import Session
 from scenic.lsp.uris import to_uri
 
@@ -22,7 +23,6 @@ _KINDS: Final = {
 
 
 def _inlay_hints(session: Session, params: types.InlayHintParams) -> list[types.InlayHint]:
-    document = session.document(params.text_document.uri)
     later = "tooltip" in session.lists("text_document.inlay_hint.resolve_support.properties")
     return [
         types.InlayHint(
@@ -34,7 +34,10 @@ def _inlay_hints(session: Session, params: types.InlayHintParams) -> list[types.
             tooltip=None if later else hint.tooltip,
             data={"tooltip": hint.tooltip} if later else None,
         )
-        for hint in hints(document.snapshot, document.lines.from_range(params.range))
+        for document in session.document(params.text_document.uri).programs
+        for hint in hints(
+            document.snapshot, document.lines.from_range(params.range), session.remarks.get(document.uri)
+        )
     ]
 
 
@@ -64,28 +67,40 @@ def _lenses(session: Session, params: types.CodeLensParams) -> list[types.CodeLe
     document = session.document(params.text_document.uri)
     found = []
     for lens in lenses(document.snapshot):
-        for simulates in (False, True) if lens.simulates else (False,):
-            data = {"uri": document.uri, "scenario": lens.scenario, "simulates": simulates}
-            command = _command(document.uri, lens.scenario, simulates=simulates)
-            found.append(types.CodeLens(document.lines.to_range(lens.span), command, data))
+        for command in (SHOW, SAMPLE, SIMULATE) if lens.simulates else (SHOW, SAMPLE):
+            data = {"uri": document.uri, "scenario": lens.scenario, "command": command}
+            shown = _command(document.uri, lens.scenario, command)
+            found.append(types.CodeLens(document.lines.to_range(lens.span), shown, data))
+    remarks = session.remarks.get(document.uri)
+    # An editor shows a command without a name as words that cannot be clicked.
+    found += [
+        types.CodeLens(document.lines.to_range(share.span), types.Command(share.words, ""))
+        for share in (() if remarks is None else shares(document.snapshot, remarks))
+    ]
     return found
 
 
 def _resolve_lens(_session: Session, lens: types.CodeLens) -> types.CodeLens:
     data: dict[str, Any] = lens.data if isinstance(lens.data, dict) else {}
-    uri, scenario = data.get("uri"), data.get("scenario")
-    if isinstance(uri, str):
-        chosen = scenario if isinstance(scenario, str) else None
-        lens.command = _command(uri, chosen, simulates=data.get("simulates") is True)
+    uri, scenario, command = data.get("uri"), data.get("scenario"), data.get("command")
+    if isinstance(uri, str) and command in _TITLES:
+        lens.command = _command(uri, scenario if isinstance(scenario, str) else None, command)
     return lens
 
 
-def _command(uri: str, scenario: str | None, *, simulates: bool) -> types.Command:
-    title = "Simulate" if simulates else "Sample a scene"
-    if scenario is not None:
-        title += f" {scenario}" if simulates else f" of {scenario}"
-    options = {} if scenario is None else {"scenario": scenario}
-    return types.Command(title, SIMULATE if simulates else SAMPLE, arguments=[uri, options])
+_TITLES: Final = {
+    SHOW: ("Show a scene", "Show a scene of {}"),
+    SAMPLE: ("Sample", "Sample {}"),
+    SIMULATE: ("Simulate", "Simulate {}"),
+}
+"""The words of the commands: for the program, and for one of its scenarios."""
+
+
+def _command(uri: str, scenario: str | None, command: str) -> types.Command:
+    plain, named = _TITLES[command]
+    if scenario is None:
+        return types.Command(plain, command, arguments=[uri, {}])
+    return types.Command(named.format(scenario), command, arguments=[uri, {"scenario": scenario}])
 
 
 def _links(session: Session, params: types.DocumentLinkParams) -> list[types.DocumentLink]:
@@ -104,12 +119,12 @@ def _resolve_link(_session: Session, link: types.DocumentLink) -> types.Document
 
 
 def _colors(session: Session, params: types.DocumentColorParams) -> list[types.ColorInformation]:
-    document = session.document(params.text_document.uri)
     return [
         types.ColorInformation(
             document.lines.to_range(each.span),
             types.Color(each.red, each.green, each.blue, each.opacity),
         )
+        for document in session.document(params.text_document.uri).programs
         for each in colors(document.snapshot)
     ]
 

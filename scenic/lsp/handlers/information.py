@@ -40,8 +40,8 @@ class Placed(Protocol):
 
 
 def place_of(session: Session, params: Placed) -> tuple[Document, int, int]:
-    """The document that a request is about, and the line and column in it."""
-    document = session.document(params.text_document.uri)
+    """The document that a request is about, or its block, and the line and column in it."""
+    document = session.document(params.text_document.uri).at(params.position.line)
     return document, *document.lines.from_position(params.position)
 
 
@@ -66,7 +66,7 @@ def _hover(session: Session, params: types.HoverParams) -> types.Hover | None:
 def _completion(session: Session, params: types.CompletionParams) -> types.CompletionList:
     document, line, column = place_of(session, params)
     typed = None if params.context is None else params.context.trigger_character
-    if typed == " " and not must_follow(document.snapshot, line, column):
+    if not document.programs or (typed == " " and not must_follow(document.snapshot, line, column)):
         return types.CompletionList(is_incomplete=False, items=[])
     found = completions(session.project_with(document), document.snapshot, line, column)
     snippets = session.can("text_document.completion.completion_item.snippet_support")

@@ -1,5 +1,6 @@
 """The commands that run a program. Only the user can give them, and only where the user trusts the programs."""
 
+import asyncio
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -8,8 +9,9 @@ from typing import Any, Final
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 
-from scenic.ide.running import RunError, sample_page, simulation_page
-from scenic.lsp.capabilities import COMMANDS, SIMULATE
+from scenic.ide.remarks import Remarks
+from scenic.ide.running import RunError, run_remarks, sample_page, simulation_page
+from scenic.lsp.capabilities import COMMANDS, SAMPLE, SIMULATE
 from scenic.lsp.documents import Document
 from scenic.lsp.progress import Progress
 from scenic.lsp.session import Session
@@ -18,6 +20,10 @@ from scenic.lsp.workers import GoOn
 __all__ = ["HANDLERS"]
 
 _RUN: Final = "Run it"
+_REMARKED: Final = ("code_lens", "inlay_hint")
+"""Features that show what a run says."""
+_SAMPLED: Final = 9
+"""Scenes of a page that shows several."""
 _INTERVAL: Final = 0.1
 _REFUSED: Final = (
     "programs are not run in a workspace that is not trusted: start the server with the initialization option "
@@ -38,27 +44,58 @@ def _execute(session: Session, params: types.ExecuteCommandParams) -> Future[str
     simulates = params.command == SIMULATE
     if simulates and not document.is_saved():
         raise _failed("save the program first: its file is what is simulated")
-    title = "Simulating" if simulates else "Sampling a scene"
+    title = "Simulating" if simulates else "Sampling"
     progress = Progress(session, params.work_done_token, title)
     allowed = _permission(session, document)
+    loop = asyncio.get_running_loop()
+    name, seed = options.get("scenario"), options.get("seed")
+    scenario = name if isinstance(name, str) else None
+    seed = seed if isinstance(seed, int) else 0
+    snapshot = document.snapshot
+    count = _SAMPLED if params.command == SAMPLE else 1
 
     def work(go_on: GoOn) -> str:
         allowed(go_on)
-        name, seed = options.get("scenario"), options.get("seed")
-        scenario = name if isinstance(name, str) else None
-        seed = seed if isinstance(seed, int) else 0
-        snapshot = document.snapshot
-        with progress:
-            try:
+        try:
+            with progress:
                 if simulates:
-                    return simulation_page(snapshot.filename, scenario=scenario, seed=seed, go_on=go_on)
-                return sample_page(
-                    snapshot.text, snapshot.filename, scenario=scenario, seed=seed, go_on=go_on
-                )
-            except RunError as error:
-                raise _failed(str(error)) from None
+                    page = simulation_page(snapshot.filename, scenario=scenario, seed=seed, go_on=go_on)
+                else:
+                    page = sample_page(
+                        snapshot.text,
+                        snapshot.filename,
+                        scenario=scenario,
+                        seed=seed,
+                        count=count,
+                        go_on=go_on,
+                    )
+        except RunError as error:
+            if error.is_rejected:
+                loop.call_soon_threadsafe(_remark, session, document, scenario)
+            raise _failed(str(error)) from None
+        loop.call_soon_threadsafe(_remark, session, document, scenario)
+        return page
 
     return session.work(work, token=params.work_done_token, workers=session.runs)
+
+
+def _remark(session: Session, document: Document, scenario: str | None) -> None:
+    """Find out, beside the loop, what a program that has just run says about its lines; then have the client ask for it."""
+    if not any(session.can(f"workspace.{what}.refresh_support") for what in _REMARKED):
+        return  # Nobody would ask.
+    loop, snapshot = asyncio.get_running_loop(), document.snapshot
+
+    def keep(done: Future[Remarks]) -> None:
+        if document.uri in session.documents and not done.cancelled() and done.exception() is None:
+            session.remarks[document.uri] = done.result()
+            session.have_asked_again(*_REMARKED)
+
+    work = session.work(
+        lambda go_on: run_remarks(snapshot.text, snapshot.filename, scenario=scenario, go_on=go_on),
+        document=document.uri,
+        workers=session.runs,
+    )
+    work.add_done_callback(lambda done: loop.call_soon_threadsafe(keep, done))
 
 
 def _permission(session: Session, document: Document) -> Callable[[GoOn], None]:

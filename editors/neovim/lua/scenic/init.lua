@@ -5,7 +5,7 @@ local M = {}
 M.config = {
   --- How the server is started.
   cmd = { "scenic", "lsp" },
-  --- Whether `:ScenicSample` and `:ScenicSimulate` may run programs; the server asks if this is nil.
+  --- Whether `:ScenicShow`, `:ScenicSample` and `:ScenicSimulate` may run programs; the server asks if this is nil.
   trusted = nil,
   --- Called with client and buffer when the server serves a buffer: the place for mappings.
   on_attach = nil,
@@ -113,8 +113,13 @@ local function run_present(command, seed, show)
   run(buffer, command, { vim.uri_from_bufnr(buffer), { seed = seed or vim.fn.rand() % 1000000 } }, show)
 end
 
---- Run the program of the present buffer, and show a scene of it in the browser.
+--- Run the program of the present buffer, and show one scene of it in the browser.
 --- `show` is called with the page's path instead, if it is given.
+function M.show(seed, show)
+  run_present("scenic.show", seed, show)
+end
+
+--- The same with several scenes.
 function M.sample(seed, show)
   run_present("scenic.sample", seed, show)
 end
@@ -127,7 +132,7 @@ end
 
 --- What is run from a lens is shown too.
 if vim.lsp.commands then
-  for _, name in ipairs { "scenic.sample", "scenic.simulate" } do
+  for _, name in ipairs { "scenic.show", "scenic.sample", "scenic.simulate" } do
     vim.lsp.commands[name] = function(command, context)
       run(context.bufnr or vim.api.nvim_get_current_buf(), command.command, command.arguments)
     end
