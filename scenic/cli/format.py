@@ -8,10 +8,10 @@ import click
 
 from scenic.cli.discovery import STANDARD_INPUT, discover
 from scenic.cli.output import FINDINGS, exit_code, show_diagnostics
-from scenic.compiler.markdown import SUFFIXES
 from scenic.configuration.project import Configurations
 from scenic.formats.files import write
-from scenic.ide.formatting import format_blocks, format_text
+from scenic.ide.formatting import format_text
+from scenic.ide.markdown import format_blocks, is_markdown
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import ScenicError
 from scenic.language.source import Source, read_source
@@ -53,8 +53,7 @@ def format_command(paths: tuple[str, ...], check: bool, diff: bool, stdin_filena
         except ScenicError as error:
             problems.append(error.diagnostic())
             continue
-        is_markdown = source.filename.lower().endswith(SUFFIXES)
-        result = (format_blocks if is_markdown else format_text)(source.text)
+        result = (format_blocks if is_markdown(source.filename) else format_text)(source.text)
         if result is None:
             problems.append(_mistaken(source.filename))
             if name == STANDARD_INPUT and not (check or diff):

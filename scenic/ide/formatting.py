@@ -21,7 +21,6 @@ from typing import Any, Final
 from scenic.compiler.generated import WORDS
 from scenic.compiler.lexer import lex
 from scenic.compiler.lines import measure
-from scenic.compiler.markdown import with_blocks
 from scenic.compiler.parser import parse, parse_lexed
 from scenic.compiler.scopes import ScopeKind
 from scenic.compiler.tokens import DEDENT, ENDMARKER, FSTRING_MIDDLE, INDENT, NEWLINE, STRING, Tokens
@@ -33,7 +32,7 @@ from scenic.ide.spacing import Lexeme, lexemes, needless_pairs, spaced
 from scenic.language.diagnostics import Edit
 from scenic.language.spans import Span
 
-__all__ = ["format_blocks", "format_text", "formatting"]
+__all__ = ["format_text", "formatting"]
 
 _INDENTATION: Final = "    "
 _DEFINITION: Final = re.compile(r"@|(?:class|(?:async )?def|behavior|monitor|scenario) *\w")
@@ -182,11 +181,6 @@ def _said(line: str) -> str:
 def format_text(text: str) -> str | None:
     r"""A program in the usual style; ``None`` if it has mistakes of syntax. ``text`` has ``\n`` at each line end."""
     return _formatted(Snapshot(text, "<text>"))
-
-
-def format_blocks(text: str) -> str:
-    """A Markdown text with its programs in the usual style; those with mistakes of syntax stay as they are."""
-    return with_blocks(text, format_text)
 
 
 def _formatted(snapshot: Snapshot) -> str | None:

@@ -8,18 +8,19 @@ from typing import Final
 
 from lsprotocol import types
 
-from scenic.compiler.markdown import SUFFIXES, program_blocks
 from scenic.dataclass import dataclass
+from scenic.ide.markdown import is_markdown, program_blocks
 from scenic.ide.snapshot import Snapshot
 from scenic.language.errors import ScenicError
 from scenic.language.source import read_source
 from scenic.lsp.convert import Encoding, Lines, units
 from scenic.lsp.uris import to_path
 
-__all__ = ["Document", "changed", "is_markdown", "snapshot_of"]
+__all__ = ["Document", "changed", "snapshot_of"]
 
 _LINE_END: Final = re.compile(r"\r\n|\n|\r")
 _OTHERS: Final = frozenset({"python", "toml", "markdown"})
+"""Languages of documents that are no programs, or contain them."""
 _MARK: Final = "\ufeff"
 
 
@@ -80,9 +81,8 @@ class Document:
     @property
     def is_program(self) -> bool:
         """Return whether it is a Scenic program: an editor may also show us the Python modules beside it."""
-        return self.language not in _OTHERS and not self.snapshot.filename.endswith(
-            (".py", ".pyi", ".toml", *SUFFIXES)
-        )
+        name = self.snapshot.filename
+        return not (self.language in _OTHERS or name.endswith((".py", ".pyi", ".toml")) or is_markdown(name))
 
     @property
     def line_end(self) -> str:
@@ -96,11 +96,6 @@ class Document:
             return read_source(self.snapshot.filename).text == self.snapshot.text
         except ScenicError:
             return False
-
-
-def is_markdown(uri: str, language: str) -> bool:
-    """Return whether a document is a Markdown text, with programs in blocks."""
-    return language == "markdown" or uri.lower().endswith(SUFFIXES)
 
 
 def snapshot_of(text: str, uri: str, language: str = "scenic") -> Snapshot:

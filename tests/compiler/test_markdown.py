@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scenic.compiler.markdown import check_blocks, program_blocks, repair_blocks, with_blocks
-from scenic.ide.formatting import format_blocks
+from scenic.ide.markdown import format_blocks
 
 PAGE = """# A page
 
