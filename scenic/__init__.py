@@ -27,6 +27,7 @@ from scenic.language.names import SENSORS
 
 if TYPE_CHECKING:
     from scenic.compiler.parser import ParseResult, parse
+    from scenic.estimation.estimating import estimate
     from scenic.falsification.search import falsify
     from scenic.formats.reading import read_scenes
     from scenic.formats.trajectory_reading import read_trajectory
@@ -65,6 +66,7 @@ _HOMES = MappingProxyType(
         "SpecifierError": "scenic.language.errors",
         "analyze": "scenic.pipeline",
         "bounded": "scenic.runtime.python.bounded",
+        "estimate": "scenic.estimation.estimating",
         "falsify": "scenic.falsification.search",
         "load_ipython_extension": "scenic.notebook",
         "load": "scenic.pipeline",
@@ -101,6 +103,7 @@ __all__ = [
     "SpecifierError",
     "analyze",
     "bounded",
+    "estimate",
     "falsify",
     "load",
     "parse",

@@ -24,6 +24,16 @@ LAYERS = {
     "batch": {"simulators", "formats", "runtime", "graph", "language"},
     "statistics": set(),
     "falsification": {"batch", "simulators", "formats", "runtime", "graph", "language", "statistics"},
+    "estimation": {
+        "falsification",
+        "batch",
+        "simulators",
+        "formats",
+        "runtime",
+        "graph",
+        "language",
+        "statistics",
+    },
     "configuration": {"language"},
     "project": {"language", "compiler", "configuration", "formats"},  # of formats, the reader of maps alone
     "migration": {"compiler", "language", "project", "formats"},  # of formats, the writing of files alone
@@ -42,6 +52,7 @@ LAYERS = {
         "assessment",
         "domains",
         "batch",
+        "estimation",
         "falsification",
         "statistics",
         "formats",

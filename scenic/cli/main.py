@@ -50,6 +50,7 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
         "map": ("scenic.cli.map", "map_command", "Show the contents of a road map, or draw it."),
         "simulate": ("scenic.cli.simulate", "simulate", "Simulate scenes of a program."),
         "falsify": ("scenic.cli.falsify", "falsify", "Search for scenes and simulations that fail."),
+        "estimate": ("scenic.cli.estimate", "estimate", "Estimate how probable failures are."),
         "replay": ("scenic.cli.replay", "replay", "Repeat a saved run, and compare it."),
         "doctor": ("scenic.cli.doctor", "doctor", "Check whether this installation is complete."),
         "cache": ("scenic.cli.cache", "cache", "Inspect or empty the cache."),
@@ -69,7 +70,7 @@ _GROUPS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
     {
         "Write programs": ("new", "check", "try", "format", "migrate", "explain", "playground", "lsp", "mcp"),
         "Make scenes": ("sample", "analyze", "view", "dataset", "map"),
-        "Run simulations": ("simulate", "falsify", "replay"),
+        "Run simulations": ("simulate", "falsify", "estimate", "replay"),
         "Inspect the tools": ("doctor", "cache", "completion", "ast", "python"),
     }
 )

@@ -1,7 +1,7 @@
 """One run of a search: a scene of a point, its simulation, its value."""
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -15,17 +15,48 @@ from scenic.falsification.space import Floats, Space
 from scenic.falsification.store import number
 from scenic.formats.files import OutputError, make_folder, refusing, write
 from scenic.formats.trajectories import course_document
+from scenic.language.errors import Located
 from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS
 from scenic.runtime.scenes.scene import Scene
 
 if TYPE_CHECKING:
+    from scenic.batch.engines import Engine
     from scenic.batch.simulations import Simulations
     from scenic.runtime.scenes.scenario import Scenario
 
-__all__ = ["Evaluation", "Task"]
+__all__ = ["Evaluation", "Failures", "SearchError", "Task", "checked", "evaluated"]
+
+_FAILURES: Final = 10
+"""Failing runs in a row that end a batch of runs."""
+
+_SPREAD: Final = 256
+"""Runs that are begun before the oldest of them is finished, at most."""
 
 _ATTEMPTS: Final = 1000
 """Number of candidates tried for one point of external parameters, with new values of the other draws each time."""
+
+
+class SearchError(Located):
+    """The error for runs that cannot continue."""
+
+    code = "SC503"
+
+
+class Failures:
+    """Counts failing runs in a row; raises `SearchError` when there are ten."""
+
+    def __init__(self) -> None:
+        self._count = 0
+
+    def note(self, row: Mapping[str, Any]) -> None:
+        """The next run."""
+        self._count = self._count + 1 if row["status"] == "failed" else 0
+        if self._count == _FAILURES:
+            raise SearchError(
+                f"{_FAILURES} runs in a row failed; the last one: {row['error']}",
+                help="mend the program or the simulator; finished runs are kept, and --resume goes on",
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +94,9 @@ class Evaluation:
 
     @property
     def attempts(self) -> int:
-        """Candidates tried for one point."""
+        """Candidates tried for one point; as many as for any scene if nothing of it is chosen."""
+        if not self.space.coordinates:
+            return DEFAULT_ATTEMPTS
         searched = {item.address for item in self.space.coordinates}
         return 1 if all(axis.address in searched for axis in self.scenario.axes) else _ATTEMPTS
 
@@ -182,3 +215,39 @@ class Evaluation:
 
 def _plain(value: object) -> Any:
     return number(value) if isinstance(value, float) else value
+
+
+def checked(row: dict[str, Any]) -> dict[str, Any]:
+    """A row, unless it says why the runs cannot go on; raises `ObjectiveError` or ``OutputError``."""
+    if row["status"] == "objective":
+        raise ObjectiveError(row["error"], help=row["help"])
+    if row["status"] == "unwritable":
+        raise OutputError(
+            row["error"], help=row["help"] or "make room; finished runs are kept, and --resume goes on"
+        )
+    return row
+
+
+def evaluated(
+    evaluation: Evaluation, tasks: Iterable[Task], engine: "Engine | None"
+) -> Generator[dict[str, Any]]:
+    """The rows of runs in order, each as soon as it and those before it are there."""
+    if engine is None:
+        yield from map(checked, map(evaluation, tasks))
+        return
+    waiting: dict[int, dict[str, Any]] = {}
+    due = 0
+    for place, row in engine.run(evaluation, tasks, lost=_lost, spread=_SPREAD):
+        waiting[place] = row
+        while due in waiting:
+            yield checked(waiting.pop(due))
+            due += 1
+
+
+def _lost(task: Task, code: int) -> dict[str, Any]:
+    return {
+        "run": task.run,
+        "status": "failed",
+        "values": None,
+        "error": f"its process died (exit code {code})",
+    }

@@ -37,6 +37,9 @@ _NAMES: Final[Mapping[str, Any]] = MappingProxyType(
 )
 """Names that an expression may use beside records and parameters."""
 
+_LEAST: Final = math.ulp(0.0)
+"""The least number above 0."""
+
 
 @dataclass(frozen=True)
 class Objective:
@@ -46,24 +49,30 @@ class Objective:
         name: of a requirement (its label, or ``line 3``), of a ``record final``, or, of scenes, of a parameter.
         expression: over records, as lists of their values, or of scenes over parameters, ``ego`` and ``objects``.
         function: called with the result of a simulation, or with a scene.
+        is_verdict: whether the value of a requirement is 0 or less exactly where it is violated; then a requirement that a
+            simulation never evaluates has the value infinity.
 
     """
 
     name: str | None = None
     expression: str | None = None
     function: Callable[[Any], float] | None = None
+    is_verdict: bool = False
 
     @property
     def label(self) -> str:
         """The name of the objective in reports."""
         if self.function is not None:
             return getattr(self.function, "__name__", "function")
-        return self.expression or self.name or "robustness"
+        return self.expression or self.name or ("requirements" if self.is_verdict else "robustness")
 
     def of_simulation(self, result: Any, params: Mapping[str, object]) -> float:
         """The value of a simulation's result; raises `ObjectiveError`."""
         if self.function is not None:
             return _number(self.function(result), self.label)
+        if self.is_verdict:
+            wanted = (item for item in result.requirements if self.name is None or self._means(item))
+            return min((_by_verdict(item) for item in wanted if item.verdict is not None), default=math.inf)
         records = {name: _values(value) for name, value in result.records.items()}
         if self.expression is not None:
             return self._evaluated({**params, **records})
@@ -76,7 +85,7 @@ class Objective:
                 )
             return min(float(item.robustness) for item in outcomes)
         for item in outcomes:
-            if self.name in (item.label, f"line {item.line}"):
+            if self._means(item):
                 return float(item.robustness)
         if self.name in records:
             return _number(records[self.name], self.name)
@@ -87,6 +96,10 @@ class Objective:
             )
         known = [*(item.label for item in outcomes), *records]
         raise _unknown(self.name, known, "is neither a requirement nor recorded", "record ... as {}")
+
+    def _means(self, outcome: Any) -> bool:
+        """Return whether the objective names a requirement."""
+        return self.name in (outcome.label, f"line {outcome.line}")
 
     def of_scene(self, scene: Scene) -> float:
         """The value of a scene; raises `ObjectiveError`."""
@@ -118,6 +131,14 @@ class Objective:
                 f"the objective `{self.expression}` fails: {type(error).__name__}: {error}",
                 help="it is Python over records (lists of values) and parameters",
             ) from error
+
+
+def _by_verdict(outcome: Any) -> float:
+    """The robustness of a requirement, with the sign of its verdict also where it is 0 or unknown."""
+    value = math.nan if outcome.robustness is None else float(outcome.robustness)
+    if outcome.verdict:
+        return max(value, _LEAST) if value == value else math.inf
+    return min(value, 0.0) if value == value else -math.inf
 
 
 def _unknown(name: str, known: Sequence[str], words: str, added: str) -> ObjectiveError:

@@ -15,7 +15,7 @@ from scenic.falsification.comparing import file_departures, row_departures
 from scenic.falsification.evaluating import Evaluation, Task
 from scenic.falsification.objectives import Objective, ObjectiveError
 from scenic.falsification.space import space_of
-from scenic.falsification.store import folders_of, is_search, manifest_of, read_rows
+from scenic.falsification.store import folders_of, kind_of, read_rows
 from scenic.language.errors import Located, MissingFileError
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def kept_run(path: Path, number: int | None = None, *, worst: int | None = None)
     """The run at a path.
 
     Args:
-        path: the folder of a search, of one of its counterexamples, or of simulations; or the file of a simulation.
+        path: the folder of a search or an estimate, of one of its counterexamples, or of simulations; or the file of a simulation.
         number: which run of the folder; by default the worst of a search, and the first of simulations.
         worst: the run's place among those of a search, from 1 for the run of the least value.
 
@@ -97,11 +97,11 @@ def kept_run(path: Path, number: int | None = None, *, worst: int | None = None)
     """
     if not path.exists():
         raise MissingFileError(f"cannot read '{path}': there is no such file or folder")
-    searched = path.is_dir() and is_search(path)
+    searched = path.is_dir() and kind_of(path) is not None
     if worst is not None and not searched:
         raise ReplayError(
-            f"'{path}' is no folder of a search, so that none of its runs is the worst",
-            help="name the folder that `scenic falsify -o` has written, or a run by its number",
+            f"'{path}' is no folder of a search or an estimate, so that none of its runs is the worst",
+            help="name the folder that `scenic falsify -o` or `scenic estimate -o` has written, or a run by its number",
         )
     if path.is_file():
         return _simulation(path)
@@ -118,21 +118,25 @@ def kept_run(path: Path, number: int | None = None, *, worst: int | None = None)
     if not wanted:
         raise ReplayError(
             f"'{path}' holds no run" if number is None else f"'{path}' holds no run {number}",
-            help="name a folder that `scenic falsify -o` or `scenic simulate -o` has written, or a file in it",
+            help="name a folder that `scenic falsify -o`, `scenic estimate -o` or `scenic simulate -o` has written, or a file in it",
         )
     return _simulation(wanted[0])
 
 
 def _searched(folder: Path, number: int | None, worst: int | None) -> KeptRun:
-    manifest = manifest_of(folder)
-    rows = {row["run"]: row for row in read_rows(folder)}
+    kind = kind_of(folder)
+    if kind is None:
+        raise ReplayError(f"'{folder}' holds neither a search nor an estimate")
+    manifest = kind.document(folder)
+    first = int(manifest.get("first", 0))
+    rows = {row["run"]: row for row in read_rows(folder, first)}
     if not rows:
         raise ReplayError(
-            f"'{folder}' holds no run", help="the search has not finished any: --resume goes on with it"
+            f"'{folder}' holds no run", help=f"the {kind.noun} has not finished any: --resume goes on with it"
         )
     if number is None:
         known = [row for row in rows.values() if row["values"] is not None]
-        ranked = sorted(known, key=lambda row: min(map(float, row["values"]))) or [rows[0]]
+        ranked = sorted(known, key=lambda row: min(map(float, row["values"]))) or [rows[first]]
         if worst is not None and worst > len(ranked):
             raise ReplayError(
                 f"'{folder}' holds {len(ranked)} runs with a value, fewer than {worst}",
@@ -140,7 +144,9 @@ def _searched(folder: Path, number: int | None, worst: int | None) -> KeptRun:
             )
         number = int(ranked[(worst or 1) - 1]["run"])
     if number not in rows:
-        raise ReplayError(f"'{folder}' holds no run {number}", help=f"it holds runs 0 to {len(rows) - 1}")
+        raise ReplayError(
+            f"'{folder}' holds no run {number}", help=f"it holds runs {first} to {first + len(rows) - 1}"
+        )
     kept = folder / "counterexamples" / f"{number:04d}"
     file, scene = kept / "simulation.jsonl", kept / "scene.json"
     return KeptRun(
@@ -255,7 +261,7 @@ def _search_again(
     if objectives is None and goals is not None:
         objectives = [Objective(**goal) for goal in goals]
     space = space_of(scenario, settings["space"])
-    numbers = {int(address, 16): value for address, value in row["numbers"].items()}
+    numbers = {int(address, 16): value for address, value in row.get("numbers", {}).items()}
     if set(numbers) != {item.address for item in space.coordinates}:
         raise ReplayError(
             "the program draws other values than when it was searched",

@@ -12,7 +12,7 @@ import numpy as np
 from scenic.falsification.search import FalsificationResult
 from scenic.falsification.store import folders_of, manifest_of, read_rows
 
-__all__ = ["importances", "load_result", "load_results", "report_page"]
+__all__ = ["importances", "load_result", "load_results", "page_of", "report_page", "table"]
 
 _WIDTH: Final = 860
 _HEIGHT: Final = 260
@@ -86,7 +86,7 @@ def report_page(
     parts = [f"<h1>Search of {html.escape(title)}</h1>"]
     if len(results) > 1:
         parts.append(
-            _table(
+            table(
                 ("setting", "runs", "counterexamples", "share", "95% interval", "least value"),
                 [_total(label, result) for label, result in results.items()],
             )
@@ -95,6 +95,11 @@ def report_page(
         if label:
             parts.append(f"<h1>{html.escape(label)}</h1>")
         parts += _section(result, links_from)
+    return page_of(title, parts)
+
+
+def page_of(title: str, parts: Sequence[str]) -> str:
+    """The text of a report, from the parts of its body."""
     return f"<!doctype html><html lang='en'><meta charset='utf-8'><title>{html.escape(title)}</title><style>{_STYLE}</style>{''.join(parts)}</html>"
 
 
@@ -130,7 +135,7 @@ def _section(result: FalsificationResult, links_from: Path | None) -> list[str]:
             parts += [
                 "<h2>Parameters</h2>",
                 _parallel(finite, shown),
-                _table(
+                table(
                     ("parameter", "rank correlation"),
                     [(name, f"{size:.2f}") for name, size in ranked[:_MOST_AXES]],
                 ),
@@ -138,7 +143,7 @@ def _section(result: FalsificationResult, links_from: Path | None) -> list[str]:
     worst = sorted(known, key=_value)[:_WORST]
     parts += [
         "<h2>The worst runs</h2>",
-        _table(
+        table(
             ("run", "value", "status", "point"),
             [_described(row, result, links_from) for row in worst],
             raw=True,
@@ -157,7 +162,8 @@ def _described(row: Any, result: FalsificationResult, links_from: Path | None) -
     return run, f"{_value(row):.6g}", row["status"], point
 
 
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]], *, raw: bool = False) -> str:
+def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, raw: bool = False) -> str:
+    """A table of texts; ``raw`` says that they are HTML."""
     cells = "".join(f"<th>{item}</th>" for item in head)
     lines = ("".join(f"<td>{item if raw else html.escape(item)}</td>" for item in row) for row in rows)
     return f"<table><tr>{cells}</tr>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"

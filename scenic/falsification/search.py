@@ -3,7 +3,7 @@
 import math
 import random
 import time
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing, nullcontext
 from dataclasses import field
 from pathlib import Path
@@ -15,14 +15,13 @@ from scenic.batch.engines import Engine, Processes
 from scenic.batch.folders.fingerprint import files_of_origin
 from scenic.batch.simulations import Running, Simulations
 from scenic.dataclass import dataclass
-from scenic.falsification.evaluating import Evaluation, Task
-from scenic.falsification.objectives import Objective, ObjectiveError
+from scenic.falsification.evaluating import Evaluation, Failures, SearchError, Task, evaluated
+from scenic.falsification.objectives import Objective
 from scenic.falsification.samplers import make_sampler
 from scenic.falsification.samplers.protocol import Exhausted
 from scenic.falsification.space import Floats, Space, space_of, worded
 from scenic.falsification.store import SearchFolder
-from scenic.formats.files import OutputError
-from scenic.language.errors import InvalidScenarioError, Located
+from scenic.language.errors import InvalidScenarioError
 from scenic.statistics.intervals import exact_interval
 
 if TYPE_CHECKING:
@@ -36,15 +35,6 @@ _GENERATION: Final = 8
 
 _STATIC_GENERATION: Final = 512
 """The same for scenes by themselves."""
-
-_FAILURES: Final = 10
-"""Failing runs in a row that end a search."""
-
-
-class SearchError(Located):
-    """The error for a search that cannot continue."""
-
-    code = "SC503"
 
 
 @dataclass(frozen=True)
@@ -92,11 +82,14 @@ class Plan:
             },
         }
 
-    def _goals(self) -> list[dict[str, str | None]] | None:
+    def _goals(self) -> list[dict[str, str | bool | None]] | None:
         """The objectives as plain data, unless one of them is a function."""
         if any(item.function is not None for item in self.objectives):
             return None
-        return [{"name": item.name, "expression": item.expression} for item in self.objectives]
+        return [
+            {"name": item.name, "expression": item.expression, "is_verdict": item.is_verdict}
+            for item in self.objectives
+        ]
 
 
 @dataclass
@@ -231,7 +224,7 @@ def _search(
     )
     kept = [] if folder is None else folder.rows
     deadline = None if limits.time_limit is None else time.monotonic() + limits.time_limit
-    failures = 0
+    failures = Failures()
     while len(result.rows) < limits.runs:
         if deadline is not None and time.monotonic() > deadline:
             break
@@ -252,12 +245,7 @@ def _search(
                     folder.add(part)
                 rows.extend(part)
         for row in rows:
-            failures = failures + 1 if row["status"] == "failed" else 0
-            if failures == _FAILURES:
-                raise SearchError(
-                    f"{_FAILURES} runs in a row failed; the last one: {row['error']}",
-                    help="mend the program or the simulator; finished runs are kept, and --resume goes on",
-                )
+            failures.note(row)
             limits.told(row)
         result.rows.extend(rows)
         values = np.array([_told(row) for row in rows], dtype=np.float64)
@@ -281,12 +269,6 @@ def _evaluated(
     space, numbers = evaluation.space, evaluation.space.numbers(points)
 
     def whole(row: dict[str, Any], place: int) -> dict[str, Any]:
-        if row["status"] == "objective":
-            raise ObjectiveError(row["error"], help=row["help"])
-        if row["status"] == "unwritable":
-            raise OutputError(
-                row["error"], help=row["help"] or "make room; finished runs are kept, and --resume goes on"
-            )
         row["point"] = _point(space, points[place])
         row["numbers"] = {
             f"{item.address:016x}": float(numbers[place, k]) for k, item in enumerate(space.coordinates)
@@ -304,30 +286,13 @@ def _evaluated(
         )
         for place in range(done, wanted)
     ]
-    if engine is None or len(tasks) < 2:
-        finished: Iterable[tuple[int, dict[str, Any]]] = enumerate(map(evaluation, tasks))
-    else:
-        finished = engine.run(evaluation, tasks, lost=_lost)
-    waiting: dict[int, dict[str, Any]] = {}
-    due = 0
-    for number, row in finished:
-        waiting[number] = row
-        while due in waiting:
-            yield [whole(waiting.pop(due), done + due)]
-            due += 1
+    with closing(evaluated(evaluation, tasks, engine if len(tasks) > 1 else None)) as rows:
+        for place, row in enumerate(rows, done):
+            yield [whole(row, place)]
 
 
 def _point(space: Space, point: Floats) -> dict[str, float]:
     return {item.label: item.value(float(point[k])) for k, item in enumerate(space.coordinates)}
-
-
-def _lost(task: Task, code: int) -> dict[str, Any]:
-    return {
-        "run": task.run,
-        "status": "failed",
-        "values": None,
-        "error": f"its process died (exit code {code})",
-    }
 
 
 def falsify(

@@ -144,9 +144,11 @@ def space_of(scenario: "Scenario", wanted: str = "auto") -> Space:
     Args:
         scenario: the scenario.
         wanted: ``external`` for its external parameters, ``scene`` for all draws of a scene, ``auto`` for the
-            external parameters where there are any.
+            external parameters where there are any, ``none`` for no coordinates.
 
     """
+    if wanted == "none":
+        return Space(())
     externals = scenario.externals
     if wanted == "external" or (wanted == "auto" and externals):
         names = scenario.draw_names

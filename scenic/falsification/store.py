@@ -4,6 +4,7 @@ import json
 import math
 import os
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final, Self
 
@@ -13,10 +14,14 @@ from scenic.formats.files import refusing, write
 from scenic.language.errors import Located
 
 __all__ = [
+    "ESTIMATE",
+    "EstimateFolderError",
+    "RunsFolder",
     "SearchFolder",
     "SearchFolderError",
     "folders_of",
     "is_search",
+    "kind_of",
     "manifest_of",
     "number",
     "read_rows",
@@ -42,24 +47,55 @@ SEARCH: Final = FolderKind(
 """Folders of searches."""
 
 
-class SearchFolder(WrittenFolder):
-    """Keeps the runs of a search. Each generation is on the disk before the next one begins.
+class EstimateFolderError(Located):
+    """A folder that is not that of this estimate."""
+
+    code = "SC609"
+
+
+class NoEstimateError(EstimateFolderError):
+    """The error for a folder without an estimate."""
+
+
+ESTIMATE: Final = FolderKind(
+    "scenic-estimate",
+    1,
+    "probability estimate",
+    "`scenic estimate -o FOLDER`",
+    EstimateFolderError,
+    NoEstimateError,
+)
+"""Folders of estimates."""
+
+
+class RunsFolder(WrittenFolder):
+    """Keeps rows of runs, each on the disk before the next ones begin.
 
     Args:
         path: the folder, made if it is not there.
-        settings: everything that decides what comes out.
+        kind: its kind.
+        settings: everything that decides what comes out, and what describes it.
         resume: whether to go on with what is there.
         accept_changes: whether to go on although files that decide the scenes have changed.
+        first: number of the first run.
 
     Raises:
-        SearchFolderError: the folder holds another search, or one that is not to be gone on with.
+        SearchFolderError: the folder holds other runs, or some that are not to be gone on with.
 
     """
 
     def __init__(
-        self, path: Path, settings: Mapping[str, object], *, resume: bool, accept_changes: bool = False
+        self,
+        path: Path,
+        kind: FolderKind,
+        settings: Mapping[str, object],
+        *,
+        resume: bool,
+        accept_changes: bool = False,
+        first: int = 0,
     ) -> None:
-        super().__init__(path, SEARCH)
+        super().__init__(path, kind)
+        self._first = first
         self._settings: dict[str, Any] = json.loads(json.dumps(settings))
         self._resume = resume
         self._accept_changes = accept_changes
@@ -84,30 +120,41 @@ class SearchFolder(WrittenFolder):
                 name for name in wanted if name not in _DESCRIBING and earlier.get(name) != wanted[name]
             ]
             if different:
-                raise SearchFolderError(
-                    f"'{self.path}' holds another search: its {different[0]} differs",
+                raise self.kind.error(
+                    f"'{self.path}' holds another {self.kind.noun}: its {different[0]} differs",
                     help="give the same program and options, or name another folder",
                 )
             before, now = (item.get("origin", {}).get("files", {}) for item in (earlier, wanted))
-            changes = check_files(self.path, SearchFolderError, before, now, accepted=self._accept_changes)
+            changes = check_files(self.path, self.kind.error, before, now, accepted=self._accept_changes)
+            merged = self._gone_on(earlier)
             if changes:
-                change = {"run": len(read_rows(self.path)), "changes": changes}
-                self.save({**wanted, "accepted": [*earlier.get("accepted", []), change]})
-        elif self.has_manifest and read_rows(self.path):
-            raise SearchFolderError(
-                f"'{self.path}' holds a search already",
+                change = {"run": self._first + len(self._read()), "changes": changes}
+                merged["accepted"] = [*earlier.get("accepted", []), change]
+            if merged != earlier:
+                self.save(merged)
+        elif self.has_manifest and self._read():
+            self.document()  # raises for that of something else
+            raise self.kind.error(
+                f"'{self.path}' holds a {self.kind.noun} already",
                 help="go on with it by --resume, or name another folder",
             )
         elif self._resume and any(item.name != LOCK for item in self.path.iterdir()):
-            raise SearchFolderError(
-                f"'{self.path}' holds no search", help="name the folder of one, or an empty one"
+            raise self.kind.error(
+                f"'{self.path}' holds no {self.kind.noun}", help="name the folder of one, or an empty one"
             )
         else:
             if self.has_manifest:
                 self.document()  # raises for that of something else
             self.save(wanted)
-        self.rows = read_rows(self.path)
+        self.rows = self._read()
         self._keep()
+
+    def _gone_on(self, earlier: Mapping[str, Any]) -> dict[str, Any]:
+        """The manifest of runs that go on, from the one before."""
+        return {**earlier, **self._settings}
+
+    def _read(self) -> list[dict[str, Any]]:
+        return read_rows(self.path, self._first)
 
     def _keep(self) -> None:
         """Leave no unfinished line."""
@@ -125,13 +172,27 @@ class SearchFolder(WrittenFolder):
             os.fsync(stream.fileno())
 
 
+def kind_of(folder: Path) -> FolderKind | None:
+    """The kind of a folder of runs; ``None`` of any other."""
+    for kind in (SEARCH, ESTIMATE):
+        with suppress(Located):
+            kind.document(folder)
+            return kind
+    return None
+
+
+class SearchFolder(RunsFolder):
+    """The folder of a search; see `RunsFolder`."""
+
+    def __init__(
+        self, path: Path, settings: Mapping[str, object], *, resume: bool, accept_changes: bool = False
+    ) -> None:
+        super().__init__(path, SEARCH, settings, resume=resume, accept_changes=accept_changes)
+
+
 def is_search(folder: Path) -> bool:
     """Return whether a folder holds a search."""
-    try:
-        SEARCH.document(folder)
-    except SearchFolderError:
-        return False
-    return True
+    return kind_of(folder) is SEARCH
 
 
 def manifest_of(folder: Path) -> dict[str, Any]:
@@ -152,8 +213,8 @@ def folders_of(folder: Path) -> list[Path]:
     return sorted(searches, key=lambda item: (len(item.name), item.name))
 
 
-def read_rows(folder: Path) -> list[dict[str, Any]]:
-    """The finished runs in a folder; what a run that was killed has left half written is not one."""
+def read_rows(folder: Path, first: int = 0) -> list[dict[str, Any]]:
+    """The finished runs in a folder, from number ``first`` on; what a run that was killed has left half written is not one."""
     rows: list[dict[str, Any]] = []
     try:
         lines = (folder / "runs.jsonl").read_bytes().split(b"\n")
@@ -164,7 +225,7 @@ def read_rows(folder: Path) -> list[dict[str, Any]]:
             row = json.loads(line)
         except ValueError:
             break
-        if not isinstance(row, dict) or row.get("run") != len(rows):
+        if not isinstance(row, dict) or row.get("run") != first + len(rows):
             break
         rows.append(row)
     return rows

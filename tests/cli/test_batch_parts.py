@@ -6,9 +6,10 @@ from collections.abc import Sequence
 import click
 import pytest
 
-from scenic.cli import check, falsify, sample_parts, simulate_options
+from scenic.cli import check, estimate, falsify, sample_parts, simulate_options
 from scenic.cli.batch_parts import BatchPart, SinkPart, check_parts, forms_help, output_help
 from scenic.cli.check import check as check_command
+from scenic.cli.estimate import estimate as estimate_command
 from scenic.cli.falsify import falsify as falsify_command
 from scenic.cli.sample import sample
 from scenic.cli.sample_parts import SINKS
@@ -21,6 +22,7 @@ COMMANDS = [
     ),
     (simulate, [simulate_options.FOLDER]),
     (falsify_command, [part for part in vars(falsify).values() if isinstance(part, BatchPart)]),
+    (estimate_command, [part for part in vars(estimate).values() if isinstance(part, BatchPart)]),
     (check_command, [part for part in vars(check).values() if isinstance(part, BatchPart)]),
 ]
 

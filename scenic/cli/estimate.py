@@ -1,0 +1,314 @@
+"""``scenic estimate``: how probable it is that a requirement fails, with confidence."""
+
+import secrets
+import shlex
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from scenic.cli.batch_parts import BatchPart, FileSink, SinkPart, check_parts, places_of, write_files
+from scenic.cli.options import (
+    BatchRequest,
+    batch_options,
+    course_options,
+    first_option,
+    seconds,
+    settings_of,
+    swept_program_options,
+)
+from scenic.cli.output import CLEAN
+from scenic.cli.running import NOT_ALL, announce_seed, batch_run
+from scenic.cli.sinks import check_page
+from scenic.dataclass import dataclass
+from scenic.formats.files import safe_name
+
+if TYPE_CHECKING:
+    from scenic.estimation.estimate import Asked, Estimate
+    from scenic.estimation.estimating import Runs
+    from scenic.runtime.scenes.scenario import Scenario
+
+__all__ = ["estimate"]
+
+_SCREEN: Final = SinkPart("standard output")
+_FOLDER: Final = SinkPart("folders of estimates (-o DIR)", frozenset({"resume", "accept_changes"}))
+_PRECISION: Final = BatchPart("--precision", frozenset({"budget"}))
+_BOUND: Final = BatchPart("--at-most", frozenset({"budget", "power", "good"}))
+_FOLDERS: Final = BatchPart("a folder in place of a program", frozenset({"others"}))
+_PARTS: Final = (_SCREEN, _FOLDER, _PRECISION, _BOUND, _FOLDERS)
+
+_WITHOUT: Final = {
+    _PRECISION: BatchPart("--precision", refuses=frozenset({"count", "at_most"})),
+    _BOUND: BatchPart("--at-most", refuses=frozenset({"count"})),
+    _FOLDERS: BatchPart(
+        "a folder in place of a program",
+        refuses=frozenset(
+            {
+                "count", "seed", "jobs", "dask", "resume", "accept_changes", "first", "requirements", "objective", "expression",
+                "threshold", "confidence", "precision", "at_most", "good", "power", "budget", "time_limit", "static", "simulator",
+                "max_steps", "timestep", "swept", "scenario", "model", "mode_2d", "output",
+            }
+        ),
+    ),
+}  # fmt: skip
+"""The refusals of methods and sources."""
+
+
+@dataclass(frozen=True, slots=True)
+class _EstimateRequest(BatchRequest):
+    """The values of the options, as the command takes them."""
+
+    first: int
+    requirements: tuple[str, ...]
+    objective: str | None
+    expression: str | None
+    threshold: float
+    confidence: float
+    precision: float | None
+    at_most: float | None
+    good: float | None
+    power: float
+    budget: int | None
+    time_limit: float | None
+    static: bool
+    simulator: str | None
+    max_steps: int
+    timestep: float | None
+    swept: Mapping[str, tuple[Any, ...]]
+    others: tuple[Path, ...]
+    output: Path | None
+    report: Path | None
+
+    @property
+    def parts(self) -> list[BatchPart]:
+        """The source of the runs, their use, and the place where they go."""
+        chosen: list[BatchPart] = [_SCREEN, *([_FOLDER] if self.output is not None else [])]
+        if self.path.is_dir():
+            return [*chosen, _FOLDERS, _WITHOUT[_FOLDERS]]
+        if self.precision is not None:
+            return [*chosen, _PRECISION, _WITHOUT[_PRECISION]]
+        return chosen if self.at_most is None else [*chosen, _BOUND, _WITHOUT[_BOUND]]
+
+    def asked(self, settings: int) -> "Asked":
+        """The question to the runs of each of some settings; all intervals hold together (Bonferroni)."""
+        from scenic.estimation.estimating import asked_of
+
+        return asked_of(
+            runs=self.count if self.precision is None and self.at_most is None else self.budget,
+            confidence=self.confidence,
+            precision=self.precision,
+            at_most=self.at_most,
+            good=self.good,
+            power=self.power,
+            together=settings,
+        )
+
+    def runs(self, scenario: "Scenario", seed: int) -> "Runs":
+        """The runs of one setting."""
+        from scenic.estimation.estimating import Runs
+        from scenic.estimation.requirements import goals_of
+
+        goals = goals_of(scenario, self.requirements, self.objective, self.expression)
+        return Runs(
+            scenario, seed, goals, self.threshold, self.simulator,
+            self.static, self.max_steps, self.timestep, self.first,
+        )  # fmt: skip
+
+
+def _report(title: str, results: "Mapping[str, Estimate]") -> bytes:
+    from scenic.estimation.report import estimate_page
+
+    return estimate_page(results, title).encode()
+
+
+_FILES: Final = (FileSink("report", _report, lambda page: check_page(page, "--report")),)
+
+
+@click.command()
+@batch_options("runs", count=1000)
+@first_option("Number of the first run.")
+@click.option(
+    "-r",
+    "--requirement",
+    "requirements",
+    metavar="NAME",
+    multiple=True,
+    help="A requirement, by its label or as 'line 3': a run that violates one of those given is a counterexample. Repeatable."
+    "  [default: all]",
+)
+@click.option("--objective", metavar="NAME", help="Instead: a record or a parameter.")
+@click.option(
+    "--minimize",
+    "expression",
+    metavar="EXPR",
+    help="Instead: an expression over records, or over parameters.",
+)
+@click.option(
+    "--threshold",
+    metavar="X",
+    type=float,
+    default=0.0,
+    help="Largest value of a counterexample, of --objective and --minimize.  [default: 0]",
+)
+@click.option(
+    "--confidence",
+    metavar="C",
+    type=float,
+    default=0.95,
+    help="Chance of the interval to contain the probability.  [default: 0.95]",
+)
+@click.option("--precision", metavar="H", type=float, help="Make runs until the interval is plus or minus H.")
+@click.option(
+    "--at-most",
+    metavar="P",
+    type=float,
+    help="Test whether the probability is at most P, with as few runs as possible.",
+)
+@click.option(
+    "--good",
+    metavar="P",
+    type=float,
+    help="Of --at-most: a probability at which the answer is to be 'at most'.  [default: half of it]",
+)
+@click.option(
+    "--power",
+    metavar="W",
+    type=float,
+    default=0.9,
+    help="Of --at-most: the chance of that answer then.  [default: 0.9]",
+)
+@click.option("--budget", metavar="N", type=click.IntRange(min=1), help="Runs at most.  [default: no limit]")
+@click.option(
+    "--time-limit", metavar="T", type=float, callback=seconds, help="Seconds after which no new run begins."
+)
+@click.option("--static", is_flag=True, help="Take scenes alone, without simulations.")
+@course_options
+@swept_program_options
+@click.option(
+    "--join", "others", metavar="DIR", multiple=True, type=click.Path(path_type=Path, exists=True, file_okay=False),
+    help="If FILE is the folder of an estimate: another one, of other numbers of the same runs. Repeatable.",
+)  # fmt: skip
+@click.option(
+    "-o", "--output", metavar="DIR", type=click.Path(path_type=Path), help="Keep the runs in this folder."
+)
+@click.option(
+    "--report", metavar="PAGE.html", type=click.Path(path_type=Path), help="Make a page about the estimate."
+)
+def estimate(**options: Any) -> int:
+    """Estimate how probable it is that a run violates a requirement.
+
+    If FILE is the folder of an estimate instead of a program, the command shows what its runs tell, and makes the report again.
+
+    Without --precision and --at-most, the number of runs is fixed: -n.
+
+    If a parameter has several values (-p toys=0,4,16), each value gets an estimate in a folder of its own, and all intervals hold
+    together with the given confidence.
+
+    Exit codes: 0 what is asked is answered, 1 the program has errors, 2 wrong usage, 3 not answered, or the probability is not shown
+    to be at most the bound, 130 interrupted.
+    """
+    request = _EstimateRequest(**options)
+    check_parts(request.parts, _PARTS)
+    if request.requirements and (request.objective or request.expression):
+        raise click.UsageError(
+            "--requirement does not go with --objective and --minimize: each says what a counterexample is"
+        )
+    places = places_of(request, _FILES)
+    if request.path.is_dir():
+        return _again(request)
+    settings = settings_of(request.swept)
+    asked = request.asked(len(settings))
+    seed, is_drawn = _seed(request)
+    programs = [
+        (
+            request.runs(request.load(parameters), seed),
+            ", ".join(f"{name}={value}" for name, value in different.items()),
+        )
+        for parameters, different in settings
+    ]
+    for runs, _ in programs:
+        runs.check()
+    if is_drawn:
+        announce_seed(seed, "estimate")
+    results = _estimates(request, asked, programs, places)
+    return CLEAN if all(_is_answered(result) for result in results.values()) else NOT_ALL
+
+
+def _is_answered(result: "Estimate") -> bool:
+    return result.is_finished and result.answer is not False and result.runs > result.total.unknown
+
+
+def _seed(request: _EstimateRequest) -> tuple[int, bool]:
+    """The seed, and whether it was drawn just now."""
+    from scenic.estimation.store import estimates_in, manifest_of
+
+    if request.seed is not None:
+        return request.seed, False
+    if request.resume and request.output is not None:
+        for folder in estimates_in(request.output):
+            return int(manifest_of(folder)["seed"]), False
+    return secrets.randbits(32), True
+
+
+def _again(request: _EstimateRequest) -> int:
+    """Show what the runs in folders tell."""
+    from scenic.estimation.estimating import load_estimate
+    from scenic.estimation.store import estimates_in
+
+    inner = estimates_in(request.path)
+    if request.others or inner in ([], [request.path]):
+        results = {"": load_estimate([request.path, *request.others])}
+    else:
+        results = {item.name: load_estimate([item]) for item in inner}
+    for label, result in results.items():
+        _show(label, result)
+    write_files(request, _FILES, request.path.name, results)
+    return CLEAN
+
+
+def _estimates(
+    request: _EstimateRequest, asked: "Asked", programs: "list[tuple[Runs, str]]", places: list[Path]
+) -> "dict[str, Estimate]":
+    """Estimate for each program, and write what is wanted; returns the results by the labels of the programs."""
+    from scenic.estimation.estimating import Stop, estimate_runs
+    from scenic.estimation.store import EstimateFolder
+
+    results: dict[str, Estimate] = {}
+    with batch_run(
+        (asked.runs or 0) * len(programs), "estimating",
+        jobs=request.jobs, dask=request.dask, shown=not sys.stdout.isatty(), places=places,
+    ) as (advance, engine):  # fmt: skip
+        for runs, label in programs:
+            folder = None
+            if request.output is not None:
+                folder = EstimateFolder(
+                    request.output / safe_name(label) if label else request.output, runs.settings(), asked.to_data(),
+                    resume=request.resume, accept_changes=request.accept_changes,
+                )  # fmt: skip
+            stop = Stop(request.time_limit, lambda _row: advance(1, 1))
+            results[label] = estimate_runs(runs, asked, stop, engine=engine, folder=folder)
+            _show(label, results[label])
+        write_files(request, _FILES, request.path.name, results)
+    return results
+
+
+def _show(label: str, result: "Estimate") -> None:
+    """Print an estimate; ``label`` distinguishes it from others."""
+    from scenic.estimation.sentences import described, headline, notes
+
+    if label:
+        print(f"{label}:")
+    for line in headline(result):
+        print(line)
+    if len(result.requirements) > 1:
+        for tally in result.requirements:
+            interval = tally.interval(result.confidence, at_any_time=result.at_any_time)
+            print(f"  {tally.label}: {described(tally, interval, result.confidence)}")
+    for line in notes(result):
+        print(line)
+    first = next((row for row in result.rows if row["status"] == "counterexample"), None)
+    if first is not None and result.folder is not None:
+        print(f"a counterexample: scenic replay {shlex.join([str(result.folder), str(first['run'])])}")
+    sys.stdout.flush()

@@ -1,0 +1,1 @@
+"""Estimates of how probable it is that a requirement fails, with confidence."""

@@ -1,0 +1,206 @@
+"""An estimate: the runs so far, what is asked of them, and the probability that follows, with its interval."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import field
+from pathlib import Path
+from typing import Any, Final, Literal
+
+from scenic.dataclass import dataclass
+from scenic.statistics.intervals import Interval, exact_interval
+from scenic.statistics.sequences import sequence_interval
+from scenic.statistics.sequential_test import BoundTest
+
+__all__ = ["Asked", "Estimate", "Method", "Tally", "requirement_tallies"]
+
+Method = Literal["fixed number", "precision", "bound", "splitting", "importance sampling"]
+
+VIOLATED: Final = "counterexample"
+"""Status of a run in which the requirement was violated."""
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """A question that runs are to answer; their rows do not depend on it.
+
+    Attributes:
+        method: how the probability is estimated.
+        confidence: chance of an interval to contain its probability, between 0 and 1.
+        runs: number of runs: all of them where it is fixed, else at most; ``None`` for no limit.
+        precision: half the width of the interval at which there are enough runs.
+        test: of a bound.
+
+    """
+
+    method: Method = "fixed number"
+    confidence: float = 0.95
+    runs: int | None = 1000
+    precision: float | None = None
+    test: BoundTest | None = None
+
+    def to_data(self) -> dict[str, Any]:
+        """The same as plain data."""
+        test = self.test
+        bound = None if test is None else [test.bound, test.good, test.confidence, test.power]
+        return {
+            "method": self.method,
+            "confidence": self.confidence,
+            "runs": self.runs,
+            "precision": self.precision,
+            "bound": bound,
+        }
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> "Asked":
+        """Read the data of `to_data`."""
+        bound = data["bound"]
+        test = None if bound is None else BoundTest(*bound)
+        return cls(data["method"], data["confidence"], data["runs"], data["precision"], test)
+
+
+@dataclass(slots=True)
+class Tally:
+    """Counts of runs for one requirement, or for all that are asked about.
+
+    Attributes:
+        label: of the requirement; empty for all.
+        line: of the requirement, where it is known.
+        runs: runs of the program's law, those without an outcome included.
+        violations: runs in which it was violated.
+        unknown: runs without an outcome, for they failed.
+        rejected: numbers without a run: no scene was found, or the simulation was rejected.
+        unmet: violations that are only presumable: it was not met when the simulation ended.
+        presumable: runs in which it held as far as the simulation went.
+        unseen: runs that never evaluated it.
+        flat: runs with an infinite robustness.
+
+    """
+
+    label: str = ""
+    runs: int = 0
+    violations: int = 0
+    unknown: int = 0
+    rejected: int = 0
+    unmet: int = 0
+    presumable: int = 0
+    unseen: int = 0
+    flat: int = 0
+
+    @property
+    def share(self) -> float:
+        """Violations among the runs with an outcome; NaN without any."""
+        known = self.runs - self.unknown
+        return self.violations / known if known else math.nan
+
+    def add(self, row: Mapping[str, Any]) -> None:
+        """Count a run for all requirements that are asked about."""
+        status = row["status"]
+        if status == "rejected":
+            self.rejected += 1
+            return
+        self.runs += 1
+        if status == "failed":
+            self.unknown += 1
+            return
+        self.violations += status == VIOLATED
+        self.flat += math.isinf(min(map(float, row["values"])))
+
+    def add_outcome(self, row: Mapping[str, Any]) -> None:
+        """Count a run for this requirement alone."""
+        status = row["status"]
+        if status in ("rejected", "failed"):
+            self.add(row)
+            return
+        self.runs += 1
+        outcome = row.get("requirements", {}).get(self.label)
+        if outcome is None or outcome["verdict"] is None:
+            self.unseen += 1
+            return
+        verdict = outcome["verdict"]
+        self.violations += verdict in ("FALSE", "PRESUMABLY_FALSE")
+        self.unmet += verdict == "PRESUMABLY_FALSE"
+        self.presumable += verdict == "PRESUMABLY_TRUE"
+        self.flat += outcome["robustness"] is not None and math.isinf(float(outcome["robustness"]))
+
+    def interval(self, confidence: float, *, at_any_time: bool) -> Interval:
+        """The interval of the probability; ``at_any_time`` where the number of runs was not fixed in advance."""
+        if self.runs == 0:
+            return Interval(0.0, 1.0)
+        method = sequence_interval if at_any_time else exact_interval
+        return method(self.violations, self.runs, confidence, unknown=self.unknown)
+
+
+def requirement_tallies(rows: Sequence[Mapping[str, Any]], labels: Sequence[str]) -> list[Tally]:
+    """Counts for each requirement; of all that occur where ``labels`` names none."""
+    names = list(labels)
+    if not names:
+        names = list(dict.fromkeys(name for row in rows for name in row.get("requirements", ())))
+    tallies = [Tally(name) for name in names]
+    for tally in tallies:
+        for row in rows:
+            tally.add_outcome(row)
+    return tallies
+
+
+@dataclass(slots=True)
+class Estimate:
+    """The probability that a run violates what is required, so far as the runs tell.
+
+    Attributes:
+        asked: what is asked of the runs.
+        rows: one mapping for each run, as `FalsificationResult.rows`; without ``point`` and ``numbers``.
+        seed: of the runs.
+        total: their counts.
+        requirements: counts for each requirement.
+        at_any_time: whether the interval is one of a sequence that holds at all times, rather than one for a fixed number of runs.
+        is_finished: whether what is asked is answered.
+        folder: where the runs are kept.
+        is_static: whether runs are scenes alone.
+        is_repeatable: whether a run that was made again was the same; ``None`` if none was.
+        answer: of a bound: whether the probability is at most that; ``None`` while it is not known.
+        stop_reason: why there are no more runs, in words.
+
+    """
+
+    asked: Asked
+    rows: list[dict[str, Any]]
+    seed: int
+    total: Tally
+    requirements: list[Tally] = field(default_factory=list)
+    at_any_time: bool = False
+    is_finished: bool = True
+    folder: Path | None = None
+    is_static: bool = False
+    is_repeatable: bool | None = None
+    answer: bool | None = None
+    stop_reason: str = ""
+
+    @property
+    def runs(self) -> int:
+        """Number of runs."""
+        return self.total.runs
+
+    @property
+    def violations(self) -> int:
+        """Number of counterexamples among them."""
+        return self.total.violations
+
+    @property
+    def probability(self) -> float:
+        """The estimate; NaN without a run that has an outcome."""
+        return self.total.share
+
+    @property
+    def confidence(self) -> float:
+        """Chance of the interval to contain the probability."""
+        return self.asked.confidence
+
+    @property
+    def interval(self) -> Interval:
+        """The interval of the probability."""
+        return self.total.interval(self.confidence, at_any_time=self.at_any_time)
+
+    @property
+    def method(self) -> Method:
+        """The way in which the probability is estimated."""
+        return self.asked.method

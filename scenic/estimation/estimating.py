@@ -1,0 +1,472 @@
+"""Estimates from runs 0, 1, 2, ... of a seed: until there are enough of them for what is asked."""
+
+import random
+import time
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import closing, nullcontext
+from dataclasses import field
+from itertools import count
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from scenic.batch.engines import Engine, OverExecutor, Processes
+from scenic.batch.simulations import Running, Simulations
+from scenic.dataclass import dataclass
+from scenic.estimation.estimate import Asked, Estimate, Tally, requirement_tallies
+from scenic.estimation.requirements import EstimateError, check_labels, goals_of, requirement_labels
+from scenic.estimation.store import EstimateFolder, joined, manifest_of
+from scenic.falsification.comparing import row_departures
+from scenic.falsification.evaluating import Evaluation, Failures, Task, evaluated
+from scenic.falsification.objectives import Objective
+from scenic.falsification.search import Plan
+from scenic.falsification.space import Space
+from scenic.falsification.store import read_rows
+from scenic.runtime.ground.arguments import check_seconds, whole_number
+from scenic.statistics.sequences import is_checked
+from scenic.statistics.sequential_test import BoundTest
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from scenic.runtime.scenes.scenario import Scenario
+    from scenic.simulators.simulator import Simulator
+
+__all__ = ["Runs", "Stop", "asked_of", "estimate", "estimate_runs", "load_estimate"]
+
+_STATIC_TOGETHER: Final = 4096
+"""Scenes that are evaluated together, at most."""
+
+_KEPT_TOGETHER: Final = 64
+"""Runs that are written to the folder together, at most."""
+
+_KEPT_SECONDS: Final = 2.0
+"""Seconds until finished runs are written."""
+
+_SURE: Final = 8
+"""Runs after which a requirement must have been seen that no part of the program's beginning states."""
+
+
+@dataclass(frozen=True)
+class Runs:
+    """The runs of a program: everything that decides their rows.
+
+    Attributes:
+        scenario: the program.
+        seed: run ``k`` of a seed is always the same.
+        objectives: a run is a counterexample if one of these has a value of at most ``threshold``.
+        threshold: that value.
+        simulator: the name of a simulator, or one; the program's own by default.
+        is_static: whether runs are scenes alone.
+        max_steps: steps of a simulation at most.
+        timestep: seconds in a step.
+        first: number of the first run.
+
+    """
+
+    scenario: "Scenario"
+    seed: int
+    objectives: tuple[Objective, ...]
+    threshold: float = 0.0
+    simulator: "str | Simulator | None" = None
+    is_static: bool = False
+    max_steps: int | None = 100
+    timestep: float | None = None
+    first: int = 0
+
+    def check(self) -> None:
+        """Raise `EstimateError` where there are no such runs."""
+        labels = requirement_labels(self.scenario)
+        are_verdicts = [item.is_verdict for item in self.objectives]
+        if self.is_static and any(are_verdicts):
+            raise EstimateError(
+                "scenes alone meet all requirements: others are not made",
+                help="say by a number what is a counterexample: --static with --objective PARAMETER or --minimize EXPRESSION, and"
+                " --threshold; or simulate, without --static",
+            )
+        if not self.is_static and any(are_verdicts):
+            if self.simulator is None and self.scenario.is_timeless:
+                raise EstimateError(
+                    "nothing in this program happens over time, so that no simulation violates what its scenes meet",
+                    help="estimate from its scenes alone: --static with --objective PARAMETER or --minimize EXPRESSION",
+                )
+            if not labels and not self.scenario.program.invocables:
+                raise EstimateError(
+                    "the program has no requirement, so that nothing can be violated",
+                    help="write `require always ...`, or say what is a counterexample by --minimize EXPRESSION",
+                )
+
+    def settings(self) -> dict[str, Any]:
+        """Everything that decides the rows, as plain data."""
+        plan = Plan(
+            self.seed, "none", None, self.objectives, self.threshold, "none", None, self.simulator,
+            self.is_static, self.max_steps, self.timestep,
+        )  # fmt: skip
+        return {**plan.settings(self.scenario), "first": self.first}
+
+    def evaluation(self) -> Evaluation:
+        """The evaluation of one run."""
+        simulations = None
+        if not self.is_static:
+            running = Running(self.seed, self.max_steps, self.timestep, tries=1)
+            simulations = Simulations(self.scenario, self.simulator, running)
+        return Evaluation(self.scenario, simulations, self.objectives, Space(()), self.seed, self.threshold)
+
+
+@dataclass
+class Stop:
+    """The end of runs beside the answer.
+
+    Attributes:
+        time_limit: seconds after which no new run begins.
+        told: called with each finished run, in order.
+
+    """
+
+    time_limit: float | None = None
+    told: Callable[[Mapping[str, Any]], None] = field(default=lambda _row: None)
+
+
+def asked_of(
+    *,
+    runs: int | None,
+    confidence: float = 0.95,
+    precision: float | None = None,
+    at_most: float | None = None,
+    good: float | None = None,
+    power: float = 0.9,
+    together: int = 1,
+) -> Asked:
+    """Make a question of single options; raises `EstimateError` for values that are not allowed or contradict each other.
+
+    The intervals and tests of so many estimates hold ``together`` with the confidence: each gets its share of the chance to miss
+    (Bonferroni).
+    """
+    for name, value in (
+        ("confidence", confidence), ("precision", precision), ("bound", at_most), ("good probability", good), ("power", power),
+    ):  # fmt: skip
+        if value is not None and not 0 < value < 1:
+            raise EstimateError(
+                f"the {name} {value:g} is not between 0 and 1",
+                help="write a probability, such as 0.01 or 1e-3",
+            )
+    confidence = 1 - (1 - confidence) / together
+    if precision is not None and at_most is not None:
+        raise EstimateError(
+            "a precision and a bound contradict each other: each says when there are enough runs",
+            help="ask for one of them; a test of a bound needs the fewest runs",
+        )
+    if good is not None and at_most is None:
+        raise EstimateError("a good probability belongs to a bound", help="name the bound: --at-most P")
+    if precision is not None:
+        return Asked("precision", confidence, runs, precision)
+    if at_most is None:
+        return Asked("fixed number", confidence, 1000 if runs is None else runs)
+    better = at_most / 2 if good is None else good
+    if better >= at_most:
+        raise EstimateError(
+            f"the good probability {better:g} is not below the bound {at_most:g}",
+            help="the test tells one from the other: the closer they are, the more runs it needs",
+        )
+    return Asked("bound", confidence, runs, test=BoundTest(at_most, better, confidence, power))
+
+
+def estimate_runs(
+    runs: Runs,
+    asked: Asked,
+    stop: Stop | None = None,
+    *,
+    engine: Engine | None = None,
+    folder: EstimateFolder | None = None,
+) -> Estimate:
+    """Estimate a probability, going on with what the folder holds.
+
+    Raises:
+        EstimateError: there is no such requirement, or nothing to estimate.
+        EstimateFolderError: the folder holds other runs.
+        ObjectiveError: an objective cannot be evaluated.
+        OutputError: the folder cannot be written; what has finished is kept.
+        SearchError: ten runs in a row failed.
+
+    """
+    runs.check()
+    with nullcontext() if folder is None else folder:
+        return _Course(runs, asked, stop or Stop(), engine, folder).whole()
+
+
+class _Course:
+    """The runs of one estimate, until they are enough."""
+
+    def __init__(
+        self, runs: Runs, asked: Asked, stop: Stop, engine: Engine | None, folder: EstimateFolder | None
+    ) -> None:
+        self._runs, self._asked, self._stop = runs, asked, stop
+        self._engine, self._folder = engine, folder
+        self._evaluation = runs.evaluation()
+        self._rows: list[dict[str, Any]] = []
+        self._total = Tally()
+        self._failures = Failures()
+        self._labels = requirement_labels(runs.scenario)
+        self._waiting: list[dict[str, Any]] = []
+        self._written = time.monotonic()
+
+    def whole(self) -> Estimate:
+        """The estimate."""
+        reason = self._go_on()
+        if not self._runs.is_static:
+            check_labels(self._runs.objectives, self._rows, self._labels)
+        is_repeatable = self._made_again()
+        history = [self._asked.to_data()] if self._folder is None else self._folder.asked
+        folder = None if self._folder is None else self._folder.path
+        made = _estimate_from(self._rows, self._asked, history, self._runs.settings(), folder)
+        made.is_repeatable = is_repeatable
+        made.stop_reason = made.stop_reason or reason
+        return made
+
+    def _go_on(self) -> str:
+        """Make runs until they are enough; returns the words for another end."""
+        begun = time.monotonic()
+        kept = [] if self._folder is None else self._folder.rows
+        for row in kept:
+            if self._is_enough():
+                return ""
+            self._take(row)
+        if self._is_enough():
+            return ""
+        start = self._runs.first + len(self._rows)
+        try:
+            with closing(self._new_rows(start)) as rows:
+                for row in rows:
+                    if self._folder is not None:
+                        self._waiting.append(row)
+                    self._take(row)
+                    self._keep(_KEPT_TOGETHER)
+                    if self._is_enough():
+                        return ""
+                    if self._stop.time_limit is not None and time.monotonic() - begun > self._stop.time_limit:
+                        return "the time limit was reached"
+        finally:
+            self._keep(0)
+        return ""
+
+    def _take(self, row: dict[str, Any]) -> None:
+        self._rows.append(row)
+        self._total.add(row)
+        self._failures.note(row)
+        self._stop.told(row)
+        if self._total.runs - self._total.unknown == _SURE and not self._runs.is_static:
+            check_labels(self._runs.objectives, self._rows, self._labels)
+
+    def _keep(self, most: int) -> None:
+        """Write finished runs if there are more than ``most`` of them, or they have waited long."""
+        is_late = time.monotonic() - self._written > _KEPT_SECONDS
+        if self._folder is None or not self._waiting or (len(self._waiting) <= most and not is_late):
+            return
+        self._folder.add(self._waiting)
+        self._waiting = []
+        self._written = time.monotonic()
+
+    def _is_enough(self) -> bool:
+        most = self._asked.runs
+        if most is not None and len(self._rows) >= most:
+            return True
+        if self._asked.method == "precision" and not is_checked(self._total.runs):
+            return False
+        return _answer(self._asked, self._total)[0]
+
+    def _new_rows(self, start: int) -> Generator[dict[str, Any]]:
+        most = self._asked.runs
+        end = None if most is None else self._runs.first + most
+        if self._evaluation.simulations is not None:
+            numbers = count(start) if end is None else range(start, end)
+            yield from evaluated(self._evaluation, (Task(k, {}) for k in numbers), self._engine)
+            return
+        size = 64
+        while end is None or start < end:
+            some = size if end is None else min(size, end - start)
+            yield from self._evaluation.together(start, np.zeros((some, 0)))
+            start, size = start + some, min(2 * size, _STATIC_TOGETHER)
+
+    def _made_again(self) -> bool | None:
+        """Make the first run once more, to see whether it is the same."""
+        row = next((row for row in self._rows if row["status"] != "failed"), None)
+        if row is None or self._runs.is_static:
+            return None
+        return not row_departures(row, self._evaluation(Task(row["run"], {})))
+
+
+def _answer(asked: Asked, total: Tally) -> tuple[bool, bool | None]:
+    """Tell whether there are enough runs for what is asked (a fixed number aside), and the answer of a test."""
+    if asked.method == "precision":
+        assert asked.precision is not None
+        if total.runs == 0:
+            return False, None
+        return total.interval(asked.confidence, at_any_time=True).half_width <= asked.precision, None
+    if asked.method == "bound":
+        assert asked.test is not None
+        # A run without an outcome may have had either.
+        if asked.test.is_at_most(total.violations + total.unknown, total.runs) is True:
+            return True, True
+        if asked.test.is_at_most(total.violations, total.runs) is False:
+            return True, False
+    return False, None
+
+
+def _estimate_from(
+    rows: list[dict[str, Any]],
+    asked: Asked,
+    history: Sequence[Mapping[str, Any]],
+    settings: Mapping[str, Any],
+    folder: Path | None,
+) -> Estimate:
+    """The estimate that follows from finished runs."""
+    total = Tally()
+    for row in rows:
+        total.add(row)
+    is_static = settings["simulator"] == "none"
+    goals = settings["origin"].get("objectives") or []
+    names = [goal["name"] for goal in goals if goal["is_verdict"]]
+    tallies = []
+    if names:
+        tallies = requirement_tallies(rows, [name for name in names if name is not None])
+    enough, answer = _answer(asked, total)
+    is_whole = asked.runs is not None and len(rows) >= asked.runs
+    is_fixed = asked.method == "fixed number"
+    if is_fixed:
+        reason = f"all {asked.runs} runs are made" if is_whole else ""
+    elif enough:
+        reason = "the precision is reached" if asked.method == "precision" else "the test has an answer"
+    else:
+        reason = f"the {asked.runs} runs that it may take are made" if is_whole else ""
+    # Whoever has looked before deciding on more runs has not fixed their number in advance.
+    looked = len({(item["method"], item["runs"]) for item in history}) > 1
+    return Estimate(
+        asked, rows, int(settings["seed"]), total, tallies,
+        at_any_time=not is_fixed or not is_whole or looked,
+        is_finished=is_whole if is_fixed else enough,
+        folder=folder, is_static=is_static, answer=answer, stop_reason=reason,
+    )  # fmt: skip
+
+
+def load_estimate(folders: Sequence[Path]) -> Estimate:
+    """The estimate that one folder keeps, or several of disjoint ranges of runs; raises `EstimateFolderError`."""
+    if len(folders) == 1:
+        manifest = manifest_of(folders[0])
+        history = manifest["asked"]
+        asked = Asked.from_data(history[-1])
+        rows = read_rows(folders[0], manifest["first"])
+        return _estimate_from(rows, asked, history, manifest, folders[0])
+    manifest, rows = joined(folders)
+    history = manifest["asked"]
+    asked = Asked.from_data(history[0])
+    if all(item["method"] == "fixed number" for item in history):
+        asked = Asked("fixed number", asked.confidence, sum(item["runs"] for item in history))
+        history = [asked.to_data()]
+    return _estimate_from(rows, asked, history, manifest, None)
+
+
+def estimate(
+    scenario: "Scenario",
+    simulator: "str | Simulator | None" = None,
+    *,
+    requirement: str | Sequence[str] | None = None,
+    objective: "str | Objective | Callable[[Any], float] | None" = None,
+    minimize: str | None = None,
+    threshold: float = 0.0,
+    n: int | None = None,
+    budget: int | None = None,
+    confidence: float = 0.95,
+    precision: float | None = None,
+    at_most: float | None = None,
+    good: float | None = None,
+    power: float = 0.9,
+    seed: int | None = None,
+    first: int = 0,
+    time_limit: float | None = None,
+    max_steps: int | None = 100,
+    timestep: float | None = None,
+    static: bool = False,
+    processes: int = 1,
+    executor: "Executor | None" = None,
+    folder: str | Path | None = None,
+    resume: bool = False,
+) -> Estimate:
+    """Estimate how probable it is that a simulation, or a scene, is a counterexample.
+
+    Without ``precision`` and ``at_most`` the number of runs is fixed, and the interval is that of Clopper and Pearson (1934). With a
+    precision, runs are made until the interval is as narrow; it is one of a confidence sequence, which holds however often one looks.
+    With ``at_most``, Wald's sequential test (1945) decides between ``good`` and that bound.
+
+    Args:
+        scenario: the program.
+        simulator: the name of a simulator, or one; the program's own by default.
+        requirement: labels of requirements, or ``line 3``; a run that violates one of them is a counterexample. By default all.
+        objective: instead, the name of a record or of a parameter, a function of a simulation's result (or of a scene).
+        minimize: instead, an expression over records, or over parameters.
+        threshold: largest value of a counterexample, where there is an objective.
+        n: number of runs where it is fixed, 1,000 by default.
+        budget: runs at most, with a precision or a bound; no limit by default.
+        confidence: chance of the interval to contain the probability, between 0 and 1.
+        precision: half the width of the interval to reach.
+        at_most: the bound of the probability.
+        good: probability at which the answer "at most" comes with chance ``power``; half the bound by default.
+        power: that chance.
+        seed: any integer; drawn from Python's ``random`` if not given.
+        first: number of the first run.
+        time_limit: seconds after which no new run begins.
+        max_steps: steps of a simulation at most.
+        timestep: seconds in a step.
+        static: take scenes alone, without simulations.
+        processes: number of processes that simulate; changes speed, never results.
+        executor: runs the simulations in place of processes of our own, ``processes`` at a time.
+        folder: folder that stores the runs.
+        resume: go on with the runs in the folder.
+
+    Raises:
+        EstimateError: for values that are not allowed or contradict each other, and requirements that there are not.
+        EstimateFolderError: the folder holds other runs.
+        SearchError: ten runs in a row failed.
+
+    """
+    check_seconds(timestep, "timestep")
+    names = [requirement] if isinstance(requirement, str) else list(requirement or ())
+    goals = goals_of(scenario, names, objective, minimize)
+    is_fixed = precision is None and at_most is None
+    if (budget if is_fixed else n) is not None:
+        raise EstimateError(
+            "a budget goes with a precision or a bound"
+            if is_fixed
+            else "a number of runs contradicts a precision or a bound",
+            help="fix the number of runs by `n`, or give a `budget` for a precision or a bound",
+        )
+    most = n if is_fixed else budget
+    asked = asked_of(
+        runs=None if most is None else whole_number(most, "n" if is_fixed else "budget", 1),
+        confidence=confidence,
+        precision=precision,
+        at_most=at_most,
+        good=good,
+        power=power,
+    )
+    runs = Runs(
+        scenario,
+        random.getrandbits(63) if seed is None else whole_number(seed, "seed"),
+        goals,
+        threshold,
+        simulator,
+        static,
+        max_steps,
+        timestep,
+        whole_number(first, "first", 0),
+    )
+    runs.check()
+    place = None
+    if folder is not None:
+        place = EstimateFolder(Path(folder), runs.settings(), asked.to_data(), resume=resume)
+    engine: Engine | None = None
+    if executor is not None:
+        engine = OverExecutor(executor, max(2, processes))
+    elif processes > 1:
+        engine = Processes(processes)
+    return estimate_runs(runs, asked, Stop(time_limit), engine=engine, folder=place)

@@ -1,0 +1,130 @@
+"""The report of an estimate as a page: the interval over the runs, and each requirement."""
+
+import html
+import math
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+from scenic.estimation.estimate import Estimate, Tally
+from scenic.estimation.sentences import described, headline, method_words, notes, percent
+from scenic.falsification.report import page_of, table
+
+__all__ = ["estimate_page", "interval_plot"]
+
+_WIDTH: Final = 860
+_HEIGHT: Final = 300
+_LEFT, _RIGHT, _TOP, _BOTTOM = 70, 24, 16, 44
+_POINTS: Final = 160
+"""Numbers of runs at which the interval is drawn."""
+
+
+def estimate_page(results: Mapping[str, Estimate], title: str) -> str:
+    """The text of a page about an estimate, or about those of the settings of a sweep.
+
+    Args:
+        results: the estimates, by setting.
+        title: the name of the program.
+
+    """
+    parts = [f"<h1>Estimate for {html.escape(title)}</h1>"]
+    if len(results) > 1:
+        head = ("setting", "runs", "counterexamples", "probability")
+        parts.append(table(head, [_row(label, item, item.total) for label, item in results.items()]))
+    for label, result in results.items():
+        if label:
+            parts.append(f"<h1>{html.escape(label)}</h1>")
+        parts += _section(result)
+    return page_of(title, parts)
+
+
+def _row(label: str, result: Estimate, tally: Tally) -> tuple[str, ...]:
+    interval = tally.interval(result.confidence, at_any_time=result.at_any_time)
+    return label, f"{tally.runs:,}", f"{tally.violations:,}", described(tally, interval, result.confidence)
+
+
+def _section(result: Estimate) -> list[str]:
+    """The parts of the page about one estimate."""
+    parts = [f"<p>{html.escape(line)}.</p>" for line in headline(result)]
+    parts.append(f"<p>The interval is one {html.escape(method_words(result))}. Seed {result.seed}.</p>")
+    remarks = "".join(f"<li>{html.escape(line)}</li>" for line in notes(result))
+    if remarks:
+        parts.append(f"<ul>{remarks}</ul>")
+    if result.total.runs:
+        parts += ["<h2>Interval over runs</h2>", interval_plot(result)]
+    if result.requirements:
+        head = ("requirement", "runs", "violated", "probability", "presumably true", "not evaluated")
+        rows = [
+            (*_row(item.label, result, item), f"{item.presumable:,}", f"{item.unseen:,}")
+            for item in result.requirements
+        ]
+        parts += ["<h2>Requirements</h2>", table(head, rows)]
+        if len(rows) > 1:
+            parts.append("<p>Each interval is right with its own confidence, not all of them together.</p>")
+    return parts
+
+
+def interval_plot(result: Estimate) -> str:
+    """The share of counterexamples and the interval that holds at all times, over the number of runs, as SVG."""
+    total = Tally()
+    every = max(1, len(result.rows) // _POINTS)
+    points: list[tuple[int, float, float, float]] = []
+    for place, row in enumerate(result.rows, 1):
+        total.add(row)
+        if total.runs > total.unknown and (place % every == 0 or place == len(result.rows) or place < 10):
+            points.append((total.runs, total.share, *total.interval(result.confidence, at_any_time=True)))
+    if not points:
+        return ""
+    # The first intervals say next to nothing; the axis ends where the later ones lie.
+    late = points[len(points) // 8 :] if len(points) > 16 else points
+    top = min(1.0, 1.1 * max(point[3] for point in late))
+    bound = result.asked.test.bound if result.asked.test is not None else None
+    if bound is not None:
+        top = min(1.0, max(top, 1.3 * bound))
+    runs = points[-1][0]
+
+    def x(number: float) -> float:
+        return _LEFT + number / runs * (_WIDTH - _LEFT - _RIGHT)
+
+    def y(share: float) -> float:
+        return _HEIGHT - _BOTTOM - min(share, top) / top * (_HEIGHT - _TOP - _BOTTOM)
+
+    upper = [f"{x(point[0]):.1f},{y(point[3]):.1f}" for point in points]
+    lower = [f"{x(point[0]):.1f},{y(point[2]):.1f}" for point in reversed(points)]
+    share = [f"{x(point[0]):.1f},{y(point[1]):.1f}" for point in points]
+    parts = [
+        f"<polygon points='{' '.join(upper + lower)}' fill='#2e86c1' fill-opacity='.18' stroke='none'/>",
+        f"<polyline points='{' '.join(share)}' fill='none' stroke='#1b4f72' stroke-width='1.5'/>",
+    ]
+    if bound is not None:
+        parts.append(
+            f"<line x1='{_LEFT}' x2='{_WIDTH - _RIGHT}' y1='{y(bound):.1f}' y2='{y(bound):.1f}' stroke='#c0392b' stroke-dasharray='6 4'/>"
+            f"<text x='{_WIDTH - _RIGHT}' y='{y(bound) - 5:.1f}' text-anchor='end'>at most {bound:g}</text>"
+        )
+    low, high = result.interval
+    end = x(runs)
+    parts.append(
+        f"<line x1='{end:.1f}' x2='{end:.1f}' y1='{y(low):.1f}' y2='{y(high):.1f}' stroke='#c0392b' stroke-width='3'/>"
+        f"<circle cx='{end:.1f}' cy='{y(points[-1][1]):.1f}' r='3.5' fill='#c0392b'/>"
+    )
+    ticks = "".join(
+        f"<line x1='{_LEFT - 4}' x2='{_WIDTH - _RIGHT}' y1='{y(value):.1f}' y2='{y(value):.1f}' stroke='#ddd'/>"
+        f"<text x='{_LEFT - 8}' y='{y(value) + 4:.1f}' text-anchor='end'>{value:.3g}</text>"
+        for value in _ticks(top)
+    )
+    ticks += "".join(
+        f"<text x='{x(value):.1f}' y='{_HEIGHT - _BOTTOM + 18}' text-anchor='middle'>{value:,.0f}</text>"
+        for value in _ticks(runs)
+    )
+    words = (
+        f"<text x='{_WIDTH / 2:.0f}' y='{_HEIGHT - 8}' text-anchor='middle'>runs; band: interval of {percent(result.confidence)} that"
+        " holds at all times, red: the interval that is reported</text>"
+    )
+    return f"<svg viewBox='0 0 {_WIDTH} {_HEIGHT}' width='100%'>{ticks}{''.join(parts)}{words}</svg>"
+
+
+def _ticks(top: float) -> Sequence[float]:
+    """Four to eight round numbers from 0 to ``top``."""
+    raw = top / 5
+    power = 10.0 ** math.floor(math.log10(raw))
+    step = next(power * factor for factor in (1, 2, 5, 10) if power * factor >= raw * 0.99)
+    return [step * k for k in range(int(top / step + 1e-9) + 1)]

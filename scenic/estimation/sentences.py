@@ -1,0 +1,191 @@
+"""An estimate in words, for readers who know no statistics: no probability without its interval."""
+
+from typing import Final
+
+from scenic.estimation.estimate import Estimate, Tally
+from scenic.statistics.intervals import Interval
+
+__all__ = ["counted", "described", "headline", "method_words", "notes", "percent"]
+
+_FEW: Final = 30
+"""Runs below which there are too few to say much."""
+
+_WIDE: Final = 0.1
+"""Half the width of an interval that is called wide."""
+
+
+def counted(number: int, thing: str) -> str:
+    """A number of things."""
+    return f"{number:,} {thing}{'' if number == 1 else 's'}"
+
+
+def percent(confidence: float) -> str:
+    """A confidence in percent."""
+    return f"{100 * confidence:.10g}%"
+
+
+def described(tally: Tally, interval: Interval, confidence: float) -> str:
+    """A probability with its interval."""
+    words = f"{percent(confidence)} interval {interval}"
+    return f"unknown ({words})" if tally.runs == tally.unknown else f"{tally.share:.3g} ({words})"
+
+
+def method_words(estimate: Estimate) -> str:
+    """The way in which the interval is made."""
+    if not estimate.at_any_time:
+        return "for a number of runs that was fixed in advance (Clopper and Pearson)"
+    return "which holds however often one looks (confidence sequence)"
+
+
+def headline(estimate: Estimate) -> list[str]:
+    """The result in a few lines."""
+    total = estimate.total
+    known = total.runs - total.unknown
+    found = counted(total.violations, "counterexample")
+    lines = [
+        f"{counted(len(estimate.rows), 'run')}, {known:,} with a value, {found}",
+        f"probability of a counterexample {described(total, estimate.interval, estimate.confidence)}",
+    ]
+    test = estimate.asked.test
+    if test is not None:
+        lines.append(_answer(estimate))
+    return lines
+
+
+def _answer(estimate: Estimate) -> str:
+    test = estimate.asked.test
+    assert test is not None
+    if estimate.answer is None:
+        return f"not decided: whether the probability is at most {test.bound:g} needs more runs"
+    if estimate.answer:
+        return (
+            f"at most {test.bound:g}: if the probability were {test.bound:g} or more, this answer would come in at most"
+            f" {percent(1 - test.confidence)} of such tests"
+        )
+    return (
+        f"not shown to be at most {test.bound:g}: if the probability were {test.good:g} or less, this answer would come in at"
+        f" most {percent(1 - test.power)} of such tests"
+    )
+
+
+def notes(estimate: Estimate) -> list[str]:
+    """Remarks that a reader has to know about the result."""
+    return [
+        *_about_ending(estimate),
+        *_about_counts(estimate),
+        *_about_requirements(estimate),
+        *_about_chance(estimate),
+    ]
+
+
+def _about_ending(estimate: Estimate) -> list[str]:
+    asked, words = estimate.asked, []
+    if not estimate.is_finished:
+        because = f": {estimate.stop_reason}" if estimate.stop_reason else ""
+        if asked.method == "precision":
+            words.append(
+                f"The precision of {asked.precision:g} is not reached{because}. The interval is right, but wider: plus or minus"
+                f" {estimate.interval.half_width:.2g}."
+            )
+        elif asked.method == "fixed number":
+            words.append(
+                f"Only {len(estimate.rows):,} of {asked.runs:,} runs are made{because}. The interval allows for that: it is one that"
+                " holds whenever one stops."
+            )
+        else:
+            words.append(f"The test has no answer yet{because}.")
+    elif asked.method == "fixed number" and estimate.at_any_time:
+        words.append(
+            "More runs were asked for when some had been looked at, so the interval is one that holds however often one looks; it"
+            " is a little wider."
+        )
+    return words
+
+
+def _about_counts(estimate: Estimate) -> list[str]:
+    total, interval = estimate.total, estimate.interval
+    confidence = percent(estimate.confidence)
+    known = total.runs - total.unknown
+    if known == 0:
+        if estimate.total.rejected:
+            reason = f"Scene or simulation was rejected for each of the {counted(total.rejected, 'number')}"
+            return [f"{reason}: nothing is known of the probability."]
+        return ["No run has an outcome: nothing is known of the probability."]
+    words = []
+    if total.violations == 0:
+        words.append(
+            f"No run was a counterexample. That does not show that there is none: with a confidence of {confidence}, fewer than one"
+            f" run in {max(1, int(1 / interval.high)):,} is one."
+        )
+    elif total.violations == known:
+        words.append(
+            f"Every run was a counterexample. With a confidence of {confidence}, more than {100 * interval.low:.3g}% of all runs are."
+        )
+    if known < _FEW and interval.half_width > _WIDE:
+        words.append(
+            f"{counted(known, 'run')} {'is' if known == 1 else 'are'} too few to say much: the probability may be anything from"
+            f" {interval.low:.2g} to {interval.high:.2g}. Make more (-n), or ask for a precision (--precision)."
+        )
+    if total.unknown:
+        words.append(
+            f"{counted(total.unknown, 'run')} failed and {'has' if total.unknown == 1 else 'have'} no outcome. The interval allows"
+            " for either outcome of each."
+        )
+    if total.rejected:
+        tried = total.rejected + total.runs
+        words.append(
+            f"{total.rejected:,} of {tried:,} numbers gave no run, as scene or simulation was rejected. The probability is that"
+            " among the other runs."
+        )
+    return words
+
+
+def _about_requirements(estimate: Estimate) -> list[str]:
+    words = []
+    for tally in estimate.requirements:
+        known = tally.runs - tally.unknown
+        if known == 0:
+            continue
+        if tally.unseen == known:
+            words.append(
+                f"`{tally.label}` was never evaluated: no run came to the part of the program that states it, so that these runs say"
+                " nothing about it."
+            )
+        elif tally.unseen:
+            words.append(
+                f"`{tally.label}` was not evaluated in {tally.unseen:,} of {counted(known, 'run')}; these count as runs in which it"
+                " held."
+            )
+        words += _about_verdicts(tally, known)
+    return words
+
+
+def _about_verdicts(tally: Tally, known: int) -> list[str]:
+    """Remarks on what simulations that end leave open."""
+    open_ = tally.presumable + tally.unmet
+    longer = "Longer simulations (--time) may tell."
+    if open_ == known - tally.unseen and tally.unmet == 0 and open_:
+        always = f"`{tally.label}` was never decided for good: in all runs that evaluated it, it held until the simulation ended"
+        return [f"{always} (presumably true), which counts as held. {longer}"]
+    remarks = []
+    if tally.presumable:
+        remarks.append(
+            f"In {counted(tally.presumable, 'run')} `{tally.label}` held until the simulation ended (presumably true), which counts as"
+            " held."
+        )
+    if tally.unmet:
+        remarks.append(
+            f"In {counted(tally.unmet, 'run')} `{tally.label}` was not met when the simulation ended (presumably false), which counts"
+            f" as violated. {longer}"
+        )
+    return remarks
+
+
+def _about_chance(estimate: Estimate) -> list[str]:
+    if estimate.is_repeatable is False:
+        words = (
+            "The first run, made once more, was another: the simulator or a controller draws random numbers of its own, which do not"
+            " follow from the seed. They are part of the probability, and the interval is right, but these runs cannot be repeated."
+        )
+        return [words]
+    return []
