@@ -14,8 +14,8 @@ from scenic.compiler.syntax import (
     RULES,
     STATEMENT_FORMS,
     Choice,
+    TokenKind,
     Item,
-    Kind,
     ListOf,
     Many,
     Optional,
@@ -170,7 +170,7 @@ def _item(item: Item) -> Iterator[Any]:
     match item:
         case Word(text):
             yield railroad.Terminal(text)
-        case Kind(name) if name not in _LAYOUT:
+        case TokenKind(name) if name not in _LAYOUT:
             yield railroad.NonTerminal(name.lower())
         case Reference(rule) if rule in _INLINE:
             rows = [railroad.Sequence(*_row(each.row)) for each in RULES[rule].alternatives]

@@ -7,7 +7,7 @@ from typing import Any, Final
 from fuzz.properties.case import FILENAME, Case, Property
 from fuzz.properties.signatures import SIGNATURES
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks import Context, lint
+from scenic.compiler.checks import CheckContext, lint
 from scenic.compiler.resolver import resolve
 from scenic.language.source import Source
 
@@ -52,7 +52,7 @@ def checks_never_raise(case: Case) -> None:
     for attempt in range(_ATTEMPTS):
         tree = case.fresh_tree()
         operate(tree, random.Random(case.number + attempt))
-        lint(Context(tree, source, resolve(tree, source)))
+        lint(CheckContext(tree, source, resolve(tree, source)))
 
 
 def operate(tree: ast.Module, draw: random.Random) -> None:

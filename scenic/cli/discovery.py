@@ -8,21 +8,21 @@ from scenic.configuration.project import Configurations
 from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic
 
-__all__ = ["STANDARD_INPUT", "Found", "discover"]
+__all__ = ["STANDARD_INPUT", "DiscoveredFiles", "discover"]
 
 STANDARD_INPUT: Final = "-"
 SUFFIXES: Final = (".scenic", ".sc")
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class DiscoveredFiles:
     """The files, each but once, in the order of the arguments and by name within folders; and what went wrong."""
 
     files: tuple[str, ...]
     problems: tuple[Diagnostic, ...]
 
 
-def discover(arguments: Sequence[str], configurations: Configurations) -> Found:
+def discover(arguments: Sequence[str], configurations: Configurations) -> DiscoveredFiles:
     """The files that the arguments name, and the Scenic files in the folders that they name.
 
     A file that is named is taken whatever it is called. In folders, those with the usual endings are taken, except
@@ -40,7 +40,7 @@ def discover(arguments: Sequence[str], configurations: Configurations) -> Found:
         else:
             key = argument if argument == STANDARD_INPUT else os.path.abspath(argument)
             files.setdefault(key, argument)
-    return Found(tuple(files.values()), tuple(problems))
+    return DiscoveredFiles(tuple(files.values()), tuple(problems))
 
 
 def _in_folder(

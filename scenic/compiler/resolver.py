@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks import Context, check
+from scenic.compiler.checks import CheckContext, check
 from scenic.compiler.scopes import (
     Binding,
     BindingKind,
@@ -45,7 +45,7 @@ def resolve_within(
     resolution: Resolution | None = None,
     go_on: Callable[[], None] = lambda: None,
     typing: bool = False,
-) -> tuple[Resolution, Context]:
+) -> tuple[Resolution, CheckContext]:
     """Bind and check the names of a module, with what ``surroundings_of`` finds out about its imports.
 
     Also returns what further checks need. ``resolution`` are the names of the tree, if they are bound already. ``go_on``
@@ -60,7 +60,7 @@ def resolve_within(
         if any(_brings_names(source.line(node.lineno)) for node, _ in bound.nodes(scenic.ErrorStatement)):
             wildcard = True
         bound = bound.with_findings(wildcard=wildcard)
-        context = Context(tree, source, bound, surroundings, typing=typing)
+        context = CheckContext(tree, source, bound, surroundings, typing=typing)
         diagnostics = check(context, go_on)
     return bound.with_findings(diagnostics, wildcard=wildcard), context
 

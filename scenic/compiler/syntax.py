@@ -22,7 +22,6 @@ __all__ = [
     "Choice",
     "Constant",
     "Item",
-    "Kind",
     "ListOf",
     "Many",
     "Optional",
@@ -30,6 +29,7 @@ __all__ = [
     "Row",
     "Rule",
     "StatementForm",
+    "TokenKind",
     "Word",
     "first_words",
     "reached_from",
@@ -46,7 +46,7 @@ class Word:
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class TokenKind:
     """A token of varying text, such as ``NAME``, or of layout, such as ``NEWLINE``."""
 
     name: str
@@ -88,7 +88,7 @@ class Choice:
     rows: tuple["Row", ...]
 
 
-Item: TypeAlias = Word | Kind | Reference | Optional | Many | ListOf | Choice
+Item: TypeAlias = Word | TokenKind | Reference | Optional | Many | ListOf | Choice
 Row: TypeAlias = tuple[Item, ...]
 
 
@@ -146,7 +146,7 @@ def _item(raw: tuple[Any, ...]) -> Item:
         case ("word", text):
             return Word(text)
         case ("kind", name):
-            return Kind(name)
+            return TokenKind(name)
         case ("rule", name):
             return Reference(name)
         case ("optional", row):
@@ -265,7 +265,7 @@ OPERAND_WORDS: Final = words_in(_OF_OPERANDS)
 _OF_STATEMENTS: Final = reached_from("statement") - _OF_OPERANDS
 
 _BLOCKS: Final = frozenset(
-    rule.name for rule in RULES.values() for each in rule.alternatives if Kind("INDENT") in each.row
+    rule.name for rule in RULES.values() for each in rule.alternatives if TokenKind("INDENT") in each.row
 )
 
 
@@ -285,7 +285,7 @@ def _statement_forms() -> Iterator[StatementForm]:
             row = alternative.row
             starts = [item.text for item in row if isinstance(item, Word) and item.text.isidentifier()]
             has_block = any(isinstance(item, Reference) and item.rule in _BLOCKS for item in row) or any(
-                pair == (Word(":"), Kind("NEWLINE")) for pair in pairwise(row)
+                pair == (Word(":"), TokenKind("NEWLINE")) for pair in pairwise(row)
             )
             if starts and (has_block or (row[0] == Word(starts[0]) and (alternative.node or rule in whole))):
                 rest = row[row.index(Word(starts[0])) :]

@@ -21,11 +21,11 @@ from scenic.compiler.syntax import (
     BLOCK_STARTERS,
     STATEMENT_FORMS,
     STATEMENT_WORDS,
-    Kind,
     ListOf,
     Optional,
     Reference,
     StatementForm,
+    TokenKind,
     Word,
 )
 from scenic.compiler.tokens import DEDENT, ERROR, INDENT, NEWLINE, STRING, Tokens
@@ -58,7 +58,7 @@ def _soft_start(form: StatementForm) -> str:
     match form.row[1:]:
         case (Word(text=":"), *_):
             return rf"{form.start}[ \t]*+:"
-        case (Kind(name="NAME"), *_) if form.has_block:
+        case (TokenKind(name="NAME"), *_) if form.has_block:
             return rf"{form.start}[ \t]++\w++[ \t]*+[(:]"
         case (Word(text=second), *_) if form.has_block or second in HARD_KEYWORDS:
             return rf"{form.start}[ \t]++{second}\b"

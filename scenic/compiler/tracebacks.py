@@ -23,14 +23,14 @@ from scenic.dataclass import dataclass
 from scenic.language.source import Source
 from scenic.language.spans import Span
 
-__all__ = ["SOURCE_NAME", "Locator", "Place", "format_traceback", "locate", "raised_at"]
+__all__ = ["SOURCE_NAME", "Locator", "TracedPlace", "format_traceback", "locate", "raised_at"]
 
 SOURCE_NAME: Final = "__scenic_source__"
 """A global of generated modules that may hold their `Source`; without it the text is read from the file."""
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class TracedPlace:
     """A place in a program."""
 
     filename: str
@@ -45,11 +45,11 @@ class Locator:
 
     def __init__(self) -> None:
         self._positions: dict[int, tuple[CodeType, list[_Positions]]] = {}
-        self._places: dict[tuple[int, int], Place | None] = {}
-        self._quotable: dict[int, tuple[Place, object]] = {}
+        self._places: dict[tuple[int, int], TracedPlace | None] = {}
+        self._quotable: dict[int, tuple[TracedPlace, object]] = {}
         self._names: dict[tuple[int, int], tuple[str, int]] = {}
 
-    def place(self, where: TracebackType | FrameType, instruction: int | None = None) -> Place | None:
+    def place(self, where: TracebackType | FrameType, instruction: int | None = None) -> TracedPlace | None:
         """Locate a frame of generated code, as `locate` does, at an earlier ``instruction``."""
         found = (
             _innermost(where)
@@ -114,7 +114,7 @@ def _without_comment(line: str) -> str:
     return line if "#" not in line else line[: _CODE.match(line).end()]  # type: ignore[union-attr]  # matches anything
 
 
-def locate(where: TracebackType | FrameType) -> Place | None:
+def locate(where: TracebackType | FrameType) -> TracedPlace | None:
     """The place in the program that a frame, or the failure of a traceback, comes from.
 
     It is that of the innermost frame of generated code: of the callers of a frame, it itself included; of the frames
@@ -145,7 +145,7 @@ def _innermost(where: TracebackType | FrameType) -> tuple[FrameType, int] | None
     return found
 
 
-def _place(frame: FrameType, position: _Positions | None) -> Place | None:
+def _place(frame: FrameType, position: _Positions | None) -> TracedPlace | None:
     filename = frame.f_code.co_filename
     if position is None:
         return None
@@ -153,12 +153,12 @@ def _place(frame: FrameType, position: _Positions | None) -> Place | None:
     if line is None:
         return None
     if end_line is None or column is None or end_column is None:
-        return Place(filename, Span(line, 0, line, 0))
+        return TracedPlace(filename, Span(line, 0, line, 0))
     start = _character(frame, line, column)
     end = _character(frame, end_line, end_column)
     if (end_line, end) < (line, start):
         end_line, end = line, start
-    return Place(filename, Span(line, start, end_line, end))
+    return TracedPlace(filename, Span(line, start, end_line, end))
 
 
 def _character(frame: FrameType, line: int, column: int) -> int:
@@ -218,7 +218,7 @@ def _user_frames(step: TracebackType | None) -> Iterator[traceback.FrameSummary]
         step = step.tb_next
 
 
-def raised_at(error: BaseException) -> Place | None:
+def raised_at(error: BaseException) -> TracedPlace | None:
     """Return the place where an exception was raised: the innermost line of the user's code, in the program or a Python module.
 
     The script that called this library is not meant: its lines stand before all of the library's.
@@ -232,10 +232,10 @@ def raised_at(error: BaseException) -> Place | None:
     frame = frames[-1]
     line, column, end_column = frames[-1].lineno, frame.colno, frame.end_colno
     if column is None or end_column is None or frame.end_lineno != line:
-        return Place(frame.filename, Span(line, 0, line, 0))
+        return TracedPlace(frame.filename, Span(line, 0, line, 0))
     text = linecache.getline(frame.filename, line).encode("utf-8", "surrogatepass")
     first, last = (len(text[:end].decode("utf-8", "ignore")) for end in (column, end_column))
-    return Place(frame.filename, Span(line, first, line, last))
+    return TracedPlace(frame.filename, Span(line, first, line, last))
 
 
 def _file(step: TracebackType) -> str:

@@ -20,11 +20,11 @@ from scenic.graph.operation import FAULT, OK, Call, Status
 from scenic.graph.schedule import (
     AnyStep,
     ChosenDraw,
+    ColumnPlace,
     Draw,
     Fixed,
     Gather,
     Gathered,
-    Place,
     Run,
     Schedule,
     Scheduler,
@@ -245,7 +245,7 @@ class Batch:
             values = self._values[node] = self._codec.decode(node.kind, self.column(node))
         return values
 
-    def _place(self, node: Node) -> Place:
+    def _place(self, node: Node) -> ColumnPlace:
         if not self._is_there(node):
             self.need((node,))
         return self._schedule.places[node]
@@ -352,7 +352,7 @@ class Batch:
         columns: list[Column] = []
         statuses: list[Status | None] = []
         for part in gather.parts:
-            if isinstance(part, Place):
+            if isinstance(part, ColumnPlace):
                 group = self._group(part.slot)
                 columns.append(group.column[part.member])
                 statuses.append(None if group.status is None else group.status[part.member])

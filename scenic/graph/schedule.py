@@ -26,7 +26,7 @@ Slot = int
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class ColumnPlace:
     """The location of the column of a node: the group and the member in it."""
 
     slot: Slot
@@ -52,7 +52,7 @@ class Run:
 class Gathered:
     """An operand whose columns stand in several places, or that is fixed for some members only."""
 
-    parts: tuple[Place | Column, ...]
+    parts: tuple[ColumnPlace | Column, ...]
 
 
 Gather = Fixed | Run | Gathered
@@ -107,7 +107,7 @@ class Schedule:
     """The steps to take to get some nodes; afterwards they, and what else is kept, are at ``places``."""
 
     steps: tuple[AnyStep, ...]
-    places: Mapping[Node, Place]
+    places: Mapping[Node, ColumnPlace]
     unused: tuple[tuple[Slot, ...], ...] = ()
     """Of a schedule in a chain: what nobody needs any more, before the first step and then after each. ``places`` are those of all
     of the chain, also of what is not evaluated yet or is kept no longer. Empty where all is kept."""
@@ -163,7 +163,7 @@ class Scheduler:
         return chain
 
     def _chain(self, stages: Sequence[Sequence[Node]]) -> tuple[Schedule, ...]:
-        places: dict[Node, Place] = {}
+        places: dict[Node, ColumnPlace] = {}
         steps = [self._steps(roots, places) for roots in stages]
         # When each slot is used for the last time: before a step (or the end) of a stage.
         last: dict[Slot, tuple[int, int]] = {}
@@ -203,7 +203,7 @@ class Scheduler:
             gather = self._gathers[key] = _gather(nodes, schedule.places)
         return gather
 
-    def _steps(self, roots: Sequence[Node], places: dict[Node, Place]) -> list[AnyStep]:
+    def _steps(self, roots: Sequence[Node], places: dict[Node, ColumnPlace]) -> list[AnyStep]:
         """Return the steps that evaluate ``roots`` when the nodes of ``places`` are evaluated, and add the
         places of their results.
         """
@@ -240,7 +240,7 @@ class Scheduler:
             return (merged,)
         return node.operands[:1] if self._grouped and is_choice_of_draws(node) else node.operands
 
-    def _missing(self, roots: Iterable[Node], there: Mapping[Node, Place]) -> list[Node]:
+    def _missing(self, roots: Iterable[Node], there: Mapping[Node, ColumnPlace]) -> list[Node]:
         """The nodes below ``roots`` that are neither there nor constant, operands first."""
         result: dict[Node, None] = {}
         for root in roots:
@@ -269,24 +269,24 @@ class Scheduler:
             return id(node)
         return node.likeness
 
-    def _slot(self, members: Sequence[Node], places: dict[Node, Place]) -> Slot:
+    def _slot(self, members: Sequence[Node], places: dict[Node, ColumnPlace]) -> Slot:
         slot = self._slots
         self._slots += 1
         for member, node in enumerate(members):
-            places[node] = Place(slot, member)
+            places[node] = ColumnPlace(slot, member)
         return slot
 
-    def _draw(self, members: Sequence[Node], places: dict[Node, Place], *, axes: bool) -> Draw:
+    def _draw(self, members: Sequence[Node], places: dict[Node, ColumnPlace], *, axes: bool) -> Draw:
         numbers = np.array([self.graph.axes[node] for node in members], dtype=np.intp) if axes else None
         return Draw(self._slot(members, places), self.graph.addresses(members), numbers)
 
-    def _chosen_draw(self, node: Node, places: dict[Node, Place]) -> ChosenDraw:
+    def _chosen_draw(self, node: Node, places: dict[Node, ColumnPlace]) -> ChosenDraw:
         index, *axes = node.operands
         numbers = np.array([self.graph.axes[axis] for axis in axes], dtype=np.intp)
         gather = _gather([index], places)
         return ChosenDraw(self._slot([node], places), gather, self.graph.addresses(axes), numbers)
 
-    def _step(self, members: list[Node], places: dict[Node, Place]) -> Step:
+    def _step(self, members: list[Node], places: dict[Node, ColumnPlace]) -> Step:
         first = members[0]
         if len(members) > 1:
             members = sorted(members, key=lambda node: _order(node, places))
@@ -321,21 +321,21 @@ def _slots_read(step: AnyStep) -> Iterator[Slot]:
         if isinstance(gather, Run):
             yield gather.slot
         elif isinstance(gather, Gathered):
-            yield from (part.slot for part in gather.parts if isinstance(part, Place))
+            yield from (part.slot for part in gather.parts if isinstance(part, ColumnPlace))
 
 
 def _is_python(node: Node) -> bool:
     return node.operation.is_python(node.operands, node.kind)
 
 
-def _order(node: Node, places: Mapping[Node, Place]) -> tuple[tuple[int, int], ...]:
+def _order(node: Node, places: Mapping[Node, ColumnPlace]) -> tuple[tuple[int, int], ...]:
     """Members are sorted by where their operands are, so that most operands are runs."""
     return tuple(
         (places[operand].slot, places[operand].member) for operand in node.operands if operand in places
     )
 
 
-def _gather(operands: Sequence[Node], places: Mapping[Node, Place]) -> Gather:
+def _gather(operands: Sequence[Node], places: Mapping[Node, ColumnPlace]) -> Gather:
     """Return the way to get the columns of one operand for all members of a group."""
     if all(operand.is_constant for operand in operands):
         columns = [operand.payload.column for operand in operands]
@@ -358,7 +358,7 @@ def _equal_constants(operands: Sequence[Node]) -> bool:
     return all(operand.payload.key == first for operand in operands[1:])
 
 
-def _run(places: Sequence[Place]) -> Run | None:
+def _run(places: Sequence[ColumnPlace]) -> Run | None:
     slot = places[0].slot
     if any(place.slot != slot for place in places):
         return None
@@ -376,11 +376,11 @@ def _run(places: Sequence[Place]) -> Run | None:
 __all__ = [
     "AnyStep",
     "ChosenDraw",
+    "ColumnPlace",
     "Draw",
     "Fixed",
     "Gather",
     "Gathered",
-    "Place",
     "Run",
     "Schedule",
     "Scheduler",

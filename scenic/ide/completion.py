@@ -32,7 +32,7 @@ from scenic.project.classes import Class, Member, class_of_symbol, meaning
 from scenic.project.index import Project
 from scenic.project.modules import Module
 from scenic.project.queries import call_signature
-from scenic.project.search import Found, ModuleKind
+from scenic.project.search import FoundModule, ModuleKind
 from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding, symbol_of_exported
 
 __all__ = ["Completion", "CompletionKind", "completions", "document", "must_follow"]
@@ -596,7 +596,7 @@ def _modules(project: Project, snapshot: Snapshot, before: tuple[str, ...]) -> I
             yield Completion(name, CompletionKind.MODULE, name, 1 if beside else 5, found.kind.value)
 
 
-def _leads_to_models(found: Found, *, beside: bool) -> bool:
+def _leads_to_models(found: FoundModule, *, beside: bool) -> bool:
     """Return whether a module is one of Scenic, or a folder with such modules: for installed packages, right in it."""
     if found.kind is ModuleKind.SCENIC or found.filename is None:
         return found.kind is ModuleKind.SCENIC

@@ -16,7 +16,7 @@ from scenic.project.queries import references, symbol_at
 from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding
 
 __all__ = [
-    "Call",
+    "CallSite",
     "callable_at",
     "callees",
     "callers",
@@ -45,7 +45,7 @@ _DEFINITIONS = (
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
+class CallSite:
     """Another function, and where the calls are: in the caller's file."""
 
     symbol: Symbol
@@ -67,7 +67,7 @@ def class_at(project: Project, filename: str, line: int, column: int) -> Symbol 
     )
 
 
-def callers(project: Project, symbol: Symbol) -> tuple[Call, ...]:
+def callers(project: Project, symbol: Symbol) -> tuple[CallSite, ...]:
     """The callers of a function, each once. Code outside of functions is its module."""
     found: dict[Symbol, list[Span]] = {}
     for place in references(project, symbol):
@@ -78,10 +78,10 @@ def callers(project: Project, symbol: Symbol) -> tuple[Call, ...]:
             continue
         caller = _around(module, place.span)
         found.setdefault(caller, []).append(place.span)
-    return tuple(Call(caller, caller.filename or "", tuple(spans)) for caller, spans in found.items())
+    return tuple(CallSite(caller, caller.filename or "", tuple(spans)) for caller, spans in found.items())
 
 
-def callees(project: Project, symbol: Symbol) -> tuple[Call, ...]:
+def callees(project: Project, symbol: Symbol) -> tuple[CallSite, ...]:
     """The callees of a function, each once, with the places of the calls in the function.
 
     Calls in definitions within it are those of the inner ones. The callees of a module are called outside of definitions.
@@ -97,7 +97,7 @@ def callees(project: Project, symbol: Symbol) -> tuple[Call, ...]:
                 module.attribute_span(call) if isinstance(call, ast.Attribute) else module.source.span(call)
             )
             found.setdefault(target, []).append(span)
-    return tuple(Call(target, module.filename, tuple(spans)) for target, spans in found.items())
+    return tuple(CallSite(target, module.filename, tuple(spans)) for target, spans in found.items())
 
 
 def supertypes(project: Project, symbol: Symbol) -> tuple[Symbol, ...]:

@@ -13,7 +13,16 @@ from typing import Final
 from scenic.compiler.generated import HARD_KEYWORDS, SOFT_KEYWORDS
 from scenic.compiler.phrases import SCENIC_FORMS
 from scenic.compiler.precedence import FORMS, Form, Slot, Word
-from scenic.compiler.syntax import RULES, STATEMENT_FORMS, Kind, ListOf, Optional, Reference, Row, words_of
+from scenic.compiler.syntax import (
+    RULES,
+    STATEMENT_FORMS,
+    ListOf,
+    Optional,
+    Reference,
+    Row,
+    TokenKind,
+    words_of,
+)
 from scenic.compiler.syntax import Word as Written
 from scenic.dataclass import dataclass
 from scenic.language.names import NAMES, TRACKED, NameKind
@@ -102,7 +111,7 @@ def _starts_of_statements() -> tuple[Mapping[str, set[str]], set[tuple[str, ...]
                 starts["whole"].add(form.start)
             case _ if form.has_block and len(words) == 1:
                 starts["header"].add(form.start)
-            case (Reference() | ListOf() | Kind(), *_):
+            case (Reference() | ListOf() | TokenKind(), *_):
                 starts["statement"].add(form.start)
         if len(words) > 1:
             phrases.add(words)
@@ -152,7 +161,7 @@ def _vocabulary() -> Vocabulary:
 
 def _begins_with_name(row: Row) -> bool:
     match row:
-        case (Kind("NAME"), *_):
+        case (TokenKind("NAME"), *_):
             return True
         case (Reference(rule), *_):
             alternatives = RULES[rule].alternatives

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from scenic.compiler.semantics.kinds import Kind
+from scenic.compiler.semantics.kinds import ValueKind
 from scenic.compiler.semantics.model import Model
 from scenic.ide.expressions import expression, operand_before
 from scenic.ide.parameters import settings
@@ -58,7 +58,7 @@ def members(
             yield Completion(name, shown, name, 3, of_kind)
 
 
-def _is_instance(kind: Kind | None) -> bool:
+def _is_instance(kind: ValueKind | None) -> bool:
     return kind is not None and kind.name in INSTANCES
 
 

@@ -9,20 +9,22 @@ from scenic.compiler.loader import SUFFIXES
 from scenic.language.spans import Span
 from scenic.project.index import Project
 from scenic.project.modules import Module
-from scenic.project.queries import Place, occurrences, references
-from scenic.project.search import Found, ModuleKind
+from scenic.project.queries import Location, occurrences, references
+from scenic.project.search import FoundModule, ModuleKind
 from scenic.project.symbols import symbol_of_module
 
 __all__ = ["imports_after_moves"]
 
 
-def imports_after_moves(project: Project, moves: Iterable[tuple[str, str]]) -> tuple[tuple[Place, str], ...]:
+def imports_after_moves(
+    project: Project, moves: Iterable[tuple[str, str]]
+) -> tuple[tuple[Location, str], ...]:
     """The changes that let imports find what they did, once each first path of a pair has become the second.
 
     With another name in the same folder, every word changes that means the module. Of what moves elsewhere, ``model m``
     and ``from m import ...`` change, where the new place can be named from the same beginning.
     """
-    found: dict[tuple[str, Span], tuple[Place, str]] = {}
+    found: dict[tuple[str, Span], tuple[Location, str]] = {}
     for old, new in moves:
         old, new = os.path.abspath(old), os.path.abspath(new)
         same = os.path.dirname(old) == os.path.dirname(new)
@@ -37,14 +39,14 @@ def _module_name(path: str) -> str:
     return next((name.removesuffix(end) for end in (*SUFFIXES, ".py") if name.endswith(end)), name)
 
 
-def _renamed(project: Project, old: str, new: str) -> Iterator[tuple[Place, str]]:
+def _renamed(project: Project, old: str, new: str) -> Iterator[tuple[Location, str]]:
     name, meant = _module_name(old), _module_name(new)
     if name == meant or not meant.isidentifier():
         return
     initial = [os.path.join(old, f"__init__{end}") for end in (*SUFFIXES, ".py")]
     for filename in (old, *initial):
         for kind in (ModuleKind.SCENIC, ModuleKind.NAMESPACE):
-            symbol = symbol_of_module(Found(name, kind, filename))
+            symbol = symbol_of_module(FoundModule(name, kind, filename))
             for place in references(project, symbol):
                 module = project.module(place.filename)
                 line = "" if module is None else module.source.line(place.span.line)
@@ -52,7 +54,7 @@ def _renamed(project: Project, old: str, new: str) -> Iterator[tuple[Place, str]
                     yield place, meant
 
 
-def _moved(project: Project, old: str, new: str) -> Iterator[tuple[Place, str]]:
+def _moved(project: Project, old: str, new: str) -> Iterator[tuple[Location, str]]:
     for filename in project.files():
         module = project.module(filename)
         if module is None or _module_name(old) not in module.source.text:
@@ -65,7 +67,7 @@ def _moved(project: Project, old: str, new: str) -> Iterator[tuple[Place, str]]:
             base = _without(found.filename, name)
             dotted = None if base is None else _dotted(target, base)
             if dotted is not None and dotted != name:
-                yield Place(filename, span, isinstance(node, scenic.Model)), dotted
+                yield Location(filename, span, isinstance(node, scenic.Model)), dotted
 
 
 def _named(module: Module) -> Iterator[tuple[ast.AST, str, Span]]:

@@ -22,7 +22,7 @@ from scenic.language.spans import Span
 from scenic.project.classes import class_of, class_of_symbol
 from scenic.project.index import Project
 from scenic.project.modules import Module
-from scenic.project.queries import Occurrence, Place, occurrence_at, occurrences, references, symbol_of
+from scenic.project.queries import Location, Occurrence, occurrence_at, occurrences, references, symbol_of
 from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding
 
 __all__ = [
@@ -197,7 +197,7 @@ def usages(
     *,
     with_definitions: bool,
     go_on: Callable[[], None] = lambda: None,
-) -> Iterator[Place]:
+) -> Iterator[Location]:
     """Every place of the workspace that names the same as the name at a place, file by file.
 
     ``go_on`` is called before each file, and may raise.
@@ -206,9 +206,11 @@ def usages(
     if module is None or found is None:
         return
     symbol = symbol_of(project, module, found)
-    places: Iterable[Place]
+    places: Iterable[Location]
     if symbol is None or symbol.is_builtin:
-        places = (Place(module.filename, each.span, each.defines) for each in _same(project, module, found))
+        places = (
+            Location(module.filename, each.span, each.defines) for each in _same(project, module, found)
+        )
     else:
         places = references(project, *family(project, symbol).definitions, go_on=go_on)
     yield from (place for place in places if with_definitions or not place.defines)
@@ -270,7 +272,7 @@ def prepare_rename(project: Project, snapshot: Snapshot, line: int, column: int)
 
 def rename(
     project: Project, snapshot: Snapshot, line: int, column: int, name: str
-) -> tuple[tuple[Place, str], ...]:
+) -> tuple[tuple[Location, str], ...]:
     """The places that change when the name at a place becomes ``name``, each with its new text.
 
     Raises `RenameError` if that is impossible, or would change what the program means.
@@ -289,7 +291,7 @@ def rename(
         _refuse_capture(module.resolution, own, name)
         same = _same(project, module, found)
         return tuple(
-            (Place(module.filename, each.span, each.defines), name)
+            (Location(module.filename, each.span, each.defines), name)
             for each in same
             if each.name == found.name and not isinstance(each.node, ast.Attribute)
         )
@@ -310,7 +312,7 @@ def rename(
     if found.name != symbol.name:
         # Another name was asked about that an import gave: only that one changes.
         changed = [
-            (Place(module.filename, each.span, each.defines), name)
+            (Location(module.filename, each.span, each.defines), name)
             for each in _same(project, module, found)
             if each.name == found.name
         ]
@@ -419,7 +421,7 @@ def _is_own(project: Project, filename: str | None, beside: str) -> bool:
     return filename == beside or filename in set(project.files())
 
 
-def _text(project: Project, place: Place) -> str:
+def _text(project: Project, place: Location) -> str:
     module = project.module(place.filename)
     if module is None:
         return ""

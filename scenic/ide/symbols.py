@@ -14,13 +14,13 @@ from scenic.ide.snapshot import Snapshot
 from scenic.ide.spacing import text_of
 from scenic.language.spans import Span
 
-__all__ = ["Kind", "Symbol", "flat", "matches", "symbols"]
+__all__ = ["OutlineKind", "OutlineSymbol", "flat", "matches", "symbols"]
 
 _DEEPEST: Final = 40
 """The largest number of definitions within each other: answers nest twice as deeply."""
 
 
-class Kind(StrEnum):
+class OutlineKind(StrEnum):
     """The kinds of symbols, in the language's own words."""
 
     CLASS = "class"
@@ -38,23 +38,23 @@ class Kind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Symbol:
+class OutlineSymbol:
     """One definition: ``span`` is all of it, ``name_span`` the name in it, ``detail`` what to say beside the name."""
 
     name: str
-    kind: Kind
+    kind: OutlineKind
     detail: str
     span: Span
     name_span: Span
-    children: tuple["Symbol", ...] = ()
+    children: tuple["OutlineSymbol", ...] = ()
 
 
-def symbols(snapshot: Snapshot) -> tuple[Symbol, ...]:
+def symbols(snapshot: Snapshot) -> tuple[OutlineSymbol, ...]:
     """The definitions of a document, in order; those within more than 40 other definitions are left out."""
     return snapshot.derived("symbols", lambda: tuple(_of_block(snapshot, snapshot.tree.body, _DEEPEST)))
 
 
-def flat(found: Sequence[Symbol], container: str = "") -> Iterator[tuple[Symbol, str]]:
+def flat(found: Sequence[OutlineSymbol], container: str = "") -> Iterator[tuple[OutlineSymbol, str]]:
     """Symbols and those in them, each with the name of what contains it."""
     for symbol in found:
         yield symbol, container
@@ -69,7 +69,7 @@ def matches(name: str, query: str) -> bool:
 
 def _of_block(
     snapshot: Snapshot, statements: Sequence[ast.stmt], depth: int, *, in_class: bool = False
-) -> Iterator[Symbol]:
+) -> Iterator[OutlineSymbol]:
     """The definitions in a block and in the blocks within it, with up to ``depth`` levels of definitions in them."""
     if not depth:
         return
@@ -103,47 +103,55 @@ def _blocks_of(node: object) -> list[ast.stmt] | None:
 
 def _of_statement(
     snapshot: Snapshot, node: object, seen: set[str], depth: int, *, in_class: bool
-) -> Iterator[Symbol]:
+) -> Iterator[OutlineSymbol]:
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-        kind = Kind.METHOD if in_class else Kind.FUNCTION
+        kind = OutlineKind.METHOD if in_class else OutlineKind.FUNCTION
         yield _symbol(snapshot, node, kind, _signature(snapshot, node), _inner(snapshot, node.body, depth))
     elif isinstance(node, ast.ClassDef):
         bases = ", ".join(_text(snapshot, base) for base in node.bases)
         children = tuple(_of_block(snapshot, node.body, depth, in_class=True))
-        yield _symbol(snapshot, node, Kind.CLASS, f"({bases})" if bases else "", children)
+        yield _symbol(snapshot, node, OutlineKind.CLASS, f"({bases})" if bases else "", children)
     elif isinstance(node, scenic.BehaviorDef):
         yield _symbol(
-            snapshot, node, Kind.BEHAVIOR, _signature(snapshot, node), _inner(snapshot, node.body, depth)
+            snapshot,
+            node,
+            OutlineKind.BEHAVIOR,
+            _signature(snapshot, node),
+            _inner(snapshot, node.body, depth),
         )
     elif isinstance(node, scenic.MonitorDef):
         yield _symbol(
-            snapshot, node, Kind.MONITOR, _signature(snapshot, node), _inner(snapshot, node.body, depth)
+            snapshot,
+            node,
+            OutlineKind.MONITOR,
+            _signature(snapshot, node),
+            _inner(snapshot, node.body, depth),
         )
     elif isinstance(node, scenic.ScenarioDef):
         body = [*(node.setup or ()), *(node.compose or ())]
         children = tuple(_of_block(snapshot, body, depth))
         yield _symbol(
-            snapshot, node, Kind.SCENARIO, _signature(snapshot, node) if node.args else "", children
+            snapshot, node, OutlineKind.SCENARIO, _signature(snapshot, node) if node.args else "", children
         )
     elif isinstance(node, scenic.PropertyDef):
         attributes = f"[{', '.join(node.attributes)}]" if node.attributes else ""
         yield _symbol(
-            snapshot, node, Kind.PROPERTY, f"{attributes}: {_text(snapshot, node.value)}".strip(": ")
+            snapshot, node, OutlineKind.PROPERTY, f"{attributes}: {_text(snapshot, node.value)}".strip(": ")
         )
     elif isinstance(node, scenic.Param):
         for item in node.items:
-            yield _symbol(snapshot, item, Kind.PARAMETER, _text(snapshot, item.value))
+            yield _symbol(snapshot, item, OutlineKind.PARAMETER, _text(snapshot, item.value))
     elif isinstance(node, scenic.Require | scenic.RequireMonitor | scenic.TerminateWhen):
         if isinstance(node.name, str):
             span = span_of(snapshot, node)
-            yield Symbol(node.name, Kind.REQUIREMENT, "", span, span)
+            yield OutlineSymbol(node.name, OutlineKind.REQUIREMENT, "", span, span)
     elif isinstance(node, ast.Assign | ast.AnnAssign):
         targets = node.targets if isinstance(node, ast.Assign) else [node.target]
         for target in targets:
             for bound in _names(target):
                 if bound.id not in seen:
                     seen.add(bound.id)
-                    yield Symbol(
+                    yield OutlineSymbol(
                         bound.id,
                         _kind_of_value(node.value, bound.id),
                         "" if node.value is None else _text(snapshot, node.value),
@@ -152,27 +160,27 @@ def _of_statement(
                     )
 
 
-def _inner(snapshot: Snapshot, body: Sequence[ast.stmt], depth: int) -> tuple[Symbol, ...]:
+def _inner(snapshot: Snapshot, body: Sequence[ast.stmt], depth: int) -> tuple[OutlineSymbol, ...]:
     """Definitions in a function; its variables are its own business."""
-    kinds = (Kind.VARIABLE, Kind.CONSTANT, Kind.OBJECT)
+    kinds = (OutlineKind.VARIABLE, OutlineKind.CONSTANT, OutlineKind.OBJECT)
     return tuple(each for each in _of_block(snapshot, body, depth) if each.kind not in kinds)
 
 
 def _symbol(
-    snapshot: Snapshot, node: Any, kind: Kind, detail: str, children: tuple[Symbol, ...] = ()
-) -> Symbol:
+    snapshot: Snapshot, node: Any, kind: OutlineKind, detail: str, children: tuple[OutlineSymbol, ...] = ()
+) -> OutlineSymbol:
     span, name = span_of(snapshot, node), name_span(snapshot, node)
     first = getattr(node, "decorator_list", None)
     if first:
         start = span_of(snapshot, first[0])
         span = Span(start.line, 0 if start.column < 2 else start.column - 1, span.end_line, span.end_column)
-    return Symbol(node.name, kind, detail, span, name, children)
+    return OutlineSymbol(node.name, kind, detail, span, name, children)
 
 
-def _kind_of_value(value: ast.expr | None, name: str) -> Kind:
+def _kind_of_value(value: ast.expr | None, name: str) -> OutlineKind:
     if isinstance(value, scenic.New):
-        return Kind.OBJECT
-    return Kind.CONSTANT if name.isupper() else Kind.VARIABLE
+        return OutlineKind.OBJECT
+    return OutlineKind.CONSTANT if name.isupper() else OutlineKind.VARIABLE
 
 
 def _names(target: ast.expr) -> Iterator[ast.Name]:

@@ -12,7 +12,7 @@ from scenic.language.source import Source, read_source
 from scenic.migration.moved import MOVED_MODULES
 from scenic.migration.texts import Token, tokens_of
 from scenic.project.classes import is_of_library
-from scenic.project.search import Finder, Found, ModuleKind
+from scenic.project.search import Finder, FoundModule, ModuleKind
 
 __all__ = ["ClassInfo", "Library", "Names", "definitions"]
 
@@ -63,7 +63,7 @@ class Names:
 
 
 @dataclass(frozen=True, slots=True)
-class Definition:
+class DefinedClass:
     """A definition of a class in a text: its name, its bases, and whether it gives ``requireVisible``."""
 
     name: str
@@ -72,7 +72,7 @@ class Definition:
     pinned: bool
 
 
-def definitions(tokens: Sequence[Token]) -> Iterator[Definition]:
+def definitions(tokens: Sequence[Token]) -> Iterator[DefinedClass]:
     """The classes that a text defines, of either dialect."""
     for index, token in enumerate(tokens):
         if token.text not in ("class", "constructor") or not _begins(tokens, index):
@@ -86,7 +86,7 @@ def definitions(tokens: Sequence[Token]) -> Iterator[Definition]:
             if tokens[place].kind >= NAME and tokens[place + 1].text in (",", ")"):
                 bases.append(tokens[place].text)
             place += 1
-        yield Definition(name.text, tuple(bases), name.line, _gives_visibility(tokens, place))
+        yield DefinedClass(name.text, tuple(bases), name.line, _gives_visibility(tokens, place))
 
 
 def _begins(tokens: Sequence[Token], index: int) -> bool:
@@ -172,7 +172,7 @@ class Library:
         else:
             names.others.add(alias)
 
-    def _module(self, found: Found) -> Names | None:
+    def _module(self, found: FoundModule) -> Names | None:
         """The names of a Scenic module; ``None`` for other modules."""
         filename = found.filename
         if found.kind is not ModuleKind.SCENIC or filename is None:
@@ -195,7 +195,7 @@ class Library:
         return known
 
 
-def _info(definition: Definition, names: Names, filename: str) -> ClassInfo | None:
+def _info(definition: DefinedClass, names: Names, filename: str) -> ClassInfo | None:
     """The class of objects that a definition makes; ``None`` if it is a plain class of Python."""
     if not definition.bases:
         return ClassInfo("Object", definition.pinned, (filename,))

@@ -8,7 +8,7 @@ from scenic.migration.class_names import Library
 from scenic.migration.expressions import rewrite_expressions
 from scenic.migration.instances import Dialect, dialect_of, unknown_classes
 from scenic.migration.maps import MapFiles
-from scenic.migration.pieces import Piece
+from scenic.migration.pieces import TextPiece
 from scenic.migration.rules import Note
 from scenic.migration.specifiers import rewrite_specifiers
 from scenic.migration.statements import rewrite_statements
@@ -69,7 +69,7 @@ class Converter:
         imported = tuple(names.imported)
         if problem is not None:
             return Converted(text, (), dialect, problem, imported)
-        piece = Piece(readable, parsed.tree, names, dialect.is_old, self._flat, self._maps, monitors)
+        piece = TextPiece(readable, parsed.tree, names, dialect.is_old, self._flat, self._maps, monitors)
         rewrite_specifiers(piece)
         rewrite_statements(piece, self._library.finder)
         rewrite_expressions(piece)

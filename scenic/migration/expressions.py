@@ -5,7 +5,7 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.migration.moved import LIBRARY_NAMES
-from scenic.migration.pieces import Piece
+from scenic.migration.pieces import TextPiece
 from scenic.migration.texts import Edit
 
 __all__ = ["rewrite_expressions"]
@@ -34,7 +34,7 @@ _OF_TEXTS: Final = frozenset(
 """Methods of strings that paths lack, or understand otherwise."""
 
 
-def rewrite_expressions(piece: Piece) -> None:
+def rewrite_expressions(piece: TextPiece) -> None:
     """Apply the rules about expressions."""
     for node in piece.nodes:
         match node:
@@ -63,13 +63,13 @@ def _is_local_path(node: ast.AST) -> bool:
     return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "localPath"
 
 
-def _as_text(piece: Piece, node: ast.AST) -> None:
+def _as_text(piece: TextPiece, node: ast.AST) -> None:
     start, end = piece.place(node)
     piece.edit("local-path", node, start, start, "str(")
     piece.edits.append(Edit(end, end, ")"))
 
 
-def _decisions(piece: Piece) -> None:
+def _decisions(piece: TextPiece) -> None:
     for node in piece.nodes:
         match node:
             case ast.Assign(

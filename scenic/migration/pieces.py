@@ -14,11 +14,11 @@ from scenic.migration.maps import MapFiles
 from scenic.migration.rules import Note, decision
 from scenic.migration.texts import Edit, line_starts
 
-__all__ = ["Piece"]
+__all__ = ["TextPiece"]
 
 
 @dataclass(slots=True, eq=False)
-class Piece:
+class TextPiece:
     """A program that is read as Scenic 3, and is being converted.
 
     ``is_old`` tells whether it is known to be Scenic 2: only then are its meanings changed. ``flat`` says that it will

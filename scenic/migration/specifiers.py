@@ -5,7 +5,7 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.parser import parse
-from scenic.migration.pieces import Piece
+from scenic.migration.pieces import TextPiece
 from scenic.migration.texts import Edit
 
 __all__ = ["rewrite_specifiers"]
@@ -13,7 +13,7 @@ __all__ = ["rewrite_specifiers"]
 _BESIDE: Final = frozenset({"left of", "right of", "ahead of", "behind"})
 
 
-def rewrite_specifiers(piece: Piece) -> None:
+def rewrite_specifiers(piece: TextPiece) -> None:
     """Apply the rules to each specifier."""
     for node in piece.of(scenic.New):
         assert isinstance(node, scenic.New)
@@ -49,7 +49,7 @@ def rewrite_specifiers(piece: Piece) -> None:
             _deviation(piece, node, node.value)
 
 
-def _heading(piece: Piece, new: scenic.New, phrase: scenic.SpecifierPhrase) -> None:
+def _heading(piece: TextPiece, new: scenic.New, phrase: scenic.SpecifierPhrase) -> None:
     """``with heading X`` is ``facing X``, if nothing else orients the object."""
     others = [
         each
@@ -69,7 +69,7 @@ def _heading(piece: Piece, new: scenic.New, phrase: scenic.SpecifierPhrase) -> N
         piece.rewords("with-heading", phrase, "with heading", "facing")
 
 
-def _offset(piece: Piece, phrase: scenic.SpecifierPhrase, words: str) -> None:
+def _offset(piece: TextPiece, phrase: scenic.SpecifierPhrase, words: str) -> None:
     """``offset by V`` is ``at ego offset by V``, with parentheses where the operand would be divided otherwise."""
     start, end = piece.place(phrase)
     text = piece.source.text[start:end]
@@ -97,7 +97,7 @@ def _operand_is_whole(text: str, phrase: scenic.SpecifierPhrase, words: str) -> 
     return False
 
 
-def _deviation(piece: Piece, owner: ast.AST, value: ast.expr | None) -> None:
+def _deviation(piece: TextPiece, owner: ast.AST, value: ast.expr | None) -> None:
     """``positionStdDev: s`` is ``(s, s, 0)``."""
     match value:
         case None | ast.Tuple() | ast.List() | scenic.Operation() | scenic.New():
@@ -126,7 +126,7 @@ def _is_plain(node: ast.AST) -> bool:
     return False
 
 
-def _may_be_object(piece: Piece, operand: ast.expr | None) -> bool:
+def _may_be_object(piece: TextPiece, operand: ast.expr | None) -> bool:
     """Return whether the operand of ``left of`` may be an object: no vector and no oriented point."""
     match operand:
         case None:

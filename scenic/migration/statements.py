@@ -9,7 +9,7 @@ from typing import Final
 from scenic.compiler import tree as scenic
 from scenic.migration.maps import SUFFIXES
 from scenic.migration.moved import LOST_CLASSES, MOVED_MODULES, PARAMETERS
-from scenic.migration.pieces import Piece
+from scenic.migration.pieces import TextPiece
 from scenic.project.search import Finder, ModuleKind
 
 __all__ = ["rewrite_statements"]
@@ -17,7 +17,7 @@ __all__ = ["rewrite_statements"]
 _NESTED: Final = (ast.FunctionDef, scenic.BehaviorDef, scenic.MonitorDef, scenic.ScenarioDef, ast.ClassDef)
 
 
-def rewrite_statements(piece: Piece, finder: Finder) -> None:
+def rewrite_statements(piece: TextPiece, finder: Finder) -> None:
     """Apply the rules about statements."""
     _monitors(piece)
     _modules(piece, finder)
@@ -32,7 +32,7 @@ def rewrite_statements(piece: Piece, finder: Finder) -> None:
             piece.decide("order-of-steps", dynamic)
 
 
-def _monitors(piece: Piece) -> None:
+def _monitors(piece: TextPiece) -> None:
     """Start each monitor that was written without parentheses at the end of its block."""
     blocks: dict[int, tuple[ast.stmt, list[scenic.MonitorDef]]] = {}
     for node in piece.of(scenic.MonitorDef):
@@ -50,14 +50,14 @@ def _monitors(piece: Piece) -> None:
         piece.notes.pop()  # The definition is noted already.
 
 
-def _block_of(piece: Piece, node: ast.AST) -> list[ast.stmt]:
+def _block_of(piece: TextPiece, node: ast.AST) -> list[ast.stmt]:
     """The block of statements that a statement is in."""
     parent = piece.parents[node]
     blocks = (getattr(parent, name, None) for name in parent._fields)
     return next(block for block in blocks if isinstance(block, list) and node in block)
 
 
-def _terminations(piece: Piece) -> None:
+def _terminations(piece: TextPiece) -> None:
     """``terminate`` of behaviors and monitors, in a program with modular scenarios."""
     if not any(piece.of(scenic.ScenarioDef)):
         return
@@ -75,7 +75,7 @@ def _terminations(piece: Piece) -> None:
             piece.rewords("terminate", node, "terminate", "terminate simulation")
 
 
-def _visibility(piece: Piece) -> None:
+def _visibility(piece: TextPiece) -> None:
     """Pin ``requireVisible`` in the classes of the file; report other objects that had to be visible."""
     if piece.flat:
         return
@@ -114,14 +114,14 @@ def _visibility(piece: Piece) -> None:
             piece.decide_once("visible-by-default", node)
 
 
-def _is_ego(piece: Piece, node: scenic.New) -> bool:
+def _is_ego(piece: TextPiece, node: scenic.New) -> bool:
     parent = piece.parents[node]
     return isinstance(parent, ast.Assign) and any(
         isinstance(target, ast.Name) and target.id == "ego" for target in parent.targets
     )
 
 
-def _temporal(piece: Piece) -> None:
+def _temporal(piece: TextPiece) -> None:
     """Report requirements that mix temporal operators with others."""
     for node in piece.of(scenic.Require):
         assert isinstance(node, scenic.Require)
@@ -138,7 +138,7 @@ def _temporal(piece: Piece) -> None:
             piece.decide("temporal-mixture", node)
 
 
-def _modules(piece: Piece, finder: Finder) -> None:
+def _modules(piece: TextPiece, finder: Finder) -> None:
     """Modules that have moved, or are Python today."""
     for node in piece.of(scenic.Model, ast.ImportFrom, ast.Import):
         match node:
@@ -155,7 +155,7 @@ def _modules(piece: Piece, finder: Finder) -> None:
                 _moved(piece, node, tuple(alias.name for alias in aliases))
 
 
-def _moved(piece: Piece, node: ast.AST, names: tuple[str, ...]) -> None:
+def _moved(piece: TextPiece, node: ast.AST, names: tuple[str, ...]) -> None:
     start, end = piece.place(node)
     for name in names:
         today = MOVED_MODULES.get(name)
@@ -168,7 +168,7 @@ def _moved(piece: Piece, node: ast.AST, names: tuple[str, ...]) -> None:
             piece.decide("lost-classes", node, name, name)
 
 
-def _parameters(piece: Piece) -> None:
+def _parameters(piece: TextPiece) -> None:
     """Parameters with another name, and the 2D map of driving programs."""
     has_map: scenic.Param | None = None
     # LGSVL's own model calls it by the old name.
@@ -190,7 +190,7 @@ def _parameters(piece: Piece) -> None:
         piece.statement_after("flat-map", has_map, "param use2DMap = True")
 
 
-def _maps(piece: Piece) -> None:
+def _maps(piece: TextPiece) -> None:
     """Maps that are not where the program says."""
     for value, literal in _paths(piece):
         if not value.endswith(SUFFIXES) or value.startswith(("http:", "https:")):
@@ -208,7 +208,7 @@ def _maps(piece: Piece) -> None:
             piece.edit("map-file", literal, start, end, text[0] + place + text[-1])
 
 
-def _paths(piece: Piece) -> Iterator[tuple[str, ast.Constant]]:
+def _paths(piece: TextPiece) -> Iterator[tuple[str, ast.Constant]]:
     """The paths that a program gives to ``localPath`` and ``setLocalWorld``."""
     for node in piece.of(ast.Call):
         match node:

@@ -14,7 +14,7 @@ from scenic.dataclass import dataclass
 from scenic.language.properties import CLASSES, BuiltinProperty, attributes_of, properties_of
 from scenic.project.index import Exported, Project
 from scenic.project.modules import Module
-from scenic.project.search import Found
+from scenic.project.search import FoundModule
 from scenic.project.symbols import (
     Symbol,
     SymbolKind,
@@ -306,7 +306,11 @@ def _meaning(project: Project, module: Module, node: ast.expr, depth: int) -> Sy
         target = project.member(home, node.attr, importer=module.filename)
         if target is None:
             return None
-        return symbol_of_module(target) if isinstance(target, Found) else symbol_of_exported(project, target)
+        return (
+            symbol_of_module(target)
+            if isinstance(target, FoundModule)
+            else symbol_of_exported(project, target)
+        )
     owner: Symbol | None = _meaning(project, module, node.value, depth + 1)
     if owner is None or owner.kind is not SymbolKind.CLASS:
         owner = _single(
@@ -345,7 +349,7 @@ def _replaced(project: Project, module: Module, name: str) -> Symbol | None:
     return None
 
 
-def module_behind(project: Project, module: Module, node: ast.expr) -> Found | None:
+def module_behind(project: Project, module: Module, node: ast.expr) -> FoundModule | None:
     """The module that an expression such as ``m`` or ``package.m`` means; ``None`` if it is none."""
     parts: list[str] = []
     while isinstance(node, ast.Attribute):
@@ -360,13 +364,13 @@ def module_behind(project: Project, module: Module, node: ast.expr) -> Found | N
     else:
         exported = project.own(module, binding)
     found = None if exported is None else project.follow(exported)
-    if not isinstance(found, Found):
+    if not isinstance(found, FoundModule):
         return None
     for part in parts:
         target = project.member(found, part, importer=module.filename)
-        if target is not None and not isinstance(target, Found):
+        if target is not None and not isinstance(target, FoundModule):
             target = project.follow(target)
-        if not isinstance(target, Found):
+        if not isinstance(target, FoundModule):
             return None
         found = target
     return found
@@ -389,7 +393,7 @@ def class_of_elements(project: Project, module: Module, node: ast.expr) -> Symbo
 def class_of_exported(project: Project, exported: Exported) -> Symbol | None:
     """The class of a value that a module defines; see `class_of`."""
     target = project.follow(exported)
-    if isinstance(target, Found) or target.module is None or target.binding is None:
+    if isinstance(target, FoundModule) or target.module is None or target.binding is None:
         return None
     return _single(_value_of_binding(project, target.module, target.binding, 0))
 
@@ -532,7 +536,7 @@ def _value_of_name(project: Project, module: Module, node: ast.Name, depth: int)
         if brought is None or brought.binding is None or brought.module is None:
             return None
         target = project.follow(brought)
-        if isinstance(target, Found) or target.module is None or target.binding is None:
+        if isinstance(target, FoundModule) or target.module is None or target.binding is None:
             return None
         module, binding = target.module, target.binding
     return _value_of_binding(project, module, binding, depth)
@@ -544,7 +548,7 @@ def _value_of_binding(project: Project, module: Module, binding: Binding, depth:
         return None if own is None else _Value(own)
     if binding.kinds == {BindingKind.IMPORTED}:
         followed = project.follow(project.own(module, binding))
-        if isinstance(followed, Found) or followed.module is None or followed.binding is None:
+        if isinstance(followed, FoundModule) or followed.module is None or followed.binding is None:
             return None
         module, binding = followed.module, followed.binding
     if len(binding.sites) == 1 and (run := module.loop_of.get(binding.sites[0])) is not None:

@@ -17,7 +17,7 @@ from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.language.spelling import is_slip, nearest
 from scenic.project.index import Exported, Exports, Project
-from scenic.project.search import Found, ModuleKind
+from scenic.project.search import FoundModule, ModuleKind
 
 __all__ = ["Imports"]
 
@@ -69,11 +69,11 @@ class Imports:
     def _statements(self) -> dict[ast.alias, ast.ImportFrom]:
         return {alias: node for node in self._froms for alias in node.names}
 
-    def found(self, node: ast.ImportFrom | scenic.Model) -> Found:
+    def found(self, node: ast.ImportFrom | scenic.Model) -> FoundModule:
         """The module that a statement names."""
         return self._project.found_by(node, self._source.filename)
 
-    def modules(self, statement: ast.Import | ast.ImportFrom | scenic.Model) -> tuple[Found, ...]:
+    def modules(self, statement: ast.Import | ast.ImportFrom | scenic.Model) -> tuple[FoundModule, ...]:
         """The modules that a statement runs."""
         importer = self._source.filename
         if isinstance(statement, ast.Import):
@@ -82,9 +82,9 @@ class Imports:
         if isinstance(statement, scenic.Model) or found.is_missing:
             return (found,)
         inner = (self.member(alias) for alias in statement.names if alias.name != "*")
-        return (found, *(each for each in inner if isinstance(each, Found)))
+        return (found, *(each for each in inner if isinstance(each, FoundModule)))
 
-    def member(self, alias: ast.alias) -> Exported | Found | None:
+    def member(self, alias: ast.alias) -> Exported | FoundModule | None:
         """The definition that ``from m import name`` brings."""
         statement = self._statements.get(alias)
         if statement is None:
@@ -115,18 +115,18 @@ class Imports:
             beginning, names = alias.name, self._project.exports_of(self.found(statement)).names
         return any(name.startswith(beginning) for name in names)
 
-    def attribute(self, node: ast.Attribute) -> Exported | Found | None:
+    def attribute(self, node: ast.Attribute) -> Exported | FoundModule | None:
         """The meaning of ``m.name``, where ``m`` is a module that the program imports."""
         home = self._module(node.value)
         if home is None:
             return None
         return self._project.member(home, node.attr, importer=self._source.filename)
 
-    def _module(self, node: ast.expr) -> Found | None:
+    def _module(self, node: ast.expr) -> FoundModule | None:
         """The module that an expression means; ``None`` if it is none, or may be something else."""
         if isinstance(node, ast.Attribute):
             found = self.attribute(node)
-            return found if isinstance(found, Found) else None
+            return found if isinstance(found, FoundModule) else None
         if not isinstance(node, ast.Name) or self._resolution.reflective:
             return None
         binding = self._resolution.binding(node)
@@ -142,11 +142,11 @@ class Imports:
             return None
         return first
 
-    def _imported_module(self, alias: Any) -> Found | None:
+    def _imported_module(self, alias: Any) -> FoundModule | None:
         statement = self._statements.get(alias)
         if statement is not None:
             member = self.member(alias)
-            return member if isinstance(member, Found) else None
+            return member if isinstance(member, FoundModule) else None
         name = alias.name if alias.asname else alias.name.partition(".")[0]
         return self._project.find(name, importer=self._source.filename)
 
@@ -168,7 +168,7 @@ class Imports:
                 yield from self._name_findings(found, statement)
         yield from self._attribute_findings()
 
-    def _module_findings(self, found: Found, node: Any, name: str, level: int) -> Iterator[Diagnostic]:
+    def _module_findings(self, found: FoundModule, node: Any, name: str, level: int) -> Iterator[Diagnostic]:
         star = isinstance(node, scenic.Model) or node in self.stars
         if not found.is_missing:
             exports = self._project.exports_of(found) if star and self._verbose else None
@@ -203,7 +203,7 @@ class Imports:
             fix=fix,
         )
 
-    def _elsewhere(self, found: Found, node: scenic.Model, place: Span) -> Diagnostic:
+    def _elsewhere(self, found: FoundModule, node: scenic.Model, place: Span) -> Diagnostic:
         """A world model that may be installed where the program runs: its names are unknown, all else can be checked."""
         return Diagnostic(
             "SC406",
@@ -214,7 +214,7 @@ class Imports:
             f"{self._searched(found, node, 0)}; {how_to_get(node.name)}",
         )
 
-    def _searched(self, found: Found, node: object, level: int) -> str:
+    def _searched(self, found: FoundModule, node: object, level: int) -> str:
         own = os.path.dirname(os.path.abspath(self._source.filename))
         folders = [
             "beside the program" if each == own else f"in `{_shown(each, own)}`" for each in found.searched
@@ -237,7 +237,7 @@ class Imports:
             "names that nothing else defines are taken to come from there",
         )
 
-    def _name_findings(self, found: Found, statement: ast.ImportFrom) -> Iterator[Diagnostic]:
+    def _name_findings(self, found: FoundModule, statement: ast.ImportFrom) -> Iterator[Diagnostic]:
         exports: Exports | None = None
         for alias in statement.names:
             if alias.name == "*" or self.member(alias) is not None:
@@ -349,7 +349,7 @@ class Imports:
         return word_span(self._source, alias, alias.name)
 
 
-def _judgement(found: Found, node: object, level: int) -> tuple[Severity | None, str | None]:
+def _judgement(found: FoundModule, node: object, level: int) -> tuple[Severity | None, str | None]:
     """Return the severity of a missing module (``None``: do not report it), and the name that may be meant.
 
     A library may be installed where the program runs and not here; whatever belongs to the program must be here.

@@ -20,7 +20,7 @@ from scenic.dataclass import dataclass
 from scenic.language.errors import ScenicError
 from scenic.language.source import Source, read_source
 from scenic.project.modules import Module, read_module
-from scenic.project.search import Finder, Found, ModuleKind
+from scenic.project.search import Finder, FoundModule, ModuleKind
 
 __all__ = ["Exported", "Exports", "Project", "Unseen"]
 
@@ -222,17 +222,17 @@ class Project:
 
     # Modules
 
-    def find(self, name: str, *, importer: str, level: int = 0) -> Found:
+    def find(self, name: str, *, importer: str, level: int = 0) -> FoundModule:
         """The module that an import in a file means; ``level`` counts the dots before the name."""
         return self.finder.find(name, importer=importer, level=level)
 
-    def found_module(self, found: Found) -> Module | None:
+    def found_module(self, found: FoundModule) -> Module | None:
         """The module that was found, if it can be looked into."""
         if found.filename is None or found.kind not in (ModuleKind.SCENIC, ModuleKind.PYTHON):
             return None
         return self.module(found.filename)
 
-    def exports_of(self, found: Found) -> Exports:
+    def exports_of(self, found: FoundModule) -> Exports:
         """The names of the module that an import found; of one that cannot be looked into, none and `Exports.unseen`."""
         if found.kind is ModuleKind.NAMESPACE:
             return _NOTHING
@@ -322,13 +322,15 @@ class Project:
         """A binding of a module, to be followed."""
         return Exported(binding.name, module, binding)
 
-    def found_by(self, node: ast.ImportFrom | scenic.Model, importer: str) -> Found:
+    def found_by(self, node: ast.ImportFrom | scenic.Model, importer: str) -> FoundModule:
         """The module that ``from m import ...`` or ``model m`` means."""
         if isinstance(node, scenic.Model):
             return self.find(node.name, importer=importer)
         return self.find(node.module or "", importer=importer, level=node.level)
 
-    def member(self, found: Found, name: str, *, importer: str, level: int = 0) -> Exported | Found | None:
+    def member(
+        self, found: FoundModule, name: str, *, importer: str, level: int = 0
+    ) -> Exported | FoundModule | None:
         """The meaning of ``from m import name``: a name of the module, else a module in it; ``None`` if it has neither."""
         exported = self.exports_of(found).names.get(name)
         if exported is not None and not self._is_own_module(exported, found):
@@ -337,7 +339,7 @@ class Project:
         # Of what is not found nothing is said: it may be made when the package is built.
         return exported if inner.is_missing else inner
 
-    def _is_own_module(self, exported: Exported, found: Found) -> bool:
+    def _is_own_module(self, exported: Exported, found: FoundModule) -> bool:
         """Return whether ``from . import name`` in a package itself binds a name: it can only bring the module of that name."""
         module, binding = exported.module, exported.binding
         if module is None or binding is None or module.filename != found.filename:
@@ -347,7 +349,7 @@ class Project:
             return False
         return self.found_by(statement, module.filename).filename == found.filename
 
-    def follow(self, exported: Exported) -> Exported | Found:
+    def follow(self, exported: Exported) -> Exported | FoundModule:
         """The definition behind an imported name, through all modules that pass it on.
 
         What is no plain import, or leads to where nothing is known, is its own definition.
@@ -369,7 +371,7 @@ class Project:
             target = self.member(found, alias.name, importer=importer, level=statement.level)
             if target is None:
                 break
-            if isinstance(target, Found):
+            if isinstance(target, FoundModule):
                 return target
             exported = target
         return exported
@@ -400,7 +402,7 @@ def _imports(module: Module) -> Iterator[tuple[int, str]]:
         yield 0, node.name
 
 
-def _compiled(found: Found) -> Exports:
+def _compiled(found: FoundModule) -> Exports:
     """The names of a compiled module: known only of those that belong to Python itself."""
     head = found.name.partition(".")[0]
     if head in sys.stdlib_module_names and not _is_foreign(found):
@@ -414,7 +416,7 @@ def _compiled(found: Found) -> Exports:
     return _unknown(found.name, "it is compiled")
 
 
-def _is_foreign(found: Found) -> bool:
+def _is_foreign(found: FoundModule) -> bool:
     """Return whether a compiled module lies outside of Python's own library, whatever its name."""
     library = os.path.dirname(os.path.abspath(os.__file__))
     inside = found.filename is None or found.filename.startswith(library + os.sep)

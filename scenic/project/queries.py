@@ -16,13 +16,13 @@ from scenic.language.spans import Span
 from scenic.project.classes import class_of_symbol, meaning
 from scenic.project.index import Exported, Project
 from scenic.project.modules import Module
-from scenic.project.search import Found
+from scenic.project.search import FoundModule
 from scenic.project.signatures import Signature, signature_of
 from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding, symbol_of_exported, symbol_of_module
 
 __all__ = [
+    "Location",
     "Occurrence",
-    "Place",
     "call_signature",
     "definition",
     "exported",
@@ -64,7 +64,7 @@ class Occurrence:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class Location:
     """A place in a file."""
 
     filename: str
@@ -249,7 +249,9 @@ def _alias(project: Project, module: Module, alias: ast.alias, occurrence: Occur
     target = project.member(found, alias.name, importer=module.filename, level=statement.level)
     if target is None:
         return _bound(project, module, alias)
-    return symbol_of_module(target) if isinstance(target, Found) else symbol_of_exported(project, target)
+    return (
+        symbol_of_module(target) if isinstance(target, FoundModule) else symbol_of_exported(project, target)
+    )
 
 
 def _property(project: Project, module: Module, node: scenic.SpecifierPhrase) -> Symbol | None:
@@ -310,7 +312,7 @@ def exported(project: Project, filename: str) -> dict[str, Symbol]:
 
 def references(
     project: Project, *symbols: Symbol, go_on: Callable[[], None] = lambda: None
-) -> Iterator[Place]:
+) -> Iterator[Location]:
     """Every place that names one of some symbols, their definitions among them, in all files of the workspace.
 
     The symbols have one name. The files that define them come first; ``go_on`` is called before each, and may raise.
@@ -333,7 +335,7 @@ def references(
             for each in occurrences(module)
             if each.name in names and symbol_of(project, module, each) in wanted
         }
-        yield from (Place(module.filename, span, defines) for span, defines in spans.items())
+        yield from (Location(module.filename, span, defines) for span, defines in spans.items())
 
 
 def _mentions(text: str, name: str) -> bool:

@@ -18,7 +18,7 @@ from scenic.compiler.loader import SUFFIXES
 from scenic.dataclass import dataclass
 from scenic.language.spelling import nearest
 
-__all__ = ["Finder", "Found", "ModuleKind"]
+__all__ = ["Finder", "FoundModule", "ModuleKind"]
 
 _INITIAL: Final = (*SUFFIXES, ".py")
 """The endings of ``__init__`` in packages."""
@@ -38,7 +38,7 @@ class ModuleKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class FoundModule:
     """The result of the search for a module.
 
     ``filename`` is its file; of a folder without ``__init__`` the folder, of a module that is built into Python
@@ -84,7 +84,7 @@ class Finder:
         self._entries: dict[str, frozenset[str]] = {}
         self._stamps: dict[str, int] = {}
         """By folder that was listed: when something in it was last made, renamed or removed."""
-        self._found: dict[tuple[str, str, int], Found] = {}
+        self._found: dict[tuple[str, str, int], FoundModule] = {}
         self._folders: dict[str, tuple[str, ...]] = {}
         self._folder_of: dict[str, str] = {}
 
@@ -99,7 +99,7 @@ class Finder:
         folders = self._beside(os.path.dirname(os.path.abspath(importer)))
         return any(folder in self._stamps and self._stamps[folder] != _stamp(folder) for folder in folders)
 
-    def find(self, name: str, *, importer: str, level: int = 0) -> Found:
+    def find(self, name: str, *, importer: str, level: int = 0) -> FoundModule:
         """The module that ``name`` means in the file ``importer``; ``level`` counts the dots before it."""
         folder = self._folder_of.get(importer)
         if folder is None:
@@ -120,10 +120,10 @@ class Finder:
             names.update(name for name in sys.stdlib_module_names if not name.startswith("_"))
         return frozenset(names)
 
-    def _find(self, name: str, folder: str, level: int) -> Found:
+    def _find(self, name: str, folder: str, level: int) -> FoundModule:
         parts = name.split(".") if name else []
         if not all(part.isidentifier() for part in parts):
-            return Found(name, ModuleKind.MISSING)
+            return FoundModule(name, ModuleKind.MISSING)
         if level:
             for _ in range(level - 1):
                 folder = os.path.dirname(folder)
@@ -136,30 +136,30 @@ class Finder:
         for base in everywhere:
             file = self._scenic(base, parts)
             if file is not None:
-                return Found(name, ModuleKind.SCENIC, file)
+                return FoundModule(name, ModuleKind.SCENIC, file)
         if not level and name in sys.builtin_module_names:
-            return Found(name, ModuleKind.COMPILED)
+            return FoundModule(name, ModuleKind.COMPILED)
         namespace: str | None = None
         for base in everywhere:
             found = self._python(base, parts)
             if found is not None and found[1] is not ModuleKind.NAMESPACE:
-                return Found(name, found[1], found[0])
+                return FoundModule(name, found[1], found[0])
             if found is not None and namespace is None:
                 namespace = found[0]
         if namespace is not None:
-            return Found(name, ModuleKind.NAMESPACE, namespace)
+            return FoundModule(name, ModuleKind.NAMESPACE, namespace)
         if not level and parts[0] in sys.stdlib_module_names and name in sys.modules:
-            return Found(name, ModuleKind.COMPILED)  # `os.path` is no file.
+            return FoundModule(name, ModuleKind.COMPILED)  # `os.path` is no file.
         if not level and self._hooks:
             home = _hooked(parts[0])
             found = None if home is None else self._python(home, parts)
             if found is not None:
-                return Found(name, found[1], found[0])
+                return FoundModule(name, found[1], found[0])
         return self._missing(name, parts, own, rest, level)
 
     def _missing(
         self, name: str, parts: list[str], own: tuple[str, ...], rest: tuple[str, ...], level: int
-    ) -> Found:
+    ) -> FoundModule:
         known = 0
         homes: list[str] = list(own)
         while known < len(parts) - 1:
@@ -182,7 +182,7 @@ class Finder:
         if near is not None:
             near = ".".join([*parts[:known], near, *parts[known + 1 :]])
         within = bool(known) and any(home.startswith(_closed(base)) for home in homes for base in own)
-        return Found(name, ModuleKind.MISSING, None, tuple(homes), beginning, within, near)
+        return FoundModule(name, ModuleKind.MISSING, None, tuple(homes), beginning, within, near)
 
     def _beside(self, folder: str) -> tuple[str, ...]:
         """A folder, and those above it up to the innermost root that holds it.

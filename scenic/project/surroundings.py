@@ -20,7 +20,7 @@ from scenic.project.imports import Imports
 from scenic.project.index import Exported, Exports, Project
 from scenic.project.maps import map_findings
 from scenic.project.members import kind_of_exported, member_findings
-from scenic.project.search import Found, ModuleKind
+from scenic.project.search import FoundModule, ModuleKind
 from scenic.project.symbols import Symbol, symbol_of_exported
 from scenic.project.textures import texture_findings
 
@@ -99,7 +99,7 @@ class _Surroundings:
     def sets_ego(self, statement: ast.Import | ast.ImportFrom | scenic.Model) -> bool:
         return any(self._may_set_ego(found) for found in self._imports.modules(statement))
 
-    def _may_set_ego(self, found: Found) -> bool:
+    def _may_set_ego(self, found: FoundModule) -> bool:
         if found.kind is ModuleKind.SCENIC:
             exports = self._project.exports_of(found)
             return exports.sets_ego or not exports.complete

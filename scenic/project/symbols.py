@@ -16,7 +16,7 @@ from scenic.language.properties import CLASSES
 from scenic.language.spans import Span
 from scenic.project.index import Exported, Project
 from scenic.project.modules import Module
-from scenic.project.search import Found
+from scenic.project.search import FoundModule
 
 __all__ = [
     "Symbol",
@@ -109,7 +109,7 @@ def builtin_symbol(name: str) -> Symbol | None:
     return Symbol(name, SymbolKind.VARIABLE) if name in TRACKED else None
 
 
-def symbol_of_module(found: Found) -> Symbol:
+def symbol_of_module(found: FoundModule) -> Symbol:
     """The symbol of a module: its place is the beginning of its file."""
     return Symbol(
         found.name.rpartition(".")[2],
@@ -122,7 +122,7 @@ def symbol_of_module(found: Found) -> Symbol:
 def symbol_of_exported(project: Project, exported: Exported, *, follow: bool = True) -> Symbol:
     """The symbol of a name that a module has; unless ``follow`` is false, of what is behind imports."""
     target = project.follow(exported) if follow else exported
-    if isinstance(target, Found):
+    if isinstance(target, FoundModule):
         return symbol_of_module(target)
     if target.module is None or target.binding is None:
         return Symbol(target.name, SymbolKind.VARIABLE)

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from scenic.compiler.compile import compile_text
-from scenic.compiler.tracebacks import SOURCE_NAME, Place, locate
+from scenic.compiler.tracebacks import SOURCE_NAME, TracedPlace, locate
 from scenic.language.source import Source
 
 COMPARISONS: dict[str, Callable[[Any, Any], Any]] = {
@@ -44,7 +44,7 @@ class Recorder:
 
     def _note(self, name: str) -> None:
         place = locate(sys._getframe(2))
-        assert isinstance(place, Place)
+        assert isinstance(place, TracedPlace)
         assert place.filename == "program.scenic"
         self.calls.append((name, segment(self._source, place)))
 
@@ -194,7 +194,7 @@ class Recorder:
         return function
 
 
-def segment(source: Source, place: Place) -> str:
+def segment(source: Source, place: TracedPlace) -> str:
     """The text at a place."""
     span = place.span
     lines = [source.line(number) for number in range(span.line, span.end_line + 1)]

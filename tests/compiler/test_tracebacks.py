@@ -8,7 +8,7 @@ from types import FrameType
 import pytest
 
 from scenic.compiler.compile import compile_text
-from scenic.compiler.tracebacks import SOURCE_NAME, Locator, Place, format_traceback, locate
+from scenic.compiler.tracebacks import SOURCE_NAME, Locator, TracedPlace, format_traceback, locate
 from scenic.language.source import Source
 from scenic.language.spans import Span
 from tests.compiler.recording import segment
@@ -35,7 +35,7 @@ def failure(text: str, filename: str = "<string>", **names: object) -> BaseExcep
 def test_place_of_an_exception() -> None:
     error = failure(TEXT, call=lambda function, value: function(value))
     place = locate(error.__traceback__)
-    assert place == Place("<string>", Span(2, 16, 2, 25))
+    assert place == TracedPlace("<string>", Span(2, 16, 2, 25))
     assert segment(Source(TEXT, "<string>"), place) == "x.missing"
 
 
@@ -43,7 +43,7 @@ def test_place_of_an_exception_in_a_file(tmp_path: Path) -> None:
     path = tmp_path / "program.scenic"
     path.write_text(TEXT, encoding="utf-8")
     error = failure(TEXT, str(path), call=lambda function, value: function(value))
-    assert locate(error.__traceback__) == Place(str(path), Span(2, 16, 2, 25))
+    assert locate(error.__traceback__) == TracedPlace(str(path), Span(2, 16, 2, 25))
 
 
 @pytest.mark.parametrize("find", [locate, Locator().place])
@@ -55,7 +55,7 @@ def test_place_of_a_caller(find: object) -> None:
 
     execute(TEXT, call=call)
     execute(TEXT, call=call)
-    assert places == [Place("<string>", Span(4, 14, 5, 10))] * 2
+    assert places == [TracedPlace("<string>", Span(4, 14, 5, 10))] * 2
 
 
 def test_frames_of_no_program() -> None:
@@ -106,7 +106,7 @@ def test_code_without_columns() -> None:
     scope = {"__scenic__": object(), "call": lambda: places.append(locate(sys._getframe()))}
     code = compile("\ncall()", "f", "exec")
     exec(code.replace(co_linetable=_lines_only(code)), scope)
-    assert places == [Place("f", Span(2, 0, 2, 0))]
+    assert places == [TracedPlace("f", Span(2, 0, 2, 0))]
 
 
 def _lines_only(code: object) -> bytes:

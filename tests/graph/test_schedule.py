@@ -8,7 +8,7 @@ import pytest
 import scenic
 from scenic.graph.node import Graph, axis
 from scenic.graph.operation import FAULT, OK
-from scenic.graph.schedule import ChosenDraw, Draw, Gathered, Place, Run, Scheduler, Step, _run
+from scenic.graph.schedule import ChosenDraw, ColumnPlace, Draw, Gathered, Run, Scheduler, Step, _run
 from tests.graph.programs import batch_at, make
 
 
@@ -25,9 +25,9 @@ from tests.graph.programs import batch_at, make
     ],
 )
 def test_runs_are_steps_of_one_length(members: list[int], run: slice | None) -> None:
-    found = _run([Place(7, member) for member in members])
+    found = _run([ColumnPlace(7, member) for member in members])
     assert found == (None if run is None else Run(7, run))
-    assert _run([*(Place(7, member) for member in members), Place(8, members[-1] + 1)]) is None
+    assert _run([*(ColumnPlace(7, member) for member in members), ColumnPlace(8, members[-1] + 1)]) is None
 
 
 def test_members_in_any_order_keep_their_own_operands() -> None:
@@ -183,7 +183,7 @@ def read_by(step: Draw | ChosenDraw | Step) -> set[int]:
         if isinstance(gather, Run):
             slots.add(gather.slot)
         elif isinstance(gather, Gathered):
-            slots |= {part.slot for part in gather.parts if isinstance(part, Place)}
+            slots |= {part.slot for part in gather.parts if isinstance(part, ColumnPlace)}
     return slots
 
 

@@ -37,11 +37,11 @@ from scenic.compiler.checks import (
     values,
     written_forms,
 )
-from scenic.compiler.checks.context import Context, NodeRule, ProgramRule
+from scenic.compiler.checks.context import CheckContext, NodeRule, ProgramRule
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.garbage import no_garbage_collection
 
-__all__ = ["Context", "check", "lint"]
+__all__ = ["CheckContext", "check", "lint"]
 
 _NODE_RULES: Final[tuple[tuple[type[ast.AST], NodeRule], ...]] = tuple(
     rule
@@ -64,14 +64,14 @@ _NODE_RULES: Final[tuple[tuple[type[ast.AST], NodeRule], ...]] = tuple(
 )
 
 
-def _nodes(context: Context) -> Iterator[Diagnostic]:
+def _nodes(context: CheckContext) -> Iterator[Diagnostic]:
     """Yield the diagnostics of rules about single nodes."""
     for cls, rule in _NODE_RULES:
         for node, scope in context.nodes(cls):
             yield from rule(node, scope, context)
 
 
-def _misplaced(context: Context) -> Iterator[Diagnostic]:
+def _misplaced(context: CheckContext) -> Iterator[Diagnostic]:
     """Yield the diagnostics of statements in the wrong place, and of statements that are not supported at all."""
     misplaced = dict(placement.check_placement(context))
     yield from filter(None, misplaced.values())
@@ -104,7 +104,7 @@ MOST_OF_ONE_CODE: Final = 200
 """Largest number of findings of one kind that are reported."""
 
 
-def check(context: Context, go_on: Callable[[], None] = lambda: None) -> tuple[Diagnostic, ...]:
+def check(context: CheckContext, go_on: Callable[[], None] = lambda: None) -> tuple[Diagnostic, ...]:
     """Findings about constructs that no program may contain, ordered by place.
 
     ``go_on`` is called now and then, and may raise to stop.
@@ -116,7 +116,7 @@ def check(context: Context, go_on: Callable[[], None] = lambda: None) -> tuple[D
     return tuple(_capped(sorted(diagnostics, key=_order)))
 
 
-def lint(context: Context, go_on: Callable[[], None] = lambda: None) -> tuple[Diagnostic, ...]:
+def lint(context: CheckContext, go_on: Callable[[], None] = lambda: None) -> tuple[Diagnostic, ...]:
     """Findings about constructs that hardly mean what they say, or are bound to fail when they are reached; ordered by place.
 
     ``go_on`` is called now and then, and may raise to stop.

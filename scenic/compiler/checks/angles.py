@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.scopes import Scope
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import ANGLE_METHODS, NAMES, NameKind
@@ -30,7 +30,7 @@ _COMPOSING: Final = frozenset({"relative to", "offset by"})
 """Operators whose operands are angles where the result is one."""
 
 
-def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     if node.property is not None:
         if node.property in _PROPERTIES:
             yield from _found(context, node.operands[0], f"`{node.property}` is")
@@ -38,7 +38,7 @@ def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: Context) ->
         yield from _operands(context, node.operands, SPECIFIERS[node.specifier].operands)
 
 
-def _operation(node: scenic.Operation, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _operation(node: scenic.Operation, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     inner = node.operands[0] if node.operands else None
     if node.operator == "deg" and isinstance(inner, scenic.Operation) and inner.operator == "deg":
         yield context.warning("SC307", "this angle is converted from degrees twice", node, "write `deg` once")
@@ -47,19 +47,19 @@ def _operation(node: scenic.Operation, _scope: Scope, context: Context) -> Itera
 
 
 def _operands(
-    context: Context, found: list[ast.expr | None], declared: tuple[Operand, ...]
+    context: CheckContext, found: list[ast.expr | None], declared: tuple[Operand, ...]
 ) -> Iterator[Diagnostic]:
     for value, operand in zip(found, declared, strict=False):
         if operand.angle:
             yield from _found(context, value, f"a {operand.name} is")
 
 
-def _property(node: scenic.PropertyDef, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _property(node: scenic.PropertyDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     if node.name in _PROPERTIES:
         yield from _found(context, node.value, f"`{node.name}` is")
 
 
-def _call(node: ast.Call, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     function = node.func
     if isinstance(function, ast.Name):
         if function.id not in NAMES or context.provided(function) is None:
@@ -86,7 +86,7 @@ def _call(node: ast.Call, _scope: Scope, context: Context) -> Iterator[Diagnosti
             )
 
 
-def _comparison(node: ast.Compare, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _comparison(node: ast.Compare, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``(relative heading of x) < 30``: an angle against a number that is none."""
     sides = [node.left, *node.comparators]
     if any(_is_angle(side, context) for side in sides):
@@ -94,7 +94,7 @@ def _comparison(node: ast.Compare, _scope: Scope, context: Context) -> Iterator[
             yield from _found(context, side, "the other side is")
 
 
-def _is_angle(node: ast.expr, context: Context) -> bool:
+def _is_angle(node: ast.expr, context: CheckContext) -> bool:
     while isinstance(node, ast.Call) and len(node.args) == 1 and context.provided(node.func) == "abs":
         node = node.args[0]
     if isinstance(node, ast.Attribute) and node.attr in _PROPERTIES:
@@ -105,7 +105,7 @@ def _is_angle(node: ast.expr, context: Context) -> bool:
     )
 
 
-def _found(context: Context, value: ast.expr | None, what: str) -> Iterator[Diagnostic]:
+def _found(context: CheckContext, value: ast.expr | None, what: str) -> Iterator[Diagnostic]:
     """Yield the warnings about a value that is used as an angle; ``what`` names the angle."""
     places = list(_degrees(value, context))
     if places:
@@ -122,14 +122,14 @@ def _found(context: Context, value: ast.expr | None, what: str) -> Iterator[Diag
         )
 
 
-def _deg_after(place: ast.expr, context: Context) -> str:
+def _deg_after(place: ast.expr, context: CheckContext) -> str:
     """The operator, and a blank where a word follows at once: ``(90)by``."""
     span = context.source.span(place)
     following = context.source.line(span.end_line)[span.end_column : span.end_column + 1]
     return " deg " if following.isidentifier() else " deg"
 
 
-def _degrees(value: ast.expr | None, context: Context, depth: int = _DEEPEST) -> Iterator[ast.expr]:
+def _degrees(value: ast.expr | None, context: CheckContext, depth: int = _DEEPEST) -> Iterator[ast.expr]:
     """The parts of an angle that read as degrees, each of which ``deg`` can follow."""
     if value is None or not depth:
         return
@@ -159,7 +159,7 @@ def _degrees(value: ast.expr | None, context: Context, depth: int = _DEEPEST) ->
         yield value
 
 
-def _number(value: ast.expr, context: Context) -> float:
+def _number(value: ast.expr, context: CheckContext) -> float:
     """The size of the largest number that a literal is, or that a distribution is made of; 0 for all else."""
     if isinstance(value, ast.Call):
         provided = context.provided(value.func)

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import Context, Definition, NodeRule
+from scenic.compiler.checks.context import CheckContext, Definition, NodeRule
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.provided import PROVIDED_PARAMETERS
 from scenic.compiler.scopes import Scope, ScopeKind
@@ -58,7 +58,7 @@ def _required(args: ast.arguments) -> list[str]:
     return required + [arg.arg for arg, default in named if default is None]
 
 
-def _call(node: ast.Call, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     foreign = context.foreign(node.func)
     if foreign is not None:
         if foreign.definition is not None:
@@ -98,12 +98,12 @@ class _Callee(NamedTuple):
     def signature(self) -> str:
         return f"`{self.name}({', '.join(self.required)})`"
 
-    def labels(self, context: Context) -> tuple[Label, ...]:
+    def labels(self, context: CheckContext) -> tuple[Label, ...]:
         """Return labels at the definition of the callee; none if the language defines it."""
         return () if self.definition is None else context.defined(self.name, self.definition, self.foreign)
 
 
-def _known(node: ast.Call, context: Context) -> _Callee | None:
+def _known(node: ast.Call, context: CheckContext) -> _Callee | None:
     """Return the callee of a call, if it is certain and defined by the program or by the language."""
     provided = context.provided(node.func)
     if provided is not None:
@@ -123,7 +123,9 @@ def _known(node: ast.Call, context: Context) -> _Callee | None:
     return _Callee(definition.name, title, args, definition, None, skip)
 
 
-def _too_many(node: ast.Call, positional: Sequence[ast.arg], callee: _Callee, context: Context) -> Diagnostic:
+def _too_many(
+    node: ast.Call, positional: Sequence[ast.arg], callee: _Callee, context: CheckContext
+) -> Diagnostic:
     """More positional arguments than there are parameters."""
     count, given = len(positional), len(node.args)
     if count == 1 and positional[0].arg in _VECTORS and given in (2, 3) and not node.keywords:
@@ -138,7 +140,7 @@ def _too_many(node: ast.Call, positional: Sequence[ast.arg], callee: _Callee, co
 
 
 def _keywords(
-    node: ast.Call, by_name: set[str], filled: set[str], callee: _Callee, context: Context
+    node: ast.Call, by_name: set[str], filled: set[str], callee: _Callee, context: CheckContext
 ) -> Iterator[Diagnostic]:
     """Arguments by name that are given twice, or that no parameter has the name of."""
     for keyword in node.keywords:
@@ -166,7 +168,7 @@ def _keywords(
             )
 
 
-def _arguments(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Diagnostic]:
+def _arguments(node: ast.Call, callee: _Callee, context: CheckContext) -> Iterator[Diagnostic]:
     title, args, skip = callee.title, callee.args, callee.skip
     positional = [*args.posonlyargs, *args.args][skip:]
     if isinstance(callee.definition, scenic.BehaviorDef) and [arg.arg for arg in positional[:1]] == ["self"]:
@@ -205,7 +207,9 @@ _PLACES: Final = frozenset({"location", "place", "point", "pos", "position"})
 """Names of parameters that always mean a place."""
 
 
-def _one_vector(node: ast.Call, title: str, parameter: str, callee: _Callee, context: Context) -> Diagnostic:
+def _one_vector(
+    node: ast.Call, title: str, parameter: str, callee: _Callee, context: CheckContext
+) -> Diagnostic:
     """SC211: ``SetPositionAction(1, 2)``."""
     first, last = context.source.span(node.args[0]), context.source.span(node.args[-1])
     texts = [context.text(each) for each in node.args]
@@ -225,7 +229,7 @@ def _one_vector(node: ast.Call, title: str, parameter: str, callee: _Callee, con
 
 
 def _apart(
-    node: ast.Call, positional: list[ast.arg], callee: _Callee, context: Context
+    node: ast.Call, positional: list[ast.arg], callee: _Callee, context: CheckContext
 ) -> Iterator[Diagnostic]:
     """SC211: ``WalkTo(3, 4)``, whose first parameter is a place."""
     if len(node.args) not in (2, 3) or not positional or positional[0].arg not in _PLACES:
@@ -240,7 +244,7 @@ _NOT_NUMBERS: Final = frozenset(
 )
 
 
-def _unlike_default(node: ast.Call, callee: _Callee, context: Context) -> Iterator[Diagnostic]:
+def _unlike_default(node: ast.Call, callee: _Callee, context: CheckContext) -> Iterator[Diagnostic]:
     """SC404: ``FollowLaneBehavior(target_speed="fast")``: text for a parameter whose default is a number."""
     args = callee.args
     positional = [*args.posonlyargs, *args.args]
@@ -278,7 +282,7 @@ def _unlike_default(node: ast.Call, callee: _Callee, context: Context) -> Iterat
         )
 
 
-def _own_method(function: ast.expr, context: Context) -> Any:
+def _own_method(function: ast.expr, context: CheckContext) -> Any:
     """The method that ``self.name`` can only mean, in a method of a class without bases that the text does not show."""
     if not (isinstance(function, ast.Attribute) and isinstance(function.value, ast.Name)):
         return None
@@ -309,19 +313,19 @@ def _own_method(function: ast.expr, context: Context) -> Any:
     return found if found.args.args and not found.args.posonlyargs and not abstract else None
 
 
-def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``with behavior B``: the behavior is then made without arguments."""
     if node.property == "behavior" and node.operands:
         yield from _uncalled(node.operands[0], context)
 
 
-def _property(node: scenic.PropertyDef, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _property(node: scenic.PropertyDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``behavior: B`` in a class."""
     if node.name == "behavior":
         yield from _uncalled(node.value, context)
 
 
-def _do(node: Any, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _do(node: Any, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``do f``, ``do f()``: only behaviors, monitors and scenarios can be run."""
     for target in node.targets:
         called = isinstance(target, ast.Call)
@@ -343,7 +347,7 @@ def _do(node: Any, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
             yield from _uncalled(target, context)
 
 
-def _uncalled(value: ast.expr | None, context: Context) -> Iterator[Diagnostic]:
+def _uncalled(value: ast.expr | None, context: CheckContext) -> Iterator[Diagnostic]:
     foreign = context.foreign(value)
     definition: Any = context.definition(value) if foreign is None else foreign.definition
     if value is None or not isinstance(definition, scenic.BehaviorDef | scenic.ScenarioDef):
@@ -360,7 +364,7 @@ def _uncalled(value: ast.expr | None, context: Context) -> Iterator[Diagnostic]:
         )
 
 
-def _returns(function: ast.FunctionDef, context: Context) -> bool:
+def _returns(function: ast.FunctionDef, context: CheckContext) -> bool:
     """Return whether calls of a function may give anything else than ``None``."""
     scope = context.resolution.scopes.get(function)
     return scope is not None and any(

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.literals import literal_number
 from scenic.compiler.scopes import Scope
@@ -17,7 +17,7 @@ __all__ = ["RULES"]
 _POSITIVE: Final = frozenset(name for name, entry in properties_of("Object").items() if entry.positive)
 
 
-def _class(node: ast.ClassDef, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     inherited = context.classes.inherited(node)
     if inherited is None or context.classes.of(node) is None:
         return
@@ -65,7 +65,7 @@ def _class(node: ast.ClassDef, _scope: Scope, context: Context) -> Iterator[Diag
                 )
 
 
-def check_size(name: str, value: ast.expr | None, context: Context) -> Iterator[Diagnostic]:
+def check_size(name: str, value: ast.expr | None, context: CheckContext) -> Iterator[Diagnostic]:
     """SC405: an extent of an object that is a number and not positive."""
     number = literal_number(value)
     if value is not None and name in _POSITIVE and number is not None and number <= 0:
@@ -77,7 +77,7 @@ def check_size(name: str, value: ast.expr | None, context: Context) -> Iterator[
         )
 
 
-def _new(node: scenic.New, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _new(node: scenic.New, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``new Object with width 0``."""
     if context.classes.base(node.cls) == "Object":
         for specifier in node.specifiers:

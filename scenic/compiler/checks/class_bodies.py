@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import Scope
 from scenic.compiler.surroundings import Property
@@ -16,7 +16,7 @@ from scenic.language.spelling import distance
 __all__ = ["RULES"]
 
 
-def _class(node: ast.ClassDef, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     known = context.classes.of(node)
     if known is None:
         return
@@ -31,7 +31,7 @@ def _class(node: ast.ClassDef, _scope: Scope, context: Context) -> Iterator[Diag
 
 
 def _attribute(
-    context: Context, node: ast.ClassDef, target: ast.Name, value: ast.expr, *, known: bool
+    context: CheckContext, node: ast.ClassDef, target: ast.Name, value: ast.expr, *, known: bool
 ) -> Diagnostic:
     """SC313: ``width = 0.3``."""
     start, end = context.source.span(target), context.source.span(value)
@@ -50,7 +50,7 @@ def _attribute(
 
 
 def _misspelt(
-    context: Context,
+    context: CheckContext,
     node: ast.ClassDef,
     item: scenic.PropertyDef,
     inherited: Mapping[str, Property],

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.arguments import required_parameters
-from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.literals import literal_number
 from scenic.compiler.scopes import Scope
 from scenic.compiler.traversal import walk
@@ -73,7 +73,7 @@ def _simple_truth(value: ast.expr) -> bool | None:
     return bool(value.value) if isinstance(value, ast.Constant) else None
 
 
-def _require(node: scenic.Require, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _require(node: scenic.Require, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     if node.probability not in (None, 1) and any(
         isinstance(part, scenic.Temporal) for part in walk(node.condition)
     ):
@@ -93,7 +93,7 @@ def _require(node: scenic.Require, _scope: Scope, context: Context) -> Iterator[
         yield from _needless_probability(node, context)
 
 
-def _needless_probability(node: scenic.Require, context: Context) -> Iterator[Diagnostic]:
+def _needless_probability(node: scenic.Require, context: CheckContext) -> Iterator[Diagnostic]:
     span = context.span(node)
     line = context.source.line(span.line)
     start, end = line.find("[", span.column), line.find("]", span.column)
@@ -111,13 +111,13 @@ def _needless_probability(node: scenic.Require, context: Context) -> Iterator[Di
         yield context.warning("SC306", message, place, "remove it, or give it a larger probability")
 
 
-def _branch(node: ast.If | ast.IfExp, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _branch(node: ast.If | ast.IfExp, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     if isinstance(node, ast.If) and _makes_generator(node.body):
         return
     yield from _constant(node.test, context, "condition", literals=True)
 
 
-def _loop(node: ast.While, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _loop(node: ast.While, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     if _makes_generator(node.body):
         return
     if truth(node.test) is False:
@@ -132,7 +132,9 @@ def _makes_generator(body: list[ast.stmt]) -> bool:
     return len(body) == 1 and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Yield)
 
 
-def _constant(condition: ast.expr, context: Context, what: str, *, literals: bool) -> Iterator[Diagnostic]:
+def _constant(
+    condition: ast.expr, context: CheckContext, what: str, *, literals: bool
+) -> Iterator[Diagnostic]:
     """SC306 for a condition that is known beforehand."""
     known = truth(condition)
     if known is not None:
@@ -175,7 +177,7 @@ def _constant(condition: ast.expr, context: Context, what: str, *, literals: boo
         )
 
 
-def _comparison(node: ast.Compare, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _comparison(node: ast.Compare, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``x == x``; ``x != x`` is excepted, since it tests for a value that is not a number."""
     left = node.left
     for op, right in zip(node.ops, node.comparators, strict=False):

@@ -18,7 +18,7 @@ from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.language.spelling import is_slip
 
-__all__ = ["DEFINITIONS", "Context", "Definition", "NodeRule", "ProgramRule"]
+__all__ = ["DEFINITIONS", "CheckContext", "Definition", "NodeRule", "ProgramRule"]
 
 HEADED: Final = (
     ast.ClassDef,
@@ -31,7 +31,7 @@ HEADED: Final = (
 """Statements after which an unparsed text no longer counts as the header of the following block."""
 
 
-class Context(Model):
+class CheckContext(Model):
     """A program under examination, with the making of diagnostics. Facts that several rules need are computed once."""
 
     def __init__(
@@ -211,8 +211,8 @@ class Context(Model):
         return self.replacement(f"Write `{meant}`", place, meant, certain=certain and is_slip(name, meant))
 
 
-NodeRule = Callable[[Any, Scope, Context], Iterator[Diagnostic]]
+NodeRule = Callable[[Any, Scope, CheckContext], Iterator[Diagnostic]]
 """A rule about one node in a scope."""
 
-ProgramRule = Callable[[Context], Iterator[Diagnostic]]
+ProgramRule = Callable[[CheckContext], Iterator[Diagnostic]]
 """A rule about a program as a whole."""

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import ScopeKind
 from scenic.compiler.traversal import walk
@@ -16,7 +16,7 @@ from scenic.language.spelling import nearest_property
 __all__ = ["check_declarations"]
 
 
-def check_declarations(context: Context) -> Iterator[Diagnostic]:
+def check_declarations(context: CheckContext) -> Iterator[Diagnostic]:
     """SC110, SC200, SC210, SC220 and SC300 in declarations and specifiers."""
     for node, _ in context.nodes(ast.ClassDef):
         definitions = [item for item in node.body if isinstance(item, scenic.PropertyDef)]
@@ -38,7 +38,7 @@ def check_declarations(context: Context) -> Iterator[Diagnostic]:
             yield from _self(context, node)
 
 
-def _self(context: Context, node: Any) -> Iterator[Diagnostic]:
+def _self(context: CheckContext, node: Any) -> Iterator[Diagnostic]:
     """SC200: ``behavior Come(self, speed)``."""
     given = [] if node.args is None else [*node.args.posonlyargs, *node.args.args]
     if given and given[0].arg == "self":
@@ -53,7 +53,7 @@ def _self(context: Context, node: Any) -> Iterator[Diagnostic]:
         )
 
 
-def _duplicates(context: Context, items: list[tuple[str, ast.AST]], what: str) -> Iterator[Diagnostic]:
+def _duplicates(context: CheckContext, items: list[tuple[str, ast.AST]], what: str) -> Iterator[Diagnostic]:
     first: dict[str, ast.AST] = {}
     for name, node in items:
         if name in first:
@@ -67,7 +67,7 @@ def _duplicates(context: Context, items: list[tuple[str, ast.AST]], what: str) -
         first.setdefault(name, node)
 
 
-def _property(context: Context, node: scenic.PropertyDef) -> Iterator[Diagnostic]:
+def _property(context: CheckContext, node: scenic.PropertyDef) -> Iterator[Diagnostic]:
     for attribute in node.attributes:
         if attribute not in PROPERTY_ATTRIBUTES:
             yield context.error(
@@ -93,7 +93,7 @@ def _property(context: Context, node: scenic.PropertyDef) -> Iterator[Diagnostic
                 )
 
 
-def _misspelt(context: Context, node: Any) -> Iterator[Diagnostic]:
+def _misspelt(context: CheckContext, node: Any) -> Iterator[Diagnostic]:
     if not any(specifier.property for specifier in node.specifiers):
         return
     known = context.classes.properties(node.cls)

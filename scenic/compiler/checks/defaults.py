@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.context import CheckContext
 from scenic.language.diagnostics import Diagnostic
 
 __all__ = ["check_defaults"]
@@ -35,7 +35,7 @@ _KEPT: Final = re.compile(r"^_|cache|memo", re.IGNORECASE)
 """Names of parameters whose defaults are meant to last from call to call."""
 
 
-def check_defaults(context: Context) -> Iterator[Diagnostic]:
+def check_defaults(context: CheckContext) -> Iterator[Diagnostic]:
     """SC309: a list, dictionary or set that is the default of a parameter and changed in the body."""
     changed: dict[ast.AST, ast.AST] | None = None
     for cls in (
@@ -69,13 +69,13 @@ def check_defaults(context: Context) -> Iterator[Diagnostic]:
                 )
 
 
-def _mutable(default: ast.expr | None, context: Context) -> bool:
+def _mutable(default: ast.expr | None, context: CheckContext) -> bool:
     if isinstance(default, ast.Call):
         return context.provided(default.func) in ("dict", "list", "set")
     return isinstance(default, ast.Dict | ast.List | ast.Set)
 
 
-def _changed(context: Context) -> dict[ast.AST, ast.AST]:
+def _changed(context: CheckContext) -> dict[ast.AST, ast.AST]:
     """The parameters, bound just once, whose values are changed, and where."""
     found: dict[ast.AST, ast.AST] = {}
 

@@ -4,7 +4,7 @@ import ast
 from collections.abc import Iterator
 from typing import Final
 
-from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.literals import literal_number
 from scenic.compiler.scopes import Scope
 from scenic.compiler.semantics.kinds import NUMBERS
@@ -13,7 +13,7 @@ from scenic.language.diagnostics import Diagnostic
 __all__ = ["RULES"]
 
 
-def _call(node: ast.Call, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     match context.provided(node.func):
         case "Uniform":
             for keyword in node.keywords:
@@ -47,7 +47,7 @@ def _call(node: ast.Call, _scope: Scope, context: Context) -> Iterator[Diagnosti
                 )
 
 
-def _weights(node: ast.Call, context: Context) -> Iterator[Diagnostic]:
+def _weights(node: ast.Call, context: CheckContext) -> Iterator[Diagnostic]:
     """SC405: ``DiscreteRange(1, 3, [1, 2])``."""
     given = dict(zip(("low", "high", "weights"), node.args, strict=False))
     given.update((each.arg, each.value) for each in node.keywords if each.arg is not None)

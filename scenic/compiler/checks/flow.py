@@ -7,7 +7,7 @@ from typing import Any, Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import DYNAMIC, Where
 from scenic.compiler.checks.conditions import truth
-from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import PROVIDED
 from scenic.compiler.traversal import parts
@@ -42,7 +42,7 @@ _OWN_BODIES: Final = (
 """Nodes whose contents run at other times than what surrounds them."""
 
 
-def check_flow(context: Context) -> Iterator[Diagnostic]:
+def check_flow(context: CheckContext) -> Iterator[Diagnostic]:
     """SC303: code that is never reached; SC304, SC305: no time passes."""
     endless: set[ast.AST] = set()
     for _, statements, where in context.blocks:
@@ -60,7 +60,7 @@ def check_flow(context: Context) -> Iterator[Diagnostic]:
     yield from _timeless(context, endless)
 
 
-def _after_end(statements: Sequence[object], where: Where, context: Context) -> Iterator[Diagnostic]:
+def _after_end(statements: Sequence[object], where: Where, context: CheckContext) -> Iterator[Diagnostic]:
     last = len(statements) - 1
     for index, statement in enumerate(statements):
         if index < last and _ends(statement, where):
@@ -68,7 +68,7 @@ def _after_end(statements: Sequence[object], where: Where, context: Context) -> 
             break
 
 
-def _unreachable(context: Context, ending: Any, rest: Sequence[Any]) -> Iterator[Diagnostic]:
+def _unreachable(context: CheckContext, ending: Any, rest: Sequence[Any]) -> Iterator[Diagnostic]:
     # A lone `yield` or `wait` after `return` makes a generator or a behavior of what has nothing else to do; `terminate` is
     # something to do.
     if len(rest) == 1:
@@ -134,7 +134,7 @@ def _breaks(loop: ast.While) -> bool:
     return False
 
 
-def _gives_way(loop: ast.While, context: Context) -> bool:
+def _gives_way(loop: ast.While, context: CheckContext) -> bool:
     """Return whether a loop may let time pass or end."""
     if _breaks(loop):
         return True
@@ -150,7 +150,7 @@ def _gives_way(loop: ast.While, context: Context) -> bool:
     return False
 
 
-def _endless(context: Context, loop: ast.While) -> Diagnostic:
+def _endless(context: CheckContext, loop: ast.While) -> Diagnostic:
     return context.warning(
         "SC304",
         "this loop never lets time pass, so the simulation would never go on",
@@ -159,7 +159,7 @@ def _endless(context: Context, loop: ast.While) -> Diagnostic:
     )
 
 
-def _timeless(context: Context, endless: set[ast.AST]) -> Iterator[Diagnostic]:
+def _timeless(context: CheckContext, endless: set[ast.AST]) -> Iterator[Diagnostic]:
     for cls in (scenic.BehaviorDef, scenic.MonitorDef, scenic.ScenarioDef):
         for node, _ in context.nodes(cls):
             body = node.compose if cls is scenic.ScenarioDef else node.body
@@ -189,7 +189,7 @@ def _timeless(context: Context, endless: set[ast.AST]) -> Iterator[Diagnostic]:
             )
 
 
-def _lasts(body: list[Any], context: Context) -> bool:
+def _lasts(body: list[Any], context: CheckContext) -> bool:
     stack: list[ast.AST] = [*body]
     while stack:
         node = stack.pop()
@@ -202,7 +202,7 @@ def _lasts(body: list[Any], context: Context) -> bool:
     return False
 
 
-def _is_begun(node: ast.AST, context: Context) -> bool:
+def _is_begun(node: ast.AST, context: CheckContext) -> bool:
     """Return whether a statement is a `take` of which only the word is written, or a word that may be a misspelt `wait`."""
     if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Name):
         return False
@@ -210,7 +210,7 @@ def _is_begun(node: ast.AST, context: Context) -> bool:
     return name.id == "take" or (context.binding(name) is None and name.id not in PROVIDED)
 
 
-def _is_forgotten(node: ast.AST, context: Context) -> bool:
+def _is_forgotten(node: ast.AST, context: CheckContext) -> bool:
     """Return whether a statement makes a behavior or scenario without `do`, which SC312 reports."""
     if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Call):
         return False

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Final, NamedTuple
 
-from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.checks.unfinished import text_before
 from scenic.compiler.generated import HARD_KEYWORDS, SOFT_KEYWORDS
 from scenic.compiler.mistakes.words import SYNONYMS
@@ -80,7 +80,7 @@ _LONGEST: Final = 300
 """Lines with more characters are not tried with a keyword."""
 
 
-def known_elsewhere(node: ast.Name, context: Context) -> Meant | None:
+def known_elsewhere(node: ast.Name, context: CheckContext) -> Meant | None:
     """The meaning of an undefined name in other languages, in Python's library or in world models."""
     name = node.id
     if name in properties_of("Object") and _FOLLOWS_OBJECT.search(text_before(context, node)):
@@ -106,16 +106,16 @@ def known_elsewhere(node: ast.Name, context: Context) -> Meant | None:
     return _replaced(node, _FUNCTIONS[name], context) if name in _FUNCTIONS else None
 
 
-def _is_alone(node: ast.Name, context: Context) -> bool:
+def _is_alone(node: ast.Name, context: CheckContext) -> bool:
     return any(each.value is node for each in context.nodes_around(node, ast.Assign))
 
 
-def _replaced(node: ast.Name, meant: str, context: Context, *, certain: bool = True) -> Meant:
+def _replaced(node: ast.Name, meant: str, context: CheckContext, *, certain: bool = True) -> Meant:
     fix = context.renaming(node, node.id, meant, certain=certain)
     return Meant(f"write `{meant}`", fix)
 
 
-def _choice(node: ast.Name, call: ast.Call, context: Context) -> Meant:
+def _choice(node: ast.Name, call: ast.Call, context: CheckContext) -> Meant:
     match call.args:
         case [ast.Constant(value=int() | float()), ast.Constant(value=int() | float())] if (
             "uniform" in node.id
@@ -133,7 +133,7 @@ def _choice(node: ast.Name, call: ast.Call, context: Context) -> Meant:
     )
 
 
-def keyword_meant(node: ast.Name, context: Context) -> str | None:
+def keyword_meant(node: ast.Name, context: CheckContext) -> str | None:
     """The keyword that makes sense of the line of an undefined name: ``requre (x) > 0``, ``facing twoard (3, 4)``."""
     span = context.source.span(node)
     line = context.source.line(span.line)

@@ -5,14 +5,14 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.context import CheckContext
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.spelling import nearest
 
 __all__ = ["check_guards"]
 
 
-def check_guards(context: Context) -> Iterator[Diagnostic]:
+def check_guards(context: CheckContext) -> Iterator[Diagnostic]:
     """SC310: ``precondtion: condition`` in a behavior or scenario."""
     for cls in (scenic.BehaviorDef, scenic.ScenarioDef):
         for node, _ in context.nodes(cls):
@@ -21,7 +21,9 @@ def check_guards(context: Context) -> Iterator[Diagnostic]:
                 yield from _misspelt(context, body, index, statement)
 
 
-def _misspelt(context: Context, body: Sequence[Any], index: int, statement: object) -> Iterator[Diagnostic]:
+def _misspelt(
+    context: CheckContext, body: Sequence[Any], index: int, statement: object
+) -> Iterator[Diagnostic]:
     if not isinstance(statement, ast.AnnAssign) or statement.value is not None:
         return
     target = statement.target
@@ -45,13 +47,13 @@ def _misspelt(context: Context, body: Sequence[Any], index: int, statement: obje
     )
 
 
-def _used(context: Context, target: ast.Name) -> bool:
+def _used(context: CheckContext, target: ast.Name) -> bool:
     """Return whether a name is assigned elsewhere or read: then it is meant to be a variable."""
     binding = context.binding(target)
     return binding is not None and (len(binding.sites) > 1 or binding in context.resolution.read)
 
 
-def _is_alone(context: Context, statement: ast.stmt) -> bool:
+def _is_alone(context: CheckContext, statement: ast.stmt) -> bool:
     """Return whether a statement has its line for itself."""
     span = context.source.span(statement)
     before = context.source.line(span.line)[: span.column]

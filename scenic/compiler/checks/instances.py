@@ -4,7 +4,7 @@ import ast
 from collections.abc import Iterator
 from typing import Final
 
-from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.context import CheckContext
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
 from scenic.language.spans import Span
 
@@ -14,7 +14,7 @@ __all__ = ["check_instances", "missing_new"]
 _HOLDING: Final = frozenset({ast.Assign, ast.Expr})
 
 
-def check_instances(context: Context) -> Iterator[Diagnostic]:
+def check_instances(context: CheckContext) -> Iterator[Diagnostic]:
     """SC111: ``ego = Car``, and a class that is a whole statement."""
     for block in context.blocks:
         for statement in block.statements:
@@ -32,7 +32,7 @@ def check_instances(context: Context) -> Iterator[Diagnostic]:
 
 
 def missing_new(
-    cls: ast.Name, context: Context, example: str, severity: Severity = Severity.ERROR
+    cls: ast.Name, context: CheckContext, example: str, severity: Severity = Severity.ERROR
 ) -> Diagnostic:
     """SC111 at a class; ``example`` is what to write instead."""
     message, help_ = f"`new` is missing before `{cls.id}`", f"to create an object write `{example}`"

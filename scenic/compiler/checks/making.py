@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import DYNAMIC, where_of
-from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.scopes import Scope
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
@@ -22,7 +22,7 @@ _RUN: Final = {
 }
 
 
-def _call(node: ast.Call, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC135: ``ego = Object(width=3)``."""
     if not isinstance(node.func, ast.Name) or context.classes.properties(node.func) is None:
         return
@@ -40,7 +40,7 @@ def _call(node: ast.Call, _scope: Scope, context: Context) -> Iterator[Diagnosti
     )
 
 
-def _assign(node: ast.Assign, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _assign(node: ast.Assign, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC311: ``ego = new Object at 1, 2``."""
     value = node.value
     if not (isinstance(value, ast.Tuple) and value.elts and isinstance(value.elts[0], scenic.New)):
@@ -68,7 +68,7 @@ def _assign(node: ast.Assign, _scope: Scope, context: Context) -> Iterator[Diagn
     )
 
 
-def _end(context: Context, node: ast.AST) -> tuple[int, int]:
+def _end(context: CheckContext, node: ast.AST) -> tuple[int, int]:
     span = context.span(node)
     return span.end_line, span.end_column
 
@@ -78,7 +78,7 @@ def _last_operand(node: scenic.New) -> ast.expr | None:
     return operands[-1] if operands else None
 
 
-def _statement(node: ast.Expr, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _statement(node: ast.Expr, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC312: a behavior, monitor or scenario that is called without `do` or `require monitor`."""
     value = node.value
     if not isinstance(value, ast.Call):
@@ -105,13 +105,13 @@ def _statement(node: ast.Expr, scope: Scope, context: Context) -> Iterator[Diagn
     yield context.warning("SC312", f"this makes the {kind} `{name}`, and nothing runs it", node, advice)
 
 
-def check_monitors(context: Context) -> Iterator[Diagnostic]:
+def check_monitors(context: CheckContext) -> Iterator[Diagnostic]:
     """SC114: ``require M()`` where ``M`` is a monitor."""
     for node, _ in context.nodes(scenic.Require):
         yield from _required(node, context)
 
 
-def _required(node: scenic.Require, context: Context) -> Iterator[Diagnostic]:
+def _required(node: scenic.Require, context: CheckContext) -> Iterator[Diagnostic]:
     condition = node.condition
     if not isinstance(condition, ast.Call):
         return
@@ -131,7 +131,7 @@ def _required(node: scenic.Require, context: Context) -> Iterator[Diagnostic]:
 
 
 def _do(
-    node: scenic.Do | scenic.DoChoose | scenic.DoShuffle, scope: Scope, context: Context
+    node: scenic.Do | scenic.DoChoose | scenic.DoShuffle, scope: Scope, context: CheckContext
 ) -> Iterator[Diagnostic]:
     """SC314: ``do`` with what cannot be done there."""
     match where_of(node, scope).place:
@@ -149,12 +149,14 @@ def _do(
                 yield from _wrong(value, kinds, "do", context)
 
 
-def _require_monitor(node: scenic.RequireMonitor, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _require_monitor(
+    node: scenic.RequireMonitor, _scope: Scope, context: CheckContext
+) -> Iterator[Diagnostic]:
     """SC314: ``require monitor`` with something else than a monitor."""
     yield from _wrong(node.monitor, ("monitor",), "require monitor", context)
 
 
-def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC314: ``with behavior`` with something else than a behavior."""
     if node.specifier == "with" and node.property == "behavior":
         for value in filter(None, node.operands[:1]):
@@ -162,7 +164,7 @@ def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: Context) ->
 
 
 def _wrong(
-    value: ast.expr, kinds: tuple[str, ...], words: str, context: Context, *, classes: bool = False
+    value: ast.expr, kinds: tuple[str, ...], words: str, context: CheckContext, *, classes: bool = False
 ) -> Iterator[Diagnostic]:
     """Yield the errors about a value that is run as one of ``kinds``; ``classes`` if the definition itself is allowed."""
     called = isinstance(value, ast.Call)
@@ -197,7 +199,7 @@ def _wrong(
         )
 
 
-def _new(node: scenic.New, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _new(node: scenic.New, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC401: an object that is made while a simulation runs."""
     where = where_of(node, scope)
     if where.place in DYNAMIC and where.function is None and context.classes.base(node.cls) == "Object":
@@ -209,7 +211,7 @@ def _new(node: scenic.New, scope: Scope, context: Context) -> Iterator[Diagnosti
         )
 
 
-def _take(node: scenic.Take, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _take(node: scenic.Take, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC314: ``take SetBrakeAction``."""
     for action in node.actions:
         foreign = context.foreign(action)

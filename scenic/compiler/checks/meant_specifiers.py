@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.checks.continuations import continuation_after
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
@@ -18,7 +18,7 @@ _PLACES: Final = frozenset({"at", "in", "on"})
 _DIRECTIONS: Final = frozenset({"is ahead of", "is behind", "is left of", "is right of"})
 
 
-def check_meant_specifiers(context: Context) -> Iterator[Diagnostic]:
+def check_meant_specifiers(context: CheckContext) -> Iterator[Diagnostic]:
     """SC111, SC113 and SC311: a specifier without `new`, without a comma before it, or missing after one."""
     for cls in (ast.Assign, ast.Expr):
         for node, _ in context.nodes(cls):
@@ -30,7 +30,9 @@ def check_meant_specifiers(context: Context) -> Iterator[Diagnostic]:
         yield from _missing_comma(node, context)
 
 
-def _dangling_comma(value: ast.expr, targets: Sequence[ast.expr], context: Context) -> Iterator[Diagnostic]:
+def _dangling_comma(
+    value: ast.expr, targets: Sequence[ast.expr], context: CheckContext
+) -> Iterator[Diagnostic]:
     """``ego = new Object with width 3,``."""
     if not (isinstance(value, ast.Tuple) and len(value.elts) == 1 and isinstance(value.elts[0], scenic.New)):
         return
@@ -57,7 +59,7 @@ def _dangling_comma(value: ast.expr, targets: Sequence[ast.expr], context: Conte
     )
 
 
-def _not_indented(line: int, context: Context) -> Diagnostic:
+def _not_indented(line: int, context: CheckContext) -> Diagnostic:
     """SC102: ``facing (3, 4)`` on a line of its own, which reads as a statement."""
     text = context.source.line(line)
     column = len(text) - len(text.lstrip())
@@ -70,7 +72,7 @@ def _not_indented(line: int, context: Context) -> Diagnostic:
     )
 
 
-def _missing_new(node: scenic.Operation, context: Context) -> Iterator[Diagnostic]:
+def _missing_new(node: scenic.Operation, context: CheckContext) -> Iterator[Diagnostic]:
     """``Chair left of table``."""
     if node.operator not in _DIRECTIONS:
         return
@@ -89,7 +91,7 @@ def _missing_new(node: scenic.Operation, context: Context) -> Iterator[Diagnosti
     )
 
 
-def _missing_comma(node: scenic.SpecifierPhrase, context: Context) -> Iterator[Diagnostic]:
+def _missing_comma(node: scenic.SpecifierPhrase, context: CheckContext) -> Iterator[Diagnostic]:
     """``new Chair at x left of table``: no specifier takes the answer of such a question but ``with``."""
     operand = node.operands[-1] if node.operands else None
     if node.specifier in _PLACES and operand is not None:
@@ -117,7 +119,9 @@ def _missing_comma(node: scenic.SpecifierPhrase, context: Context) -> Iterator[D
     )
 
 
-def _second_place(node: scenic.SpecifierPhrase, operand: ast.expr, context: Context) -> Iterator[Diagnostic]:
+def _second_place(
+    node: scenic.SpecifierPhrase, operand: ast.expr, context: CheckContext
+) -> Iterator[Diagnostic]:
     """SC301: ``new Object at (0, 0) at (1, 1)``, ``new Object at x in y``, which read as operators."""
     match operand:
         case scenic.Operation(operator="at", operands=[ast.expr() as left, _]):

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.arguments import kind_of
-from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.checks.foreign_names import keyword_meant, known_elsewhere
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.unfinished import (
@@ -43,7 +43,7 @@ _NOT_SCENIC: Final = frozenset({NameKind.DISTRIBUTION, NameKind.FUNCTION, NameKi
 """Kinds of provided names that are not classes of objects, even if they are classes in Python."""
 
 
-def check_reserved(context: Context) -> Iterator[Diagnostic]:
+def check_reserved(context: CheckContext) -> Iterator[Diagnostic]:
     """SC200: bindings of names with a fixed meaning (section 1.3)."""
     for name, site in context.resolution.reserved:
         if name in TRACKED:
@@ -58,7 +58,7 @@ def check_reserved(context: Context) -> Iterator[Diagnostic]:
         yield context.error("SC200", message, word_span(context.source, site, name), help_)
 
 
-def check_names(context: Context) -> Iterator[Diagnostic]:
+def check_names(context: CheckContext) -> Iterator[Diagnostic]:
     """SC202: names that are read and that nothing binds; SC203 if they stand after ``new``."""
     resolution = context.resolution
     if resolution.wildcard:
@@ -81,7 +81,7 @@ def check_names(context: Context) -> Iterator[Diagnostic]:
 class _MissingNames:
     """Judges names that nothing binds, by the rest of a program in which there are such."""
 
-    def __init__(self, context: Context) -> None:
+    def __init__(self, context: CheckContext) -> None:
         self._context = context
         self._skipped = _skipped_words(context)
         self._alone = alone_names(context)
@@ -176,7 +176,7 @@ class _MissingNames:
         return self._context.error("SC202", f"the name `{node.id}` is not defined", node, advice, fix=fix)
 
 
-def _imported_model(context: Context) -> Diagnostic | None:
+def _imported_model(context: CheckContext) -> Diagnostic | None:
     """SC202: ``import scenic.domains.driving.model``, which brings no names but `scenic`."""
     for statement, _ in context.nodes(ast.Import):
         for alias in statement.names:
@@ -209,7 +209,7 @@ _SHORTEST_OF_WORDS: Final = 6
 """Shorter names are not compared word by word."""
 
 
-def _known_elsewhere(context: Context, node: ast.Name) -> Diagnostic | None:
+def _known_elsewhere(context: CheckContext, node: ast.Name) -> Diagnostic | None:
     """SC118, SC202: a name that is a misspelt keyword, or has a meaning in another language or library."""
     keyword = keyword_meant(node, context)
     if keyword is not None:
@@ -231,7 +231,7 @@ def _only_one(candidates: Iterable[str]) -> str | None:
     return found.pop() if len(found) == 1 else None
 
 
-def _skipped_words(context: Context) -> set[str]:
+def _skipped_words(context: CheckContext) -> set[str]:
     """Return the words in statements that could not be parsed, any of which these may bind."""
     words: set[str] = set()
     for node, _ in context.nodes(scenic.ErrorStatement):
@@ -241,7 +241,7 @@ def _skipped_words(context: Context) -> set[str]:
     return words
 
 
-def _last_words(context: Context) -> set[str]:
+def _last_words(context: CheckContext) -> set[str]:
     """The last word of each line that could not be parsed: it may be the beginning of a name that the line will bind."""
     words: set[str] = set()
     for node, _ in context.nodes(scenic.ErrorStatement):
@@ -261,13 +261,13 @@ def _is_import(word: str) -> bool:
     return any(keyword.startswith(word) for keyword in _IMPORTS)
 
 
-def _is_import_broken(context: Context) -> bool:
+def _is_import_broken(context: CheckContext) -> bool:
     """Return whether an import could not be parsed, which may bind anything."""
     lines = (context.source.line(node.lineno).split() for node, _ in context.nodes(scenic.ErrorStatement))
     return any(words and words[0] in _IMPORTS for words in lines)
 
 
-def _missing_imports(context: Context) -> list[Binding]:
+def _missing_imports(context: CheckContext) -> list[Binding]:
     """Names that are imported from where they are not, and not used: they may be the beginnings of others."""
     return [
         binding
@@ -282,7 +282,7 @@ def _missing_imports(context: Context) -> list[Binding]:
     ]
 
 
-def _bound_somewhere(name: str, context: Context) -> Binding | None:
+def _bound_somewhere(name: str, context: CheckContext) -> Binding | None:
     """The first binding of a name in any scope but the module's."""
     scopes = [
         scope
@@ -292,7 +292,7 @@ def _bound_somewhere(name: str, context: Context) -> Binding | None:
     return min(scopes, key=lambda each: position(each.node)).bindings[name] if scopes else None
 
 
-def _out_of_reach(context: Context, reference: Reference, binding: Binding) -> Diagnostic:
+def _out_of_reach(context: CheckContext, reference: Reference, binding: Binding) -> Diagnostic:
     """A name that only other scopes bind."""
     name = reference.node.id
     scope = binding.scope
@@ -315,7 +315,7 @@ def _out_of_reach(context: Context, reference: Reference, binding: Binding) -> D
     )
 
 
-def _names_property(context: Context, reference: Reference) -> bool:
+def _names_property(context: CheckContext, reference: Reference) -> bool:
     """Return whether a name in the default of a property can only mean another property of the same object."""
     for scope in reference.scope.ancestors():
         if scope.kind is ScopeKind.PROPERTY and scope.parent is not None:
@@ -324,7 +324,7 @@ def _names_property(context: Context, reference: Reference) -> bool:
     return False
 
 
-def _without_self(context: Context, reference: Reference) -> Diagnostic:
+def _without_self(context: CheckContext, reference: Reference) -> Diagnostic:
     name = reference.node.id
     return context.error(
         "SC202",
@@ -335,13 +335,13 @@ def _without_self(context: Context, reference: Reference) -> Diagnostic:
     )
 
 
-def check_classes(context: Context) -> Iterator[Diagnostic]:
+def check_classes(context: CheckContext) -> Iterator[Diagnostic]:
     """SC203: classes after ``new`` that are none."""
     for node, _ in context.nodes(scenic.New):
         yield from _no_class(context, node.cls)
 
 
-def _no_class(context: Context, name: ast.Name) -> Iterator[Diagnostic]:
+def _no_class(context: CheckContext, name: ast.Name) -> Iterator[Diagnostic]:
     """A name after ``new`` that certainly means something else than a class."""
     provided = context.provided(name)
     if provided is not None and provided in NAMES and NAMES[provided].kind in _NOT_SCENIC:
@@ -382,7 +382,7 @@ def _no_class(context: Context, name: ast.Name) -> Iterator[Diagnostic]:
         yield context.error("SC203", f"`{name.id}` is a plain value, not a class", name, help_, labels=labels)
 
 
-def _classes_in_reach(reference: Reference, context: Context) -> set[str]:
+def _classes_in_reach(reference: Reference, context: CheckContext) -> set[str]:
     brought = {name for name in context.brought if name[:1].isupper()}
     return brought.union(
         CLASSES,
@@ -396,7 +396,7 @@ def _classes_in_reach(reference: Reference, context: Context) -> set[str]:
     )
 
 
-def _unknown_class(context: Context, reference: Reference, suggestion: str | None) -> Diagnostic:
+def _unknown_class(context: CheckContext, reference: Reference, suggestion: str | None) -> Diagnostic:
     name = reference.node.id
     return context.error(
         "SC203",

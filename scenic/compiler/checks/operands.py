@@ -6,7 +6,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.checks.randomness import is_random
 from scenic.compiler.checks.wanted import may_be_meant, wrong_kinds
 from scenic.compiler.scopes import Scope
@@ -19,7 +19,7 @@ from scenic.language.types import FIXED_NUMBER, Type
 __all__ = ["RULES"]
 
 
-def _call(node: ast.Call, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _call(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``CircularRegion(5, (0, 0))``, ``room.containsPoint(3)``."""
     name = context.provided(node.func)
     method = context.method(node.func) if name is None and isinstance(node.func, ast.Attribute) else None
@@ -36,7 +36,7 @@ def _call(node: ast.Call, scope: Scope, context: Context) -> Iterator[Diagnostic
             yield from wrong_kinds(f"`{declared.name}` {parameter}", types, given[parameter], context)
 
 
-def _method(node: ast.Call, method: Member, context: Context) -> Iterator[Diagnostic]:
+def _method(node: ast.Call, method: Member, context: CheckContext) -> Iterator[Diagnostic]:
     given = list(_before_stars(node.args))
     for types, value in zip(method.takes, given, strict=False):
         if types:
@@ -60,7 +60,7 @@ def _before_stars(args: Sequence[ast.expr]) -> Iterator[ast.expr]:
         yield each
 
 
-def _statement(node: Any, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _statement(node: Any, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``mutate ego by "2"``, ``terminate after "10" seconds``."""
     declared = STATEMENTS[type(node).__name__]
     for field, types in declared.takes.items():
@@ -75,7 +75,7 @@ def _statement(node: Any, scope: Scope, context: Context) -> Iterator[Diagnostic
             yield from wrong_kinds(title, types, operand, context)
 
 
-def _not_fixed(title: str, operand: ast.expr, wanted: Type, context: Context) -> Diagnostic:
+def _not_fixed(title: str, operand: ast.expr, wanted: Type, context: CheckContext) -> Diagnostic:
     return context.error(
         "SC404", f"{title}: expected {wanted.noun}, not a random one", operand, wanted.advice
     )

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import in_compose
-from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.unfinished import begun_names
 from scenic.compiler.scopes import PROVIDED, Scope, ScopeKind
@@ -35,7 +35,7 @@ _SPECIFIERS: Final = frozenset(name for name, each in SPECIFIERS.items() if each
 """Specifiers that may refer to the ego without naming it."""
 
 
-def check_order(context: Context) -> Iterator[Diagnostic]:
+def check_order(context: CheckContext) -> Iterator[Diagnostic]:
     """SC204 and SC209."""
     if context.broken:
         return
@@ -49,7 +49,7 @@ def _statement(starts: list[tuple[int, int]], node: ast.AST) -> int:
     return bisect_right(starts, position(node)) - 1
 
 
-def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic]:
+def _names(context: CheckContext, starts: list[tuple[int, int]]) -> Iterator[Diagnostic]:
     resolution = context.resolution
     if resolution.wildcard or resolution.reflective or _postpones_annotations(context):
         return
@@ -98,7 +98,7 @@ def _names(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnost
         )
 
 
-def _ego(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic]:
+def _ego(context: CheckContext, starts: list[tuple[int, int]]) -> Iterator[Diagnostic]:
     """SC209: an explicit or implicit use of the ego before the first assignment to it."""
     if context.resolution.reflective or any("ego".startswith(name.id) for name in begun_names(context)):
         return  # It may be set in ways that the text does not show, or be about to be.
@@ -134,7 +134,7 @@ def _ego(context: Context, starts: list[tuple[int, int]]) -> Iterator[Diagnostic
 
 
 def _ego_of(
-    context: Context,
+    context: CheckContext,
     scope: Scope,
     body: list[ast.stmt],
     assignments: list[tuple[ast.Name, Scope]],
@@ -183,7 +183,7 @@ def _in_scenario(scope: Scope) -> bool:
     return any(outer.kind in own for outer in scope.ancestors())
 
 
-def _uses(context: Context) -> Iterator[tuple[ast.AST, Scope]]:
+def _uses(context: CheckContext) -> Iterator[tuple[ast.AST, Scope]]:
     """Yield every node that reads the ego, and the scope in which it stands."""
     for reference in context.resolution.uses.get("ego", ()):
         if isinstance(reference.node.ctx, ast.Load) and reference.node not in context.resolution.tolerated:
@@ -214,7 +214,7 @@ def _in_value(statement: ast.stmt, node: ast.AST) -> bool:
     return isinstance(statement, ast.Assign) and position(node) >= position(statement.value)
 
 
-def _postpones_annotations(context: Context) -> bool:
+def _postpones_annotations(context: CheckContext) -> bool:
     return any(node.module == "__future__" for node, _ in context.nodes(ast.ImportFrom))
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import Scope
 from scenic.language.diagnostics import Diagnostic
@@ -17,7 +17,7 @@ __all__ = ["RULES"]
 _PROPERTIES: Final = properties_of("Object")
 
 
-def _override(node: scenic.Override, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _override(node: scenic.Override, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     for specifier in node.specifiers:
         name = specifier.property
         if name is None:
@@ -46,7 +46,7 @@ def _override(node: scenic.Override, _scope: Scope, context: Context) -> Iterato
                 )
 
 
-def _is_defined(name: str, context: Context) -> bool:
+def _is_defined(name: str, context: CheckContext) -> bool:
     """Return whether a class of the program or of its imports may define a property of a name."""
     if any(name == item.name for item, _ in context.nodes(scenic.PropertyDef)):
         return True

@@ -6,7 +6,7 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import DYNAMIC, Where, where_of
-from scenic.compiler.checks.context import HEADED, Context
+from scenic.compiler.checks.context import HEADED, CheckContext
 from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.names import TRACKED
@@ -21,7 +21,7 @@ _EXPRESSIONS: Final = (ast.Await, ast.Yield, ast.YieldFrom)
 """The expressions that cannot stand everywhere."""
 
 
-def check_placement(context: Context) -> Iterator[tuple[ast.AST, Diagnostic | None]]:
+def check_placement(context: CheckContext) -> Iterator[tuple[ast.AST, Diagnostic | None]]:
     """SC201: the misplaced nodes, each with its diagnostic.
 
     Nothing is said where that follows from another mistake.
@@ -47,7 +47,7 @@ def check_placement(context: Context) -> Iterator[tuple[ast.AST, Diagnostic | No
         yield from found
 
 
-def _misplaced_expressions(context: Context) -> Iterator[tuple[ast.AST, Diagnostic]]:
+def _misplaced_expressions(context: CheckContext) -> Iterator[tuple[ast.AST, Diagnostic]]:
     later = _evaluated_later(context)
     for cls in _EXPRESSIONS:
         for node, scope in context.nodes(cls):
@@ -59,7 +59,7 @@ def _misplaced_expressions(context: Context) -> Iterator[tuple[ast.AST, Diagnost
                 yield node, context.error("SC201", message, node, help_)
 
 
-def _evaluated_later(context: Context) -> set[ast.AST]:
+def _evaluated_later(context: CheckContext) -> set[ast.AST]:
     """The expressions with ``await`` in conditions and values that become functions of their own."""
     awaiting = {node for node, _ in context.nodes(ast.Await)}
     if not awaiting:

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import DYNAMIC, Where, where_of
-from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.checks.randomness import is_random
 from scenic.compiler.scopes import Scope
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
@@ -37,7 +37,7 @@ _PARAMETERS: Final = {"Uniform(*{})": 1, "Range(0, 1)": 0}
 """The numbers of arguments that the replacement takes, where it is not two."""
 
 
-def _full_name(function: ast.expr, context: Context) -> str | None:
+def _full_name(function: ast.expr, context: CheckContext) -> str | None:
     """The dotted name of a function of a module that is imported: ``numpy.random.uniform`` for ``np.random.uniform``."""
     parts: list[str] = []
     while isinstance(function, ast.Attribute):
@@ -57,7 +57,7 @@ def _full_name(function: ast.expr, context: Context) -> str | None:
     return ".".join([site.name if site.asname else site.name.split(".")[0], *parts])
 
 
-def _call(node: ast.Call, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _call(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``random.uniform(0, 3)``, ``np.sqrt(x)`` with a random ``x``, ``time.sleep(3)``."""
     if not isinstance(node.func, ast.Attribute | ast.Name) or context.provided(node.func) is not None:
         return
@@ -95,7 +95,7 @@ def _call(node: ast.Call, scope: Scope, context: Context) -> Iterator[Diagnostic
         )
 
 
-def _draw(node: ast.Call, name: str, context: Context) -> Diagnostic:
+def _draw(node: ast.Call, name: str, context: CheckContext) -> Diagnostic:
     meant = _DRAWS[name]
     texts = [context.text(each) for each in node.args]
     fits = len(texts) == _PARAMETERS.get(meant, 2) and not node.keywords and all(texts)
@@ -109,7 +109,7 @@ def _draw(node: ast.Call, name: str, context: Context) -> Diagnostic:
     )
 
 
-def _statement(node: ast.Expr, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _statement(node: ast.Expr, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC312: ``SetBrakeAction(1)`` in a behavior, without ``take``."""
     call = node.value
     if not isinstance(call, ast.Call):
@@ -137,7 +137,7 @@ def _is_action(definition: ast.ClassDef) -> bool:
     return len(names) > 1 and any(name.endswith("Action") for name in names)
 
 
-def _class(node: ast.ClassDef, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC307: ``def __init__`` in a class of objects."""
     if context.classes.of(node) is None:
         return
@@ -154,7 +154,7 @@ def _class(node: ast.ClassDef, _scope: Scope, context: Context) -> Iterator[Diag
         )
 
 
-def check_maps(context: Context) -> Iterator[Diagnostic]:
+def check_maps(context: CheckContext) -> Iterator[Diagnostic]:
     """SC620: a world model of roads, and no parameter `map` before it."""
     models = [node for node, _ in context.nodes(scenic.Model) if node.name in NEEDS_MAP]
     if not models or not context.ego_value:

@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import where_of
-from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.scopes import Scope
 from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic
@@ -22,7 +22,7 @@ _DEEPEST: Final = 20
 """Depth to which values are examined."""
 
 
-def is_random(value: ast.AST | None, context: Context, depth: int = 0) -> bool:
+def is_random(value: ast.AST | None, context: CheckContext, depth: int = 0) -> bool:
     """Return whether a value is certainly random."""
     if depth > _DEEPEST or value is None:
         return False
@@ -50,7 +50,7 @@ def is_random(value: ast.AST | None, context: Context, depth: int = 0) -> bool:
     return False
 
 
-def _is_placed_at_random(owner: ast.expr, context: Context, depth: int) -> bool:
+def _is_placed_at_random(owner: ast.expr, context: CheckContext, depth: int) -> bool:
     """Return whether the position of an object is certainly random."""
     if isinstance(owner, ast.Attribute) and owner.attr == "position":
         owner = owner.value
@@ -68,7 +68,7 @@ def _is_placed_at_random(owner: ast.expr, context: Context, depth: int) -> bool:
     return False
 
 
-def _assigned(name: ast.Name, context: Context) -> ast.expr | None:
+def _assigned(name: ast.Name, context: CheckContext) -> ast.expr | None:
     """The value of a name that is bound just once in the module."""
     binding = context.binding(name)
     if binding is None or len(binding.sites) != 1 or context.resolution.reflective:
@@ -78,7 +78,7 @@ def _assigned(name: ast.Name, context: Context) -> ast.expr | None:
     return context.assigned.get(binding.sites[0])
 
 
-def _is_asked_now(node: ast.expr | ast.stmt, scope: Scope, context: Context) -> bool:
+def _is_asked_now(node: ast.expr | ast.stmt, scope: Scope, context: CheckContext) -> bool:
     """Return whether a node is evaluated while the scenario is being built, and nothing there catches what that raises."""
     if scope is not context.resolution.module or where_of(node, scope).place is not Place.TOP:
         return False
@@ -88,7 +88,9 @@ def _is_asked_now(node: ast.expr | ast.stmt, scope: Scope, context: Context) -> 
     )
 
 
-def _decides(node: ast.If | ast.While | ast.IfExp, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _decides(
+    node: ast.If | ast.While | ast.IfExp, scope: Scope, context: CheckContext
+) -> Iterator[Diagnostic]:
     """SC403: ``if x > 1`` with a random ``x``."""
     if isinstance(node.test, ast.UnaryOp) and isinstance(node.test.op, ast.Not):
         return  # `_truth` tells.
@@ -104,19 +106,19 @@ def _decides(node: ast.If | ast.While | ast.IfExp, scope: Scope, context: Contex
     )
 
 
-def _iterates(node: ast.For, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _iterates(node: ast.For, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC403: ``for i in range(x)`` with a random ``x``."""
     yield from _counts(node, node.iter, scope, context)
 
 
-def _comprehends(node: Any, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _comprehends(node: Any, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC403: ``[new Object for i in range(x)]`` with a random ``x``."""
     for generator in node.generators:
         yield from _counts(node, generator.iter, scope, context)
 
 
 def _counts(
-    node: ast.expr | ast.stmt, counted: ast.expr, scope: Scope, context: Context
+    node: ast.expr | ast.stmt, counted: ast.expr, scope: Scope, context: CheckContext
 ) -> Iterator[Diagnostic]:
     is_range = isinstance(counted, ast.Call) and context.provided(counted.func) == "range"
     values = counted.args if isinstance(counted, ast.Call) and is_range else [counted]
@@ -135,7 +137,7 @@ def _counts(
     )
 
 
-def _is_passed(node: ast.Call, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _is_passed(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC403: ``f(Range(0, 9))``, where the function ``f`` of the program decides by its parameter."""
     function = context.definition(node.func)
     if not isinstance(function, ast.FunctionDef) or any(isinstance(each, ast.Starred) for each in node.args):
@@ -171,7 +173,7 @@ def _is_passed(node: ast.Call, scope: Scope, context: Context) -> Iterator[Diagn
         return
 
 
-def _truth(node: ast.BoolOp | ast.UnaryOp, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _truth(node: ast.BoolOp | ast.UnaryOp, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC403: ``x and y``, ``not x`` with a random ``x``."""
     if isinstance(node, ast.UnaryOp):
         asked = [node.operand] if isinstance(node.op, ast.Not) else []
@@ -188,7 +190,7 @@ def _truth(node: ast.BoolOp | ast.UnaryOp, scope: Scope, context: Context) -> It
     )
 
 
-def _asserts(node: ast.Assert, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _asserts(node: ast.Assert, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC403: ``assert x > 3`` with a random ``x``."""
     if is_random(node.test, context) and _is_asked_now(node, scope, context):
         yield context.error(
@@ -199,7 +201,7 @@ def _asserts(node: ast.Assert, scope: Scope, context: Context) -> Iterator[Diagn
         )
 
 
-def _unpacks(node: ast.Assign, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _unpacks(node: ast.Assign, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC403: ``a, b = Uniform((1, 2), (3, 4))``."""
     unpacked = any(isinstance(target, ast.Tuple | ast.List) for target in node.targets)
     if unpacked and is_random(node.value, context) and _is_asked_now(node, scope, context):
@@ -211,7 +213,7 @@ def _unpacks(node: ast.Assign, scope: Scope, context: Context) -> Iterator[Diagn
         )
 
 
-def _indexes(node: ast.Subscript, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _indexes(node: ast.Subscript, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC403: ``spots[DiscreteRange(0, 2)]``."""
     kind = context.kind_of(node.value)
     if kind is None or kind.name not in ("list", "tuple", "dictionary") or is_random(node.value, context):
@@ -225,7 +227,7 @@ def _indexes(node: ast.Subscript, scope: Scope, context: Context) -> Iterator[Di
         )
 
 
-def _calls(node: ast.Call, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _calls(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC403: ``math.sqrt(x)`` with a random ``x``."""
     yield from _is_passed(node, scope, context)
     match node.func:
@@ -243,7 +245,7 @@ def _calls(node: ast.Call, scope: Scope, context: Context) -> Iterator[Diagnosti
         )
 
 
-def _is_module(name: ast.Name, module: str, context: Context) -> bool:
+def _is_module(name: ast.Name, module: str, context: CheckContext) -> bool:
     """Return whether a name certainly means a module of Python."""
     binding = context.binding(name)
     if binding is None or len(binding.sites) != 1:
@@ -252,7 +254,7 @@ def _is_module(name: ast.Name, module: str, context: Context) -> bool:
     return isinstance(site, ast.alias) and site.name == module
 
 
-def _draws(node: scenic.Require, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _draws(node: scenic.Require, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC401: ``require Range(1, 2) > x``."""
     where = where_of(node, scope)
     if where.place not in (Place.TOP, Place.SETUP) or where.function is not None:
@@ -271,7 +273,7 @@ def _draws(node: scenic.Require, scope: Scope, context: Context) -> Iterator[Dia
                 )
 
 
-def _in_condition(node: ast.expr | ast.stmt, context: Context) -> bool:
+def _in_condition(node: ast.expr | ast.stmt, context: CheckContext) -> bool:
     """Return whether an expression is a part of what is evaluated later, on samples."""
     if not isinstance(node, ast.expr):
         return False
@@ -279,7 +281,7 @@ def _in_condition(node: ast.expr | ast.stmt, context: Context) -> bool:
     return any(_lies_in(node, each, each) for each in (*later, *_presences(node, context)))
 
 
-def _presences(node: ast.expr, context: Context) -> Iterator[ast.expr]:
+def _presences(node: ast.expr, context: CheckContext) -> Iterator[ast.expr]:
     """The values of ``present`` that may stand around an expression: they are read as conditions."""
     for phrase in context.nodes_around(node, scenic.SpecifierPhrase):
         if phrase.property == "present":

@@ -6,7 +6,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import Scope
 from scenic.compiler.semantics.classes import find_cycle
@@ -44,11 +44,11 @@ def _title(node: scenic.SpecifierPhrase) -> str:
     return f"with {node.property}" if node.property is not None else node.specifier
 
 
-def _override(node: scenic.Override, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _override(node: scenic.Override, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     yield from _conflicts(node.specifiers, context)
 
 
-def _new(node: scenic.New, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _new(node: scenic.New, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     yield from _regions(node.specifiers, context)
     conflicts = list(_conflicts(node.specifiers, context))
     yield from conflicts
@@ -61,7 +61,7 @@ def _new(node: scenic.New, _scope: Scope, context: Context) -> Iterator[Diagnost
         yield from _cycle(node, properties, context)
 
 
-def _regions(specifiers: list[scenic.SpecifierPhrase], context: Context) -> Iterator[Diagnostic]:
+def _regions(specifiers: list[scenic.SpecifierPhrase], context: CheckContext) -> Iterator[Diagnostic]:
     """SC404: a point where a region is wanted: ``in front of x``."""
     for specifier in specifiers:
         declared = SPECIFIERS.get(specifier.specifier)
@@ -82,7 +82,7 @@ def _regions(specifiers: list[scenic.SpecifierPhrase], context: Context) -> Iter
             )
 
 
-def _conflicts(specifiers: list[scenic.SpecifierPhrase], context: Context) -> Iterator[Diagnostic]:
+def _conflicts(specifiers: list[scenic.SpecifierPhrase], context: CheckContext) -> Iterator[Diagnostic]:
     """SC301: the same specifier twice, or two that give one property with the same priority."""
     strongest: dict[str, int] = {}
     for specifier in specifiers:
@@ -127,7 +127,9 @@ def _conflicts(specifiers: list[scenic.SpecifierPhrase], context: Context) -> It
             given.setdefault(item.property, specifier)
 
 
-def _finals(node: scenic.New, properties: Mapping[str, Property], context: Context) -> Iterator[Diagnostic]:
+def _finals(
+    node: scenic.New, properties: Mapping[str, Property], context: CheckContext
+) -> Iterator[Diagnostic]:
     """SC301: properties that follow from others and cannot be given."""
     for specifier in node.specifiers:
         name = specifier.property
@@ -175,7 +177,9 @@ def _is_vector(node: ast.expr | None) -> bool:
     return isinstance(node, ast.Tuple | ast.List)
 
 
-def _cycle(node: scenic.New, properties: Mapping[str, Property], context: Context) -> Iterator[Diagnostic]:
+def _cycle(
+    node: scenic.New, properties: Mapping[str, Property], context: CheckContext
+) -> Iterator[Diagnostic]:
     """SC308: a value that cannot be computed, because it needs itself in the end."""
     providers: dict[str, Any] = {}
     uncertain: set[str] = set()

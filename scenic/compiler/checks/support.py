@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import in_compose
-from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.checks.instances import missing_new
 from scenic.compiler.scopes import BindingKind, Scope, ScopeKind
 from scenic.compiler.traversal import position
@@ -44,7 +44,7 @@ def _checked() -> frozenset[type[ast.AST]]:
 _CHECKED: Final = _checked()
 
 
-def check_support(context: Context, misplaced: Container[ast.AST]) -> Iterator[Diagnostic]:
+def check_support(context: CheckContext, misplaced: Container[ast.AST]) -> Iterator[Diagnostic]:
     """SC900: every use of a feature that is declared but not available, but for statements that are misplaced anyway.
 
     What only simulations run is refused when one comes to it; so may be what stands in a block whose beginning is wrong.
@@ -70,7 +70,7 @@ def check_support(context: Context, misplaced: Container[ast.AST]) -> Iterator[D
                 yield _refusal(feature, node, context)
 
 
-def check_supported_names(context: Context) -> Iterator[Diagnostic]:
+def check_supported_names(context: CheckContext) -> Iterator[Diagnostic]:
     """SC900: every use of a name that is declared but not available."""
     if _NAMES and not context.resolution.wildcard:
         for name in _NAMES.difference(context.resolution.names):
@@ -79,7 +79,7 @@ def check_supported_names(context: Context) -> Iterator[Diagnostic]:
                     yield _refusal(f"`{name}`", reference.node, context)
 
 
-def _class_without_new(node: scenic.Operation, context: Context) -> ast.Name | None:
+def _class_without_new(node: scenic.Operation, context: CheckContext) -> ast.Name | None:
     """The class in ``C at position``, which reads as the operator but can only be meant as a specifier."""
     match node:
         case scenic.Operation(operator="at", operands=[ast.Name(id=name) as cls, *_]):
@@ -90,7 +90,7 @@ def _class_without_new(node: scenic.Operation, context: Context) -> ast.Name | N
     return None
 
 
-def _refusal(feature: str, node: ast.AST, context: Context) -> Diagnostic:
+def _refusal(feature: str, node: ast.AST, context: CheckContext) -> Diagnostic:
     return context.error("SC900", f"{feature} is not supported in this version", node, _INSTEAD)
 
 

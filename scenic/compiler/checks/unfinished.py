@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.forms import declared_forms
 from scenic.compiler.generated import SOFT_KEYWORDS
 from scenic.language.diagnostics import Diagnostic
@@ -100,18 +100,18 @@ def _operators() -> Mapping[str, str]:
     return MappingProxyType(found)
 
 
-def text_before(context: Context, node: ast.Name) -> str:
+def text_before(context: CheckContext, node: ast.Name) -> str:
     """The text before a name on its line, without blanks at the end."""
     span = context.source.span(node)
     return context.source.line(span.line)[: span.column].rstrip()
 
 
-def _word_before(context: Context, node: ast.Name) -> str:
+def _word_before(context: CheckContext, node: ast.Name) -> str:
     words = text_before(context, node).replace("(", " ").split()
     return words[-1] if words else ""
 
 
-def unfinished(context: Context, node: ast.Name) -> Diagnostic | None:
+def unfinished(context: CheckContext, node: ast.Name) -> Diagnostic | None:
     """The missing rest after a name that is a word of the language and has nothing else in its place."""
     if node.id not in SOFT_KEYWORDS:
         return None
@@ -137,7 +137,7 @@ def unfinished(context: Context, node: ast.Name) -> Diagnostic | None:
     )
 
 
-def alone_names(context: Context) -> set[ast.Name]:
+def alone_names(context: CheckContext) -> set[ast.Name]:
     """The names that nothing binds and that are whole statements, alone or in a row: all have just begun to be typed."""
     return {
         name
@@ -147,12 +147,12 @@ def alone_names(context: Context) -> set[ast.Name]:
     }
 
 
-def begun_names(context: Context) -> set[ast.Name]:
+def begun_names(context: CheckContext) -> set[ast.Name]:
     """The names of `alone_names` while somebody is typing; none in a program that is written."""
     return alone_names(context) if context.typing else set()
 
 
-def compared_names(context: Context) -> set[ast.Name]:
+def compared_names(context: CheckContext) -> set[ast.Name]:
     """The names that nothing binds on the left of ``==`` in statements that only compare: they were meant to be bound."""
     names = set()
     for node, _ in context.nodes(ast.Expr):
@@ -173,7 +173,7 @@ def _names_in_row(value: ast.expr) -> Iterator[ast.Name]:
             yield from _names_in_row(each)
 
 
-def may_bind_more(context: Context) -> bool:
+def may_bind_more(context: CheckContext) -> bool:
     """Return whether a statement is half typed, so that any name may be one that the rest of it binds.
 
     Such are assignments that end with ``=`` or an open bracket, beginnings of targets and, while somebody is typing, names in
@@ -188,7 +188,7 @@ def may_bind_more(context: Context) -> bool:
     )
 
 
-def begun_word(context: Context, node: ast.Name) -> str | None:
+def begun_word(context: CheckContext, node: ast.Name) -> str | None:
     """The one word of the language that a name at the end of a line may be the beginning of."""
     before = _word_before(context, node)
     found = {

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.arguments import kind_of
-from scenic.compiler.checks.context import DEFINITIONS, Context
+from scenic.compiler.checks.context import DEFINITIONS, CheckContext
 from scenic.compiler.checks.places import word_span
 from scenic.compiler.scopes import Binding, BindingKind, Scope, ScopeKind
 from scenic.compiler.traversal import position, walk
@@ -41,7 +41,7 @@ _HIDING: Final = frozenset(
 """Kinds of bindings that hide a name of the language by mistake; an import of the name is deliberate."""
 
 
-def check_uses(context: Context) -> Iterator[Diagnostic]:
+def check_uses(context: CheckContext) -> Iterator[Diagnostic]:
     """SC205 to SC208 and SC312: bindings that are never read, that hide others, or that are replaced."""
     resolution = context.resolution
     for scope in resolution.scopes.values():
@@ -68,7 +68,7 @@ def check_uses(context: Context) -> Iterator[Diagnostic]:
     yield from _monitors(context)
 
 
-def _monitors(context: Context) -> Iterator[Diagnostic]:
+def _monitors(context: CheckContext) -> Iterator[Diagnostic]:
     """SC312: a monitor of a program, not of a library, that nothing names."""
     resolution = context.resolution
     for binding in resolution.names.values():
@@ -84,7 +84,7 @@ def _monitors(context: Context) -> Iterator[Diagnostic]:
         )
 
 
-def _hidden(binding: Binding, context: Context) -> Iterator[Diagnostic]:
+def _hidden(binding: Binding, context: CheckContext) -> Iterator[Diagnostic]:
     """SC207."""
     declared = NAMES[binding.name]
     if declared.kind in _HIDEABLE or not binding.kinds <= _HIDING or binding.scope.kind is ScopeKind.CLASS:
@@ -102,7 +102,7 @@ def _is_imported(binding: Binding) -> bool:
     return binding.kinds <= {BindingKind.MODULE, BindingKind.IMPORTED}
 
 
-def _is_of_concern(binding: Binding, context: Context) -> bool:
+def _is_of_concern(binding: Binding, context: CheckContext) -> bool:
     """Return whether it would be a mistake not to read a binding."""
     # What is assigned to the word of a guard was meant to be compared, as the parser says.
     if binding.name.startswith("_") or binding.name in scenic.GUARDS:
@@ -114,7 +114,7 @@ def _is_of_concern(binding: Binding, context: Context) -> bool:
     )
 
 
-def _unused(binding: Binding, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _unused(binding: Binding, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC205, about a variable that is never read."""
     if (
         # The variables of behaviors and monitors can be read from outside, as attributes.
@@ -137,7 +137,7 @@ def _plain(value: ast.expr | None) -> bool:
     return value is not None and not isinstance(value, scenic.New)
 
 
-def _unused_import(binding: Binding, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _unused_import(binding: Binding, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     if len(binding.sites) != 1 or scope.kind is ScopeKind.CLASS or binding.name in _exported(context):
         return
     [site] = binding.sites
@@ -159,7 +159,7 @@ def _unused_import(binding: Binding, scope: Scope, context: Context) -> Iterator
     )
 
 
-def _is_library(context: Context) -> bool:
+def _is_library(context: CheckContext) -> bool:
     """Return whether a file defines things and makes no scene: then others may take from it what it imports."""
     module = context.resolution.module
     return any(isinstance(statement, DEFINITIONS) for statement in context.tree.body) and not (
@@ -172,7 +172,7 @@ def _is_library(context: Context) -> bool:
     )
 
 
-def _has_no_effects(statement: Any, site: ast.alias, context: Context) -> bool:
+def _has_no_effects(statement: Any, site: ast.alias, context: CheckContext) -> bool:
     """Return whether nothing is lost without this name: not even the objects that importing a Scenic module creates."""
     if isinstance(statement, ast.Import):
         return site.name.partition(".")[0] in _PYTHON_MODULES
@@ -186,7 +186,7 @@ def _has_no_effects(statement: Any, site: ast.alias, context: Context) -> bool:
     return any(other is not None and other in context.resolution.read for other in others)
 
 
-def _removal(statement: Any, site: ast.alias, span: Span, context: Context) -> Edit:
+def _removal(statement: Any, site: ast.alias, span: Span, context: CheckContext) -> Edit:
     """The edit that removes one name of an import, or all of the statement with the only name."""
     names = statement.names
     if len(names) == 1:
@@ -209,7 +209,7 @@ def _removal(statement: Any, site: ast.alias, span: Span, context: Context) -> E
     return Edit(Span(previous.end_line, previous.end_column, span.end_line, span.end_column), "")
 
 
-def _exported(context: Context) -> set[str]:
+def _exported(context: CheckContext) -> set[str]:
     """The names in ``__all__``."""
     binding = context.resolution.names.get("__all__")
     if binding is None:
@@ -231,7 +231,7 @@ def _names_read_first(statement: object) -> frozenset[str]:
     return frozenset(part.id for value in values for part in walk(value) if isinstance(part, ast.Name))
 
 
-def _replaced(context: Context, statements: Iterable[ast.stmt]) -> Iterator[Diagnostic]:
+def _replaced(context: CheckContext, statements: Iterable[ast.stmt]) -> Iterator[Diagnostic]:
     """SC208: two definitions of one name in one block, without a use between them."""
     last: dict[str, Any] = {}
     for statement in statements:

@@ -5,10 +5,10 @@ from collections.abc import Collection, Iterator
 from typing import Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import Context, NodeRule
+from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.checks.wanted import may_be_meant, wrong_kinds
 from scenic.compiler.scopes import Scope, ScopeKind
-from scenic.compiler.semantics.kinds import Kind
+from scenic.compiler.semantics.kinds import ValueKind
 from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
 from scenic.language.members import MEMBERS, members_of
@@ -32,7 +32,9 @@ _PROPERTIES: Final = properties_of("Object")
 _MEMBERS_OF_OBJECTS: Final = frozenset(_PROPERTIES) | frozenset(attributes_of("Object"))
 
 
-def _specifiers(node: scenic.New | scenic.Override, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _specifiers(
+    node: scenic.New | scenic.Override, scope: Scope, context: CheckContext
+) -> Iterator[Diagnostic]:
     """``at 3``, ``with width "3"``."""
     if may_be_meant(node, scope, context) or context.is_cut(node):
         return
@@ -51,7 +53,7 @@ def _specifiers(node: scenic.New | scenic.Override, scope: Scope, context: Conte
                     yield from wrong_kinds(element.label(operand), operand.types, value, context)
 
 
-def _operation(node: scenic.Operation, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _operation(node: scenic.Operation, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``distance to 3``, ``position @ 3``."""
     if node.operator == "@" and not may_be_meant(node, scope, context):
         yield from _coordinates(node, context)
@@ -66,7 +68,7 @@ _BETWEEN_TWO: Final = frozenset({"altitude", "angle", "distance", "minimum dista
 """Operators between two things, of which one may be left out."""
 
 
-def _conjunction(node: ast.BoolOp, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _conjunction(node: ast.BoolOp, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC114: ``distance from a and b``."""
     match node:
         case ast.BoolOp(op=ast.And(), values=[scenic.Operation(operator=name, operands=operands), other]):
@@ -93,7 +95,7 @@ def _conjunction(node: ast.BoolOp, _scope: Scope, context: Context) -> Iterator[
     )
 
 
-def _coordinates(node: scenic.Operation, context: Context) -> Iterator[Diagnostic]:
+def _coordinates(node: scenic.Operation, context: CheckContext) -> Iterator[Diagnostic]:
     """SC404: ``place @ 3``, where ``place`` is a vector already."""
     for operand in node.operands:
         kind = context.kind_of(operand)
@@ -115,14 +117,14 @@ def _is_none(value: ast.expr | None) -> bool:
     return isinstance(value, ast.Constant) and value.value is None
 
 
-def _property(node: scenic.PropertyDef, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _property(node: scenic.PropertyDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``width: "3"``, ``size: self.lenth``."""
     declared = _PROPERTIES.get(node.name)
     if declared is not None and "additive" not in node.attributes:
         yield from wrong_kinds(f"`{node.name}`", declared.types, node.value, context)
 
 
-def _assign(node: ast.Assign, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _assign(node: ast.Assign, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``workspace = room``, ``ego = 3``."""
     kind = None if isinstance(node.value, ast.Tuple) else context.kind_of(node.value)
     for target in node.targets if kind is not None else ():
@@ -154,7 +156,7 @@ def _assign(node: ast.Assign, _scope: Scope, context: Context) -> Iterator[Diagn
             )
 
 
-def _workspace(target: ast.Name, context: Context) -> Iterator[Diagnostic]:
+def _workspace(target: ast.Name, context: CheckContext) -> Iterator[Diagnostic]:
     """``workspce = Workspace(region)``."""
     if distance(target.id, "workspace", limit=2) in (1, 2):
         yield context.warning(
@@ -166,7 +168,7 @@ def _workspace(target: ast.Name, context: Context) -> Iterator[Diagnostic]:
         )
 
 
-def _mutate(node: scenic.Mutate, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _mutate(node: scenic.Mutate, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``mutate room``."""
     for target in node.targets:
         kind = context.kind_of(target)
@@ -183,7 +185,7 @@ _DEFINED: Final = frozenset({"behavior", "class", "function", "monitor", "scenar
 """Kinds of definitions, of which SC203 says more."""
 
 
-def _new(node: scenic.New, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _new(node: scenic.New, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``new table`` where ``table`` is an object."""
     yield from _specifiers(node, scope, context)
     kind = context.kind_of(node.cls)
@@ -196,7 +198,7 @@ def _new(node: scenic.New, scope: Scope, context: Context) -> Iterator[Diagnosti
         )
 
 
-def _compare(node: ast.Compare, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _compare(node: ast.Compare, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``ego.position > 3``."""
     if may_be_meant(node, scope, context):
         return
@@ -227,7 +229,7 @@ def _compare(node: ast.Compare, scope: Scope, context: Context) -> Iterator[Diag
 
 
 def _contained(
-    node: ast.Compare, item: Kind | None, container: Kind | None, context: Context
+    node: ast.Compare, item: ValueKind | None, container: ValueKind | None, context: CheckContext
 ) -> Iterator[Diagnostic]:
     """``ego in 3``, ``3 in room``."""
     if container is not None and container.name in _WITHOUT_ITEMS:
@@ -251,7 +253,7 @@ def _contained(
         )
 
 
-def _arithmetic(node: ast.BinOp, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _arithmetic(node: ast.BinOp, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``ego.width + "3"``, ``ego.position + 3``."""
     yield from _counted(node, scope, context)
     if not isinstance(node.op, ast.Add | ast.Sub | ast.Div):
@@ -279,7 +281,7 @@ def _arithmetic(node: ast.BinOp, scope: Scope, context: Context) -> Iterator[Dia
         )
 
 
-def _counted(node: ast.BinOp, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _counted(node: ast.BinOp, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC404: ``2 * range(0, 3)``."""
     for side in (node.left, node.right):
         if not isinstance(side, ast.Call) or context.provided(side.func) != "range":
@@ -303,7 +305,7 @@ _APART: Final = frozenset({"text", "number", "vector", "tuple", "list", "nothing
 _SIGNS: Final = {ast.Add: "+", ast.Sub: "-", ast.Div: "/"}
 
 
-def _subscript(node: ast.Subscript, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _subscript(node: ast.Subscript, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``Uniform[1, 2]``, ``ego.width[0]``."""
     key = node.slice.value if isinstance(node.slice, ast.Constant) else None
     if (
@@ -327,7 +329,7 @@ def _subscript(node: ast.Subscript, scope: Scope, context: Context) -> Iterator[
     )
 
 
-def _loop(node: ast.For, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _loop(node: ast.For, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``for i in 3``."""
     kind = context.kind_of(node.iter)
     if kind is None or kind.name not in _WITHOUT_ITEMS or may_be_meant(node, scope, context):
@@ -345,11 +347,11 @@ def _loop(node: ast.For, scope: Scope, context: Context) -> Iterator[Diagnostic]
 _WITHOUT_ITEMS: Final = frozenset({"number", "boolean", "nothing", "class", "function"})
 
 
-def _is_unordered(kind: Kind) -> bool:
+def _is_unordered(kind: ValueKind) -> bool:
     return kind.name in INSTANCES or kind.name in ("vector", "orientation", "region", "workspace", "nothing")
 
 
-def _attribute(node: ast.Attribute, scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _attribute(node: ast.Attribute, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC214: ``ego.positon``, ``Vector(1, 2).lenght()``."""
     name = node.attr
     if isinstance(node.ctx, ast.Store) and context.provided(node.value) == "globalParameters":
@@ -391,7 +393,7 @@ def _attribute(node: ast.Attribute, scope: Scope, context: Context) -> Iterator[
 
 
 def _unknown_attribute(
-    node: ast.Attribute, kind: Kind, known: Collection[str], context: Context
+    node: ast.Attribute, kind: ValueKind, known: Collection[str], context: CheckContext
 ) -> Iterator[Diagnostic]:
     """An attribute that is none of the known ones."""
     name = node.attr
@@ -410,7 +412,7 @@ def _unknown_attribute(
     )
 
 
-def _of_agent(node: ast.Attribute, context: Context) -> Iterator[Diagnostic]:
+def _of_agent(node: ast.Attribute, context: CheckContext) -> Iterator[Diagnostic]:
     """SC214: ``self.spped`` in a behavior or monitor, whose agent may be of any class."""
     binding = context.binding(node.value) if isinstance(node.value, ast.Name) else None
     if binding is None or binding.scope.kind not in (ScopeKind.BEHAVIOR, ScopeKind.MONITOR):
@@ -434,7 +436,7 @@ def _of_agent(node: ast.Attribute, context: Context) -> Iterator[Diagnostic]:
     )
 
 
-def _parameter(name: str, place: Span, context: Context) -> Iterator[Diagnostic]:
+def _parameter(name: str, place: Span, context: CheckContext) -> Iterator[Diagnostic]:
     """SC214: ``globalParameters.sped``, ``globalParameters['sped']``."""
     known = context.parameters
     meant = nearest(name, known)
@@ -449,14 +451,14 @@ def _parameter(name: str, place: Span, context: Context) -> Iterator[Diagnostic]
     )
 
 
-def _end(node: ast.Attribute, context: Context) -> Span:
+def _end(node: ast.Attribute, context: CheckContext) -> Span:
     """The place of the name after the dot."""
     whole = context.source.span(node)
     start = max(0, whole.end_column - len(node.attr))
     return Span(whole.end_line, start, whole.end_line, whole.end_column)
 
 
-def _class(node: ast.ClassDef, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC214: ``size: self.lenth * 2``, in the defaults of a class."""
     defaults = [item.value for item in node.body if isinstance(item, scenic.PropertyDef)]
     known = context.classes.members_of(node) if defaults else None
@@ -474,7 +476,9 @@ def _class(node: ast.ClassDef, _scope: Scope, context: Context) -> Iterator[Diag
                 yield from _of_self(part, node.name, known, context)
 
 
-def _of_self(node: ast.Attribute, name: str, known: frozenset[str], context: Context) -> Iterator[Diagnostic]:
+def _of_self(
+    node: ast.Attribute, name: str, known: frozenset[str], context: CheckContext
+) -> Iterator[Diagnostic]:
     meant = nearest(node.attr, known)
     if meant is None or node.attr in context.stored_attributes:
         return  # A class that derives from it may have the property.

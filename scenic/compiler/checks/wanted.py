@@ -3,7 +3,7 @@
 import ast
 from collections.abc import Iterator, Sequence
 
-from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.scopes import Scope
 from scenic.compiler.semantics.kinds import accepts
 from scenic.compiler.traversal import position
@@ -14,7 +14,7 @@ __all__ = ["may_be_meant", "wrong_kinds"]
 
 
 def wrong_kinds(
-    title: str, types: Sequence[Type], value: ast.expr | None, context: Context
+    title: str, types: Sequence[Type], value: ast.expr | None, context: CheckContext
 ) -> Iterator[Diagnostic]:
     """SC404: a value that certainly does not do where some types are declared. ``title`` is quoted."""
     kind = context.kind_of(value)
@@ -45,7 +45,7 @@ def wrong_kinds(
     yield context.error("SC404", message, value, advice or f"give it {noun}")
 
 
-def _too_bright(title: str, value: ast.Tuple | ast.List, context: Context) -> Iterator[Diagnostic]:
+def _too_bright(title: str, value: ast.Tuple | ast.List, context: CheckContext) -> Iterator[Diagnostic]:
     for part in value.elts:
         if isinstance(part, ast.Constant) and isinstance(part.value, int | float) and part.value > 1:
             yield context.error(
@@ -57,7 +57,7 @@ def _too_bright(title: str, value: ast.Tuple | ast.List, context: Context) -> It
             return
 
 
-def may_be_meant(node: ast.AST, scope: Scope, context: Context) -> bool:
+def may_be_meant(node: ast.AST, scope: Scope, context: CheckContext) -> bool:
     """Return whether what fails may be expected to: in a function without a name, or where exceptions are caught."""
     if isinstance(scope.node, ast.Lambda):
         return True

@@ -3,7 +3,7 @@
 import ast
 from collections.abc import Iterator
 
-from scenic.compiler.checks.context import Context
+from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.names import NAMES
@@ -11,7 +11,7 @@ from scenic.language.names import NAMES
 __all__ = ["check_written_forms"]
 
 
-def check_written_forms(context: Context) -> Iterator[Diagnostic]:
+def check_written_forms(context: CheckContext) -> Iterator[Diagnostic]:
     """SC315, as information: the first use of each function that the language writes in words."""
     uses: dict[str, ast.Name] = {}
     for node in context.resolution.references:

@@ -7,7 +7,7 @@ from typing import Final
 from scenic.compiler.actions import Problem
 from scenic.compiler.actions.common import Place
 from scenic.compiler.generated import WORDS
-from scenic.compiler.mistakes.trial import LONGEST, Change, Outcome, Trials
+from scenic.compiler.mistakes.trial import LONGEST, Change, TrialOutcome, Trials
 from scenic.compiler.tokens import DEDENT, ENDMARKER, INDENT, NAME, NEWLINE, NUMBER, STRING, Tokens
 from scenic.dataclass import dataclass
 
@@ -215,7 +215,7 @@ class Situation:
 
     # Repairs.
 
-    def reads(self, changes: Sequence[Change], *, context: str | None = None) -> Outcome:
+    def reads(self, changes: Sequence[Change], *, context: str | None = None) -> TrialOutcome:
         """The reading of the line with ``changes``."""
         if context is None:
             context = self.context()

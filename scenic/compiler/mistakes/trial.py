@@ -12,7 +12,7 @@ from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS, SOFT_KEYWORDS, b
 from scenic.compiler.tokens import DEDENT, ENDMARKER, ERROR, INDENT, NAME, NEWLINE, NUMBER, STRING, Tokens
 from scenic.dataclass import dataclass
 
-__all__ = ["LONGEST", "Change", "Outcome", "Trials"]
+__all__ = ["LONGEST", "Change", "TrialOutcome", "Trials"]
 
 LONGEST: Final = 300
 """Repairs of longer lines are not tried."""
@@ -33,7 +33,7 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class TrialOutcome:
     """The outcome of a trial.
 
     ``complete``: the whole line is right. ``reached``: the token, by its number in the original text, that cannot
@@ -44,7 +44,7 @@ class Outcome:
     reached: int
 
 
-_FAILED: Final = Outcome(False, -1)
+_FAILED: Final = TrialOutcome(False, -1)
 
 _Piece: TypeAlias = str | int
 """A word, or the kind of a token without text."""
@@ -74,7 +74,7 @@ class Trials:
     def __init__(self, tokens: Tokens) -> None:
         self._tokens = tokens
         self._left = _MOST
-        self._known: dict[Any, Outcome] = {}
+        self._known: dict[Any, TrialOutcome] = {}
 
     def line(self, token: int) -> tuple[int, int]:
         """The first token of the line of ``token``, and the token at its end."""
@@ -87,7 +87,7 @@ class Trials:
             end += 1
         return start, end
 
-    def run(self, token: int, changes: Sequence[Change], *, context: str = "") -> Outcome:
+    def run(self, token: int, changes: Sequence[Change], *, context: str = "") -> TrialOutcome:
         """Parse the line of ``token`` with ``changes``, which are in order and do not overlap.
 
         ``context`` says how the line is read: as a statement (``""``), as an item of a class (``"class"``), as a line of
@@ -103,7 +103,7 @@ class Trials:
             known = self._known[key] = self._run(start, end, changes, context)
         return known
 
-    def _run(self, start: int, end: int, changes: Sequence[Change], context: str) -> Outcome:
+    def _run(self, start: int, end: int, changes: Sequence[Change], context: str) -> TrialOutcome:
         line = _Line(self._tokens)
         position = start
         for change in changes:
@@ -139,9 +139,9 @@ class Trials:
         except RecursionError:
             return _FAILED
         if node is not None and reached >= size:
-            return Outcome(True, end)
+            return TrialOutcome(True, end)
         farthest = max(farthest, reached, blocks.reached)
-        return Outcome(False, start if farthest <= offset else result.origins[farthest])
+        return TrialOutcome(False, start if farthest <= offset else result.origins[farthest])
 
 
 class _Blocks:

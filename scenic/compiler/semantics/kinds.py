@@ -19,11 +19,11 @@ from scenic.language.operators import OPERATORS
 from scenic.language.properties import attributes_of, properties_of
 from scenic.language.types import INSTANCES, Type
 
-__all__ = ["NUMBERS", "Kind", "KindOf", "accepts", "joint", "kind_of_type"]
+__all__ = ["NUMBERS", "KindOf", "ValueKind", "accepts", "joint", "kind_of_type"]
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class ValueKind:
     """A kind of values.
 
     ``name`` is the noun for messages. ``size`` is the number of elements of a tuple or list that stands in the text.
@@ -35,8 +35,8 @@ class Kind:
     name: str
     size: int | None = None
     members: frozenset[str] | None = None
-    items: "Kind | None" = None
-    odd: "Kind | None" = None
+    items: "ValueKind | None" = None
+    odd: "ValueKind | None" = None
 
     @property
     def phrase(self) -> str:
@@ -47,28 +47,28 @@ class Kind:
         return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
 
 
-NUMBER: Final = Kind("number")
-BOOLEAN: Final = Kind("boolean")
-TEXT: Final = Kind("text")
-NOTHING: Final = Kind("nothing")
-VECTOR: Final = Kind("vector")
-ORIENTATION: Final = Kind("orientation")
-REGION: Final = Kind("region")
-WORKSPACE: Final = Kind("workspace")
-SHAPE: Final = Kind("shape")
-FIELD: Final = Kind("vector field")
-FUNCTION: Final = Kind("function")
-CLASS: Final = Kind("class")
-RANGE: Final = Kind("range")
+NUMBER: Final = ValueKind("number")
+BOOLEAN: Final = ValueKind("boolean")
+TEXT: Final = ValueKind("text")
+NOTHING: Final = ValueKind("nothing")
+VECTOR: Final = ValueKind("vector")
+ORIENTATION: Final = ValueKind("orientation")
+REGION: Final = ValueKind("region")
+WORKSPACE: Final = ValueKind("workspace")
+SHAPE: Final = ValueKind("shape")
+FIELD: Final = ValueKind("vector field")
+FUNCTION: Final = ValueKind("function")
+CLASS: Final = ValueKind("class")
+RANGE: Final = ValueKind("range")
 
 
-def _built_in(name: str, cls: str) -> Kind:
+def _built_in(name: str, cls: str) -> ValueKind:
     """The kind of the direct instances of a built-in class."""
-    return Kind(name, members=frozenset(properties_of(cls)).union(attributes_of(cls)))
+    return ValueKind(name, members=frozenset(properties_of(cls)).union(attributes_of(cls)))
 
 
 ORIENTED_POINT: Final = _built_in("oriented point", "OrientedPoint")
-VECTORS: Final = Kind("tuple", items=VECTOR)
+VECTORS: Final = ValueKind("tuple", items=VECTOR)
 
 _MADE_BY_CALLS: Final = (NameKind.SHAPE, NameKind.REGION, NameKind.DISTRIBUTION)
 """Names that stand for a value only when they are called."""
@@ -81,7 +81,7 @@ _RUN: Final = frozenset({"behavior", "monitor", "scenario"})
 _MOST_PARTS: Final = 64
 """Number of elements of a tuple or list that are examined."""
 
-_OF_TYPE: Final[Mapping[str, Kind]] = MappingProxyType(
+_OF_TYPE: Final[Mapping[str, ValueKind]] = MappingProxyType(
     {
         "scalar": NUMBER,
         "vector": VECTOR,
@@ -92,7 +92,7 @@ _OF_TYPE: Final[Mapping[str, Kind]] = MappingProxyType(
         "boolean": BOOLEAN,
         "oriented point": ORIENTED_POINT,
         "tuple of vectors": VECTORS,
-        "list of points": Kind("list", items=VECTOR),
+        "list of points": ValueKind("list", items=VECTOR),
         "text": TEXT,
     }
 )
@@ -102,12 +102,12 @@ _DEEPEST: Final = 20
 """Depth to which values are examined."""
 
 
-def kind_of_type(declared: str) -> Kind | None:
+def kind_of_type(declared: str) -> ValueKind | None:
     """The kind of values of a declared type, if it is one word."""
     return _OF_TYPE.get(declared)
 
 
-def joint(kinds: Sequence[Kind | None]) -> Kind | None:
+def joint(kinds: Sequence[ValueKind | None]) -> ValueKind | None:
     """The kind of a value that has one of some kinds; ``None`` if they differ."""
     first = kinds[0] if kinds else None
     if first is None or any(each is None or each.name != first.name for each in kinds):
@@ -119,12 +119,12 @@ def joint(kinds: Sequence[Kind | None]) -> Kind | None:
     for each in known:
         members = None if members is None or each.members is None else members | each.members
     sizes = {each.size for each in known}
-    return Kind(
+    return ValueKind(
         first.name, sizes.pop() if len(sizes) == 1 else None, members, joint([each.items for each in known])
     )
 
 
-def accepts(types: Sequence[Type], kind: Kind) -> bool:
+def accepts(types: Sequence[Type], kind: ValueKind) -> bool:
     """Return whether values of a kind may be given where any of some types will do; true if that is not certain."""
     if any(each.kinds is None for each in types):
         return True
@@ -133,7 +133,7 @@ def accepts(types: Sequence[Type], kind: Kind) -> bool:
     return any(kind.name in (each.kinds or ()) for each in types)
 
 
-def _accepts_sequence(wanted: Type, kind: Kind) -> bool:
+def _accepts_sequence(wanted: Type, kind: ValueKind) -> bool:
     """Return whether a tuple or list may be given where a type is wanted."""
     if kind.name in (wanted.kinds or ()):
         return True
@@ -149,9 +149,9 @@ class KindOf:
     def __init__(self, names: Names, classes: Classes) -> None:
         self._names = names
         self._classes = classes
-        self._known: dict[ast.expr, Kind | None] = {}
+        self._known: dict[ast.expr, ValueKind | None] = {}
 
-    def __call__(self, node: ast.expr | None, depth: int = 0) -> Kind | None:
+    def __call__(self, node: ast.expr | None, depth: int = 0) -> ValueKind | None:
         """The kind of what an expression gives; ``None`` if it is not certain."""
         if node is None or depth > _DEEPEST:
             return None
@@ -160,7 +160,7 @@ class KindOf:
             self._known[node] = self._infer(node, depth + 1)
         return self._known[node]
 
-    def _infer(self, node: ast.expr, depth: int) -> Kind | None:
+    def _infer(self, node: ast.expr, depth: int) -> ValueKind | None:
         match node:
             case ast.Constant(value=value):
                 return _of_constant(value)
@@ -171,15 +171,15 @@ class KindOf:
             case ast.Tuple(elts=parts) | ast.List(elts=parts):
                 return self._display("tuple" if isinstance(node, ast.Tuple) else "list", parts, depth)
             case ast.ListComp(elt=element):
-                return Kind("list", items=self(element, depth))
+                return ValueKind("list", items=self(element, depth))
             case ast.Dict(values=values):
-                return Kind("dictionary", items=self._joint(values, depth))
+                return ValueKind("dictionary", items=self._joint(values, depth))
             case ast.DictComp(value=value):
-                return Kind("dictionary", items=self(value, depth))
+                return ValueKind("dictionary", items=self(value, depth))
             case ast.Subscript(value=value, slice=index):
                 return self._item(value, index, depth)
             case ast.Set() | ast.SetComp():
-                return Kind("set")
+                return ValueKind("set")
             case scenic.New(cls=cls):
                 return self._instance(cls)
             case ast.IfExp(body=body, orelse=orelse):
@@ -202,23 +202,23 @@ class KindOf:
                 return self._name(node, depth)
         return None
 
-    def _instance(self, cls: ast.expr) -> Kind | None:
+    def _instance(self, cls: ast.expr) -> ValueKind | None:
         base = self._classes.base(cls)
         name = {"Point": "point", "OrientedPoint": "oriented point"}.get(base or "", "object")
-        return Kind(name if base is not None else "object", members=self._classes.members(cls))
+        return ValueKind(name if base is not None else "object", members=self._classes.members(cls))
 
-    def _joint(self, options: Iterable[ast.expr], depth: int) -> Kind | None:
+    def _joint(self, options: Iterable[ast.expr], depth: int) -> ValueKind | None:
         return joint([self(option, depth) for option in options])
 
-    def _display(self, name: str, parts: Sequence[ast.expr], depth: int) -> Kind:
+    def _display(self, name: str, parts: Sequence[ast.expr], depth: int) -> ValueKind:
         """The kind of a tuple or list in the text."""
         if any(isinstance(part, ast.Starred) for part in parts):
-            return Kind(name)
+            return ValueKind(name)
         kinds = [self(part, depth) for part in parts[:_MOST_PARTS]]
         odd = next((each for each in kinds if each is not None and each.name not in NUMBERS), None)
-        return Kind(name, len(parts), items=joint(kinds) if len(parts) <= _MOST_PARTS else None, odd=odd)
+        return ValueKind(name, len(parts), items=joint(kinds) if len(parts) <= _MOST_PARTS else None, odd=odd)
 
-    def _item(self, value: ast.expr, index: ast.expr, depth: int) -> Kind | None:
+    def _item(self, value: ast.expr, index: ast.expr, depth: int) -> ValueKind | None:
         """The kind of ``value[index]``."""
         owner = self(value, depth)
         if owner is None or isinstance(index, ast.Slice):
@@ -228,7 +228,7 @@ class KindOf:
         return owner.items if owner.name in (*_SEQUENCES, "dictionary") else None
 
     @staticmethod
-    def _binary(left: Kind | None, right: Kind | None, operator: ast.operator) -> Kind | None:
+    def _binary(left: ValueKind | None, right: ValueKind | None, operator: ast.operator) -> ValueKind | None:
         if left == NUMBER == right:
             return NUMBER
         if left == VECTOR and right == NUMBER and isinstance(operator, ast.Mult | ast.Div):
@@ -239,7 +239,7 @@ class KindOf:
             return VECTOR
         return None
 
-    def _call(self, node: ast.Call, depth: int) -> Kind | None:
+    def _call(self, node: ast.Call, depth: int) -> ValueKind | None:
         function = node.func
         if isinstance(function, ast.Attribute):
             found = self.method(function, depth)
@@ -248,7 +248,7 @@ class KindOf:
         if name is None:
             defined = self._classes.defined(function)
             if defined in _RUN:
-                return Kind(defined)
+                return ValueKind(defined)
             returned = self._names.returned(function) if defined == "function" else ()
             return self._joint(returned, depth) if returned else None
         if name not in NAMES:
@@ -263,7 +263,7 @@ class KindOf:
             return joint([self._option(option, node, depth) for option in _options(node)])
         return {"Workspace": WORKSPACE, "str": TEXT, "localPath": TEXT, "range": RANGE}.get(name)
 
-    def _option(self, option: ast.expr, choice: ast.Call, depth: int) -> Kind | None:
+    def _option(self, option: ast.expr, choice: ast.Call, depth: int) -> ValueKind | None:
         """The kind of an option of a choice; of ``*values`` that of the elements."""
         if option is choice:
             return None
@@ -284,7 +284,7 @@ class KindOf:
         found = members_of(owner.name).get(function.attr)
         return found if found is not None and found.is_method else None
 
-    def _attribute(self, node: ast.Attribute, depth: int) -> Kind | None:
+    def _attribute(self, node: ast.Attribute, depth: int) -> ValueKind | None:
         owner = self(node.value, depth)
         if owner is None:
             return None
@@ -300,10 +300,10 @@ class KindOf:
         attribute = attributes_of(cls).get(node.attr)
         return None if attribute is None or attribute.is_method else kind_of_type(attribute.type)
 
-    def _name(self, node: ast.Name, depth: int) -> Kind | None:
+    def _name(self, node: ast.Name, depth: int) -> ValueKind | None:
         name = self._names.provided(node)
         if name == "ego":
-            return Kind("object", members=self._classes.ego_members())
+            return ValueKind("object", members=self._classes.ego_members())
         if name in ("everywhere", "nowhere"):
             return REGION
         if name is not None:
@@ -316,7 +316,7 @@ class KindOf:
             return self._annotated(annotation)
         defined = self._classes.defined(node)
         if defined is not None:
-            return Kind(defined)
+            return ValueKind(defined)
         found = self._names.only_value(node)
         if found is None:
             brought = self._names.kind_of_brought(node)
@@ -329,10 +329,10 @@ class KindOf:
         kind = self(value, depth)
         if kind is not None and kind.name in ("list", "dictionary"):
             # Lists grow.
-            return Kind(kind.name, items=None if node.id in self._names.grown else kind.items)
+            return ValueKind(kind.name, items=None if node.id in self._names.grown else kind.items)
         return kind
 
-    def _annotated(self, annotation: ast.expr) -> Kind | None:
+    def _annotated(self, annotation: ast.expr) -> ValueKind | None:
         name = self._names.provided(annotation)
         if name in ("int", "float", "str", "Vector", "Orientation", "VectorField"):
             kinds = {"str": TEXT, "Vector": VECTOR, "Orientation": ORIENTATION, "VectorField": FIELD}
@@ -356,7 +356,7 @@ def _options(node: ast.Call) -> Iterator[ast.expr]:
         yield node
 
 
-def _of_constant(value: object) -> Kind | None:
+def _of_constant(value: object) -> ValueKind | None:
     if value is None:
         return NOTHING
     if isinstance(value, bool):

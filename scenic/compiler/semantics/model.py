@@ -5,7 +5,7 @@ from functools import cached_property
 from weakref import proxy
 
 from scenic.compiler.semantics.classes import Classes
-from scenic.compiler.semantics.kinds import Kind, KindOf
+from scenic.compiler.semantics.kinds import KindOf, ValueKind
 from scenic.compiler.semantics.names import Names
 from scenic.language.members import Member
 
@@ -25,7 +25,7 @@ class Model(Names):
     def _kinds(self) -> KindOf:
         return KindOf(proxy(self), self.classes)
 
-    def kind_of(self, value: ast.expr | None) -> Kind | None:
+    def kind_of(self, value: ast.expr | None) -> ValueKind | None:
         """The kind of what an expression gives; ``None`` if it is not certain."""
         return self._kinds(value)
 

@@ -10,7 +10,7 @@ from pygls.exceptions import JsonRpcInvalidParams
 
 from scenic.ide import hierarchies, navigation
 from scenic.ide.navigation import Target
-from scenic.ide.symbols import Kind, flat, matches, symbols
+from scenic.ide.symbols import OutlineKind, flat, matches, symbols
 from scenic.lsp.handlers.information import Placed, place_of
 from scenic.lsp.progress import Partial, Progress
 from scenic.lsp.session import Session
@@ -24,18 +24,18 @@ __all__ = ["HANDLERS", "KINDS"]
 _Item = TypeVar("_Item", types.CallHierarchyItem, types.TypeHierarchyItem)
 
 KINDS: Final = {
-    Kind.CLASS: types.SymbolKind.Class,
-    Kind.PROPERTY: types.SymbolKind.Property,
-    Kind.FUNCTION: types.SymbolKind.Function,
-    Kind.METHOD: types.SymbolKind.Method,
-    Kind.BEHAVIOR: types.SymbolKind.Event,
-    Kind.MONITOR: types.SymbolKind.Event,
-    Kind.SCENARIO: types.SymbolKind.Namespace,
-    Kind.OBJECT: types.SymbolKind.Object,
-    Kind.VARIABLE: types.SymbolKind.Variable,
-    Kind.CONSTANT: types.SymbolKind.Constant,
-    Kind.PARAMETER: types.SymbolKind.Key,
-    Kind.REQUIREMENT: types.SymbolKind.Boolean,
+    OutlineKind.CLASS: types.SymbolKind.Class,
+    OutlineKind.PROPERTY: types.SymbolKind.Property,
+    OutlineKind.FUNCTION: types.SymbolKind.Function,
+    OutlineKind.METHOD: types.SymbolKind.Method,
+    OutlineKind.BEHAVIOR: types.SymbolKind.Event,
+    OutlineKind.MONITOR: types.SymbolKind.Event,
+    OutlineKind.SCENARIO: types.SymbolKind.Namespace,
+    OutlineKind.OBJECT: types.SymbolKind.Object,
+    OutlineKind.VARIABLE: types.SymbolKind.Variable,
+    OutlineKind.CONSTANT: types.SymbolKind.Constant,
+    OutlineKind.PARAMETER: types.SymbolKind.Key,
+    OutlineKind.REQUIREMENT: types.SymbolKind.Boolean,
 }
 _OF_PROJECT: Final = {
     SymbolKind.MODULE: types.SymbolKind.Module,

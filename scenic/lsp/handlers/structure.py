@@ -8,7 +8,7 @@ from lsprotocol import types
 from scenic.ide.folding import FoldKind, folds
 from scenic.ide.selection import selections
 from scenic.ide.semantic_tokens import MODIFIERS, TYPES, SemanticToken, semantic_tokens
-from scenic.ide.symbols import Symbol, flat, symbols
+from scenic.ide.symbols import OutlineSymbol, flat, symbols
 from scenic.lsp.convert import Encoding
 from scenic.lsp.documents import Document
 from scenic.lsp.handlers.navigation import KINDS
@@ -43,7 +43,7 @@ def _symbols(
     ]
 
 
-def _symbol(document: Document, symbol: Symbol) -> types.DocumentSymbol:
+def _symbol(document: Document, symbol: OutlineSymbol) -> types.DocumentSymbol:
     return types.DocumentSymbol(
         symbol.name,
         KINDS[symbol.kind],

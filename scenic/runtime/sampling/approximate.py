@@ -28,7 +28,7 @@ from scenic.graph.draws import (
 from scenic.graph.node import Node
 from scenic.runtime.sampling.blocks import Reads, blocks, merged, pieces
 from scenic.runtime.sampling.checks import Check, CollisionCheck
-from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Found
+from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, FinishedLanes
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.report import CORRELATED, Approximation, Exhausted
 
@@ -148,7 +148,7 @@ class _Sampler:
         self._plans: dict[frozenset[int], _Blocks] = {}
         self._objects = _Objects(checks)
 
-    def group(self, seed: int, group: int, lanes: int) -> Found:
+    def group(self, seed: int, group: int, lanes: int) -> FinishedLanes:
         """The scenes ``group * lanes`` to ``(group + 1) * lanes`` of a seed."""
         scenes = np.arange(group * lanes, (group + 1) * lanes, dtype=np.int64)
         inactive = self._engine.pending([(seed, k) for k in scenes.tolist()]).inactive
@@ -175,7 +175,7 @@ class _Sampler:
             one = np.array([lane])
             return self._engine.batch(self._fixing(state.source(keys).take(one)), grouped=False)
 
-        return Found(
+        return FinishedLanes(
             [seed] * lanes,
             scenes.tolist(),
             found_attempts,

@@ -106,7 +106,7 @@ class Plan:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Found:
+class FinishedLanes:
     """The scenes that a round has found: the lanes of a finished batch.
 
     ``seeds``, ``numbers`` and ``attempts`` tell of each lane which scene it is, and after how many candidates it was
@@ -141,7 +141,7 @@ class Found:
         return bool(Counter(keys).uniforms(where)[0, 0] < probability)
 
 
-Accepted = tuple[Found, int]
+Accepted = tuple[FinishedLanes, int]
 """A scene: one of those that a round has found. (There are many of them; a class of their own would cost more.)"""
 
 
@@ -465,7 +465,7 @@ class Engine:
         batch = kind(*arguments, rejections=rejections)
         batch.settle(self.plan.outputs)
         alone = partial(Batch, *arguments, rejections=rejections)
-        return Found([task.seed], [task.k], [attempts], batch, lambda _lane: alone()), 0
+        return FinishedLanes([task.seed], [task.k], [attempts], batch, lambda _lane: alone()), 0
 
     def accepted(self, seed: int, numbers: NDArray[np.int64], attempts: NDArray[np.int64]) -> list[Accepted]:
         """Scenes of a seed of which the accepted candidates are known; no check is made again.
@@ -485,11 +485,11 @@ class Engine:
 
     def _found(
         self, seeds: Sequence[int], numbers: Sequence[int], attempts: Sequence[int], batch: Batch
-    ) -> Found:
+    ) -> FinishedLanes:
         def alone(lane: int) -> Batch:
             return self._alone(Task(seeds[lane], numbers[lane]), attempts[lane] - 1)
 
-        return Found(seeds, numbers, attempts, batch, alone)
+        return FinishedLanes(seeds, numbers, attempts, batch, alone)
 
     @property
     def most_lanes(self) -> int:

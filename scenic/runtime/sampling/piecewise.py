@@ -20,7 +20,7 @@ from scenic.graph.draws import Lanes, Source, attempt_keys, scene_keys, seed_wor
 from scenic.runtime.geometry.ragged import expand
 from scenic.runtime.sampling.components import Components
 from scenic.runtime.sampling.composed import Composed
-from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Found
+from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, FinishedLanes
 from scenic.runtime.sampling.halving import Tree
 from scenic.runtime.sampling.joining import join
 from scenic.runtime.sampling.pending import Task
@@ -288,7 +288,7 @@ class PiecewiseEngine:
             one = slice(lane, lane + 1)
             return self._whole.batch(self._source(seeds[one], numbers[one], attempts[one]), grouped=False)
 
-        found = Found(seeds, numbers, attempts.max(axis=1).tolist(), batch, alone, attempts)
+        found = FinishedLanes(seeds, numbers, attempts.max(axis=1).tolist(), batch, alone, attempts)
         return [(found, lane) for lane in range(len(tasks))]
 
     def _source(self, seeds: Sequence[int], numbers: Sequence[int], attempts: NDArray[np.int64]) -> Source:

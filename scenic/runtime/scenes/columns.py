@@ -11,7 +11,7 @@ from scenic.dataclass import dataclass
 from scenic.graph.kinds import Kind
 from scenic.runtime.instances.objects import Object
 from scenic.runtime.python.samples import dependencies
-from scenic.runtime.sampling.engine import Found
+from scenic.runtime.sampling.engine import FinishedLanes
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Origin, Scene
 from scenic.runtime.values.choices import options_of
@@ -123,7 +123,7 @@ class _Property:
         return getattr(scene.cast[self.index], self.name)
 
 
-def _lanes(scenes: Sequence[Scene]) -> Iterator[tuple[Found, list[int]]]:
+def _lanes(scenes: Sequence[Scene]) -> Iterator[tuple[FinishedLanes, list[int]]]:
     """Consecutive scenes of one batch, and their lanes in it."""
     for _, group in groupby(scenes, key=lambda scene: id(scene.found)):
         some = list(group)

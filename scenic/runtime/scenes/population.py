@@ -13,7 +13,7 @@ from scenic.language.garbage import no_garbage_collection
 from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.python.samples import Globals, Sample, reachable
 from scenic.runtime.regions.presence import is_always_present
-from scenic.runtime.sampling.engine import Found
+from scenic.runtime.sampling.engine import FinishedLanes
 from scenic.runtime.values.instance_base import put
 from scenic.runtime.values.values import as_node
 
@@ -46,11 +46,11 @@ class Populations:
         self._others = tuple(others)
         self._linked: bool | None = None
 
-    def missing(self, found: Found, lane: int) -> frozenset[int]:
+    def missing(self, found: FinishedLanes, lane: int) -> frozenset[int]:
         """The places of objects that take no part in a scene."""
         return frozenset(place for place, node in self.optional if not found.batch.value(node, lane))
 
-    def of(self, found: Found) -> "Population":
+    def of(self, found: FinishedLanes) -> "Population":
         """The objects of the scenes that a round has found."""
         population: Population | None = found.shared.get(self)
         if population is None:

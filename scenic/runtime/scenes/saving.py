@@ -16,7 +16,7 @@ from scenic.dataclass import dataclass
 from scenic.graph.draws import Counter, Points, Source
 from scenic.graph.node import Graph, Node
 from scenic.language.errors import SerializationError
-from scenic.runtime.sampling.engine import Found
+from scenic.runtime.sampling.engine import FinishedLanes
 from scenic.runtime.sampling.pending import Task
 
 FORMAT: Final = "scenic scene"
@@ -91,7 +91,7 @@ def _broken(why: str) -> SerializationError:
 
 
 def draws_of(
-    found: Found, lane: int, nodes: Iterable[Node] | None = None
+    found: FinishedLanes, lane: int, nodes: Iterable[Node] | None = None
 ) -> tuple[dict[int, float], dict[int, int]]:
     """The draws behind a scene that was found, by address: numbers of axes, and words of keys.
 

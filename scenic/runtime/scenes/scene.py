@@ -17,7 +17,7 @@ from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.python.samples import dependencies
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Workspace
-from scenic.runtime.sampling.engine import Found
+from scenic.runtime.sampling.engine import FinishedLanes
 from scenic.runtime.sampling.report import Approximation
 from scenic.runtime.scenes.dumping import program_of
 from scenic.runtime.scenes.pickled_values import ValueLayout
@@ -83,7 +83,7 @@ class Scene:
     _params: dict[str, Any] | None = None
     _pickled: tuple[bytes, bytes, bytes] | None = None
 
-    def __init__(self, found: Found, lane: int, family: Family) -> None:
+    def __init__(self, found: FinishedLanes, lane: int, family: Family) -> None:
         self.found = found
         self.lane = lane
         self._family = family

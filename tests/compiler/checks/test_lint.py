@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from scenic.compiler.check import check_text
-from scenic.compiler.checks import Context, lint
+from scenic.compiler.checks import CheckContext, lint
 from scenic.compiler.fixes import apply_fixes, repair
 from scenic.compiler.parser import parse
 from scenic.compiler.resolver import resolve
@@ -332,7 +332,9 @@ def test_compiling_is_not_held_up_by_hints() -> None:
 def test_large_programs(text: str) -> None:
     tree = parse(text).tree
     source = Source(text, "f")
-    assert all(isinstance(item, Diagnostic) for item in lint(Context(tree, source, resolve(tree, source))))
+    assert all(
+        isinstance(item, Diagnostic) for item in lint(CheckContext(tree, source, resolve(tree, source)))
+    )
     assert isinstance(tree, ast.Module)
 
 

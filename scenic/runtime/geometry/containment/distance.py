@@ -10,7 +10,7 @@ from scenic.runtime.geometry.containment.body_containment import contains_points
 from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.meshes.facetree import Forest
 from scenic.runtime.geometry.meshes.mesh import Mesh
-from scenic.runtime.geometry.meshes.nearest import Found, nearest_of, nearest_on_triangles
+from scenic.runtime.geometry.meshes.nearest import NearestPoints, nearest_of, nearest_on_triangles
 from scenic.runtime.geometry.poses import Booleans, Floats, Indices, Poses
 from scenic.runtime.geometry.ragged import first_of_each
 from scenic.runtime.geometry.vectors import cross, dot
@@ -22,7 +22,7 @@ _ENTRIES: Final = 1 << 12
 """Pairs of bodies looked at together."""
 
 
-def to_surface(body: Body, points: Floats, lanes: int, *, within: float = np.inf) -> Found:
+def to_surface(body: Body, points: Floats, lanes: int, *, within: float = np.inf) -> NearestPoints:
     """The nearest point of the body's surface to each point ``(lanes | 1, 3)``; numbers are those of faces.
 
     Points that are farther from it than ``within`` (metres) are only known to be, and given as infinitely far.
@@ -38,7 +38,7 @@ def to_surface(body: Body, points: Floats, lanes: int, *, within: float = np.inf
         found = mesh.derived(nearest_of).find(local, poses.size, within=within)
         distance[chosen], number[chosen] = found.distance, found.number
         nearest[chosen] = rigid.to_world(found.point)
-    return Found(distance, nearest, number)
+    return NearestPoints(distance, nearest, number)
 
 
 def signed(body: Body, points: Floats, lanes: int) -> Floats:

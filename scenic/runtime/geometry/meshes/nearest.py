@@ -18,7 +18,7 @@ _FRONT: Final = 1 << 15
 """Pairs of point and box looked at together."""
 
 
-class Found(NamedTuple):
+class NearestPoints(NamedTuple):
     """The nearest point of each query.
 
     Attributes:
@@ -41,7 +41,7 @@ class Nearest:
         self._tree: Final = tree_of(self._corners) if tree is None else tree
         self._inner: Final = len(self._tree.starts) - 2
 
-    def find(self, points: Floats, scale: Floats | None = None, *, within: float = np.inf) -> Found:
+    def find(self, points: Floats, scale: Floats | None = None, *, within: float = np.inf) -> NearestPoints:
         """The nearest points of all that is indexed.
 
         Args:
@@ -73,7 +73,7 @@ class Nearest:
                 entry, node = entry[~leaves], node[~leaves]
             if len(entry):
                 fronts.append((np.repeat(entry, 2), np.stack([2 * node + 1, 2 * node + 2], axis=1).ravel()))
-        return Found(np.where(number < 0, np.inf, length(points - nearest)), nearest, number)
+        return NearestPoints(np.where(number < 0, np.inf, length(points - nearest)), nearest, number)
 
     def _dive(self, points: Floats, size: Floats) -> tuple[Floats, Floats, Indices]:
         """Squared distances, nearest points and numbers in the leaf that is reached by always taking the nearer box."""
