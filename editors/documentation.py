@@ -14,7 +14,6 @@ from scenic.compiler.syntax import (
     RULES,
     STATEMENT_FORMS,
     Choice,
-    TokenKind,
     Item,
     ListOf,
     Many,
@@ -22,6 +21,7 @@ from scenic.compiler.syntax import (
     Reference,
     Row,
     StatementForm,
+    TokenKind,
     Word,
 )
 from scenic.language.keywords import TEMPORAL_OPERATORS
