@@ -186,7 +186,10 @@ def falsify(**options: Any) -> int:
     if request.resume and seed is None and output is not None:
         seed = next((int(manifest_of(folder)["seed"]) for folder in folders_of(output)), None)
     programs = [
-        (request.load(parameters), ", ".join(f"{name}={value}" for name, value in different.items()))
+        (
+            request.load(parameters, request.simulator),
+            ", ".join(f"{name}={value}" for name, value in different.items()),
+        )
         for parameters, different in settings_of(request.swept)
     ]
     if not request.static and request.simulator is None and all(item.is_timeless for item, _ in programs):

@@ -68,11 +68,18 @@ class BatchRequest:
         """The program's file."""
         return Path(self.file)
 
-    def load(self, parameters: Mapping[str, object], **options: Any) -> "Scenario":
-        """The program with values of its parameters; ``options`` are those of `scenic.load`."""
+    def load(
+        self, parameters: Mapping[str, object], simulator: str | None = None, **options: Any
+    ) -> "Scenario":
+        """The program with values of its parameters, to be simulated by ``simulator``; ``options`` are those of `scenic.load`."""
         from scenic.pipeline import load
 
-        options |= {"model": self.model, "scenario": self.scenario, "mode2D": self.mode_2d}
+        model = self.model
+        if model is None and simulator is not None:
+            from scenic.batch.world_models import model_for
+
+            model = model_for(simulator, self.path)
+        options |= {"model": model, "scenario": self.scenario, "mode2D": self.mode_2d}
         return load(self.path, params=parameters, **options)
 
 

@@ -89,7 +89,7 @@ def _batches(request: SimulateRequest, seed: int) -> list[tuple[Setting, Simulat
     batches = []
     for parameters, different in settings_of(request.swept):
         setting = Setting({}, different)
-        loaded = request.load(parameters, extra_params=request.extra_params)
+        loaded = request.load(parameters, request.simulator, extra_params=request.extra_params)
         place = request.output
         if place is not None and different:
             place /= safe_name(setting.label)

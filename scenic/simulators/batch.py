@@ -41,7 +41,7 @@ class Numbered:
 
 
 def choose_simulator(name: str | None, scenario: Scenario) -> Simulator:
-    """The simulator of a name: ``kinematic``, ``mujoco``, ``dummy`` or ``MODULE:CLASS``; by default the program's own, or ``kinematic``.
+    """The simulator of a name: ``kinematic``, ``mujoco``, ``newtonian``, ``dummy`` or ``MODULE:CLASS``; by default the program's own, or ``kinematic``.
 
     Raises `SimulatorChoiceError`.
     """

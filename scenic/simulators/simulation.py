@@ -25,7 +25,7 @@ from scenic.runtime.description.definitions import running_in
 from scenic.runtime.dynamics.chosen_draws import Sourcing
 from scenic.runtime.dynamics.copies import Copies
 from scenic.runtime.dynamics.run import Ending, Run
-from scenic.runtime.ground.reported_places import reported
+from scenic.runtime.ground.reported_places import is_library, reported
 from scenic.runtime.instances.properties import Finals
 from scenic.runtime.python.random_state import is_as, preserved, restore, seed_globals, states
 from scenic.runtime.scenes.scene import Scene
@@ -322,9 +322,11 @@ class Simulation(ABC):
             (span, filename), labels = reported((place, filename), own)
             near = nearest_attribute(error)
             words = f"{type(error).__name__}: {error}"
-            hint = (
-                f"did you mean `{near}`?" if near else "the program raised this exception during a simulation"
-            )
+            hint = "the program raised this exception during a simulation"
+            if labels and is_library(labels[0].filename or ""):
+                hint = "the library raised this exception during a simulation: check what it is given here"
+            if near:
+                hint = f"did you mean `{near}`?"
             if isinstance(error, StuckBehaviorError):
                 words, hint = str(error), "if it only computes for long, allow it more time (`--step-limit`)"
             found = Diagnostic("SC400", words, span, filename=filename, help=hint, labels=labels)

@@ -10,6 +10,7 @@ import pytest
 from PIL import Image
 
 from scenic.failures import diagnose
+from scenic.formats.trajectory_reading import read_trajectory
 from scenic.language.errors import (
     InvalidScenarioError,
     RejectionException,
@@ -18,6 +19,7 @@ from scenic.language.errors import (
 )
 from scenic.simulators.batch import simulate_number
 from scenic.simulators.newtonian.simulator import NewtonianSimulator
+from tests.cli.commands import run_here
 from tests.maps import straight
 from tests.reports.programs import Programs, programs, values  # noqa: F401 - a fixture
 
@@ -224,23 +226,66 @@ def test_tables_of_rejections_quote_what_is_missing(programs: Programs) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "line"),
+    ("call", "line", "message"),
     [
-        ("ego = new Car with behavior FollowLaneBehavior(target_speed='fast')\n", 3),
         (
-            "behavior B():\n    do LaneChangeBehavior(laneSectionToSwitch=None)\nego = new Car with behavior B\n",
-            4,
+            "FollowLaneBehavior(target_speed='fast')",
+            13,
+            "`target_speed` of FollowLaneBehavior: expected a number, not 'fast' (str)",
         ),
+        ("Own(text)", 4, "`target_speed` of FollowLaneBehavior: expected a number, not 'fast' (str)"),
+        ("Other(lane)", 6, "the lane to change to: expected a lane or a lane section, not None"),
+        ("Third(4)", 8, "the trajectory: expected lanes or lines in a list that is not empty"),
+        ("Fourth(4)", 10, "TypeError: 'int' object is not iterable"),
     ],
 )
-def test_errors_of_library_behaviors_are_at_the_program(programs: Programs, text: str, line: int) -> None:  # noqa: F811
-    with pytest.raises((TypeError, AttributeError)) as caught:
-        programs.simulated(text, 3, map="street")
+def test_errors_of_library_behaviors_are_at_the_program(
+    programs: Programs,  # noqa: F811
+    call: str,
+    line: int,
+    message: str,
+) -> None:
+    text = (
+        "behavior Own(x):\n    do FollowLaneBehavior(x)\n"
+        "behavior Other(x):\n    do LaneChangeBehavior(laneSectionToSwitch=x)\n"
+        "behavior Third(x):\n    do FollowTrajectoryBehavior(trajectory=x)\n"
+        "behavior Fourth(x):\n    do Walk(x)\n"
+        "text = Uniform('fast', 'fast')\nlane = Uniform(None, None)\n"
+    )
+    kind = "Pedestrian" if "Fourth" in call else "Car"
+    with pytest.raises((ScenicTypeError, TypeError)) as caught:
+        programs.simulated(text + f"ego = new {kind} with behavior {call}\n", 3, map="street")
     found = diagnose(caught.value)
     assert found is not None
     assert found.span is not None
     assert (found.filename, found.span.line) == (str(programs.path), line)
-    assert [label.text for label in found.labels] == ["raised here"]
+    assert found.message.startswith(message)
+
+
+def test_the_built_in_simulator_drives_cars_of_the_plain_driving_model(programs: Programs) -> None:  # noqa: F811
+    """Its option brings the model that it needs; by itself such a car keeps its velocity."""
+    plain = {"map": "street", "model": "scenic.domains.driving.model"}
+    programs.compiled("ego = new Car at (50, -2), with behavior FollowLaneBehavior(8)\n", **plain)
+    course = run_here(
+        [
+            "simulate",
+            programs.path,
+            "--simulator",
+            "newtonian",
+            "--steps",
+            30,
+            "-o",
+            programs.folder / "driven",
+        ]
+    )
+    assert course.returncode == 0, course.stderr
+    (kept,) = (programs.folder / "driven").glob("*.jsonl")
+    x, *_ = read_trajectory(kept).position(0)[-1]
+    assert x > 55
+    scene = programs.compiled("ego = new Car at (50, -2), with velocity (4, 0, 0)\n", **plain).sample(1)[0]
+    coasted = NewtonianSimulator().simulate(scene, maxSteps=10, timestep=0.1)
+    assert coasted is not None
+    assert coasted.result.trajectory[-1].positions[0] == pytest.approx((54, -2, 0))
 
 
 def test_errors_of_library_defaults_are_at_the_program(programs: Programs) -> None:  # noqa: F811

@@ -203,3 +203,31 @@ def test_fields_in_behaviors_mean_the_present_place_of_the_agent_and_in_specifie
         "ego = new Object at (1, 0), with behavior Report\n"
     )
     assert _actions(text, 2) == [((pytest.approx(1.1), pytest.approx(1.5)),), ((pytest.approx(1.3),),)]
+
+
+def test_fields_in_monitors_and_compose_blocks_mean_the_present_place_of_the_ego() -> None:
+    """In a set-up they mean the place of what is made there."""
+    text = (
+        "field = VectorField('field', lambda place: place.x / 10)\n"
+        "behavior Tell(*turns):\n"
+        "    take turns\n"
+        "    self.position = (3, 0, 0)\n"
+        "    wait\n"
+        "monitor Watch():\n"
+        "    while True:\n"
+        "        if (1 relative to field).yaw > 1.2:\n"
+        "            terminate\n"
+        "        wait\n"
+        "scenario Sub(turn):\n"
+        "    setup:\n"
+        "        own = 1 relative to field\n"
+        "        other = new Object at (5, 9), facing own\n"
+        "        other.behavior = Tell(turn, other.yaw)\n"
+        "scenario Main():\n"
+        "    setup:\n"
+        "        ego = new Object at (1, 0), with behavior Tell()\n"
+        "        require monitor Watch()\n"
+        "    compose:\n"
+        "        do Sub((1 relative to field).yaw)\n"
+    )
+    assert _actions(text, 9) == [((), (pytest.approx(1.1), pytest.approx(1.5))), ((), ())]

@@ -31,6 +31,10 @@ _HARD: Final = 1.25
 """Times the comfortable deceleration from which a driver brakes without regard for jolts."""
 _LOOKS: Final = 0.3
 """Seconds between two looks for who is ahead."""
+_DRIVABLE: Final = (
+    "pedestrians have `WalkTo` and `Walk`; vehicles are driven with the model of a simulator, such as "
+    "`model scenic.simulators.newtonian.driving_model` (from the command line: `--simulator newtonian`)"
+)
 
 
 class Driver:
@@ -57,7 +61,7 @@ class Driver:
         if not isinstance(agent, Steers):
             raise InvalidScenarioError(
                 f"{agent!r} cannot be driven: it has no throttle, brakes and steering wheel",
-                help="give behaviors of cars to vehicles of the simulator's model; pedestrians have `WalkTo` and `Walk`",
+                help=_DRIVABLE,
             )
         self._agent: Any = agent
         self._simulation = running_simulation()

@@ -14,6 +14,7 @@ from scenic.domains.driving.planning import Plan, join, path_of_lines
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import Route
 from scenic.language.errors import InvalidScenarioError
+from scenic.runtime.values.describing import wrong_type
 
 __all__ = ["LaneChanger", "LaneDriver", "RouteDriver", "lane_under"]
 
@@ -195,6 +196,7 @@ class LaneChanger(LaneDriver):
 
     Raises:
         InvalidScenarioError: the lane leads in the other direction, and ``oncoming`` is false.
+        ScenicTypeError: it is no lane.
 
     """
 
@@ -210,6 +212,8 @@ class LaneChanger(LaneDriver):
         gap: Gap | None = None,
     ) -> None:
         lane = section.lane if isinstance(section, LaneSection) else section
+        if not isinstance(lane, Lane):
+            raise wrong_type("a lane or a lane section", lane, "the lane to change to")
         if not oncoming and abs(_turned(agent, lane)) > math.pi / 2:
             raise InvalidScenarioError(
                 f"{lane.uid} leads in the other direction than the car that is to change to it",

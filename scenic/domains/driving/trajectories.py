@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scenic.domains.driving.elements import Lane, LinearElement
 from scenic.domains.driving.maneuvering import intersection_ahead
 from scenic.runtime.regions.lines import PolylineRegion
+from scenic.runtime.values.describing import wrong_type
 from scenic.runtime.values.values import Vector
 
 __all__ = ["Route", "Trajectory"]
@@ -64,7 +65,7 @@ class Route:
         end: the intersection after the last lane, else the last point.
 
     Raises:
-        TypeError: it is neither.
+        ScenicTypeError: it is neither.
 
     """
 
@@ -76,8 +77,8 @@ class Route:
         elif isinstance(trajectory, list | tuple) and trajectory and all(map(_is_way, trajectory)):
             parts = trajectory
         else:
-            raise TypeError(
-                "FollowTrajectoryBehavior needs a trajectory: a list of lanes that is not empty, or a Trajectory"
+            raise wrong_type(
+                "lanes or lines in a list that is not empty, or a `Trajectory`", trajectory, "the trajectory"
             )
         self.lines = [_vertices(part) for part in parts]
         last = parts[-1]

@@ -6,18 +6,22 @@ attributes. An instance made while the scenario is compiled may hold random valu
 """
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from types import FrameType, SimpleNamespace
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, Final, NamedTuple
 
 from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.errors import InvalidScenarioError, ScenicSyntaxError, ScenicTypeError
 from scenic.language.spans import Span
 from scenic.runtime.ground.context import current, here
-from scenic.runtime.values.describing import describe
+from scenic.runtime.ground.reported_places import is_library
+from scenic.runtime.instances.objects import Point
+from scenic.runtime.regions.base import Region
+from scenic.runtime.values.describing import describe, wrong_type
 from scenic.runtime.values.lazy import Lazy, is_lazy, resolve
 from scenic.runtime.values.random_values import Random
+from scenic.runtime.values.values import Vector
 
 __all__ = [
     "Behavior",
@@ -97,6 +101,7 @@ class Invocable:
                 help=f"it is defined as `{self._definition.name}{self._definition.signature}`",
             ) from None
         bound.apply_defaults()
+        _check_numbers(self._definition, bound.arguments)
         self._arguments = bound
         self._activation: Any = None
         self.__dict__.update(bound.arguments)
@@ -107,6 +112,7 @@ class Invocable:
         for name, value in given.items():
             if is_lazy(value):
                 given[name] = self.__dict__[name] = resolve(value, SimpleNamespace())
+        _check_numbers(self._definition, given)
 
     def random_parts(self) -> list[Any]:
         """Values in it that may be random, for sampling."""
@@ -127,6 +133,23 @@ class Invocable:
     def __repr__(self) -> str:
         inside = ", ".join(f"{name}={value!r}" for name, value in self._arguments.arguments.items())
         return f"{self._definition.name}({inside})"
+
+
+_NO_NUMBERS: Final = (str, bytes, list, tuple, dict, set, frozenset, type(None), Point, Region, Vector)
+
+
+def _check_numbers(definition: Definition, arguments: Mapping[str, Any]) -> None:
+    """Raise `ScenicTypeError` for an argument of a behavior of the library that is no number, where its default is one."""
+    body = definition.body
+    if body is None or not is_library(body.__code__.co_filename):
+        return
+    for name, parameter in definition.signature.parameters.items():
+        default = parameter.default
+        value = arguments.get(name, default)
+        if type(default) in (int, float) and isinstance(value, _NO_NUMBERS):
+            error = wrong_type("a number", value, f"`{name}` of {definition.name}")
+            error.help = f"give a number; the default is {default}"
+            raise error
 
 
 class Behavior(Invocable):

@@ -164,14 +164,22 @@ class Dynamics:
         return margins.margin(symbols, operands)
 
     def at_present(self, value: object) -> Any:
-        """A value, at the present place of the agent whose behavior is running, if there is one."""
+        """A value, at the present place of the agent whose behavior is running; in monitors and compose blocks, of the ego.
+
+        In the set-up of a scenario it stays lazy: it may be about an object that is made there.
+        """
         run = self._run
-        if run is None or run.agent is None or not is_lazy(value):
+        if run is None or run.may_create or not is_lazy(value):
+            return value
+        instance = next(
+            (item for item in (run.agent, run.current.ego, self._module.ego) if item is not None), None
+        )
+        if instance is None:
             return value
         try:
-            return resolve(value, run.agent)
+            return resolve(value, instance)
         finally:
-            run.agent.__dict__.pop(MEMO, None)
+            instance.__dict__.pop(MEMO, None)
 
     # Statements that do not
 

@@ -202,6 +202,11 @@ class Run:
         finally:
             self.in_first_setup = before
 
+    @property
+    def may_create(self) -> bool:
+        """True if the code that runs may create objects: the set-up of a scenario may."""
+        return self._creating is not None
+
     @contextmanager
     def condition(self) -> Iterator[None]:
         """The condition of a requirement is evaluated within this, which draws and creates nothing."""
@@ -264,8 +269,6 @@ class Run:
                     help="put the object into a scenario, and run it with `do` in a compose block",
                 )
             scenario.objects.append(instance)
-            if instance.behavior is not None:
-                scenario.agents.append(instance)
         if scenario is None or scenario.awaited is None:
             self._enter(instance)
         else:
@@ -325,7 +328,6 @@ class Run:
             if isinstance(obj.behavior, type):
                 # A random choice among classes of behaviors.
                 obj.__dict__["behavior"] = obj.behavior()
-        top.agents = [obj for obj in top.objects if obj.behavior is not None]
         if program.top is not None:
             top.become(copies.value(program.top))
             top.instance._activation = top

@@ -113,6 +113,8 @@ class ScenarioActivation(Guarded):
         )
         self.running = True
         run.scenarios.append(self)
+        # The set-up may have given or taken a behavior after it has made an object.
+        self.agents = [obj for obj in self.objects if obj.behavior is not None]
         for agent in self.agents:
             run.start_behavior(agent, self)
         for use in self.declared.monitors:

@@ -7,13 +7,18 @@ from typing import Final
 from scenic.language.diagnostics import Label
 from scenic.language.spans import Span
 
-__all__ = ["Place", "reported"]
+__all__ = ["Place", "is_library", "reported"]
 
 _PACKAGE: Final = f"{Path(__file__).parents[2]}{os.sep}"
 """The directory of this project's package, ending in a separator."""
 
 Place = tuple[Span | None, str | None]
 """A span and its file, each ``None`` if unknown."""
+
+
+def is_library(filename: str) -> bool:
+    """Return whether a file is one of this package, and not the user's."""
+    return filename.startswith(_PACKAGE)
 
 
 def reported(place: Place, own: Place) -> tuple[Place, tuple[Label, ...]]:
@@ -30,6 +35,6 @@ def reported(place: Place, own: Place) -> tuple[Place, tuple[Label, ...]]:
         return place, ()
     if span is None or filename is None:
         return own, ()
-    if filename.startswith(_PACKAGE):
+    if is_library(filename):
         return own, (Label(span, "raised here", filename),)
     return place, (Label(own_span, "reached from here", own_file),)

@@ -7,7 +7,7 @@ from scenic.graph.node import Node
 from scenic.graph.operations import TABLE
 from scenic.language.errors import InvalidScenarioError, RejectionException
 from scenic.runtime.ground.context import current, here
-from scenic.runtime.python.opaque import call_later
+from scenic.runtime.python.opaque import OpaqueCode, call_later
 from scenic.runtime.python.purity import is_pure
 from scenic.runtime.values.distributions import Uniform
 from scenic.runtime.values.lazy import Lazy, defer
@@ -116,6 +116,11 @@ def _arguments(parts: Parts) -> Iterator[Any]:
 
 def _call(function: Callable[..., Any], parts: Parts, **keywords: Any) -> Any:
     return function(*_arguments(parts), **keywords)
+
+
+def chooses_element(node: Node) -> bool:
+    """Return whether a node is an element of lists that are known only in each sample, and may all be empty."""
+    return isinstance(node.payload, OpaqueCode) and node.payload.function is _element
 
 
 def _element(draw: float, parts: Parts) -> Any:

@@ -82,6 +82,8 @@ class Part:
     holds: Mask
     note: str = ""
     """A note that helps to understand why it never holds."""
+    is_clause: bool = False
+    """True if the label says of what there is no value, rather than what is required."""
     undecided: Mask | None = None
     """Lanes in which a value that it reads is missing; ``None`` if there are none."""
 
@@ -102,7 +104,7 @@ def joined(parts: Sequence[Part]) -> Part:
 def _only_part(check: Check, batch: Batch, note: str = "", undecided: Mask | None = None) -> Sequence[Part]:
     verdict = check.test(batch)
     holds = verdict.holds if verdict.failed is None else verdict.holds & ~verdict.failed
-    return [Part(check.label, check.span, holds, note, undecided)]
+    return [Part(check.label, check.span, holds, note, undecided=undecided)]
 
 
 def _any_rejected(batch: Batch, nodes: Sequence[Node]) -> Mask | None:
@@ -156,7 +158,7 @@ class DrawingCheck:
     separate: bool = False
     filename: str | None = None
     reason: str | None = None
-    """The label of lanes that have no value, in reports."""
+    """The clause that says of lanes that have no value what is missing, in reports."""
 
     @property
     def nodes(self) -> Sequence[Node]:
@@ -173,7 +175,10 @@ class DrawingCheck:
         (part,) = _only_part(self, batch)
         # Below a choice nothing has a check of its own.
         operands = self.node.operands if self.node.operation.strict else ()
-        return [replace(part, label=self.reason or self.label, undecided=_any_rejected(batch, operands))]
+        undecided = _any_rejected(batch, operands)
+        if self.reason is None:
+            return [replace(part, undecided=undecided)]
+        return [replace(part, label=self.reason, is_clause=True, undecided=undecided)]
 
 
 @dataclass(frozen=True, slots=True)

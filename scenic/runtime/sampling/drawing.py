@@ -6,6 +6,7 @@ from typing import Final
 from scenic.graph.node import Graph, Node
 from scenic.language.spans import Span
 from scenic.runtime.description.outcome import Program
+from scenic.runtime.program.starred_calls import chooses_element
 from scenic.runtime.sampling.checks import Check, DrawingCheck
 from scenic.runtime.values.values import Random, is_random
 
@@ -78,7 +79,10 @@ def _check(node: Node, program: Program, owners: Mapping[Node, object]) -> Drawi
         if file != filename:
             span, filename = place, file
             expression = f"{expression} of {called(program, owner)}"
-    reason = f"{expression} is missing" if missing == "value" else f"no {missing} for {expression}"
+    if chooses_element(node):
+        reason = f"{expression} finds nothing to choose from"
+    else:
+        reason = f"{expression} is missing" if missing == "value" else f"{expression} finds no {missing}"
     return DrawingCheck(node, expression, span, filename=filename, reason=reason)
 
 

@@ -21,7 +21,8 @@ class RejectionRow:
     """One requirement on a fixed sample of candidates.
 
     ``rejected`` is the fraction that it rejects, ``alone`` the fraction that it alone rejects, both from 0 to 1. ``note``
-    tells what helps to understand that it rejects every candidate: the sizes of the objects it is about.
+    tells what helps to understand that it rejects every candidate: the sizes of the objects it is about. ``is_clause``: the
+    label says of what there is no value, rather than what is required.
     """
 
     label: str
@@ -29,10 +30,13 @@ class RejectionRow:
     rejected: float
     alone: float
     note: str = ""
+    is_clause: bool = False
 
     def blame(self) -> str:
         """A sentence to say where it rejected every candidate."""
         note = f" ({self.note})" if self.note else ""
+        if self.is_clause:
+            return f"in every candidate {self.label}{note}"
         return f"{self.label} rejected every candidate{note}"
 
 
@@ -52,7 +56,9 @@ def rejection_rows(parts: Sequence[Part]) -> tuple[RejectionRow, ...]:
     merged = np.array([rejected[members].any(axis=0) for members in groups.values()])
     alone = merged & (merged.sum(axis=0) == 1)
     rows = [
-        RejectionRow(*key, float(mine.mean()), float(only.mean()), parts[members[0]].note)
+        RejectionRow(
+            *key, float(mine.mean()), float(only.mean()), parts[members[0]].note, parts[members[0]].is_clause
+        )
         for (key, members), mine, only in zip(groups.items(), merged, alone, strict=True)
     ]
     return tuple(row for row in rows if row.rejected > 0)

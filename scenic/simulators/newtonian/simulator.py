@@ -40,7 +40,7 @@ class State:
         """Metres between the road and its middle, where roads have heights."""
         self.frame: Sequence[float] | None = None
         """Its orientation, where that is more than its heading: on a road that is not level."""
-        self.is_car = isinstance(obj, Driven) or bool(getattr(obj, "isCar", False))
+        self.is_car = isinstance(obj, Driven)
         self.length = float(obj.length)
         self.rate = 0.0
         x, y, _ = self.velocity
