@@ -97,6 +97,7 @@ class Kept:
         return self._add
 
     def _add(self, simulation: "Simulation", poses: "Poses", actions: Mapping[Any, Any]) -> None:
+        from scenic.formats.lamps import light_colors
         from scenic.formats.trajectories import step_document
 
         self._simulation = simulation
@@ -105,7 +106,7 @@ class Kept:
         if self._story is not None:
             self._story.add(simulation, poses)
         if self._tape is not None:
-            self._tape.add(poses)
+            self._tape.add(poses, light_colors(simulation))
 
     def looked_back(self) -> bool:
         """Return whether a try read more of its course than was kept."""

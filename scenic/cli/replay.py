@@ -5,6 +5,7 @@ import webbrowser
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
+from urllib.parse import quote
 
 import click
 
@@ -81,6 +82,18 @@ _FILMS: Final = (".gif", ".mp4", ".mov", ".mkv")
     help="Columns and rows of the images, of a film, or of the whole image of several states.  [default: 960x720]",
 )
 @look_from_option()
+@click.option(
+    "--follow",
+    metavar="NAME",
+    help="Let the camera stay behind an object: the name of its variable, or its number. --look-from is then relative to it.  "
+    "[default of --look-from: 0,22]",
+)
+@click.option(
+    "--around",
+    metavar="METRES",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Metres around the object of --follow that images show.  [default: by its size]",
+)
 @click.option("--show-records", is_flag=True, help="Print what the simulation records.")
 @click.option(
     "--accept-changes",
@@ -101,6 +114,8 @@ def replay(
     every: int | None,
     image_size: tuple[int, int] | None,
     outlook: Mapping[str, Any],
+    follow: str | None,
+    around: float | None,
     show_records: bool,
     accept_changes: bool,
 ) -> int:
@@ -119,6 +134,8 @@ def replay(
     if number is not None and worst is not None:
         raise click.UsageError("NUMBER and --worst both choose a run: give one of them")
     _check(view, png, film)
+    if around is not None and follow is None:
+        raise click.UsageError("--around belongs to --follow")
     run = kept_run(path, number, worst=worst)
     if opened and view is None:
         view = Path(tempfile.mkdtemp(prefix="scenic-replay-"), f"run-{run.number:04d}.html")
@@ -143,11 +160,17 @@ def replay(
         write(view, found.page.encode())
         if opened:
             print(f"opens {view}")
-            webbrowser.open(view.resolve().as_uri())
+            webbrowser.open(view.resolve().as_uri() + (f"#follow={quote(follow)}" if follow else ""))
     if found.pictures is not None and (png is not None or film is not None):
         from scenic.formats.camera import Outlook
         from scenic.formats.render import SIZE
 
+        if follow is not None:
+            from scenic.formats.following import BEHIND
+
+            name = int(follow) if follow.isdecimal() else follow
+            places = {"azimuth": BEHIND[0], "elevation": BEHIND[1], **outlook}
+            outlook = {**places, "follow": name, "reach": around}
         _draw(found.pictures, png, film, every, image_size or SIZE, Outlook(**outlook))
     for words in found.unknown:
         print(f"not compared: {words}")

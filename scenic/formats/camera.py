@@ -27,12 +27,17 @@ class Outlook:
         elevation: how far above the horizon it stands, degrees; 90 is straight above.
         workspace: whether the whole workspace is in the picture, if it is bounded, and not just the objects; so
             pictures of one program all show the same part of the world.
+        follow: the object with which the camera goes, by the name of its variable or its number; the azimuth then is that
+            from behind it, and turns with it.
+        reach: metres around that object that are in the picture; by default by its size.
 
     """
 
     azimuth: float = -35.0
     elevation: float = 33.0
     workspace: bool = True
+    follow: str | int | None = None
+    reach: float | None = None
 
 
 STANDARD = Outlook()

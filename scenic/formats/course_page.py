@@ -10,20 +10,30 @@ import numpy.typing as npt
 
 from scenic.formats.html import Page, packed, page_text
 from scenic.formats.json_lines import number
+from scenic.formats.lamps import NO_COLORS
 from scenic.formats.trajectories import Course
 
 __all__ = ["PoseTape", "ShownCourse", "course_data", "course_page"]
 
 
 class PoseTape:
-    """Collects the poses of a running simulation, state by state."""
+    """Collects the poses of a running simulation, state by state.
+
+    Attributes:
+        colors: of lights in each state, by their keys; see `light_colors`.
+
+    """
 
     def __init__(self) -> None:
         self._numbers = array("f")
         self._counts = array("l")
+        self.colors: list[Mapping[str, str]] = []
 
-    def add(self, poses: Sequence[tuple[Any, Any]]) -> None:
-        """The next state: position and orientation of each object."""
+    def add(self, poses: Sequence[tuple[Any, Any]], colors: Mapping[str, str] = NO_COLORS) -> None:
+        """The next state: position and orientation of each object, and the colours of lights by their keys."""
+        # Lights change seldom.
+        last = self.colors[-1] if self.colors else NO_COLORS
+        self.colors.append(last if colors == last else colors)
         for position, turn in poses:
             self._numbers.extend((*position, turn.x, turn.y, turn.z, turn.w))
         self._counts.append(len(poses))
@@ -57,7 +67,7 @@ def course_data(course: Course, tape: PoseTape) -> dict[str, Any]:
     places = poses[..., :3].reshape(-1, 3).astype(np.float64)
     # A few metres make no difference to the ground that is drawn.
     near = np.unique(np.round(places[np.isfinite(places).all(axis=1)] / 5.0), axis=0) * 5.0
-    instances = page.add(ShownCourse(course), near)
+    instances = page.add(ShownCourse(course), near, tape.colors)
     data = page.data()
     (scene,) = data["scenes"]
     indices = {id(thing): index for index, thing in enumerate(course.objects)}
@@ -84,7 +94,13 @@ def course_data(course: Course, tape: PoseTape) -> dict[str, Any]:
 
 def course_page(title: str, courses: Sequence[Mapping[str, Any]]) -> str:
     """The page of simulations, each as `course_data` gives it; at least one."""
-    together: dict[str, Any] = {"meshes": [], "outlines": [], "grounds": [], "scenes": []}
+    together: dict[str, Any] = {
+        "meshes": [],
+        "outlines": [],
+        "grounds": [],
+        "scenes": [],
+        "lights": courses[0]["lights"],
+    }
     numbers: dict[str, dict[str, int]] = {"meshes": {}, "outlines": {}, "grounds": {}}
     for data in courses:
         # Most meshes and regions are the same in all simulations: they are on the page once.
@@ -104,9 +120,11 @@ def course_page(title: str, courses: Sequence[Mapping[str, Any]]) -> str:
             together["scenes"].append(
                 {
                     **scene,
-                    "objects": [
-                        {**thing, "mesh": place["meshes"][thing["mesh"]]} for thing in scene["objects"]
-                    ],
+                    **{
+                        kind: [{**thing, "mesh": place["meshes"][thing["mesh"]]} for thing in scene[kind]]
+                        for kind in ("objects", "lamps")
+                        if kind in scene
+                    },
                     "workspace": None if workspace is None else place["outlines"][workspace],
                     "regions": {name: place["outlines"][k] for name, k in scene["regions"].items()},
                     **(

@@ -2,7 +2,7 @@
 
 import io
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -14,8 +14,10 @@ import numpy.typing as npt
 from scenic.formats.camera import STANDARD, Outlook, corners, framed, framing
 from scenic.formats.course_page import PoseTape, ShownCourse
 from scenic.formats.files import check_writable, write
+from scenic.formats.following import Track
 from scenic.formats.imaging import require_pillow
-from scenic.formats.instances import Gallery, Instance, Picture, resting
+from scenic.formats.instances import Gallery, Instance, Picture, lit, resting
+from scenic.formats.lamps import first_colors
 from scenic.formats.png import encoded
 from scenic.formats.render import SIZE, render
 from scenic.formats.scenes import Scene
@@ -29,6 +31,8 @@ Pixels = npt.NDArray[np.uint8]
 
 _FRAMED: Final = 24
 """Number of states that the camera is sure to show whole."""
+_SEEN: Final = 30.0
+"""Metres to each side that a camera that follows an object shows at least."""
 _ACROSS: Final = 3
 """Images beside each other in a sheet."""
 _SHORTEST: Final = 20
@@ -36,18 +40,23 @@ _SHORTEST: Final = 20
 
 
 class StatePictures:
-    """The states of a simulation as images; a scene has one state. The camera stands still and shows all states.
+    """The states of a simulation as images; a scene has one state. The camera stands still and shows all states, or follows an object.
 
     Args:
         scene: the objects and all that is around them.
         poses: position and orientation of each object in each state, as `PoseTape.poses` gives them, ``(states, objects, 7)``; by
             default those that the scene has.
         timestep: seconds between states.
+        colors: of lights in each state, by their keys; by default those that they have at the beginning.
 
     """
 
     def __init__(
-        self, scene: Scene, poses: npt.NDArray[np.float32] | None = None, timestep: float = 1.0
+        self,
+        scene: Scene,
+        poses: npt.NDArray[np.float32] | None = None,
+        timestep: float = 1.0,
+        colors: Sequence[Mapping[str, str]] = (),
     ) -> None:
         gallery = Gallery()
         instances = gallery.add(scene)
@@ -63,12 +72,15 @@ class StatePictures:
         self._ground = gallery.ground(scene.workspace, np.unique(np.round(places / 5.0), axis=0) * 5.0)
         if self._ground:
             self._states = [resting(state) for state in self._states]
+        lamps = gallery.lamps(scene.workspace, places)
+        moments = colors or [first_colors(scene.workspace, scene.params)] * len(self._states)
+        self._lamps = [lit(lamps, moment) for moment in moments]
         self._surfaces = gallery.surfaces
 
     @classmethod
     def of_course(cls, course: Course, tape: PoseTape) -> "StatePictures":
         """The pictures of a simulation, all of whose states are on the tape."""
-        return cls(ShownCourse(course), tape.poses(), course.timestep)
+        return cls(ShownCourse(course), tape.poses(), course.timestep, tape.colors)
 
     def __len__(self) -> int:
         return len(self._states)
@@ -76,13 +88,32 @@ class StatePictures:
     def images(
         self, states: Sequence[int], size: tuple[int, int] = SIZE, outlook: Outlook = STANDARD
     ) -> Iterator[Pixels]:
-        """Images of some states by one camera: ``(height, width, 3)``, sRGB."""
+        """Images of some states: ``(height, width, 3)``, sRGB.
+
+        One camera shows all states; with ``outlook.follow``, it goes with that object, which each image shows.
+
+        Raises:
+            FollowError: there is no object to follow.
+
+        """
         chosen = [self._states[state] for state in evenly(len(self), _FRAMED)]
         seen = [item for state in (*chosen, *(self._states[state] for state in states)) for item in state]
-        camera = framing(framed(self._scene, seen, outlook), size[0] / size[1], outlook)
+        aspect = size[0] / size[1]
+        if outlook.follow is None:
+            still = framing(framed(self._scene, seen, outlook), aspect, outlook)
+            cameras = [still] * len(states)
+        else:
+            track = Track(self._states, outlook.follow, self.timestep)
+            cameras = [track.camera(state, aspect, outlook) for state in states]
         around = corners(seen)
-        for state in states:
-            picture = Picture(self._surfaces, (self._states[state],), (self._scene.params,), (self._ground,))
+        if outlook.follow is not None:
+            # Shadows and the light of the sky are made for what is seen, which may be more than where objects are.
+            around = np.concatenate(
+                [around, np.array([[-_SEEN, -_SEEN, 0], [_SEEN, _SEEN, 0]]) + around.mean(axis=0)]
+            )
+        for state, camera in zip(states, cameras, strict=True):
+            shown = (self._states[state],), (self._scene.params,), (self._ground,), (self._lamps[state],)
+            picture = Picture(self._surfaces, *shown)
             with placed_errors(self._scene):
                 yield render(picture, 0, size, camera=camera, around=around)
 

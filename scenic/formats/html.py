@@ -18,6 +18,7 @@ import numpy.typing as npt
 from scenic.formats.colors import linear
 from scenic.formats.instances import Array, Gallery, Instance, Piece, Surface, places_of, resting
 from scenic.formats.json_lines import plain
+from scenic.formats.lamps import COLORS, color_numbers, first_colors
 from scenic.formats.poses import euler_angles, rotation_matrix
 from scenic.formats.regions import outlines, view_outline
 from scenic.formats.scenes import Scene
@@ -41,16 +42,24 @@ class Page:
     def __len__(self) -> int:
         return len(self._scenes)
 
-    def add(self, scene: Scene, places: Array | None = None) -> tuple[Instance, ...]:
+    def add(
+        self,
+        scene: Scene,
+        places: Array | None = None,
+        colors: Sequence[Mapping[str, str]] | None = None,
+    ) -> tuple[Instance, ...]:
         """Put a scene on the page, after the others; gives what is drawn of it.
 
         Args:
             scene: the scene.
             places: where objects are or will be, ``(n, 3)``, if not only where the scene has them: the ground is drawn there.
+            colors: of lights in each state of a simulation, by their keys.
 
         """
         instances = self._gallery.add(scene)
-        pieces = self._gallery.ground(scene.workspace, places_of(instances) if places is None else places)
+        if places is None:
+            places = places_of(instances)
+        pieces = self._gallery.ground(scene.workspace, places)
         if pieces:
             instances = resting(instances)
         self._scenes.append(
@@ -63,9 +72,32 @@ class Page:
                 "workspace": self._outline(scene.workspace),
                 "regions": self._regions(scene, _MOST_POINTS if pieces else math.inf),
                 **self._ground(scene, pieces),
+                **self._lamps(scene, places, colors),
             }
         )
         return instances
+
+    def _lamps(
+        self, scene: Scene, places: Array, colors: Sequence[Mapping[str, str]] | None
+    ) -> dict[str, Any]:
+        """Return the page's data of lights and signs, empty if the workspace shows none."""
+        lamps = self._gallery.lamps(scene.workspace, places)
+        if not lamps:
+            return {}
+        if colors is None:
+            colors = [first_colors(scene.workspace, scene.params)]
+        return {
+            "lamps": [
+                {
+                    "mesh": item.surface,
+                    "position": item.position,
+                    "quaternion": item.quaternion,
+                    "size": item.size,
+                }
+                for _, item in lamps
+            ],
+            "lampColors": packed(color_numbers([key for key, _ in lamps], colors)),
+        }
 
     def _ground(self, scene: Scene, pieces: Sequence[Piece]) -> dict[str, Any]:
         """Return the page's data of the ground, empty if the workspace shows no ground."""
@@ -96,6 +128,7 @@ class Page:
             "meshes": [_mesh(surface) for surface in self._gallery.surfaces],
             "scenes": self._scenes,
             "outlines": [json.loads(text) for text in self._outlines],
+            "lights": list(COLORS.values()),
             **self._grounds(),
         }
 

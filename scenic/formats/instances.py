@@ -4,22 +4,25 @@ The meshes are shared by all objects and scenes that use them. Their corners car
 look round and edges stay sharp.
 """
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path
-from typing import Final
+from types import MappingProxyType
+from typing import Final, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from scenic.dataclass import dataclass
+from scenic.formats.lamps import COLORS, first_colors, lamp_form
 from scenic.formats.mesh_coordinates import coordinates_of
 from scenic.formats.painted_solids import Appearance
 from scenic.formats.poses import Four, Triple, quaternion_of, rotation_matrix
 from scenic.formats.road_users import AppearanceError, appearance_of
 from scenic.formats.scenes import Scene, SceneObject, UnitMesh
-from scenic.runtime.geometry.patches import Patch
+from scenic.runtime.geometry.patches import Lamp, Patch
 from scenic.runtime.regions.spaces import Workspace
 
 Array = npt.NDArray[np.float64]
@@ -141,12 +144,28 @@ class Piece:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """Scenes as drawn: the surfaces they share, the instances of each scene, its parameters, and the ground under them."""
+    """Scenes as drawn: the surfaces they share, the instances of each scene, its parameters, the ground under them, lights and signs."""
 
     surfaces: tuple[Surface, ...]
     scenes: tuple[tuple[Instance, ...], ...]
     params: tuple[Mapping[str, object], ...]
     grounds: tuple[tuple[Piece, ...], ...]
+    lamps: tuple[tuple[Instance, ...], ...] = ()
+
+
+class _Stand:
+    """The object of an instance that is not one of the scene: it has no properties."""
+
+    properties: Final[Mapping[str, object]] = MappingProxyType({})
+
+
+KeyedLamp = tuple[str, Instance]
+"""A light or a sign with the key of its colour."""
+
+
+def lit(lamps: Iterable[KeyedLamp], colors: Mapping[str, str]) -> tuple[Instance, ...]:
+    """Lamps in the colours of a moment, by their keys."""
+    return tuple(replace(item, color=(*COLORS[colors.get(key, "off")], 1.0)) for key, item in lamps)
 
 
 class Surfaces:
@@ -217,7 +236,7 @@ class Gallery:
             shades[class_name] += thing.color is None
             instances.append(
                 Instance(
-                    surface=self._number(_appearance(scene, number) or thing.shape.mesh, size),
+                    surface=self.number(_appearance(scene, number) or thing.shape.mesh, size),
                     thing=thing,
                     name=names.get(thing),
                     class_name=class_name,
@@ -236,6 +255,29 @@ class Gallery:
         if not isinstance(workspace, Workspace) or not len(places):
             return ()
         return tuple(self._piece(patch) for patch in workspace.patches(places))
+
+    def lamps(self, workspace: object, places: Array) -> tuple["KeyedLamp", ...]:
+        """The lights and signs that a workspace shows around places ``(n, 3)``, switched off."""
+        around = getattr(workspace, "lamps", None)
+        if around is None or not len(places):
+            return ()
+        return tuple(self._lamp(lamp) for lamp in around(places))
+
+    def _lamp(self, lamp: Lamp) -> "KeyedLamp":
+        x, y, z = lamp.position
+        half = 0.5 * lamp.yaw
+        instance = Instance(
+            surface=self.number(lamp_form(lamp.form), lamp.size),
+            thing=cast("SceneObject", _Stand()),
+            name=None,
+            class_name=lamp.form,
+            position=(x, y, z + 0.5 * lamp.size[2]),
+            quaternion=(0.0, 0.0, math.sin(half), math.cos(half)),
+            size=lamp.size,
+            color=(*COLORS["off"], 1.0),
+            is_ego=False,
+        )
+        return lamp.key, instance
 
     def _piece(self, patch: Patch) -> Piece:
         known = self._patches.get(id(patch))
@@ -263,7 +305,8 @@ class Gallery:
     def _class_color(self, class_name: str) -> Triple:
         return self._colors.setdefault(class_name, PALETTE[len(self._colors) % len(PALETTE)])
 
-    def _number(self, mesh: UnitMesh | Appearance, size: Triple) -> int:
+    def number(self, mesh: UnitMesh | Appearance, size: Triple) -> int:
+        """The number of the surface of a mesh; its first use decides about its edges."""
         if id(mesh) not in self._known:
             self._known[id(mesh)] = (mesh, len(self._surfaces))
             self._surfaces.append(self._made.of(mesh, size))
@@ -284,12 +327,15 @@ def _appearance(scene: Scene, number: int) -> Appearance | None:
 def picture(scenes: Iterable[Scene], *, ground: bool = False) -> Picture:
     """The picture of the scenes; with what their workspaces show under the objects if ``ground``."""
     gallery = Gallery()
-    drawn, params, grounds = [], [], []
+    drawn, params, grounds, lamps = [], [], [], []
     for scene in scenes:
         drawn.append(gallery.add(scene))
         params.append(scene.params)
-        grounds.append(gallery.ground(scene.workspace, places_of(drawn[-1])) if ground else ())
-    return Picture(gallery.surfaces, tuple(drawn), tuple(params), tuple(grounds))
+        places = places_of(drawn[-1] if ground else ())
+        grounds.append(gallery.ground(scene.workspace, places))
+        colors = first_colors(scene.workspace, scene.params)
+        lamps.append(lit(gallery.lamps(scene.workspace, places), colors))
+    return Picture(gallery.surfaces, tuple(drawn), tuple(params), tuple(grounds), tuple(lamps))
 
 
 def resting(instances: Sequence[Instance]) -> tuple[Instance, ...]:

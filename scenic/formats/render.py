@@ -52,7 +52,9 @@ def render(
     width, height = size
     instances = picture.scenes[number]
     scenery = scenery_of(picture.params[number])
-    stage = Stage(picture.surfaces, instances, scenery, picture.grounds[number], around)
+    lamps = picture.lamps[number] if picture.lamps else ()
+    around = corners(instances) if around is None else around
+    stage = Stage(picture.surfaces, instances + lamps, scenery, picture.grounds[number], around)
     return paint(stage, Lens(camera or framing(corners(instances), width / height), stage.center, size))
 
 

@@ -83,7 +83,9 @@ class MapPatches:
         for road in network.roads:
             edges = {id(edge): edge for lane in road.lanes for edge in (lane.left, lane.right)}
             lines = shapely.union_all([shapely.LineString(edge) for edge in edges.values()])
-            found.append(("lane", road, shapely.buffer(lines, _MARKING / 2, cap_style="flat")))
+            strip = shapely.buffer(lines, _MARKING / 2, cap_style="flat")
+            # Halves of a strip that two tiles share are too narrow to be simplified.
+            found.append(("lane", road, shapely.simplify(strip, _SIMPLE)))
         return found, shapely.STRtree([polygon for _, _, polygon in found])
 
     def _made(self, tile: tuple[int, int]) -> Sequence[Patch]:
@@ -95,7 +97,9 @@ class MapPatches:
         parts: dict[str, list[tuple[NetworkElement, Any]]] = {}
         for index in sorted(tree.query(square, predicate="intersects").tolist()):
             kind, element, polygon = areas[index]
-            cut = shapely.simplify(shapely.intersection(polygon, square), _SIMPLE)
+            cut = shapely.intersection(polygon, square)
+            if kind != "lane":
+                cut = shapely.simplify(cut, _SIMPLE)
             if shapely.area(cut) > 0:
                 parts.setdefault(kind, []).append((element, cut))
         return [self._patch(kind, found) for kind, found in parts.items()]

@@ -252,6 +252,7 @@
   // ---- Scenes ---------------------------------------------------------------------------------------------------
 
   const linear = (value) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4);
+  const lightColors = data.lights.map((color) => [...color.map(linear), 1]);
 
   /** Puts an object where its position and quaternion say. */
   function settle(thing) {
@@ -318,6 +319,9 @@
       }
       settleAll(scene, 0);
     }
+    for (const lamp of scene.lamps ?? []) settle(lamp);
+    // Numbers of colours, state by state.
+    if (scene.lamps) scene.lampColors = bytes(scene.lampColors);
     if (!scene.objects.length) { low.fill(-0.5); high.fill(0.5); }
     if (scene.least) {
       // So much of the ground is shown at least.
@@ -370,7 +374,7 @@
   // ---- What is shown --------------------------------------------------------------------------------------------
 
   const state = {
-    scene: 0, step: 0, near: -1, chosen: -1, following: false, running: 0, playing: 0, dark: false, flat: false, measuring: false, measured: [],
+    scene: 0, step: 0, near: -1, chosen: -1, following: false, behind: false, running: 0, playing: 0, dark: false, flat: false, measuring: false, measured: [],
     layers: { ground: true, grid: true, workspace: true, regions: true, views: false, headings: false, labels: false, trails: true },
   };
   /** Regions not shown. Those of a whole road network would only hide each other, and the map shows them better. */
@@ -520,6 +524,14 @@
     draw(meshes[thing.mesh]);
   }
 
+  /** Traffic lights and signs, in the colours of the present state. */
+  function drawLamps(scene) {
+    (scene.lamps ?? []).forEach((lamp, index) => {
+      const color = lightColors[scene.lampColors[state.step * scene.lamps.length + index]];
+      drawObject({ ...lamp, light: color }, 0);
+    });
+  }
+
   function render() {
     pending = false;
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
@@ -548,6 +560,7 @@
     const glow = (index) => (index === state.chosen ? 1 : index === state.near ? 0.5 : 0);
     const shown = scene.objects.map((thing, index) => ({ thing, index })).filter(({ index }) => !isHidden(index));
     for (const { thing, index } of shown) if (thing.light[3] >= 1) drawObject(thing, glow(index));
+    if (state.layers.ground) drawLamps(scene);
     if (state.layers.ground && eye()[2] > groundHeight) {
       gl.enable(gl.POLYGON_OFFSET_FILL);
       for (const number of scene.ground ?? []) {
@@ -862,9 +875,13 @@
     const scene = current();
     if (!scene.course) return;
     const before = scene.objects[state.chosen]?.position;
+    const heading = scene.objects[state.chosen]?.euler[0];
     state.step = Math.max(0, Math.min(scene.course.steps, step));
     settleAll(scene, state.step);
-    if (state.following && before) view.target = add(view.target, sub(scene.objects[state.chosen].position, before));
+    if (state.following && before) {
+      view.target = add(view.target, sub(scene.objects[state.chosen].position, before));
+      if (state.behind) view.azimuth -= scene.objects[state.chosen].euler[0] - heading;
+    }
     scene.lines = null;
     shadowsOf = -1;
     byId("time").value = state.step;
@@ -1040,7 +1057,24 @@
   /** Lets the view go with the selected object. */
   function follow(on) {
     state.following = on;
+    state.behind = false;
     byId("follow").setAttribute("aria-pressed", String(on));
+  }
+
+  /** Lets the view stay behind the object with a label, or a number. */
+  function stayBehind(name) {
+    const things = current().objects;
+    const index = things.findIndex((thing, k) => thing.label === name || (name === "ego" && thing.ego) || String(k) === name);
+    if (index < 0) return;
+    const { position, euler, size } = things[index];
+    choose(index);
+    follow(true);
+    state.behind = true;
+    view.azimuth = -euler[0];
+    view.elevation = (22 * Math.PI) / 180;
+    const around = Math.max(5, 2.5 * Math.max(...size));
+    const ahead = times([-Math.sin(euler[0]), Math.cos(euler[0]), 0], 0.75 * around);
+    frame([[1, 1], [1, -1], [-1, 1], [-1, -1]].map(([x, y]) => add(position, add(ahead, [0.8 * x * around, 0.8 * y * around, 0]))));
   }
 
   const focus = () => { if (state.chosen >= 0) frame(current().objects[state.chosen].corners); };
@@ -1200,7 +1234,8 @@
     return asked ? data.scenes.findIndex((scene) => String(scene.k) === asked[1]) : -1;
   };
   window.addEventListener("hashchange", () => { if (byNumber() >= 0) show(byNumber()); });
-  const start = /&t=([\d.]+)$/.exec(location.hash);
+  const start = /[#&]t=([\d.]+)/.exec(location.hash);
+  const followed = /[#&]follow=([^&]+)/.exec(location.hash);
   if (data.scenes.some((scene) => scene.course)) {
     for (const [name, word] of [["previous", "Previous"], ["next", "Next"]]) {
       byId(name).title = byId(name).title.replace(/.* scene/, `${word} simulation`);
@@ -1210,4 +1245,6 @@
   show(Math.max(byNumber(), 0));
   if (start && current().course) at(Math.round(Number(start[1]) / current().course.timestep));
   wholeScene();
+  // The canvas has its size, and the view its first picture, before the view goes with an object.
+  if (followed && current().course) requestAnimationFrame(() => { used = true; stayBehind(decodeURIComponent(followed[1])); });
 })();

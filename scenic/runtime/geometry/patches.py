@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
 
-__all__ = ["Patch"]
+__all__ = ["Lamp", "Patch"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,3 +26,23 @@ class Patch:
     faces: NDArray[np.int64]
     layer: int
     is_flat: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Lamp:
+    """A light or a sign that a workspace shows.
+
+    Attributes:
+        key: of what gives it its colour.
+        form: ``light``, ``stop`` or ``yield``: a post that is seen by traffic; ``line``: a line on the ground.
+        position: of the middle of its foot, metres.
+        yaw: the direction of the traffic for which it stands, radians anticlockwise from north.
+        size: across the traffic, along it, and upward, metres.
+
+    """
+
+    key: str
+    form: str
+    position: tuple[float, float, float]
+    yaw: float
+    size: tuple[float, float, float]

@@ -206,11 +206,12 @@ class NewtonianSimulator(DrivingSimulator):
             return NewtonianSimulation(scene, **options)
         from scenic.formats.course_page import PoseTape
         from scenic.formats.course_pictures import StatePictures, film_of
+        from scenic.formats.lamps import light_colors
 
         tape, on_state = PoseTape(), options.pop("on_state", None)
 
         def keep(simulation: Simulation, poses: Poses, actions: ActionsTaken) -> None:
-            tape.add(poses)
+            tape.add(poses, light_colors(simulation))
             if on_state is not None:
                 on_state(simulation, poses, actions)
 
