@@ -141,6 +141,39 @@ class Domain:
         kept = tuple(one for one in self.finite if not axes[one.axes].any())
         return Domain(*first, tuple(Domain(*corners) for corners in others), kept)
 
+    def narrowing(self) -> list[list[int]]:
+        """Of each axis the numbers of the parts that narrow it; finite parts are numbered after all others."""
+        result: list[list[int]] = [[] for _ in range(self.dimension)]
+        for part, axis in np.argwhere(self._narrowed).tolist():
+            result[axis].append(part)
+        for number, one in enumerate(self.finite, len(self.parts)):
+            for axis in one.axes.tolist():
+                result[axis].append(number)
+        return result
+
+    def along(self, axes: NDArray[np.intp]) -> tuple["Domain", dict[int, int]]:
+        """The domain as far as it narrows some axes, which it draws jointly with no others.
+
+        Returns:
+            That domain, and for the addresses by which it chooses boxes those by which this one does.
+
+        """
+        chosen = np.zeros(self.dimension, dtype=np.bool_)
+        chosen[axes] = True
+        places, corners = [], []
+        for number, part in enumerate(self.parts):
+            if (self._narrowed[number] & chosen).any():
+                places.append(number)
+                corners.append((np.where(chosen, part.lower, 0.0), np.where(chosen, part.upper, 1.0)))
+        finite = tuple(one for one in self.finite if chosen[one.axes].any())
+        first, *others = corners or [(np.zeros((1, self.dimension)), np.ones((1, self.dimension)))]
+        result = Domain(*first, tuple(Domain(*each) for each in others), finite)
+        own = box_addresses(len(self.parts)).tolist()
+        renamed = dict(
+            zip(box_addresses(len(places)).tolist(), (own[place] for place in places), strict=False)
+        )
+        return result, renamed
+
     def with_finite(self, finite: tuple[Finite, ...]) -> "Domain":
         """The domain in which the axes of finite parts are chosen by these."""
         axes = np.zeros(self.dimension, dtype=np.bool_)

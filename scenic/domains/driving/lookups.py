@@ -340,7 +340,7 @@ class RoadDirection(TabulatedField):
 
 def _frames(call: Call, points: Column) -> Column:
     field: RoadDirection = call.payload
-    return field.frames(points)
+    return field.frames(points.reshape(-1, 3)).reshape(*points.shape[:-1], 4)
 
 
 _FRAME = Operation(
@@ -348,4 +348,5 @@ _FRAME = Operation(
     always(Kind.ORIENTATION),
     _frames,
     "The direction of traffic at a point, pitched and rolled with the road; payload the field.",
+    stacks=True,
 )

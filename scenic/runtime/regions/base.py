@@ -561,16 +561,16 @@ MEETS_BODY = Operation(
 def _draw(call: Call, *columns: Column) -> Column:
     region: Region = call.payload
     count = region.draws
-    lanes = call.lanes
+    stack = Stack(call, columns)
     uniforms = (
-        np.stack([np.broadcast_to(column, lanes) for column in columns[:count]])
+        np.stack([np.broadcast_to(stack.column(place), stack.rows) for place in range(count)])
         if count
-        else (np.empty((0, lanes)))
+        else np.empty((0, stack.rows))
     )
-    points, known = region.draw_points(uniforms, columns[count], *columns[count + 1 :])
+    points, known = region.draw_points(uniforms, stack.column(count), *stack.columns(count + 1))
     if known is not None:
-        call.reject(~known)
-    return points
+        call.reject(~stack.restored(known))
+    return stack.restored(points)
 
 
 def _point_extent(region: Region, *operands: Bounds | None) -> Bounds | None:
@@ -592,6 +592,7 @@ _DRAW = Operation(
     "A uniform point of a region, from uniform numbers and a key; rejected where the region is empty.",
     bounds=_point_extent,
     cuts=lambda region, operands: region.draw_cuts() if operands and operands[0].is_axis else None,
+    stacks=True,
     partial=True,
     rejects=_may_find_none,
     missing="point of the region",

@@ -32,6 +32,11 @@ class Reads:
             for place in places.tolist()
         ]
         self._graph = graph
+        self._boxes_of: dict[int, list[int]] = {}
+        """The addresses of the boxes that axes, by number, are drawn from."""
+        for place, joined in self.boxes:
+            for number in joined:
+                self._boxes_of.setdefault(number, []).append(place)
 
     @property
     def everything(self) -> frozenset[int]:
@@ -41,8 +46,12 @@ class Reads:
     def of(self, nodes: Iterable[Node]) -> frozenset[int]:
         """The addresses of the draws below nodes, and of the boxes that these are drawn from."""
         drawn = [node for node in Graph(nodes).nodes if node.is_drawn]
-        axes = {self._graph.axes[node] for node in drawn if node.is_axis}
-        boxes = [place for place, joined in self.boxes if joined & axes]
+        boxes = [
+            place
+            for node in drawn
+            if node.is_axis
+            for place in self._boxes_of.get(self._graph.axes[node], ())
+        ]
         return frozenset([*map(self._graph.address, drawn), *boxes])
 
 

@@ -18,9 +18,11 @@ from scenic.graph.bounding import over, overall
 from scenic.graph.bounds import Bounds
 from scenic.graph.node import Graph, Node
 from scenic.runtime.geometry.ragged import distinct
+from scenic.runtime.sampling.apart import Apart, separated
+from scenic.runtime.sampling.blocks import Reads
 from scenic.runtime.sampling.checks import Check, CollisionCheck, NodeCheck, ObjectNodes
 from scenic.runtime.sampling.engine import Engine, Plan
-from scenic.runtime.sampling.halving import Tree, divide
+from scenic.runtime.sampling.halving import SELDOM, Divider, Tree, may_fault
 
 __all__ = ["Components", "components_of", "divided"]
 
@@ -39,7 +41,7 @@ class Components:
 
     plans: tuple[Plan, ...]
     owner: Mapping[int, int]
-    trees: tuple[Tree | None, ...]
+    trees: tuple[Tree | Apart | None, ...]
 
     @property
     def leaves(self) -> int:
@@ -63,7 +65,18 @@ def divided(engine: Engine, components: Components | None, *, always: bool = Fal
 
     """
     known = components or Components((engine.plan,), {}, (None,))
-    trees = divide(engine, known.plans, always=always)
+    reads = Reads(engine.plan.graph, engine.plan.domain)
+    divider = Divider(engine, known.plans, reads, always=always)
+    trees: list[Tree | Apart | None] = []
+    leaf = 0
+    for plan in known.plans:
+        tree: Tree | Apart | None = None
+        if not may_fault(plan):
+            if not always and (len(known.plans) == 1 or _passes_seldom(engine, plan)):
+                tree = separated(engine, plan, reads, leaf)
+            tree = tree or divider.divide(plan, leaf)
+        trees.append(tree)
+        leaf += 1 if tree is None else tree.leaves
     if not any(trees):
         return components
     made = Components(known.plans, {}, tuple(trees))
@@ -72,6 +85,11 @@ def divided(engine: Engine, components: Components | None, *, always: bool = Fal
     for tree in trees:
         owner |= tree.owners() if tree is not None else {}
     return Components(known.plans, owner, made.trees)
+
+
+def _passes_seldom(engine: Engine, plan: Plan) -> bool:
+    """Return whether few of those candidates pass by which the whole is judged, so that other components do not matter."""
+    return engine.of_part(plan).rehearsal() <= SELDOM * engine.rehearsed_of
 
 
 def components_of(plan: Plan) -> Components | None:

@@ -504,6 +504,14 @@ class Engine:
         failures = self._judge(batch, stages, pending.inactive if self._soft else None)
         return int(np.count_nonzero(failures[batch.rows] < 0))
 
+    def rehearsal(self) -> int:
+        """Number of the candidates of a rehearsal that meet every requirement."""
+        keys = _attempts(Task(0, 0), np.arange(_REHEARSED_LANES, dtype=np.int64)).keys
+        batch = self.batch(Counter(keys))
+        *stages, _ = self._stages.order(len(batch))
+        failures = self._judge(batch, stages, None)
+        return int(np.count_nonzero(failures[batch.rows] < 0))
+
     # What scenes put together from components need (`scenic.runtime.sampling.piecewise`)
 
     def of_part(self, plan: Plan) -> "Engine":
@@ -550,13 +558,13 @@ class Engine:
         """The report on a scene that was not found among a number of candidates."""
         return Exhausted(seed, k, attempts, "attempts", self.report(Task(seed, k), attempts))
 
-    def batch(self, source: Source, *, grouped: bool = True) -> Batch:
-        """A batch of lanes whose draws come from a source."""
+    def batch(self, source: Source, *, grouped: bool = True, domain: Domain | None = None) -> Batch:
+        """A batch of lanes whose draws come from a source, in the plan's domain unless another one is given."""
         return Batch(
             self._scheduler if grouped else self._single,
             source,
             self.plan.codec,
-            domain=self.plan.domain,
+            domain=self.plan.domain if domain is None else domain,
             rejections=(RejectionException,),
             meter=None if self._meter is None else self._meter.step,
         )

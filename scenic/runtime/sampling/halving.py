@@ -12,6 +12,7 @@ Estimates of how often each check holds decide where to divide, and whether that
 """
 
 from collections.abc import Sequence
+from functools import cached_property
 from itertools import pairwise
 from typing import Final
 
@@ -25,7 +26,7 @@ from scenic.runtime.sampling.blocks import Piece, Reads, blocks, coarse_pieces, 
 from scenic.runtime.sampling.checks import Check, CollisionCheck
 from scenic.runtime.sampling.engine import Engine, Plan
 
-__all__ = ["Joint", "Tree", "any_passes", "divide"]
+__all__ = ["Divider", "Joint", "Tree", "any_passes", "may_fault"]
 
 CANDIDATES: Final = 128
 """Candidates on which it is estimated how often each check holds."""
@@ -116,32 +117,42 @@ class Tree:
         return {place: leaf for half in self.halves for place, leaf in half.owners().items()}
 
 
-def divide(engine: Engine, plans: Sequence[Plan], *, always: bool = False) -> list[Tree | None]:
-    """The division of components, ``None`` where that does not pay; leaves are numbered throughout.
+class Divider:
+    """Divides components of a plan, by estimates on a batch of candidates, which is made when it is first needed.
 
     Args:
         engine: of the whole plan.
         plans: its components.
+        reads: the draws of the plan.
         always: divide as far as possible, whether or not that pays.
 
     """
-    pending = engine.pending([(0, k) for k in range(CANDIDATES)])
-    batch = engine.attempts_at(pending, np.arange(CANDIDATES), np.zeros(CANDIDATES, dtype=np.int64))
-    engine.evaluate(
-        batch, tuple(dict.fromkeys(node for plan in plans for check in plan.checks for node in check.nodes))
-    )
-    reads = Reads(engine.plan.graph, engine.plan.domain)
-    trees: list[Tree | None] = []
-    leaf = 0
-    for plan in plans:
-        tree = None if _may_fault(plan) else _divided(plan, reads, batch, leaf, always)
-        if tree is not None and not always and not tree.is_seldom:
-            part = engine if plan is engine.plan else engine.of_part(plan)
+
+    def __init__(self, engine: Engine, plans: Sequence[Plan], reads: Reads, *, always: bool = False) -> None:
+        self._engine = engine
+        self._plans = plans
+        self._reads = reads
+        self._always = always
+
+    @cached_property
+    def _batch(self) -> Batch:
+        engine = self._engine
+        pending = engine.pending([(0, k) for k in range(CANDIDATES)])
+        batch = engine.attempts_at(pending, np.arange(CANDIDATES), np.zeros(CANDIDATES, dtype=np.int64))
+        checks = [check for plan in self._plans for check in plan.checks]
+        engine.evaluate(batch, tuple(dict.fromkeys(node for check in checks for node in check.nodes)))
+        return batch
+
+    def divide(self, plan: Plan, leaf: int) -> Tree | None:
+        """The division of a component, whose leaves are numbered from ``leaf``; ``None`` where that does not pay."""
+        division = _divided(plan, self._reads, self._batch, leaf, self._always)
+        if division is None:
+            return None
+        if not self._always and not division.is_seldom:
+            part = self._engine if plan is self._engine.plan else self._engine.of_part(plan)
             if any_passes(part):
-                tree = None
-        trees.append(None if tree is None else tree.tree)
-        leaf += 1 if tree is None else tree.tree.leaves
-    return trees
+                return None
+        return division.tree
 
 
 def any_passes(engine: Engine) -> bool:
@@ -301,7 +312,7 @@ def _joints(own: Sequence[Piece], numbers: Sequence[int], soft_places: dict[int,
     )
 
 
-def _may_fault(plan: Plan) -> bool:
+def may_fault(plan: Plan) -> bool:
     """Return whether a value that a check reads may fail to be computed: then no part of a scene can be judged alone."""
     nodes = Graph(node for check in plan.checks for node in check.nodes).nodes
     return any(node.operation.may_fault(node.operands, node.payload, node.kind) for node in nodes)

@@ -21,7 +21,7 @@ from scenic.runtime.sampling.engine import Engine
 from scenic.runtime.sampling.halving import Tree
 from scenic.runtime.sampling.pending import Pending
 
-__all__ = ["Joined", "join"]
+__all__ = ["Joined", "LateError", "join"]
 
 Numbers = NDArray[np.int64]
 
@@ -74,7 +74,7 @@ def join(
     return _Search(engine, tree, tasks, max_attempts, lanes or engine.most_lanes, deadline).run()
 
 
-class _LateError(Exception):
+class LateError(Exception):
     """Raised when no time is left."""
 
 
@@ -163,7 +163,7 @@ class _Search:
         root, in_time = self._queues[id(self._tree)], True
         try:
             self._supply(root, np.ones(scenes, dtype=np.int64))
-        except _LateError:
+        except LateError:
             in_time = False
         found = root.count > 0
         attempts = np.zeros((scenes, self._tree.leaves), dtype=np.int64)
@@ -179,7 +179,7 @@ class _Search:
             if not len(scenes):
                 return
             if self._deadline is not None and time.monotonic() > self._deadline:
-                raise _LateError
+                raise LateError
             missing = (wanted - queue.count)[scenes]
             counts = np.clip(np.ceil(missing / queue.rate), 1, max(1, self._lanes // len(scenes))).astype(
                 np.int64
@@ -201,7 +201,7 @@ class _Search:
             if not len(scenes):
                 return
             if self._deadline is not None and time.monotonic() > self._deadline:
-                raise _LateError
+                raise LateError
             rate = min(leaf.rate for leaf in leaves)
             scenes = scenes[: self._lanes]
             room = np.min([self._limit - leaf.tried[scenes] for leaf in leaves], axis=0)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from copy import copy
 from dataclasses import replace
 from itertools import islice
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +18,13 @@ from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
 from scenic.graph.draws import Lanes, Source, attempt_keys, scene_keys, seed_word
 from scenic.runtime.geometry.ragged import expand
+from scenic.runtime.sampling.apart import Apart
 from scenic.runtime.sampling.components import Components
 from scenic.runtime.sampling.composed import Composed
 from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, FinishedLanes
 from scenic.runtime.sampling.halving import Tree
 from scenic.runtime.sampling.joining import join
+from scenic.runtime.sampling.pairing import pair
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.profiling import Meter, Profile
 from scenic.runtime.sampling.report import Exhausted
@@ -223,20 +225,21 @@ class PiecewiseEngine:
                 found, lane = result
                 mine[row] = found.attempts[lane]
 
-    def _joined(self, tree: Tree, block: _Block, limits: _Limits) -> None:
+    def _joined(self, tree: Tree | Apart, block: _Block, limits: _Limits) -> None:
         """Look for a component that is divided."""
         rows = [row for row in range(block.end) if row not in block.missing]
         if not rows:
             return
         tasks = [block.tasks[row] for row in rows]
-        found = join(
-            self._whole,
-            tree,
-            tasks,
-            max_attempts=limits.attempts,
-            lanes=limits.lanes,
-            deadline=limits.deadline,
-        )
+        options: dict[str, Any] = {
+            "max_attempts": limits.attempts,
+            "lanes": limits.lanes,
+            "deadline": limits.deadline,
+        }
+        if isinstance(tree, Apart):
+            found = pair(self._whole, tree, tasks, **options)
+        else:
+            found = join(self._whole, tree, tasks, **options)
         block.attempts[rows, tree.first : tree.stop] = found.attempts
         for row, (seed, k), tried, attempts in zip(
             rows, tasks, found.tried.tolist(), found.attempts, strict=True

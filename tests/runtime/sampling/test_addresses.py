@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 
-from scenic.runtime.sampling.components import components_of
 from scenic.runtime.sampling.engine import Engine
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.piecewise import PiecewiseEngine
@@ -91,8 +90,8 @@ def test_company_changes_no_bit(number: int) -> None:
         ] == first
         plan = program.outline.plan(program.domain)
         single: Engine | PiecewiseEngine = Engine(plan, grouped=False)
-        if (components := components_of(plan)) is not None:
-            single = PiecewiseEngine(Engine(plan, grouped=False), components)
+        if isinstance(finder := program._sampler._finder, PiecewiseEngine):
+            single = PiecewiseEngine(Engine(plan, grouped=False), finder._components)
         tasks = [Task(3, k) for k in range(FEW)]
         attempts = [
             result.attempts if isinstance(result, Exhausted) else result[0].attempts[result[1]]
