@@ -111,7 +111,7 @@ behavior FollowTrajectoryBehavior(target_speed=10, trajectory=None, turn_speed=N
     turn = target_speed / 2 if turn_speed is None else turn_speed
     end = Nearness(route.end)
     driver = RouteDriver(self, route, target_speed, turn, comfort, None if follow_gap is None else Gap(follow_gap))
-    while not end.closer_than(5, self.position):
+    while not (driver.is_on_last_part() and end.closer_than(5, self.position)):
         take driver.action()
 
 

@@ -1,6 +1,7 @@
 """The driver of a car: keeps it on a path, at the speeds of a profile, behind the car ahead."""
 
 import math
+from collections.abc import Sequence
 from copy import deepcopy
 from typing import Any, Final
 
@@ -27,7 +28,7 @@ _TURNING: Final = 0.35
 _DAMPING: Final = 0.8
 _SETTLING: Final = 1.5
 """Gain (1/s) of the error of speed."""
-_HARD: Final = 1.25
+_HARD: Final = 1.8
 """Times the comfortable deceleration from which a driver brakes without regard for jolts."""
 _LOOKS: Final = 0.3
 """Seconds between two looks for who is ahead."""
@@ -98,6 +99,8 @@ class Driver:
         *,
         limits: Any = None,
         stops: float | None = None,
+        junctions: Sequence[tuple[int, int]] = (),
+        near: float | None = None,
     ) -> None:
         """Follow a path from the place of it that is nearest to the car.
 
@@ -106,14 +109,23 @@ class Driver:
             target: the speed to reach, m/s.
             limits: further largest speeds ``(n,)`` at the points of the path.
             stops: metres before the end of the path at which the car stops, if it does.
+            junctions: stretches of the path, from and to an index, before which braking for what comes after ends.
+            near: metres along the path about which the car is, of a path that comes back to where it was.
 
         """
         if path is not self._path:
             x, y = self._place()
-            self._index, _, _ = path.locate(x, y, path.nearest(x, y))
+            self._index, _, _ = path.locate(x, y, path.nearest(x, y, near))
         self._path, self._begin = path, self._index
         self._speeds, self._accelerations = speeds_of(
-            path, self._index, target, self._agent.speed, self.comfort, limits=limits, stops=stops
+            path,
+            self._index,
+            target,
+            self._agent.speed,
+            self.comfort,
+            limits=limits,
+            stops=stops,
+            junctions=junctions,
         )
         self._look = 0.0
 
@@ -214,7 +226,7 @@ class Driver:
         comfort, timestep = self.comfort, self._simulation.timestep
         if acceleration > -_HARD * comfort.deceleration:
             # Jolts are limited; the profile keeps to that, so that this is for what no profile foresees.
-            change = 1.5 * comfort.jerk * timestep
+            change = (1.5 if acceleration > -1.2 * comfort.deceleration else 1.8) * comfort.jerk * timestep
             acceleration = min(max(acceleration, self._acceleration - change), self._acceleration + change)
         acceleration = min(acceleration, 1.2 * comfort.acceleration)
         if wanted < 0.02 and speed < 0.3:

@@ -1,9 +1,13 @@
 """Drivers that follow lanes and trajectories, and change lanes."""
 
 import math
+from bisect import bisect_left
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from scenic.domains.driving.actions import RegulatedControlAction
 from scenic.domains.driving.car_following import Gap
@@ -16,12 +20,16 @@ from scenic.domains.driving.trajectories import Route
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.values.describing import wrong_type
 
+Floats = NDArray[np.float64]
+
 __all__ = ["LaneChanger", "LaneDriver", "RouteDriver", "lane_under"]
 
 _BUFFER: Final = 1.0
 """Metres between the front of a car that stops at the end of the network and the end."""
 _LOST: Final = 1.5
 """Metres from the path from which a car that has been driven by something else takes its present lane."""
+_LONG: Final = 120.0
+"""Metres of a way through an intersection from which on a car may brake there for what comes after."""
 _TURN: Final = math.radians(20)
 """Change of heading in an intersection from which it is a turn."""
 
@@ -86,6 +94,7 @@ class LaneDriver(Driver):
         # A car that faces against a lane drives against it.
         self._backward = abs(_turned(agent, lane)) > math.pi / 2
         self._plan = Plan(agent.roadNetwork, lane, backward=self._backward)
+        self._near = metres_along(lane.line[::-1] if self._backward else lane.line, self._place())
         self._path = Path()
         self._joining_time = duration
         self._cover()
@@ -97,22 +106,30 @@ class LaneDriver(Driver):
             return
         if self._path is not plan.path and plan.path.length > 0:
             self.joining = join(
-                plan.path, self._place(), self._agent.heading, self._pace(), self._joining_time
+                plan.path, self._place(), self._agent.heading, self._pace(), self._joining_time, self._near
             )
         stops = None
         if plan.is_complete:
             stops = self._agent.length / 2 + _BUFFER + self._simulation.pivot_of(self._agent)
         if plan.path.length > 0:
-            self.set_path(plan.path, self._target, limits=self._limits(), stops=stops)
+            junctions = junctions_of(plan.path)
+            self.set_path(
+                plan.path,
+                self._target,
+                limits=self._limits(),
+                stops=stops,
+                junctions=junctions,
+                near=self._near,
+            )
         speed = max(self._agent.speed, min(self._target, 40.0))
         self._due = plan.path.length - plan.reserve(speed, self.comfort.deceleration)
 
     def _is_covered(self, path: Path) -> bool:
         """Return whether a path does not end behind the car."""
-        if path.length == 0:
+        if path.length < self._near:
             return False
         x, y = self._place()
-        index, share, _ = path.locate(x, y, path.nearest(x, y))
+        index, share, _ = path.locate(x, y, path.nearest(x, y, self._near))
         return index < len(path.along) - 2 or share < 1.0
 
     def _pace(self) -> float:
@@ -154,14 +171,15 @@ class LaneDriver(Driver):
         """Go on after an interrupt: from where the car is now, in its present lane."""
         self.resume()
         x, y = self._place()
-        index, _, offset = self._path.locate(x, y, self._path.nearest(x, y))
+        near = self._near = self._path.along[self._index]
+        index, _, offset = self._path.locate(x, y, self._path.nearest(x, y, near))
         lane = self._lane
         if abs(offset) > _LOST:
             under = self._agent.roadNetwork.laneAt(self._agent.position)
             if under is not None and lane is None:
                 self._begin_plan(under)
                 return
-        join(self._path, (x, y), self._agent.heading, self._agent.speed)
+        join(self._path, (x, y), self._agent.heading, self._agent.speed, near=near)
         self._index = index
         path, self._path = self._path, Path()
         self._plan.path = path
@@ -268,11 +286,12 @@ class RouteDriver(Driver):
 
     def _start(self) -> None:
         path = path_of_lines(self._route.lines)
+        path.lanes, self._last = lanes_along(path, self._route.parts, self._route.lines)
         join(path, self._place(), self._agent.heading, self._agent.speed)
         limits, target = self._limits(path), self._target
         if self._route.speeds is not None:
             target = math.inf
-        self.set_path(path, target, limits=limits)
+        self.set_path(path, target, limits=limits, junctions=junctions_of(path))
 
     def _limits(self, path: Path) -> Any:
         limits = np.full(len(path.along), math.inf)
@@ -283,6 +302,10 @@ class RouteDriver(Driver):
                 limits[begin:end] = self._turn
         return limits
 
+    def is_on_last_part(self) -> bool:
+        """Return whether the car has come to the last lane, or line, of the trajectory."""
+        return bool(self._path.along[self._index] >= self._last)
+
     def action(self) -> RegulatedControlAction:
         """The action of one step."""
         if self.has_paused:
@@ -291,12 +314,50 @@ class RouteDriver(Driver):
         return super().action()
 
 
+def metres_along(line: Floats, place: tuple[float, float]) -> float:
+    """Metres along a line ``(n, 2)`` to the place on it that is nearest to another one."""
+    import shapely
+
+    return float(shapely.line_locate_point(shapely.linestrings(line), shapely.Point(*place)))
+
+
+def _length(line: Floats) -> float:
+    return float(np.hypot(*np.diff(line, axis=0).T).sum())
+
+
+def lanes_along(
+    path: Path, parts: Sequence[Any], lines: Sequence[Floats]
+) -> tuple[list[tuple[int, Any]], float]:
+    """The lanes among parts of a way, with the index of the first point along each of a path along their lines.
+
+    Returns:
+        The lanes, and metres along the path to the last part.
+
+    """
+    marks: list[tuple[int, Any]] = []
+    lengths = [0.0, *np.cumsum([_length(line) for line in lines]).tolist()]
+    share = path.length / max(lengths[-1], 1e-9)
+    for begin, part in zip(lengths, parts, strict=False):
+        if isinstance(part, Lane):
+            marks.append((bisect_left(path.along, begin * share), part))
+    return marks, lengths[-2] * share
+
+
+def junctions_of(path: Path) -> list[tuple[int, int]]:
+    """The stretches of a path, from and to an index, along connecting lanes that are not long."""
+    marks = [*path.lanes, (len(path.along) - 1, None)]
+    return [
+        (begin, end)
+        for (begin, lane), (end, _) in pairwise(marks)
+        if lane.is_connecting and begin < end and path.along[end] - path.along[begin] < _LONG
+    ]
+
+
 def turns_of(network: Any, path: Path) -> list[tuple[int, int]]:
     """The stretches of a path, from and to an index, on which it turns within an intersection."""
     if not network.intersections:
         return []
-    points = path.points()
-    inside = network.intersections_holding(points)
+    inside = network.intersections_holding(path.points())
     edges = np.flatnonzero(np.diff(np.concatenate([[0], inside.astype(int), [0]])))
     found = []
     for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):

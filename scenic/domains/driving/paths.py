@@ -5,6 +5,7 @@ them. It begins and ends on the curve of the lane alone, so that pieces fit each
 """
 
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from typing import Any, Final
 
@@ -27,6 +28,8 @@ Floats = NDArray[np.float64]
 
 _LONG: Final = 24.0
 """Metres from which a lane is long enough for a path to be cut in its middle."""
+_ABOUT: Final = 12.0
+"""Metres along a path within which a place is looked for that is known roughly."""
 _SHARED: Final = 4
 """Points that neighbouring pieces share: they fix position, heading and curvature."""
 
@@ -252,10 +255,16 @@ class Path:
             else:
                 return index, share, (dx * b - dy * a) / math.sqrt(dx * dx + dy * dy)
 
-    def nearest(self, x: float, y: float) -> int:
-        """The index of the point of the path that is nearest to a place."""
-        away = (np.array(self._x) - x) ** 2 + (np.array(self._y) - y) ** 2
-        return int(away.argmin())
+    def nearest(self, x: float, y: float, near: float | None = None) -> int:
+        """The index of the point of the path that is nearest to a place; of those about metres along the path, if given."""
+        low, high = 0, len(self.along)
+        if near is not None:
+            # Smooth paths are a little shorter than the lines of their lanes.
+            reach = _ABOUT + near / 20
+            low = min(bisect_left(self.along, near - reach), high - 1)
+            high = max(bisect_right(self.along, near + reach), low + 1)
+        away = (np.array(self._x[low:high]) - x) ** 2 + (np.array(self._y[low:high]) - y) ** 2
+        return low + int(away.argmin())
 
     def index_at(self, along: float, index: int) -> int:
         """The index of the last point at or before a place metres along the path, looked for from a point of the path on."""

@@ -17,7 +17,7 @@ __all__ = ["Plan", "join", "path_of_lines", "speeds_of"]
 
 Floats = NDArray[np.float64]
 
-_MARGIN: Final = 30.0
+_MARGIN: Final = 50.0
 """Metres of path that a plan has ahead at least, beyond the way of braking."""
 _OFF: Final = 0.15
 """Metres beside a path from which a car joins it along a curve of its own."""
@@ -99,7 +99,14 @@ def path_of_lines(lines: Sequence[Floats]) -> Path:
     return Path(piece_along(points))
 
 
-def join(path: Path, place: Any, heading: float, speed: float, duration: float = 0.0) -> float:
+def join(
+    path: Path,
+    place: Any,
+    heading: float,
+    speed: float,
+    duration: float = 0.0,
+    near: float | None = None,
+) -> float:
     """Bend a path so that it begins where a car is, in the direction of the car: a lateral offset of least jerk.
 
     The offset is the polynomial of fifth order that has the offset and slope of the car at its beginning, and none at its end
@@ -111,13 +118,14 @@ def join(path: Path, place: Any, heading: float, speed: float, duration: float =
         heading: of the car, radians.
         speed: of the car, m/s.
         duration: seconds that the car takes at least; 0 for as few as comfort allows.
+        near: metres along the path about which the car is.
 
     Returns:
         Metres along the path until the car is on it.
 
     """
     x, y, *_ = place
-    index, share, offset = path.locate(x, y, path.nearest(x, y))
+    index, share, offset = path.locate(x, y, path.nearest(x, y, near))
     if share < 0 or share > 1:
         return 0.0
     turned = (heading - path.headings[index] + math.pi) % (2 * math.pi) - math.pi
@@ -145,7 +153,8 @@ def join(path: Path, place: Any, heading: float, speed: float, duration: float =
     distance = min(distance, max(left, 1.0))
     count = int(np.searchsorted(along, start + distance, side="right"))
     share_done = (along[:count] - start) / distance
-    begin = max(0, index - 1)
+    # The path bends to where it was behind the car, where nobody looks at its curvature.
+    begin = max(0, index - 8)
     offsets = _offset(share_done[begin:], offset, slope * distance)
     path.shifted(begin, offsets)
     return float(distance)
@@ -174,6 +183,7 @@ def speeds_of(
     *,
     limits: Floats | None,
     stops: float | None,
+    junctions: Sequence[tuple[int, int]] = (),
 ) -> tuple[list[float], list[float]]:
     """Speeds and accelerations at the points of a path from an index on.
 
@@ -185,6 +195,7 @@ def speeds_of(
         comfort: what limits the speed.
         limits: further largest speeds at all points of the path, m/s.
         stops: metres before the end of the path at which the car stops, if it does.
+        junctions: stretches of the path, from and to an index, through which the car does not brake for what comes after.
 
     """
     along = np.array(path.along[begin:])
@@ -195,6 +206,11 @@ def speeds_of(
     count = len(along)
     if stops is not None:
         count = max(2, int(np.searchsorted(along, along[-1] - stops, side="right")))
-    speeds, accelerations = speeds_along(along[:count], top[:count], speed, comfort, stops=stops is not None)
+    ahead = [
+        (max(0, low - begin), high - begin) for low, high in junctions if high > begin and low - begin < count
+    ]
+    speeds, accelerations = speeds_along(
+        along[:count], top[:count], speed, comfort, stops=stops is not None, junctions=ahead
+    )
     rest = [0.0] * (len(along) - count)
     return speeds.tolist() + rest, accelerations.tolist() + rest

@@ -4,6 +4,8 @@ Two passes limit the squared speed by constant acceleration and deceleration (fo
 averaged over a moving window of time, so that acceleration changes at a bounded rate.
 """
 
+import math
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -75,7 +77,13 @@ def speeds_in_bends(along: Floats, curvatures: Floats, comfort: Comfort) -> Floa
 
 
 def speeds_along(
-    along: Floats, limits: Floats, speed: float, comfort: Comfort, *, stops: bool = False
+    along: Floats,
+    limits: Floats,
+    speed: float,
+    comfort: Comfort,
+    *,
+    stops: bool = False,
+    junctions: Sequence[tuple[int, int]] = (),
 ) -> tuple[Floats, Floats]:
     """Speeds and accelerations ``(n,)`` at points along a path.
 
@@ -85,10 +93,12 @@ def speeds_along(
         speed: of the car, m/s.
         comfort: limits of acceleration, deceleration and jerk.
         stops: the car stands at the last point.
+        junctions: stretches, from and to an index, before which braking for lower limits ends, rather than in them.
 
     """
     window = (comfort.acceleration + comfort.deceleration) / comfort.jerk
     squares = _eroded(along, limits, window / 2) ** 2
+    squares = _slow_before(along, squares, junctions, speed, window / 2, comfort.deceleration)
     if stops:
         squares[-1] = 0.0
     deceleration = comfort.deceleration
@@ -99,7 +109,7 @@ def speeds_along(
         squares = _eroded(along, limits, window / 2) ** 2
         if stops:
             squares[-1] = 0.0
-        deceleration = min(1.1 * _needed(along, squares, speed), _EMERGENCY)
+        deceleration = max(deceleration, min(1.1 * _needed(along, squares, speed), _EMERGENCY))
     down, up = 2 * deceleration * along, 2 * comfort.acceleration * along
     # v(s)^2 <= v(t)^2 + 2 b (t - s) for every t ahead, and likewise for acceleration from every place behind.
     squares = np.minimum.accumulate((squares + down)[::-1])[::-1] - down
@@ -110,10 +120,37 @@ def speeds_along(
     return _averaged(along, np.sqrt(np.maximum(squares, 0.0)), window, stops=stops)
 
 
+def _slow_before(
+    along: Floats,
+    squares: Floats,
+    junctions: Sequence[tuple[int, int]],
+    speed: float,
+    time: float,
+    deceleration: float,
+) -> Floats:
+    """Squared speed limits that let a car brake for what comes after a junction before it, and seconds of time earlier.
+
+    Junctions that are too near for that, at the speed of the car, are left out.
+    """
+    for first in range(len(junctions)):
+        falls = 2 * deceleration * np.diff(along)
+        for begin, end in junctions[first:]:
+            end = min(end, len(along) - 1)
+            reach = math.sqrt(squares[begin : end + 1].min()) * time
+            low, high = np.searchsorted(along, [along[begin] - reach, along[end] + reach])
+            falls[low:high] = 0.0
+        down = np.concatenate([[0.0], np.cumsum(falls)])
+        slowest: Floats = np.minimum.accumulate((squares + down)[::-1])[::-1] - down
+        if slowest[0] >= min(squares[0], 0.98 * speed * speed):
+            return slowest
+    return squares
+
+
 def _needed(along: Floats, squares: Floats, speed: float) -> float:
     """The constant deceleration by which a car meets all squared speed limits ahead, m/s^2."""
     ahead = along[1:] - along[0]
-    return float(((speed * speed - squares[1:]) / (2 * np.maximum(ahead, 0.5))).max())
+    # What a car meets at once it is a little too fast for at most.
+    return float(((speed * speed - squares[1:]) / (2 * np.maximum(ahead, 0.5 + 0.3 * speed))).max())
 
 
 def _eroded(along: Floats, limits: Floats, time: float) -> Floats:

@@ -61,7 +61,8 @@ class Route:
         trajectory: lanes, or polylines, one after the other; or a `Trajectory`.
 
     Attributes:
-        lines: what to follow, ``(n, 2)`` each, one after the other.
+        parts: lanes, polylines, or a trajectory, one after the other.
+        lines: what to follow, ``(n, 2)`` of each part.
         end: the intersection after the last lane, else the last point.
 
     Raises:
@@ -80,6 +81,7 @@ class Route:
             raise wrong_type(
                 "lanes or lines in a list that is not empty, or a `Trajectory`", trajectory, "the trajectory"
             )
+        self.parts = tuple(parts)
         self.lines = [_vertices(part) for part in parts]
         last = parts[-1]
         self.end: Any = intersection_ahead(last) if isinstance(last, Lane) else Vector(*_end_of(last))
