@@ -133,7 +133,7 @@ class Lines:
         return best
 
     def within(self, indices: NDArray[np.intp], reach: float, radius: float) -> NDArray[np.bool_]:
-        """Which points ``(n,)`` have a bend of less than a radius within metres of the lines on either side."""
+        """Return which points ``(n,)`` have a bend of less than a radius within metres of the lines on either side."""
         from scipy.ndimage import maximum_filter1d
 
         size = 2 * round(reach / _SPACING) + 1

@@ -38,7 +38,7 @@ BOUNDS = {
 
 @dataclass
 class Run:
-    """What one car did.
+    """The motion of one car, and what it was to be.
 
     Attributes:
         course: its motion.
