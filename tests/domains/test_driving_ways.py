@@ -134,7 +134,7 @@ def test_lanes_and_trajectories_are_followed_alike(folder: Path) -> None:
 
 @pytest.mark.parametrize("trajectory", ["[]", "None", "'ahead'", "[3]"])
 def test_other_trajectories_are_refused(trajectory: str) -> None:
-    with pytest.raises(TypeError, match="a list of lanes that is not empty"):
+    with pytest.raises(TypeError, match="lanes or lines in a list that is not empty"):
         Route({"[]": [], "None": None, "'ahead'": "ahead", "[3]": [3]}[trajectory])
 
 
