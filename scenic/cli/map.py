@@ -64,10 +64,12 @@ def map_command(file: Path, output: Path | None, width: int) -> int:
             f"{len(network.roads)}, {length / 1000:.1f} km, and {len(network.connectingRoads)} in intersections",
         ),
         ("lanes", f"{len(network.lanes)}, {drivable:,.0f} m2 for traffic"),
-        ("intersections", str(len(network.intersections))),
+        ("intersections", _intersections(network)),
+        ("roundabouts", _roundabouts(network)),
         ("speeds", _speeds(network)),
         ("signals", _signals(network)),
-        ("sidewalks", f"{len(network.sidewalks)}, and {len(network.crossings)} crossings"),
+        ("sidewalks", str(len(network.sidewalks))),
+        ("crossings", _crossings(network)),
         ("shoulders", str(len(network.shoulders))),
         ("traffic", "keeps left" if network.driveOnLeft else "keeps right"),
         ("problems", f"{len(network.problems)} (scenic check {file})" if network.problems else "none"),
@@ -88,6 +90,32 @@ def _speeds(network: "Network") -> str:
         f"{'no limit' if limit is None else f'{3.6 * limit:.0f} km/h'} on {length / 1000:.1f} km"
         for limit, length in ordered
     )
+
+
+def _intersections(network: "Network") -> str:
+    """The number of intersections, and of those with lights."""
+    lights = sum(any(signal.isTrafficLight for signal in item.signals) for item in network.intersections)
+    return f"{len(network.intersections)}, {lights} with traffic lights"
+
+
+def _roundabouts(network: "Network") -> str:
+    """The places, radii and roads of roundabouts."""
+    from scenic.domains.driving.roundabouts import roundabouts
+
+    found = roundabouts(network)
+    shown = [
+        f"radius {item.radius:.0f} m at ({round(item.center[0])}, {round(item.center[1])}) with {item.arms} roads"
+        for item in found
+    ]
+    return f"{len(found)}: {'; '.join(shown)}" if shown else "none"
+
+
+def _crossings(network: "Network") -> str:
+    """The number of crossings, and of those in intersections."""
+    from scenic.domains.driving.roads import Intersection
+
+    inside = sum(isinstance(item.parent, Intersection) for item in network.crossings)
+    return f"{len(network.crossings)}, {inside} of them in intersections" if network.crossings else "none"
 
 
 def _signals(network: "Network") -> str:

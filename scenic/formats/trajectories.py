@@ -74,7 +74,15 @@ def course_document(course: Course, *, k: int, tries: int) -> dict[str, Any]:
             for item in result.requirements
         ],
         "records": {name: _record(value, numbers) for name, value in result.records.items()},
+        **_notes(course),
     }
+
+
+def _notes(course: Course) -> dict[str, Any]:
+    """Return what the simulation noted of its objects, if anything."""
+    notes = getattr(course, "notes", ())
+    rows = [{"step": step, "object": thing, "text": text} for step, thing, text in notes]
+    return {"notes": rows} if rows else {}
 
 
 def _record(value: object, numbers: Mapping[int, int]) -> Any:

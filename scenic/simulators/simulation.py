@@ -97,6 +97,7 @@ class Simulation(ABC):
         agents: those with behaviors.
         result: a `SimulationResult`, once the simulation has ended.
         records: the records so far.
+        notes: step, number of the object, and what is noted of it, such as why its behavior ended; see `note`.
         currentTime: steps made.
         trajectory: the states so far.
 
@@ -136,6 +137,7 @@ class Simulation(ABC):
         self.poses: list[Poses] | None = [] if keep_poses else None
         self.actionSequence: list[ActionsTaken] | Latest = [] if keep_course else Latest("actions")
         self.records: dict[str, Any] = {}
+        self.notes: list[tuple[int, int, str]] = []
         self.currentTime = 0
         self.timestep = 1 if timestep is None else timestep
         self.verbosity = verbosity
@@ -191,6 +193,11 @@ class Simulation(ABC):
             mode_2d=context.mode_2d,
             **options,
         )
+
+    def note(self, agent: object, text: str) -> None:
+        """Note something about an object at the present step, such as why its behavior ends; files of simulations contain notes."""
+        number = next(number for number, thing in enumerate(self.objects) if thing is agent)
+        self.notes.append((self.currentTime, number, text))
 
     # Running
 

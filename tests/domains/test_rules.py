@@ -12,6 +12,7 @@ from scenic.domains.driving.kinds import ManeuverType
 from scenic.domains.driving.right_of_way import Claim, RightOfWay, comes_first
 from scenic.domains.driving.roads import Network
 from scenic.domains.driving.signals import LightTimes, TrafficLights, phases_of
+from scenic.formats.trajectories import course_document
 from scenic.language.errors import InvalidScenarioError
 from tests.maps import cross
 
@@ -202,3 +203,23 @@ def test_lights_can_be_set_and_frozen(folder: Path) -> None:
     assert at(500) == "yellow"
     lights.freeze(False)
     assert [at(time) for time in (501, 503)] == ["yellow", "red"]
+
+
+def test_it_is_noted_why_a_car_stands(folder: Path) -> None:
+    done = simulated(folder, WEST.format(more=""), "light", 750, "{'states': {'7': 'red'}}")
+    ((step, number, text),) = done.notes
+    assert number == 0
+    assert text.endswith("at the light '7'")
+    assert step / 10 > 59.9 + float(text.split()[2])
+    assert course_document(done, k=0, tries=1)["notes"] == [{"step": step, "object": 0, "text": text}]
+
+
+def test_it_is_noted_where_the_network_ends(folder: Path) -> None:
+    text = "ego = new Car at (-60, 1.75), facing 90 deg, with behavior FollowLaneBehavior(15)\n"
+    done = simulated(folder, text, "cross", 200)
+    ((_, number, words),) = done.notes
+    assert (number, words) == (
+        0,
+        f"stands where {done.scene.workspace.network.laneAt((-60, 1.75)).uid} ends: no lane follows it",
+    )
+    assert "notes" not in course_document(simulated(folder, text, "cross", 20), k=0, tries=1)

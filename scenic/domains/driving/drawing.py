@@ -7,6 +7,12 @@ from typing import TYPE_CHECKING, Final
 from xml.sax.saxutils import escape
 
 import numpy as np
+from numpy.typing import NDArray
+
+from scenic.dataclass import dataclass
+from scenic.domains.driving.lamps import LampPosts
+from scenic.domains.driving.signals import LightTimes, TrafficLights
+from scenic.formats.lamps import COLORS as LIGHTS
 
 if TYPE_CHECKING:
     from scenic.domains.driving.elements import NetworkElement
@@ -31,9 +37,14 @@ COLORS: Final = MappingProxyType(
 )
 """Colours of kinds of areas and lines."""
 
+_SIGNS: Final = MappingProxyType({"stop": "#c71219", "yield": "#ffffff"})
+_CORNERS: Final = MappingProxyType({"stop": 8, "yield": 3, "light": 12})
+"""Corners of the marks of signs and lights, whose radius is `_MARK` metres."""
+_MARK: Final = 1.1
+
 
 def svg(network: "RoadNetwork", width: int = 1200) -> str:
-    """A drawing as SVG text, ``width`` pixels wide: areas, edges of lanes, and their middles with the direction of traffic."""
+    """A drawing as SVG text, ``width`` pixels wide: areas, edges of lanes, their middles, and signals."""
     left, bottom, right, top = _bounds(network)
     height = round(width * (top - bottom) / (right - left))
     view = f"{left:.2f} {-top:.2f} {right - left:.2f} {top - bottom:.2f}"
@@ -51,6 +62,11 @@ def svg(network: "RoadNetwork", width: int = 1200) -> str:
         for lane in road.lanes:
             parts += [f'<path class="lane" d="{_way(edge)}"/>' for edge in (lane.left, lane.right)]
             parts.append(f'<path class="way" d="{_way(lane.line)}"/>')
+    for mark in _marks(network):
+        parts.append(
+            f'<path class="{mark.form}" fill="{mark.color}" stroke="{mark.border}" stroke-width=".25" d="{_way(mark.outline)}Z">'
+            f"<title>{escape(mark.title)}</title></path>"
+        )
     parts.append("</svg>\n")
     return "\n".join(parts)
 
@@ -110,9 +126,48 @@ def png(network: "RoadNetwork", width: int = 1600) -> bytes:
         for lane in road.lanes:
             for edge in (lane.left, lane.right):
                 draw.line(pixels(edge), fill=COLORS["lane"], width=2)
+    for mark in _marks(network):
+        draw.polygon(pixels(mark.outline), fill=mark.color, outline=mark.border)
     stream = io.BytesIO()
     image.resize((size[0] // 2, size[1] // 2), library.Resampling.LANCZOS).save(stream, "PNG")
     return stream.getvalue()
+
+
+@dataclass(frozen=True, slots=True)
+class _Mark:
+    """A light, a line at which traffic halts for it, or a sign, as an outline ``(n, 2)`` with colours."""
+
+    form: str
+    outline: NDArray[np.float64]
+    color: str
+    border: str
+    title: str
+
+
+def _marks(network: "RoadNetwork") -> list[_Mark]:
+    """The signals of a network; lights have the colours with which a simulation begins."""
+    lights = TrafficLights(network, LightTimes())
+    signals = {signal.uid: signal for signal in network.signals}
+    marks = []
+    for lamp in LampPosts(network).all:
+        signal = signals[lamp.key]
+        state = lights.get(signal) if signal.isTrafficLight else lamp.form
+        color = _SIGNS.get(state) or "#{:02x}{:02x}{:02x}".format(
+            *(round(255 * part) for part in LIGHTS[state])
+        )
+        x, y, _ = lamp.position
+        if lamp.form == "line":
+            across, along = 0.5 * lamp.size[0], 0.5 * lamp.size[1]
+            corners = np.array([[-across, -along], [across, -along], [across, along], [-across, along]])
+        else:
+            count = _CORNERS[lamp.form]
+            turns = 2 * np.pi * (np.arange(count) + 0.5) / count - np.pi / 2
+            corners = _MARK * np.column_stack([np.cos(turns), np.sin(turns)])
+        sine, cosine = np.sin(lamp.yaw), np.cos(lamp.yaw)
+        outline = corners @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y)
+        border = {"yield": _SIGNS["stop"], "line": color}.get(lamp.form, "#1c1d20")
+        marks.append(_Mark(lamp.form, outline, color, border, f"{lamp.key} {state}"))
+    return marks
 
 
 def _bounds(network: "RoadNetwork") -> tuple[float, float, float, float]:

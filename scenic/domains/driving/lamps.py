@@ -36,18 +36,19 @@ class LampPosts:
         self._network = network
 
     @cached_property
-    def _all(self) -> tuple[Lamp, ...]:
+    def all(self) -> tuple[Lamp, ...]:
+        """The posts and lines of all signals."""
         return tuple(lamp for signal in self._network.signals for lamp in self._lamps(signal))
 
     def around(self, places: NDArray[np.float64]) -> tuple[Lamp, ...]:
         """The lamps near places ``(n, 2 | 3)``."""
-        if not self._all or not len(places):
+        if not self.all or not len(places):
             return ()
         from scipy.spatial import KDTree
 
-        posts = np.array([lamp.position[:2] for lamp in self._all])
+        posts = np.array([lamp.position[:2] for lamp in self.all])
         distances = np.asarray(KDTree(places[:, :2]).query(posts)[0])
-        return tuple(lamp for lamp, away in zip(self._all, distances, strict=True) if away < _AROUND)
+        return tuple(lamp for lamp, away in zip(self.all, distances, strict=True) if away < _AROUND)
 
     def _lamps(self, signal: Signal) -> Sequence[Lamp]:
         form = _form(signal)

@@ -191,7 +191,12 @@ class LaneDriver(Driver):
         if not self._plan.is_complete or self._agent.speed > 0.05:
             return False
         left = self._path.length - self._path.along[self._index]
-        return bool(left < self._agent.length / 2 + 2 * _BUFFER + self._simulation.pivot_of(self._agent))
+        is_over = bool(left < self._agent.length / 2 + 2 * _BUFFER + self._simulation.pivot_of(self._agent))
+        if is_over:
+            self._simulation.note(
+                self._agent, f"stands where {self._plan.last_lane.uid} ends: no lane follows it"
+            )
+        return is_over
 
     def set_target(self, target: float) -> None:
         """Change the speed to reach."""

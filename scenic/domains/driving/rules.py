@@ -32,6 +32,8 @@ _TOO_HARD: Final = 3.5
 """Deceleration (m/s^2) that a light that turns yellow, or a way that is taken, does not ask for."""
 _CHECKS: Final = 0.2
 """Seconds between two looks at rules."""
+_LONG: Final = 60.0
+"""Seconds after which it is noted why a car stands."""
 _ON: Final = 1.5
 """Metres from a crossing within which a pedestrian counts as on it."""
 
@@ -175,6 +177,7 @@ class RulesDriver(LaneDriver):
         )
 
     _line: float | None = None
+    _has_noted = False
 
     def _first_line(self, speed: float, own: float, now: float) -> float | None:
         """Metres along the path to the first line at which the car has to halt now; ``None`` if it may go on."""
@@ -183,6 +186,7 @@ class RulesDriver(LaneDriver):
         stands = speed < 0.3
         if not stands:
             self._waiting = math.inf
+            self._has_noted = False
         elif self._waiting == math.inf:
             self._waiting = now
         reach = 1.3 * speed * speed / (2 * self.comfort.deceleration) + 2 * speed + 12.0
@@ -198,8 +202,23 @@ class RulesDriver(LaneDriver):
                 continue
             if self._must_halt(halt, speed, halt.along - front, now):
                 found = halt.along
+                if now - self._waiting > _LONG and not self._has_noted:
+                    self._has_noted = True
+                    simulation = self._simulation
+                    simulation.note(agent, f"stands since {self._waiting:.1f} s, {self._reason(halt)}")
         self._halts = remaining
         return found
+
+    def _reason(self, halt: _Halt) -> str:
+        """The reason for which the car halts at a line."""
+        if halt.crossing is not None:
+            return f"for pedestrians on {halt.crossing.uid}"
+        for signal in halt.signals:
+            if signal.isTrafficLight and self._simulation.signalState(signal) in ("red", "yellow"):
+                return f"at the light {signal.openDriveID!r}"
+        if not self._has_room(halt):
+            return "since cars stand after the intersection"
+        return "since others have the right of way, or are in the intersection"
 
     def _must_halt(self, halt: _Halt, speed: float, distance: float, now: float) -> bool:
         if halt.crossing is not None:
