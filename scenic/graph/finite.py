@@ -6,6 +6,7 @@ number of the cell, so that nothing else of the graph has to know.
 """
 
 import hashlib
+import math
 from collections.abc import Sequence
 from typing import Protocol
 
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 from scenic.dataclass import dataclass
 from scenic.graph.draws import Floats, Words
 
-__all__ = ["Distinct", "Finite", "Law", "Listed", "Sequential", "Step"]
+__all__ = ["BoundedDistinct", "Distinct", "Finite", "Law", "Listed", "Sequential", "Step"]
 
 Cells = NDArray[np.intp]
 
@@ -140,6 +141,104 @@ class Distinct:
 
     def arrays(self) -> Sequence[NDArray[np.generic]]:
         return [*self.labels, *self.weights]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BoundedDistinct:
+    """Variables that differ as in `Distinct`, of so many labels that their sets cannot be counted.
+
+    Label after label is given to a variable or to nobody, with probabilities that come from an upper bound of the permanent in
+    place of the weights of completions. The bound of what is left never exceeds the bound before, so that the rest of the
+    probability rejects the draw, and what is not rejected follows the exact law (M. Huber and J. Law, "Fast approximation
+    of the permanent for very dense problems", SODA 2008). A draw that is rejected gets the combination ``clash``, which
+    the conditions themselves reject.
+
+    Attributes:
+        labels: of each variable the labels of its values, each below ``width``.
+        weights: of each variable the weights of its values.
+        width: the number of labels, at least that of the variables.
+        clash: a combination in which two variables have values of one label.
+
+    """
+
+    labels: tuple[Cells, ...]
+    weights: tuple[Floats, ...]
+    width: int
+    clash: Cells
+
+    @property
+    def numbers(self) -> int:
+        return self.width
+
+    @property
+    def entries(self) -> Floats:
+        """The weights ``(variables, width)`` of the labels, those of each variable divided by its largest."""
+        sums = [
+            np.bincount(labels, weights=weights, minlength=self.width)
+            for labels, weights in zip(self.labels, self.weights, strict=True)
+        ]
+        return np.array([row / row.max() for row in sums])
+
+    @property
+    def bound(self) -> float:
+        """The logarithm of an upper bound of the sum, over all choices, of the products of `entries`."""
+        spare = self.width - len(self.labels)
+        sums = self.entries.sum(axis=1)
+        # Labels for nobody are rows of ones, which may be exchanged.
+        return float(_log_bound(sums).sum() + spare * _log_bound(self.width) - math.lgamma(spare + 1))
+
+    def choose(self, draws: Floats) -> Cells:
+        entries = self.entries
+        count = draws.shape[1]
+        sums = np.repeat(entries.sum(axis=1)[:, np.newaxis], count, axis=1)
+        waiting = np.ones(sums.shape, dtype=np.bool_)
+        spare = np.full(count, self.width - len(self.labels))
+        result = np.repeat(self.clash[:, np.newaxis], count, axis=1)
+        going = np.ones(count, dtype=np.bool_)
+        for label in range(self.width):
+            rest = np.maximum(sums - entries[:, label, np.newaxis], 0.0)
+            before, after = (np.where(waiting, _log_bound(each), 0.0) for each in (sums, rest))
+            left = self.width - label
+            nobody = _log_bound(left - 1)
+            common = (after - before).sum(axis=0) + spare * (nobody - _log_bound(left))
+            shares = np.where(waiting, entries[:, label, np.newaxis] * np.exp(common - after), 0.0)
+            cumulative = np.cumsum(np.vstack([shares, spare * np.exp(common - nobody)]), axis=0)
+            chosen = (cumulative <= draws[label]).sum(axis=0)
+            going &= chosen < len(cumulative)
+            taken = np.flatnonzero(going & (chosen < len(entries)))
+            waiting[chosen[taken], taken] = False
+            spare -= going & (chosen == len(entries))
+            self._place(result, label, chosen, taken, draws[label], cumulative)
+            sums = rest
+        result[:, ~going] = self.clash[:, np.newaxis]
+        return result
+
+    def _place(
+        self, result: Cells, label: int, chosen: Cells, lanes: Cells, draws: Floats, cumulative: Floats
+    ) -> None:
+        """Write the values of the variables that got a label; of several values of it, the rest of the number chooses."""
+        for variable in np.unique(chosen[lanes]).tolist():
+            mine = lanes[chosen[lanes] == variable]
+            values = np.flatnonzero(self.labels[variable] == label)
+            if len(values) > 1:
+                weights = np.cumsum(self.weights[variable][values])
+                start = cumulative[variable - 1, mine] if variable else 0.0
+                share = (draws[mine] - start) / (cumulative[variable, mine] - start)
+                place = np.searchsorted(weights, share * weights[-1], side="right")
+                result[variable, mine] = values[np.minimum(place, len(values) - 1)]
+            else:
+                result[variable, mine] = values[0]
+
+    def arrays(self) -> Sequence[NDArray[np.generic]]:
+        return [*self.labels, *self.weights]
+
+
+def _log_bound(sums: Floats | float) -> Floats:
+    """The logarithm of the factor of a row of this sum in the bound of Huber and Law."""
+    numbers = np.asarray(sums, dtype=np.float64)
+    large = np.maximum(numbers, 1.0)
+    factors = np.where(numbers >= 1, large + 0.5 * np.log(large) + math.e - 1, 1 + (math.e - 1) * numbers)
+    return np.asarray(np.log(factors) - 1)
 
 
 def _search(cumulative: Floats, row: Cells, numbers: Floats) -> Cells:

@@ -248,7 +248,9 @@ def _part(drawn: Drawn, order: Sequence[Variable]) -> Finite:
     mine = [order[variable] for variable in drawn.variables]
     first = min(variable.address for variable in mine)
     addresses = [
-        order[variable].address if variable < len(order) else address("inner value", first, place)
+        order[variable].address
+        if variable is not None and variable < len(order)
+        else address("inner value", first, place)
         for place, variable in enumerate(drawn.numbers)
     ]
     return Finite(

@@ -2,21 +2,27 @@
 
 Their law is exact by dynamic programming over the set of values that are used (M. Held and R. Karp, "A dynamic programming
 approach to sequencing problems", 1962, count the same states), whatever the weights, and however many places are forbidden.
+For more values than that can count, draws follow a bound of the weights, and some of them are rejected.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from scenic.analysis.finite.tables import Table
 from scenic.dataclass import dataclass
 from scenic.graph.bounds import Floats
-from scenic.graph.finite import Distinct
+from scenic.graph.finite import BoundedDistinct, Distinct
 
 __all__ = ["Differing", "differing"]
 
 MOST_LABELS: Final = 20
+"""Values in all, at most, of which sets are counted."""
+
+MOST_BOUNDED_LABELS: Final = 64
 """Values in all, at most."""
 
 LEAST: Final = 3
@@ -25,10 +31,18 @@ LEAST: Final = 3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Differing:
-    """Variables that differ: their numbers, the law, the share of all combinations, and the scopes of the tables that it meets."""
+    """Variables that differ.
+
+    Attributes:
+        variables: their numbers.
+        law: chooses their values.
+        weight: the share of all combinations that the law takes, including those that it rejects.
+        scopes: the scopes of the tables that its choices meet, if they do always.
+
+    """
 
     variables: tuple[int, ...]
-    law: Distinct
+    law: Distinct | BoundedDistinct
     weight: float
     scopes: frozenset[frozenset[int]]
 
@@ -119,11 +133,14 @@ def _row(table: Table, variable: int, value: int) -> np.ndarray[tuple[int], np.d
 def _solved(labels: Mapping[int, list[int]], weights: Mapping[int, Floats]) -> Differing | None:
     every = sorted({label for mine in labels.values() for label in mine})
     width = len(every)
-    if width > MOST_LABELS:
+    if width > MOST_BOUNDED_LABELS:
         return None
     number = {label: place for place, label in enumerate(every)}
     members = sorted(labels)
     placed = [np.array([number[label] for label in labels[member]], dtype=np.intp) for member in members]
+    mine = tuple(weights[member] for member in members)
+    if width > MOST_LABELS:
+        return _bounded(members, tuple(placed), mine, width)
     counts = _set_bits(width)
     completions = np.zeros(1 << width)
     completions[counts == len(members)] = 1.0
@@ -134,8 +151,27 @@ def _solved(labels: Mapping[int, list[int]], weights: Mapping[int, Floats]) -> D
             free = sets[(sets >> label) & 1 == 0]
             completions[free] += sums[label] * completions[free | (1 << label)]
     weight = float(completions[0])
-    law = Distinct(tuple(placed), tuple(weights[member] for member in members), completions)
+    law = Distinct(tuple(placed), mine, completions)
     scopes = frozenset(
         frozenset((one, other)) for place, one in enumerate(members) for other in members[:place]
     )
     return Differing(tuple(members), law, weight, scopes)
+
+
+def _bounded(
+    members: Sequence[int], labels: tuple[NDArray[np.intp], ...], weights: tuple[Floats, ...], width: int
+) -> Differing | None:
+    """The same for many labels: the choices may clash, so that no table is met always."""
+    if width < len(members):
+        return Differing(
+            tuple(members), BoundedDistinct(labels, weights, width, np.zeros(0, np.intp)), 0.0, frozenset()
+        )
+    clash = np.array([values.argmax() for values in weights], dtype=np.intp)
+    shared = np.intersect1d(labels[0], labels[1])
+    if not len(shared):
+        return None
+    for place in (0, 1):
+        clash[place] = np.flatnonzero(labels[place] == shared[0])[0]
+    law = BoundedDistinct(labels, weights, width, clash)
+    largest = [np.bincount(mine, weights=each).max() for mine, each in zip(labels, weights, strict=True)]
+    return Differing(tuple(members), law, math.exp(law.bound + float(np.log(largest).sum())), frozenset())

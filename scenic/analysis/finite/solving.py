@@ -17,7 +17,7 @@ from scenic.analysis.finite.listing import solutions
 from scenic.analysis.finite.network import Constraint, Problem, components, consistent, merged
 from scenic.analysis.finite.tables import Mask, Table
 from scenic.dataclass import dataclass
-from scenic.graph.finite import Law, Listed, Sequential
+from scenic.graph.finite import BoundedDistinct, Law, Listed, Sequential
 
 __all__ = ["Component", "Drawn", "solve"]
 
@@ -37,7 +37,7 @@ class Drawn:
         values: of each the values that are left.
         law: chooses among these.
         passed: the inner variables for which the law takes numbers, in order, after those of the draws.
-        numbers: for each number that the law takes, the variable that it belongs to.
+        numbers: for each number that the law takes, the variable that it belongs to, if it is one.
         share: the share of the prior weight that is left.
         way: how they are drawn, in words.
 
@@ -46,7 +46,7 @@ class Drawn:
     variables: tuple[int, ...]
     values: tuple[NDArray[np.intp], ...]
     law: Law
-    numbers: tuple[int, ...]
+    numbers: tuple[int | None, ...]
     share: float
     way: str
 
@@ -214,13 +214,14 @@ def _strongest(reduced: _Reduced) -> tuple[tuple[Drawn, ...], tuple[Constraint, 
 
 
 def _differ(reduced: _Reduced, found: Differing) -> Drawn:
+    bounded = isinstance(found.law, BoundedDistinct)
     return Drawn(
         found.variables,
         tuple(reduced.values[variable] for variable in found.variables),
         found.law,
-        found.variables,
+        (None,) * found.law.numbers if bounded else found.variables,
         found.weight,
-        "each value at most once",
+        "each value at most once, under a bound" if bounded else "each value at most once",
     )
 
 

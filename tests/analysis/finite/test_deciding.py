@@ -213,6 +213,34 @@ def test_objects_that_differ_take_slots_evenly(count: int) -> None:
     assert stats.chisquare(np.bincount(pairs, minlength=count**2)[different]).pvalue > FALSE_ALARM
 
 
+def test_many_values_that_differ_are_drawn_under_a_bound() -> None:
+    scenario = scenic.scenarioFromString(
+        "x = [DiscreteRange(1, 24) for i in range(22)]\n"
+        "for i in range(22):\n    require x[i] != 1 + i\n    for j in range(i):\n        require x[i] != x[j]\n"
+        "param v = x\n"
+    )
+    scenes = list(scenario.stream(400, seed=1))
+    rows = np.array([scene.params["v"] for scene in scenes])
+    assert all(len(set(row)) == 22 for row in rows.tolist())
+    assert (rows != np.arange(1, 23)).all()
+    assert np.mean([scene.attempts for scene in scenes]) < 3
+    # The first one may not be 1; the others' own places are alike, and so are the two that nobody must leave out.
+    counts = np.bincount(rows[:, 0], minlength=25)[1:]
+    assert counts[0] == 0
+    assert stats.chisquare(counts[1:22]).pvalue > FALSE_ALARM
+    assert stats.chisquare(counts[22:]).pvalue > FALSE_ALARM
+    lanes = list(scenario.stream(30, seed=1, lanes=7))
+    assert [tuple(scene.params["v"]) for scene in lanes] == [tuple(row) for row in rows[:30].tolist()]
+
+
+def test_more_values_that_differ_than_there_are_have_no_scene() -> None:
+    scenario = scenic.scenarioFromString(
+        "x = [DiscreteRange(1, 22) for i in range(23)]\n"
+        "for i in range(23):\n    for j in range(i):\n        require x[i] != x[j]\n"
+    )
+    assert scenario.impossible
+
+
 def test_scenes_do_not_depend_on_batches() -> None:
     scenario = scenic.scenarioFromString(DIFFERENT)
     every = drawn(scenario, 40, seed=9)
