@@ -125,6 +125,12 @@ for a,b in E:
     require c[a] != c[b]
 param v=c
 """,
+    "different integers (26 of 30)": """
+ego = new Object
+xs = [DiscreteRange(1, 30) for i in range(26)]
+require len(set(xs)) == 26
+param v=xs
+""",
     "dominoes": """
 ego = new Object
 tiles=[(a,b) for a in range(7) for b in range(a,7)]

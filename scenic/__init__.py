@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from scenic.pipeline import Scenario, Scene, analyze, load, scenarioFromFile, scenarioFromString
     from scenic.runtime.elements.sensors import *  # noqa: F403  (declared in `scenic.language.names`)
     from scenic.runtime.elements.specifiers import specifier
+    from scenic.runtime.python.allowed import allowed
     from scenic.runtime.python.bounded import bounded
     from scenic.runtime.scenes.established_api import setDebuggingOptions, setSeed
     from scenic.simulators.replays import Conditioned
@@ -65,6 +66,7 @@ _HOMES = MappingProxyType(
         "ScenicWarning": "scenic.language.errors",
         "SpecifierError": "scenic.language.errors",
         "analyze": "scenic.pipeline",
+        "allowed": "scenic.runtime.python.allowed",
         "bounded": "scenic.runtime.python.bounded",
         "estimate": "scenic.estimation.estimating",
         "falsify": "scenic.falsification.search",
@@ -102,6 +104,7 @@ __all__ = [
     "Sobol",
     "SpecifierError",
     "analyze",
+    "allowed",
     "bounded",
     "estimate",
     "falsify",

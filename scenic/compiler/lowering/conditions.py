@@ -319,6 +319,12 @@ class _Symbolic:
 
     def _comparison(self, node: ast.Compare) -> ast.expr:
         """``a < b < c`` becomes ``all_of(compare("<", a, b), compare("<", b, c))`` with ``b`` evaluated once."""
+        distinct = _number_of_distinct(node)
+        if distinct is not None:
+            *functions, values, count = distinct
+            if any(self._resolution.binding(each) is not None for each in functions):
+                raise _OpaqueError  # The program's own functions of these names.
+            return prelude_call("differ", [*functions, *self._all([values, count])], node)
         left = self.expression(node.left)
         pairs: list[ast.expr] = []
         begin: ast.expr = node.left
@@ -451,6 +457,22 @@ def _over_elements(node: ast.Call) -> tuple[ast.Name, ast.expr] | None:
             return callee, elements
         case ast.Call(func=ast.Name(id="min" | "max") as callee, args=[ast.GeneratorExp() as elements]):
             return callee, elements
+    return None
+
+
+def _number_of_distinct(node: ast.Compare) -> tuple[ast.Name, ast.Name, ast.expr, ast.expr] | None:
+    """The two functions, the values and the number of ``len(set(values)) == number``."""
+    match node:
+        case ast.Compare(
+            left=ast.Call(
+                func=ast.Name(id="len") as length,
+                args=[ast.Call(func=ast.Name(id="set") as made, args=[values], keywords=[])],
+                keywords=[],
+            ),
+            ops=[ast.Eq()],
+            comparators=[count],
+        ) if not isinstance(values, ast.Starred):
+            return length, made, values, count
     return None
 
 

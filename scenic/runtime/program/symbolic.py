@@ -136,6 +136,12 @@ class Symbolic:
         self.provided(name, function)
         return unrolling.over(name, values)
 
+    def differ(self, length: object, made: object, values: object, count: object) -> Any:
+        """``len(set(values)) == count``; ``length`` and ``made`` are what the program has under the two names."""
+        self.provided("len", length)
+        self.provided("set", made)
+        return unrolling.differ(values, count)
+
     def construct(self, name: str, function: object, *args: Any, **keywords: Any) -> Any:
         """A region or vector that a condition makes."""
         return constructed(self.provided(name, function), *args, **keywords)

@@ -7,12 +7,13 @@ for each of them while the program is loaded; that gives the values that Python 
 
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from itertools import combinations
 from typing import Any, Final
 
 from scenic.graph.kinds import Kind
 from scenic.runtime.description.conditions import NotSymbolicError, connect, truth
 from scenic.runtime.ground.context import current
-from scenic.runtime.values.values import as_node, as_value, operate
+from scenic.runtime.values.values import as_node, as_value, is_choice_of_frozen, operate
 
 MOST: Final = 1000
 """Elements that are unrolled: more would make the graph large."""
@@ -69,6 +70,17 @@ def over(name: str, values: object) -> Any:
     return total
 
 
+def differ(values: object, count: object) -> Any:
+    """``len(set(values)) == count`` where it means that all elements of a fixed sequence differ."""
+    elements = _fixed(values)
+    if type(count) is not int or count != len(elements) or count * (count - 1) // 2 > MOST:
+        raise NotSymbolicError
+    nodes = [as_node(value) for value in elements]
+    if not all(node.kind.is_number for node in nodes) and not all(map(is_choice_of_frozen, nodes)):
+        raise NotSymbolicError  # Whether others are equal is for their own methods to say.
+    return over("all", [operate("not equal", one, other) for one, other in combinations(elements, 2)])
+
+
 def _fixed(sequence: Any) -> list[Any]:
     """The elements of a sequence whose number is known, noting those that the program may still change."""
     if type(sequence) not in (list, tuple, range):
@@ -87,4 +99,4 @@ def _few(items: Iterable[object]) -> Iterable[Any]:
         yield item
 
 
-__all__ = ["each", "given", "iterated", "over"]
+__all__ = ["differ", "each", "given", "iterated", "over"]

@@ -58,9 +58,12 @@ def _is_choice_of_data(node: Node) -> bool:
 
 
 def is_choice_of_frozen(node: Node) -> bool:
-    """Return whether a node is an object that never changes or ``None``, or a choice among such constants."""
+    """Return whether a node is an object that never changes, a text or ``None``, or a choice among such constants."""
     options = node.operands[1:] if node.operation is TABLE["select"] else (node,)
-    return all(each.is_constant and (each.value is None or is_frozen(each.value)) for each in options)
+    return all(
+        each.is_constant and (each.value is None or type(each.value) is str or is_frozen(each.value))
+        for each in options
+    )
 
 
 def _identical(_call: Call, left: Any, right: Any) -> Any:

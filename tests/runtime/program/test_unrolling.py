@@ -11,7 +11,8 @@ ego = new Object at (Range(-5, 5), Range(-5, 5)), with allowCollisions True
 others = [new Object at (Range(-9, 9), Range(-9, 9)), with allowCollisions True for i in range(3)]
 pair = (others[0], ego)
 limits, either = (3, 4, 5), Uniform(others, pair)
-x, n = Range(-3, 3), DiscreteRange(0, 4)
+x, n, m = Range(-3, 3), DiscreteRange(0, 4), DiscreteRange(2, 9)
+colour, other = Uniform('red', 'blue'), Uniform('blue', 'red', 'black')
 def same(value):
     return value
 class Spot(Point):
@@ -37,6 +38,8 @@ UNROLLED = (
     "all(all(abs(o.position.x - p.position.x) < 8 for p in pair) for o in others)",
     "any([x > 1, n > 2])",
     "all([])",
+    "len(set([n, m, 7])) == 3",
+    "colour is not other",
     "ego.position.x > 0 and any(o.position.x > i for i in range(3) for o in pair)",
     "ego.position in RectangularRegion((1, 2), 30 deg, 6, length=4)",
     "ego in CircularRegion(Vector(others[0].position.x, 1), radius=n + 1)",
@@ -60,6 +63,9 @@ OPAQUE = (
     "(distance from ego to (new Spot at (x, 2))) < 9",
     "(distance from ego to (new Point at (x, 2), with note 3)) < 9",
     "ego.position in CircularRegion(*[(0, 0), 9])",
+    "len(set([n, m, 7])) == 2",
+    "len(set([ego, others[0]])) == 2",
+    "len(set((colour, other, 'green'))) == 3",
 )
 """Conditions that Python computes."""
 
