@@ -133,7 +133,8 @@ def _bunch(engine: Engine, kinds: Sequence[Kind], groups: int, may_meet: NDArray
         member = np.arange(count) * len(kind.members) // count
         scenes = np.arange(count) % TRIED
         batch = attempts_at_kind(engine, kind, pending, scenes, member, np.ones(count, dtype=np.int64))
-        bodies.add([item.body(batch) for item in kind.objects], kind.numbers[member[batch.rows]])
+        if len(batch.rows):
+            bodies.add([item.body(batch) for item in kind.objects], kind.numbers[member[batch.rows]])
     pairs, met = bodies.pairs(may_meet)
     return int(np.clip(np.sqrt(2 * BUNCHED * (pairs + 1) / (met + 0.5)), 2, groups))
 
@@ -203,6 +204,8 @@ def attempts_at_kind(
     source = Aliased(engine.source_of(lanes), kind.addresses, kind.table, member)
     batch = engine.batch(source, domain=kind.domain)
     for place, joint in enumerate(kind.joints):
+        if not len(batch.rows):
+            return batch  # operations need not work on no lane at all
         begun = time.perf_counter()
         batch.need(joint.check.nodes)
         verdict = joint.check.test(batch)
@@ -212,7 +215,8 @@ def attempts_at_kind(
         alive = verdict.passes
         engine.note(joint.number, len(alive), int(np.count_nonzero(alive)), time.perf_counter() - begun)
         batch.keep(alive)
-    batch.need([node for item in kind.objects for node in item.all])
+    if len(batch.rows):
+        batch.need([node for item in kind.objects for node in item.all])
     return batch
 
 

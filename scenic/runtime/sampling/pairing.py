@@ -281,6 +281,8 @@ class _Search:
         member = self._member[leaves]
         batch = attempts_at_kind(self._engine, kind, self._pending, scenes, member, attempts)
         good = batch.rows.copy()
+        if not len(good):
+            return good
         bodies = [item.body(batch) for item in kind.objects]
         first = self._bodies.add(bodies, kind.numbers[member[good]])
         start, stop = self._made, self._made + len(good)

@@ -1,6 +1,7 @@
 """Crowds whose groups are drawn apart, alike ones as lanes: the same law, the same invariants."""
 
 from itertools import combinations
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
+from scenic import scenarioFromFile
 from scenic.graph.points import Sobol
 from scenic.runtime.geometry.contact.collision import collide
 from scenic.runtime.geometry.meshes import primitives
@@ -165,6 +167,12 @@ def crowds(draw: st.DrawFn) -> tuple[list[Body], np.ndarray[Any, Any], int]:
     for body in bodies:
         body.poses.orientation[:] /= np.linalg.norm(body.poses.orientation, axis=1, keepdims=True)
     return bodies, random.integers(0, 3, count), lanes
+
+
+def test_attempts_that_all_fail_are_followed_by_others() -> None:
+    # Chairs that stand on nothing fail at the first check, so that others have no lane left.
+    room = Path(__file__).parents[3] / "examples" / "indoor" / "furnished_room.scenic"
+    assert len(scenarioFromFile(room).sample(2, seed=1)) == 2
 
 
 @given(crowds())
