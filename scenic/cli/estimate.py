@@ -4,6 +4,7 @@ import secrets
 import shlex
 import sys
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -28,6 +29,7 @@ from scenic.formats.files import safe_name
 if TYPE_CHECKING:
     from scenic.estimation.estimate import Asked, Estimate
     from scenic.estimation.estimating import Runs
+    from scenic.falsification.lineages import Held
     from scenic.runtime.scenes.scenario import Scenario
 
 __all__ = ["estimate"]
@@ -36,19 +38,25 @@ _SCREEN: Final = SinkPart("standard output")
 _FOLDER: Final = SinkPart("folders of estimates (-o DIR)", frozenset({"resume", "accept_changes"}))
 _PRECISION: Final = BatchPart("--precision", frozenset({"budget"}))
 _BOUND: Final = BatchPart("--at-most", frozenset({"budget", "power", "good"}))
+_RARE: Final = BatchPart("--rare", frozenset({"budget"}))
+_FOLLOW: Final = BatchPart("--follow")
+_AGAINST: Final = BatchPart("--against")
 _FOLDERS: Final = BatchPart("a folder in place of a program", frozenset({"others"}))
-_PARTS: Final = (_SCREEN, _FOLDER, _PRECISION, _BOUND, _FOLDERS)
+_PARTS: Final = (_SCREEN, _FOLDER, _PRECISION, _BOUND, _RARE, _FOLDERS)
 
 _WITHOUT: Final = {
     _PRECISION: BatchPart("--precision", refuses=frozenset({"count", "at_most"})),
     _BOUND: BatchPart("--at-most", refuses=frozenset({"count"})),
+    _RARE: BatchPart("--rare", refuses=frozenset({"count", "at_most", "precision", "first", "follow"})),
+    _FOLLOW: BatchPart("--follow", refuses=frozenset({"at_most", "precision", "hold"})),
+    _AGAINST: BatchPart("--against", refuses=frozenset({"at_most", "precision", "rare", "follow"})),
     _FOLDERS: BatchPart(
         "a folder in place of a program",
         refuses=frozenset(
             {
                 "count", "seed", "jobs", "dask", "resume", "accept_changes", "first", "requirements", "objective", "expression",
                 "threshold", "confidence", "precision", "at_most", "good", "power", "budget", "time_limit", "static", "simulator",
-                "max_steps", "timestep", "swept", "scenario", "model", "mode_2d", "output",
+                "max_steps", "rare", "follow", "hold", "against", "timestep", "swept", "scenario", "model", "mode_2d", "output",
             }
         ),
     ),
@@ -73,6 +81,10 @@ class _EstimateRequest(BatchRequest):
     budget: int | None
     time_limit: float | None
     static: bool
+    rare: bool
+    follow: Path | None
+    hold: str | None
+    against: str | None
     simulator: str | None
     max_steps: int
     timestep: float | None
@@ -87,34 +99,59 @@ class _EstimateRequest(BatchRequest):
         chosen: list[BatchPart] = [_SCREEN, *([_FOLDER] if self.output is not None else [])]
         if self.path.is_dir():
             return [*chosen, _FOLDERS, _WITHOUT[_FOLDERS]]
-        if self.precision is not None:
-            return [*chosen, _PRECISION, _WITHOUT[_PRECISION]]
-        return chosen if self.at_most is None else [*chosen, _BOUND, _WITHOUT[_BOUND]]
+        ways = {
+            _RARE: self.rare, _PRECISION: self.precision is not None, _BOUND: self.at_most is not None,
+            _FOLLOW: self.follow is not None, _AGAINST: self.against is not None,
+        }  # fmt: skip
+        for way, is_chosen in ways.items():
+            if is_chosen:
+                chosen += [way, _WITHOUT[way]]
+        return chosen
 
     def asked(self, settings: int) -> "Asked":
         """The question to the runs of each of some settings; all intervals hold together (Bonferroni)."""
-        from scenic.estimation.estimating import asked_of
+        from scenic.estimation.asking import asked_of
 
         return asked_of(
-            runs=self.count if self.precision is None and self.at_most is None else self.budget,
+            runs=None if self.precision is not None or self.at_most is not None or self.rare else self.count,
+            budget=self.budget,
             confidence=self.confidence,
             precision=self.precision,
             at_most=self.at_most,
             good=self.good,
             power=self.power,
+            rare=self.rare,
+            follows=self.follow is not None,
             together=settings,
         )
 
-    def runs(self, scenario: "Scenario", seed: int) -> "Runs":
-        """The runs of one setting."""
+    def runs(self, scenario: "Scenario", seed: int, budget: int | None) -> "Runs":
+        """The runs of one setting; ``budget`` is that of a splitting."""
         from scenic.estimation.estimating import Runs
+        from scenic.estimation.following import guide_of
         from scenic.estimation.requirements import goals_of
 
         goals = goals_of(scenario, self.requirements, self.objective, self.expression)
         return Runs(
             scenario, seed, goals, self.threshold, self.simulator,
-            self.static, self.max_steps, self.timestep, self.first,
+            self.static, self.max_steps, self.timestep, self.first, self._held(scenario, seed), budget,
+            None if self.follow is None else guide_of(self.follow, scenario.digest),
         )  # fmt: skip
+
+    def _held(self, scenario: "Scenario", seed: int) -> "Held | None":
+        """The scene that all runs have, if there is one."""
+        from scenic.estimation.estimating import held_of
+
+        if self.hold is None:
+            return None
+        word, _, number = self.hold.partition(":")
+        if word == "scene" and (not number or number.isdecimal()):
+            return held_of(scenario, int(number or 0), seed)
+        if not Path(self.hold).is_file():
+            raise click.UsageError(
+                f"--hold {self.hold}: neither 'scene', 'scene:K' nor the file of a saved scene"
+            )
+        return held_of(scenario, scenario.replay(self.hold), seed)
 
 
 def _report(title: str, results: "Mapping[str, Estimate]") -> bytes:
@@ -179,11 +216,35 @@ _FILES: Final = (FileSink("report", _report, lambda page: check_page(page, "--re
     default=0.9,
     help="Of --at-most: the chance of that answer then.  [default: 0.9]",
 )
-@click.option("--budget", metavar="N", type=click.IntRange(min=1), help="Runs at most.  [default: no limit]")
+@click.option(
+    "--budget",
+    metavar="N",
+    type=click.IntRange(min=1),
+    help="Runs at most, of --rare 10000 by default.  [default: no limit]",
+)
 @click.option(
     "--time-limit", metavar="T", type=float, callback=seconds, help="Seconds after which no new run begins."
 )
 @click.option("--static", is_flag=True, help="Take scenes alone, without simulations.")
+@click.option(
+    "--rare", is_flag=True, help="Failures are rare: make runs that lead to them step by step (splitting)."
+)
+@click.option(
+    "--follow",
+    metavar="DIR",
+    type=click.Path(path_type=Path, exists=True, file_okay=False),
+    help="Draw runs from where a search by --sampler ce or cma has found counterexamples (importance sampling).",
+)
+@click.option(
+    "--hold",
+    metavar="SCENE",
+    help="Let all runs have one scene: 'scene' (the first), 'scene:K', or the file of a saved scene.",
+)
+@click.option(
+    "--against",
+    metavar="OTHER.scenic",
+    help="Compare with another program, by the same runs (McNemar's test).",
+)
 @course_options
 @swept_program_options
 @click.option(
@@ -221,13 +282,16 @@ def estimate(**options: Any) -> int:
     settings = settings_of(request.swept)
     asked = request.asked(len(settings))
     seed, is_drawn = _seed(request)
+    budget = asked.runs if request.rare else None
     programs = [
         (
-            request.runs(request.load(parameters), seed),
+            request.runs(request.load(parameters), seed, budget),
             ", ".join(f"{name}={value}" for name, value in different.items()),
         )
         for parameters, different in settings
     ]
+    if request.against is not None:
+        programs = _both(request, programs, seed)
     for runs, _ in programs:
         runs.check()
     if is_drawn:
@@ -238,6 +302,17 @@ def estimate(**options: Any) -> int:
 
 def _is_answered(result: "Estimate") -> bool:
     return result.is_finished and result.answer is not False and result.runs > result.total.unknown
+
+
+def _both(
+    request: _EstimateRequest, programs: "list[tuple[Runs, str]]", seed: int
+) -> "list[tuple[Runs, str]]":
+    """The runs of the program and of the one to compare with, which is loaded in the same way."""
+    if len(programs) > 1:
+        raise click.UsageError("--against does not go with several values of a parameter (-p)")
+    (parameters, _), *_ = settings_of(request.swept)
+    other = replace(request, file=request.against or request.file)
+    return [(programs[0][0], "first"), (request.runs(other.load(parameters), seed, None), "second")]
 
 
 def _seed(request: _EstimateRequest) -> tuple[int, bool]:
@@ -273,6 +348,7 @@ def _estimates(
 ) -> "dict[str, Estimate]":
     """Estimate for each program, and write what is wanted; returns the results by the labels of the programs."""
     from scenic.estimation.estimating import Stop, estimate_runs
+    from scenic.estimation.sentences import comparison_words
     from scenic.estimation.store import EstimateFolder
 
     results: dict[str, Estimate] = {}
@@ -289,7 +365,12 @@ def _estimates(
                 )  # fmt: skip
             stop = Stop(request.time_limit, lambda _row: advance(1, 1))
             results[label] = estimate_runs(runs, asked, stop, engine=engine, folder=folder)
+            if request.against is not None and label == "second":
+                results["first"].other = results[label]
             _show(label, results[label])
+        if request.against is not None:
+            for line in comparison_words(results["first"]):
+                print(line)
         write_files(request, _FILES, request.path.name, results)
     return results
 
@@ -305,7 +386,7 @@ def _show(label: str, result: "Estimate") -> None:
     if len(result.requirements) > 1:
         for tally in result.requirements:
             interval = tally.interval(result.confidence, at_any_time=result.at_any_time)
-            print(f"  {tally.label}: {described(tally, interval, result.confidence)}")
+            print(f"  {tally.label}: {described(tally.share, interval, result.confidence)}")
     for line in notes(result):
         print(line)
     first = next((row for row in result.rows if row["status"] == "counterexample"), None)

@@ -7,6 +7,9 @@ from pathlib import Path
 from typing import Any, Final, Literal
 
 from scenic.dataclass import dataclass
+from scenic.estimation.branching import Rare
+from scenic.estimation.following import Weighted
+from scenic.statistics.comparisons import PairedComparison
 from scenic.statistics.intervals import Interval, exact_interval
 from scenic.statistics.sequences import sequence_interval
 from scenic.statistics.sequential_test import BoundTest
@@ -157,8 +160,11 @@ class Estimate:
         folder: where the runs are kept.
         is_static: whether runs are scenes alone.
         is_repeatable: whether a run that was made again was the same; ``None`` if none was.
+        rare: the outcome of a splitting; without enough repetitions its first runs are used as plain ones.
+        weighted: the outcome of importance sampling.
         answer: of a bound: whether the probability is at most that; ``None`` while it is not known.
         stop_reason: why there are no more runs, in words.
+        other: the estimate of another program with the same runs.
 
     """
 
@@ -172,23 +178,28 @@ class Estimate:
     folder: Path | None = None
     is_static: bool = False
     is_repeatable: bool | None = None
+    rare: Rare | None = None
+    weighted: Weighted | None = None
     answer: bool | None = None
     stop_reason: str = ""
+    other: "Estimate | None" = None
 
     @property
     def runs(self) -> int:
-        """Number of runs."""
-        return self.total.runs
+        """Number of runs; of a splitting also those that moves have made."""
+        return self.total.runs if self.rare is None else len(self.rows)
 
     @property
     def violations(self) -> int:
         """Number of counterexamples among them."""
-        return self.total.violations
+        return sum(row["status"] == VIOLATED for row in self.rows)
 
     @property
     def probability(self) -> float:
-        """The estimate; NaN without a run that has an outcome."""
-        return self.total.share
+        """The estimate; NaN where nothing is known."""
+        if self.rare is not None and self.rare.is_known:
+            return self.rare.probability
+        return self.total.share if self.weighted is None else self.weighted.probability
 
     @property
     def confidence(self) -> float:
@@ -198,7 +209,26 @@ class Estimate:
     @property
     def interval(self) -> Interval:
         """The interval of the probability."""
+        if self.rare is not None and self.rare.is_known:
+            return self.rare.interval(self.confidence)
+        if self.weighted is not None:
+            return self.weighted.interval(self.confidence)
         return self.total.interval(self.confidence, at_any_time=self.at_any_time)
+
+    @property
+    def comparison(self) -> PairedComparison | None:
+        """The comparison with the other program: of all runs that have an outcome in both."""
+        if self.other is None:
+            return None
+        theirs = {
+            row["run"]: row["status"] == VIOLATED for row in self.other.rows if row["values"] is not None
+        }
+        pairs = [
+            (row["status"] == VIOLATED, theirs[row["run"]])
+            for row in self.rows
+            if row["values"] is not None and row["run"] in theirs
+        ]
+        return PairedComparison(len(pairs), pairs.count((True, False)), pairs.count((False, True)))
 
     @property
     def method(self) -> Method:

@@ -2,10 +2,10 @@
 
 import random
 import time
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, nullcontext
 from dataclasses import field
-from itertools import count
+from itertools import count, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -14,26 +14,33 @@ import numpy as np
 from scenic.batch.engines import Engine, OverExecutor, Processes
 from scenic.batch.simulations import Running, Simulations
 from scenic.dataclass import dataclass
+from scenic.estimation.asking import asked_of
+from scenic.estimation.branching import Branching, is_of_law, rare_of, split
 from scenic.estimation.estimate import Asked, Estimate, Tally, requirement_tallies
+from scenic.estimation.following import Guide, guide_of, weighted_of
 from scenic.estimation.requirements import EstimateError, check_labels, goals_of, requirement_labels
 from scenic.estimation.store import EstimateFolder, joined, manifest_of
 from scenic.falsification.comparing import row_departures
 from scenic.falsification.evaluating import Evaluation, Failures, Task, evaluated
+from scenic.falsification.lineages import Ancestry, Held, Lineage
 from scenic.falsification.objectives import Objective
 from scenic.falsification.search import Plan
 from scenic.falsification.space import Space
 from scenic.falsification.store import read_rows
 from scenic.runtime.ground.arguments import check_seconds, whole_number
+from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS
 from scenic.statistics.sequences import is_checked
-from scenic.statistics.sequential_test import BoundTest
+from scenic.statistics.splitting import REPETITIONS, Move, Splitting
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from scenic.runtime.scenes.scenario import Scenario
+    from scenic.runtime.scenes.scene import Scene
     from scenic.simulators.simulator import Simulator
 
-__all__ = ["Runs", "Stop", "asked_of", "estimate", "estimate_runs", "load_estimate"]
+__all__ = ["Runs", "Stop", "estimate", "estimate_runs", "held_of", "load_estimate"]
 
 _STATIC_TOGETHER: Final = 4096
 """Scenes that are evaluated together, at most."""
@@ -62,6 +69,9 @@ class Runs:
         max_steps: steps of a simulation at most.
         timestep: seconds in a step.
         first: number of the first run.
+        held: a scene that all runs have.
+        budget: runs of a splitting, which decides about them; ``None`` for runs of the program's law.
+        guide: where importance sampling draws.
 
     """
 
@@ -74,9 +84,20 @@ class Runs:
     max_steps: int | None = 100
     timestep: float | None = None
     first: int = 0
+    held: Held | None = None
+    budget: int | None = None
+    guide: Guide | None = None
 
     def check(self) -> None:
         """Raise `EstimateError` where there are no such runs."""
+        if self.is_static and self.held is not None:
+            raise EstimateError(
+                "in one scene there is nothing to estimate without simulations", help="leave out --static"
+            )
+        if self.budget is not None and self.first:
+            raise EstimateError(
+                "the runs of a splitting begin with number 0", help="leave out --first, or --rare"
+            )
         labels = requirement_labels(self.scenario)
         are_verdicts = [item.is_verdict for item in self.objectives]
         if self.is_static and any(are_verdicts):
@@ -103,7 +124,13 @@ class Runs:
             self.seed, "none", None, self.objectives, self.threshold, "none", None, self.simulator,
             self.is_static, self.max_steps, self.timestep,
         )  # fmt: skip
-        return {**plan.settings(self.scenario), "first": self.first}
+        return {
+            **plan.settings(self.scenario),
+            "first": self.first,
+            "held": None if self.held is None else self.held.to_data(),
+            "budget of the splitting": self.budget,
+            "guide": None if self.guide is None else self.guide.to_data(),
+        }
 
     def evaluation(self) -> Evaluation:
         """The evaluation of one run."""
@@ -111,7 +138,10 @@ class Runs:
         if not self.is_static:
             running = Running(self.seed, self.max_steps, self.timestep, tries=1)
             simulations = Simulations(self.scenario, self.simulator, running)
-        return Evaluation(self.scenario, simulations, self.objectives, Space(()), self.seed, self.threshold)
+        return Evaluation(
+            self.scenario, simulations, self.objectives, Space(()), self.seed, self.threshold,
+            most_attempts=None if self.guide is None else 1,
+        )  # fmt: skip
 
 
 @dataclass
@@ -126,50 +156,6 @@ class Stop:
 
     time_limit: float | None = None
     told: Callable[[Mapping[str, Any]], None] = field(default=lambda _row: None)
-
-
-def asked_of(
-    *,
-    runs: int | None,
-    confidence: float = 0.95,
-    precision: float | None = None,
-    at_most: float | None = None,
-    good: float | None = None,
-    power: float = 0.9,
-    together: int = 1,
-) -> Asked:
-    """Make a question of single options; raises `EstimateError` for values that are not allowed or contradict each other.
-
-    The intervals and tests of so many estimates hold ``together`` with the confidence: each gets its share of the chance to miss
-    (Bonferroni).
-    """
-    for name, value in (
-        ("confidence", confidence), ("precision", precision), ("bound", at_most), ("good probability", good), ("power", power),
-    ):  # fmt: skip
-        if value is not None and not 0 < value < 1:
-            raise EstimateError(
-                f"the {name} {value:g} is not between 0 and 1",
-                help="write a probability, such as 0.01 or 1e-3",
-            )
-    confidence = 1 - (1 - confidence) / together
-    if precision is not None and at_most is not None:
-        raise EstimateError(
-            "a precision and a bound contradict each other: each says when there are enough runs",
-            help="ask for one of them; a test of a bound needs the fewest runs",
-        )
-    if good is not None and at_most is None:
-        raise EstimateError("a good probability belongs to a bound", help="name the bound: --at-most P")
-    if precision is not None:
-        return Asked("precision", confidence, runs, precision)
-    if at_most is None:
-        return Asked("fixed number", confidence, 1000 if runs is None else runs)
-    better = at_most / 2 if good is None else good
-    if better >= at_most:
-        raise EstimateError(
-            f"the good probability {better:g} is not below the bound {at_most:g}",
-            help="the test tells one from the other: the closer they are, the more runs it needs",
-        )
-    return Asked("bound", confidence, runs, test=BoundTest(at_most, better, confidence, power))
 
 
 def estimate_runs(
@@ -204,6 +190,7 @@ class _Course:
         self._runs, self._asked, self._stop = runs, asked, stop
         self._engine, self._folder = engine, folder
         self._evaluation = runs.evaluation()
+        self._ancestry = Ancestry(runs.scenario, runs.seed, runs.held)
         self._rows: list[dict[str, Any]] = []
         self._total = Tally()
         self._failures = Failures()
@@ -228,17 +215,12 @@ class _Course:
         """Make runs until they are enough; returns the words for another end."""
         begun = time.monotonic()
         kept = [] if self._folder is None else self._folder.rows
-        for row in kept:
-            if self._is_enough():
-                return ""
-            self._take(row)
         if self._is_enough():
             return ""
-        start = self._runs.first + len(self._rows)
         try:
-            with closing(self._new_rows(start)) as rows:
-                for row in rows:
-                    if self._folder is not None:
+            with closing(self._all_rows(kept)) as rows:
+                for place, row in enumerate(rows):
+                    if self._folder is not None and place >= len(kept):
                         self._waiting.append(row)
                     self._take(row)
                     self._keep(_KEPT_TOGETHER)
@@ -252,7 +234,8 @@ class _Course:
 
     def _take(self, row: dict[str, Any]) -> None:
         self._rows.append(row)
-        self._total.add(row)
+        if is_of_law(row):
+            self._total.add(row)
         self._failures.note(row)
         self._stop.told(row)
         if self._total.runs - self._total.unknown == _SURE and not self._runs.is_static:
@@ -269,18 +252,50 @@ class _Course:
 
     def _is_enough(self) -> bool:
         most = self._asked.runs
+        if self._runs.budget is not None:
+            return False  # a splitting ends by itself
         if most is not None and len(self._rows) >= most:
             return True
         if self._asked.method == "precision" and not is_checked(self._total.runs):
             return False
         return _answer(self._asked, self._total)[0]
 
+    def _all_rows(self, kept: list[dict[str, Any]]) -> Generator[dict[str, Any]]:
+        """The rows of the folder, and new ones from there on."""
+        first = self._runs.first
+        if self._runs.budget is None:
+            yield from kept
+            yield from self._new_rows(first + len(kept))
+            return
+        splitting: Splitting[Lineage] = Splitting(self._runs.seed, self._runs.budget)
+        branching = Branching(self._evaluation, self._ancestry, self._engine)
+
+        def make(number: int, moves: Sequence[Move[Lineage]]) -> Iterator[dict[str, Any]]:
+            known = kept[number : number + len(moves)]
+            yield from known
+            if len(known) < len(moves):
+                yield from branching.rows(number + len(known), moves[len(known) :])
+
+        done = 0
+        for row in split(splitting, make, self._runs.threshold):
+            done += 1
+            yield row
+        if splitting.pilot.is_flat:
+            # Nothing leads to failures: what is left of the budget goes into plain runs.
+            yield from kept[done:]
+            yield from self._new_rows(max(done, len(kept)))
+
     def _new_rows(self, start: int) -> Generator[dict[str, Any]]:
+        """Runs of the program's law, or guided ones."""
         most = self._asked.runs
         end = None if most is None else self._runs.first + most
+        numbers = count(start) if end is None else range(start, end)
+        if self._runs.guide is not None:
+            yield from self._guided_rows(self._runs.guide, numbers)
+            return
         if self._evaluation.simulations is not None:
-            numbers = count(start) if end is None else range(start, end)
-            yield from evaluated(self._evaluation, (Task(k, {}) for k in numbers), self._engine)
+            tasks = (self._ancestry.task(Lineage(run)) for run in numbers)
+            yield from evaluated(self._evaluation, tasks, self._engine)
             return
         size = 64
         while end is None or start < end:
@@ -288,12 +303,35 @@ class _Course:
             yield from self._evaluation.together(start, np.zeros((some, 0)))
             start, size = start + some, min(2 * size, _STATIC_TOGETHER)
 
+    def _guided_rows(self, guide: Guide, numbers: Iterable[int]) -> Generator[dict[str, Any]]:
+        seed, pending = self._runs.seed, iter(numbers)
+        while some := list(islice(pending, _STATIC_TOGETHER // 8)):
+            points = np.array([guide.point(seed, run) for run in some])
+            weights = guide.proposal.weights(points)
+            rows: Iterator[dict[str, Any]]
+            if self._evaluation.simulations is None:
+                columns = dict(zip(guide.addresses, points.T, strict=True))
+                rows = self._evaluation.chosen(some[0], columns, len(some))
+            else:
+                tasks = [
+                    Task(run, dict(zip(guide.addresses, map(float, point), strict=True)))
+                    for run, point in zip(some, points, strict=True)
+                ]
+                rows = evaluated(self._evaluation, tasks, self._engine)
+            for row, point, weight in zip(rows, points, weights, strict=True):
+                named = zip(guide.addresses, map(float, point), strict=True)
+                row["numbers"] = {f"{address:016x}": number for address, number in named}
+                row["weight"] = float(weight)
+                yield row
+
     def _made_again(self) -> bool | None:
         """Make the first run once more, to see whether it is the same."""
         row = next((row for row in self._rows if row["status"] != "failed"), None)
         if row is None or self._runs.is_static:
             return None
-        return not row_departures(row, self._evaluation(Task(row["run"], {})))
+        numbers = {int(name, 16): number for name, number in row.get("numbers", {}).items()}
+        task = Task(row["run"], numbers) if numbers else self._ancestry.task(Lineage(row["run"]))
+        return not row_departures(row, self._evaluation(task))
 
 
 def _answer(asked: Asked, total: Tally) -> tuple[bool, bool | None]:
@@ -322,13 +360,18 @@ def _estimate_from(
 ) -> Estimate:
     """The estimate that follows from finished runs."""
     total = Tally()
-    for row in rows:
+    for row in filter(is_of_law, rows):
         total.add(row)
+    rare, weighted = None, None
+    if asked.method == "splitting":
+        rare = rare_of(rows, int(settings["seed"]), asked.runs or 0, settings["threshold"])
+    elif asked.method == "importance sampling":
+        weighted = weighted_of(rows)
     is_static = settings["simulator"] == "none"
     goals = settings["origin"].get("objectives") or []
     names = [goal["name"] for goal in goals if goal["is_verdict"]]
     tallies = []
-    if names:
+    if names and rare is None and weighted is None:
         tallies = requirement_tallies(rows, [name for name in names if name is not None])
     enough, answer = _answer(asked, total)
     is_whole = asked.runs is not None and len(rows) >= asked.runs
@@ -339,13 +382,19 @@ def _estimate_from(
         reason = "the precision is reached" if asked.method == "precision" else "the test has an answer"
     else:
         reason = f"the {asked.runs} runs that it may take are made" if is_whole else ""
+    if rare is not None:
+        is_done = rare.is_known and len(rare.logarithms) == REPETITIONS
+        reason = "all repetitions are finished" if is_done else reason
+        enough = is_done or is_whole
+    if weighted is not None:
+        enough = is_whole
     # Whoever has looked before deciding on more runs has not fixed their number in advance.
     looked = len({(item["method"], item["runs"]) for item in history}) > 1
     return Estimate(
         asked, rows, int(settings["seed"]), total, tallies,
         at_any_time=not is_fixed or not is_whole or looked,
         is_finished=is_whole if is_fixed else enough,
-        folder=folder, is_static=is_static, answer=answer, stop_reason=reason,
+        folder=folder, is_static=is_static, rare=rare, weighted=weighted, answer=answer, stop_reason=reason,
     )  # fmt: skip
 
 
@@ -387,6 +436,10 @@ def estimate(
     max_steps: int | None = 100,
     timestep: float | None = None,
     static: bool = False,
+    rare: bool = False,
+    follow: str | Path | None = None,
+    hold: "Scene | int | None" = None,
+    against: "Scenario | None" = None,
     processes: int = 1,
     executor: "Executor | None" = None,
     folder: str | Path | None = None,
@@ -396,7 +449,8 @@ def estimate(
 
     Without ``precision`` and ``at_most`` the number of runs is fixed, and the interval is that of Clopper and Pearson (1934). With a
     precision, runs are made until the interval is as narrow; it is one of a confidence sequence, which holds however often one looks.
-    With ``at_most``, Wald's sequential test (1945) decides between ``good`` and that bound.
+    With ``at_most``, Wald's sequential test (1945) decides between ``good`` and that bound. ``rare`` splits runs by how near they come to
+    a failure (Cérou and Guyader 2007), and ``follow`` draws them from where a search has found counterexamples.
 
     Args:
         scenario: the program.
@@ -406,7 +460,7 @@ def estimate(
         minimize: instead, an expression over records, or over parameters.
         threshold: largest value of a counterexample, where there is an objective.
         n: number of runs where it is fixed, 1,000 by default.
-        budget: runs at most, with a precision or a bound; no limit by default.
+        budget: runs at most, with a precision, a bound or rare failures; 10,000 by default of the last, else no limit.
         confidence: chance of the interval to contain the probability, between 0 and 1.
         precision: half the width of the interval to reach.
         at_most: the bound of the probability.
@@ -418,6 +472,10 @@ def estimate(
         max_steps: steps of a simulation at most.
         timestep: seconds in a step.
         static: take scenes alone, without simulations.
+        rare: failures are rare: make runs that lead to them step by step.
+        follow: the folder of a search by the sampler ``ce`` or ``cma``.
+        hold: a scene, or the number of one, in which all runs take place: only what is drawn in time varies.
+        against: another program, which gets the same runs; the result has its estimate and the comparison, too.
         processes: number of processes that simulate; changes speed, never results.
         executor: runs the simulations in place of processes of our own, ``processes`` at a time.
         folder: folder that stores the runs.
@@ -431,42 +489,50 @@ def estimate(
     """
     check_seconds(timestep, "timestep")
     names = [requirement] if isinstance(requirement, str) else list(requirement or ())
-    goals = goals_of(scenario, names, objective, minimize)
-    is_fixed = precision is None and at_most is None
-    if (budget if is_fixed else n) is not None:
-        raise EstimateError(
-            "a budget goes with a precision or a bound"
-            if is_fixed
-            else "a number of runs contradicts a precision or a bound",
-            help="fix the number of runs by `n`, or give a `budget` for a precision or a bound",
-        )
-    most = n if is_fixed else budget
     asked = asked_of(
-        runs=None if most is None else whole_number(most, "n" if is_fixed else "budget", 1),
+        runs=None if n is None else whole_number(n, "n", 1),
+        budget=None if budget is None else whole_number(budget, "budget", 1),
         confidence=confidence,
         precision=precision,
         at_most=at_most,
         good=good,
         power=power,
+        rare=rare,
+        follows=follow is not None,
     )
-    runs = Runs(
-        scenario,
-        random.getrandbits(63) if seed is None else whole_number(seed, "seed"),
-        goals,
-        threshold,
-        simulator,
-        static,
-        max_steps,
-        timestep,
-        whole_number(first, "first", 0),
-    )
-    runs.check()
-    place = None
-    if folder is not None:
-        place = EstimateFolder(Path(folder), runs.settings(), asked.to_data(), resume=resume)
     engine: Engine | None = None
     if executor is not None:
         engine = OverExecutor(executor, max(2, processes))
     elif processes > 1:
         engine = Processes(processes)
-    return estimate_runs(runs, asked, Stop(time_limit), engine=engine, folder=place)
+    drawn = random.getrandbits(63) if seed is None else whole_number(seed, "seed")
+    results = []
+    for label, program in (("first", scenario), ("second", against)):
+        if program is None:
+            continue
+        held = None if hold is None else held_of(program, hold, drawn)
+        runs = Runs(
+            program, drawn, goals_of(program, names, objective, minimize), threshold, simulator, static, max_steps, timestep,
+            whole_number(first, "first", 0), held, asked.runs if rare else None,
+            None if follow is None else guide_of(Path(follow), program.digest),
+        )  # fmt: skip
+        runs.check()
+        place = None
+        if folder is not None:
+            path = Path(folder) if against is None else Path(folder) / label
+            place = EstimateFolder(path, runs.settings(), asked.to_data(), resume=resume)
+        results.append(estimate_runs(runs, asked, Stop(time_limit), engine=engine, folder=place))
+    results[0].other = results[1] if against is not None else None
+    return results[0]
+
+
+def held_of(scenario: "Scenario", scene: "Scene | int", seed: int) -> Held:
+    """The draws of a scene, or of the one of a number; raises `EstimateError` if there is none."""
+    if not isinstance(scene, int):
+        return Held.of(scene)
+    (found,) = scenario.chosen({}, 1, seed=seed, first=scene, max_attempts=DEFAULT_ATTEMPTS)
+    if isinstance(found, Exhausted):
+        raise EstimateError(
+            f"no scene {scene} of the seed {seed} meets the requirements", help=found.message()
+        )
+    return Held.of(found)

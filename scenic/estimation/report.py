@@ -5,8 +5,11 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Final
 
+import numpy as np
+
+from scenic.estimation.branching import Rare
 from scenic.estimation.estimate import Estimate, Tally
-from scenic.estimation.sentences import described, headline, method_words, notes, percent
+from scenic.estimation.sentences import comparison_words, described, headline, method_words, notes, percent
 from scenic.falsification.report import page_of, table
 
 __all__ = ["estimate_page", "interval_plot"]
@@ -29,7 +32,17 @@ def estimate_page(results: Mapping[str, Estimate], title: str) -> str:
     parts = [f"<h1>Estimate for {html.escape(title)}</h1>"]
     if len(results) > 1:
         head = ("setting", "runs", "counterexamples", "probability")
-        parts.append(table(head, [_row(label, item, item.total) for label, item in results.items()]))
+        rows = [
+            (
+                label,
+                f"{item.runs:,}",
+                f"{item.violations:,}",
+                described(item.probability, item.interval, item.confidence),
+            )
+            for label, item in results.items()
+        ]
+        parts.append(table(head, rows))
+    parts += [f"<p>{html.escape(line)}</p>" for item in results.values() for line in comparison_words(item)]
     for label, result in results.items():
         if label:
             parts.append(f"<h1>{html.escape(label)}</h1>")
@@ -39,7 +52,12 @@ def estimate_page(results: Mapping[str, Estimate], title: str) -> str:
 
 def _row(label: str, result: Estimate, tally: Tally) -> tuple[str, ...]:
     interval = tally.interval(result.confidence, at_any_time=result.at_any_time)
-    return label, f"{tally.runs:,}", f"{tally.violations:,}", described(tally, interval, result.confidence)
+    return (
+        label,
+        f"{tally.runs:,}",
+        f"{tally.violations:,}",
+        described(tally.share, interval, result.confidence),
+    )
 
 
 def _section(result: Estimate) -> list[str]:
@@ -49,7 +67,9 @@ def _section(result: Estimate) -> list[str]:
     remarks = "".join(f"<li>{html.escape(line)}</li>" for line in notes(result))
     if remarks:
         parts.append(f"<ul>{remarks}</ul>")
-    if result.total.runs:
+    if result.rare is not None and result.rare.is_known:
+        parts += ["<h2>Levels</h2>", levels_plot(result.rare)]
+    elif result.total.runs and result.weighted is None:
         parts += ["<h2>Interval over runs</h2>", interval_plot(result)]
     if result.requirements:
         head = ("requirement", "runs", "violated", "probability", "presumably true", "not evaluated")
@@ -120,6 +140,51 @@ def interval_plot(result: Estimate) -> str:
         " holds at all times, red: the interval that is reported</text>"
     )
     return f"<svg viewBox='0 0 {_WIDTH} {_HEIGHT}' width='100%'>{ticks}{''.join(parts)}{words}</svg>"
+
+
+def levels_plot(rare: Rare) -> str:
+    """The probability of each level, on a logarithmic axis, by the value of the level, for each repetition, as SVG."""
+    courses = []
+    for item in rare.repetitions:
+        if item.log_probability is None:
+            continue
+        shares = [0.0, *item.shares, item.log_probability]
+        values = [*item.levels, 0.0]
+        courses.append(list(zip(values, shares[1:], strict=True)))
+    values = [value for course in courses for value, _ in course if math.isfinite(value)]
+    depth = min(share for course in courses for _, share in course) / math.log(10) * 1.05
+    left, right = max(values, default=0.0), min([*values, 0.0])
+    width = (left - right) or 1.0
+
+    def x(value: float) -> float:
+        return _LEFT + (left - value) / width * (_WIDTH - _LEFT - _RIGHT)
+
+    def y(logarithm: float) -> float:
+        return _TOP + logarithm / math.log(10) / depth * (_HEIGHT - _TOP - _BOTTOM)
+
+    ticks = "".join(
+        f"<line x1='{_LEFT - 4}' x2='{_WIDTH - _RIGHT}' y1='{y(-power * math.log(10)):.1f}' y2='{y(-power * math.log(10)):.1f}'"
+        f" stroke='#ddd'/><text x='{_LEFT - 8}' y='{y(-power * math.log(10)) + 4:.1f}' text-anchor='end'>1e-{power}</text>"
+        for power in range(int(-depth) + 1)
+    )
+    ticks += "".join(
+        f"<text x='{x(value):.1f}' y='{_HEIGHT - _BOTTOM + 18}' text-anchor='middle'>{value:.3g}</text>"
+        for value in np.linspace(left, right, 6).tolist()
+    )
+    lines = "".join(
+        f"<polyline points='{' '.join(f'{x(value):.1f},{y(share):.1f}' for value, share in course)}' fill='none'"
+        " stroke='#2e86c1' stroke-opacity='.6'/>"
+        + "".join(
+            f"<circle cx='{x(value):.1f}' cy='{y(share):.1f}' r='2.5' fill='#1b4f72'/>"
+            for value, share in course
+        )
+        for course in courses
+    )
+    words = (
+        f"<text x='{_WIDTH / 2:.0f}' y='{_HEIGHT - 8}' text-anchor='middle'>value of the requirement (0: failure); probability of a"
+        " value as small, one line for each repetition</text>"
+    )
+    return f"<svg viewBox='0 0 {_WIDTH} {_HEIGHT}' width='100%'>{ticks}{lines}{words}</svg>"
 
 
 def _ticks(top: float) -> Sequence[float]:

@@ -1,14 +1,24 @@
 """An estimate in words, for readers who know no statistics: no probability without its interval."""
 
+import math
+from statistics import NormalDist
 from typing import Final
 
+from scenic.estimation.branching import Rare
 from scenic.estimation.estimate import Estimate, Tally
 from scenic.statistics.intervals import Interval
+from scenic.statistics.weighting import LEAST_EFFECTIVE
 
-__all__ = ["counted", "described", "headline", "method_words", "notes", "percent"]
+__all__ = ["comparison_words", "counted", "described", "headline", "method_words", "notes", "percent"]
 
 _FEW: Final = 30
 """Runs below which there are too few to say much."""
+
+_WORTH: Final = 3
+"""Factor by which plain runs have to be more for that to be said."""
+
+_COMMON: Final = 0.03
+"""Probability from which failures are not rare."""
 
 _WIDE: Final = 0.1
 """Half the width of an interval that is called wide."""
@@ -24,14 +34,18 @@ def percent(confidence: float) -> str:
     return f"{100 * confidence:.10g}%"
 
 
-def described(tally: Tally, interval: Interval, confidence: float) -> str:
+def described(probability: float, interval: Interval, confidence: float) -> str:
     """A probability with its interval."""
     words = f"{percent(confidence)} interval {interval}"
-    return f"unknown ({words})" if tally.runs == tally.unknown else f"{tally.share:.3g} ({words})"
+    return f"unknown ({words})" if math.isnan(probability) else f"{probability:.3g} ({words})"
 
 
 def method_words(estimate: Estimate) -> str:
     """The way in which the interval is made."""
+    if estimate.rare is not None and estimate.rare.is_known:
+        return f"from the spread of {len(estimate.rare.logarithms)} repetitions (t interval of the logarithm; approximate)"
+    if estimate.weighted is not None:
+        return "of a weighted share (Fay and Feuer)"
     if not estimate.at_any_time:
         return "for a number of runs that was fixed in advance (Clopper and Pearson)"
     return "which holds however often one looks (confidence sequence)"
@@ -39,12 +53,12 @@ def method_words(estimate: Estimate) -> str:
 
 def headline(estimate: Estimate) -> list[str]:
     """The result in a few lines."""
-    total = estimate.total
-    known = total.runs - total.unknown
-    found = counted(total.violations, "counterexample")
+    known = sum(row["values"] is not None for row in estimate.rows)
+    found = counted(estimate.violations, "counterexample")
+    result = described(estimate.probability, estimate.interval, estimate.confidence)
     lines = [
         f"{counted(len(estimate.rows), 'run')}, {known:,} with a value, {found}",
-        f"probability of a counterexample {described(total, estimate.interval, estimate.confidence)}",
+        f"probability of a counterexample {result}",
     ]
     test = estimate.asked.test
     if test is not None:
@@ -70,11 +84,103 @@ def _answer(estimate: Estimate) -> str:
 
 def notes(estimate: Estimate) -> list[str]:
     """Remarks that a reader has to know about the result."""
+    special = _about_rare(estimate.rare, estimate) if estimate.rare is not None else _about_weights(estimate)
+    is_special = estimate.weighted is not None or (estimate.rare is not None and estimate.rare.is_known)
+    plain = [] if is_special else [*_about_ending(estimate), *_about_counts(estimate)]
+    return [*special, *plain, *_about_requirements(estimate), *_about_chance(estimate)]
+
+
+def _about_rare(rare: Rare, estimate: Estimate) -> list[str]:
+    """Remarks on a splitting."""
+    if rare.is_flat:
+        return [
+            (
+                "The values do not say how near a run comes to a failure: too many of them are equal, or plus or minus infinity, so that"
+                " there is nothing to follow. The runs that no move has made count as plain ones. A requirement about a distance or a speed"
+                " says more than one that only holds or fails."
+            )
+        ]
+    if not rare.is_known:
+        wanted = max(2 * len(estimate.rows), 40 * rare.pilot.runs)
+        return [
+            (
+                f"The budget of {estimate.asked.runs:,} runs ended before two repetitions were finished, so the interval is that of the"
+                f" {counted(estimate.total.runs, 'run')} that no move has made. Give more: about --budget {wanted}."
+            )
+        ]
+    done = len(rare.logarithms)
+    levels = max(len(item.levels) for item in rare.repetitions) + 1
+    words = [
+        (
+            f"The probability is the mean of {done} repetitions in {counted(levels, 'level')}, and the interval comes from their spread: it"
+            " is not exact, as that of a number of plain runs is."
+        )
+    ]
+    if rare.probability > _COMMON:
+        words.append("Failures are not rare here: plain runs (-n) give an exact interval.")
+    plain = _plain_runs(estimate)
+    if plain > _WORTH * len(estimate.rows):
+        words.append(f"Plain runs would have to be about {_rounded(plain):,} for an interval as narrow.")
+    if done < len(rare.repetitions) or rare.is_out_of_budget:
+        words.append(
+            f"The budget of {estimate.asked.runs:,} runs ended before the other repetitions were finished."
+        )
+    if rare.mixes_badly:
+        words.append(
+            "At some level hardly any move was accepted, or all of the last runs descend from one or two of the first ones: the"
+            " repetitions may agree with one another and yet miss ways to fail. Compare with another seed and a larger budget."
+        )
+    return words
+
+
+def _plain_runs(estimate: Estimate) -> float:
+    """The number of plain runs whose interval would be as narrow, by the normal approximation."""
+    low, high = estimate.interval
+    width = math.log(high / low) / 2 if low > 0 else math.inf
+    normal = NormalDist().inv_cdf((1 + estimate.confidence) / 2)
+    return (normal / width) ** 2 * (1 - estimate.probability) / estimate.probability
+
+
+def _rounded(number: float) -> int:
+    """A number with its first digit alone."""
+    power = 10 ** max(0, math.floor(math.log10(number)))
+    return int(round(number / power) * power)
+
+
+def _about_weights(estimate: Estimate) -> list[str]:
+    """Remarks on importance sampling."""
+    weighted = estimate.weighted
+    if weighted is None:
+        return []
+    effective = f"{weighted.effective:.0f}"
+    if not weighted.is_known:
+        return [
+            (
+                f"The counterexamples count as no more than {effective} equal ones, as their weights differ much; {LEAST_EFFECTIVE:.0f} are"
+                " needed, so there is no estimate. Make more runs (-n), search longer, or use --rare."
+            )
+        ]
     return [
-        *_about_ending(estimate),
-        *_about_counts(estimate),
-        *_about_requirements(estimate),
-        *_about_chance(estimate),
+        (
+            f"The runs were drawn where the search has found counterexamples, and are weighted to make up for that; the counterexamples"
+            f" count as {effective} equal ones."
+        )
+    ]
+
+
+def comparison_words(estimate: Estimate) -> list[str]:
+    """The comparison with another program, if there is one."""
+    pairs = estimate.comparison
+    if pairs is None:
+        return []
+    difference = described(pairs.difference, pairs.interval(estimate.confidence), estimate.confidence)
+    words = f"probability of the first less that of the second {difference}, from {counted(pairs.pairs, 'run')} of both."
+    if pairs.p_value < 1 - estimate.confidence:
+        return [
+            f"{words} So large a difference would come by chance with a probability of at most {pairs.p_value:.2g} (McNemar)."
+        ]
+    return [
+        f"{words} Such a difference may well be chance (p = {pairs.p_value:.2g}, McNemar): they are not shown to differ."
     ]
 
 
@@ -182,6 +288,12 @@ def _about_verdicts(tally: Tally, known: int) -> list[str]:
 
 
 def _about_chance(estimate: Estimate) -> list[str]:
+    if estimate.is_repeatable is False and estimate.rare is not None:
+        words = (
+            "The first run, made once more, was another: the simulator or a controller draws random numbers of its own, which moves"
+            " cannot follow. The probability and its interval may be wrong: let all random numbers follow from the program's draws."
+        )
+        return [words]
     if estimate.is_repeatable is False:
         words = (
             "The first run, made once more, was another: the simulator or a controller draws random numbers of its own, which do not"

@@ -15,7 +15,9 @@ from scenic.falsification.space import Floats, Space
 from scenic.falsification.store import number
 from scenic.formats.files import OutputError, make_folder, refusing, write
 from scenic.formats.trajectories import course_document
+from scenic.graph.draws import Words
 from scenic.language.errors import Located
+from scenic.runtime.dynamics.chosen_draws import Sourcing
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS
 from scenic.runtime.scenes.scene import Scene
@@ -61,10 +63,22 @@ class Failures:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """A run: its number, and the numbers of the draws by address."""
+    """A run to be made.
+
+    Attributes:
+        run: its number.
+        numbers: numbers of draws of its scene, by address.
+        words: further draws of its scene, by address; ``None`` if only some draws are given, and the others are those of the seed.
+        source: draws of the simulation; those of the seed by default.
+        scene: number of the scene of the seed; that of the run by default.
+
+    """
 
     run: int
     numbers: Mapping[int, float]
+    words: Mapping[int, int] | None = None
+    source: Sourcing | None = None
+    scene: int | None = None
 
 
 @dataclass(frozen=True)
@@ -80,6 +94,7 @@ class Evaluation:
         threshold: largest value of a counterexample.
         folder: where counterexamples are kept, if anywhere.
         watcher: called with the simulation of each of them, in this process.
+        most_attempts: candidates tried for one point; by default as many as its remaining draws may need.
 
     """
 
@@ -91,10 +106,13 @@ class Evaluation:
     threshold: float
     folder: Path | None = None
     watcher: Watcher | None = None
+    most_attempts: int | None = None
 
     @property
     def attempts(self) -> int:
         """Candidates tried for one point; as many as for any scene if nothing of it is chosen."""
+        if self.most_attempts is not None:
+            return self.most_attempts
         if not self.space.coordinates:
             return DEFAULT_ATTEMPTS
         searched = {item.address for item in self.space.coordinates}
@@ -103,9 +121,24 @@ class Evaluation:
     def together(self, first: int, numbers: Floats) -> Iterator[dict[str, Any]]:
         """Rows of the scenes of ``numbers`` ``(n, d)``, evaluated as columns; the first is run ``first``."""
         by_address = {item.address: numbers[:, place] for place, item in enumerate(self.space.coordinates)}
+        return self.chosen(first, by_address, len(numbers))
+
+    def chosen(self, first: int, by_address: Mapping[int, Floats], count: int) -> Iterator[dict[str, Any]]:
+        """Rows of scenes of which some draws ``(count,)`` are chosen, by address; the first is run ``first``."""
         results = self.scenario.chosen(
-            by_address, len(numbers), seed=self.seed, first=first, max_attempts=self.attempts
+            by_address, count, seed=self.seed, first=first, max_attempts=self.attempts
         )
+        return self._rows_of(results, first)
+
+    def given(
+        self, first: int, numbers: Mapping[int, Floats], words: Mapping[int, Words], count: int
+    ) -> Iterator[dict[str, Any]]:
+        """Rows of scenes whose draws ``(count,)``, by address, are given; the first is run ``first``."""
+        return self._rows_of(
+            self.scenario.of_draws(numbers, words, count, seed=self.seed, first=first), first
+        )
+
+    def _rows_of(self, results: Iterable[Scene | Exhausted], first: int) -> Iterator[dict[str, Any]]:
         for run, result in enumerate(results, first):
             if isinstance(result, Exhausted):
                 yield {"run": run, "status": "rejected", "values": None, "attempts": result.attempts}
@@ -114,6 +147,10 @@ class Evaluation:
             if min(values) <= self.threshold and self.folder is not None:
                 self._keep_scene(result, self._folder_of(run))
             yield self._row(run, values, result.attempts)
+
+    def static(self, task: Task) -> Iterator[dict[str, Any]]:
+        """The row of one scene."""
+        return self._rows_of([self._scene(task)], task.run)
 
     def __call__(self, task: Task) -> dict[str, Any]:
         """The row of one simulation. Raises nothing but interruptions.
@@ -139,10 +176,7 @@ class Evaluation:
 
     def _simulated(self, task: Task) -> dict[str, Any]:
         assert self.simulations is not None
-        columns = {place: np.array([value]) for place, value in task.numbers.items()}
-        (scene,) = self.scenario.chosen(
-            columns, 1, seed=self.seed, first=task.run, max_attempts=self.attempts
-        )
+        scene = self._scene(task)
         if isinstance(scene, Exhausted):
             return {"run": task.run, "status": "rejected", "values": None, "attempts": scene.attempts}
         waiting = None if self.folder is None else self.folder / f".run-{task.run:06d}.jsonl"
@@ -159,6 +193,7 @@ class Evaluation:
                 enableReplay=False,
                 on_state=kept.begin(),
                 onRejection=lambda error: reasons.append(str(error)),
+                source=task.source,
                 **self.simulations.course_options(),
             )
             if done is None:
@@ -180,6 +215,19 @@ class Evaluation:
             if row["status"] == "counterexample" and waiting is not None:
                 self._keep_course(scene, kept, done, about, task.run, waiting)
             return row
+
+    def _scene(self, task: Task) -> Scene | Exhausted:
+        """The scene of a run."""
+        columns = {place: np.array([value]) for place, value in task.numbers.items()}
+        number = task.run if task.scene is None else task.scene
+        if task.words is None:
+            (scene,) = self.scenario.chosen(
+                columns, 1, seed=self.seed, first=number, max_attempts=self.attempts
+            )
+        else:
+            words = {place: np.array([word], dtype=np.uint64) for place, word in task.words.items()}
+            (scene,) = self.scenario.of_draws(columns, words, 1, seed=self.seed, first=number)
+        return scene
 
     def _row(self, run: int, values: Sequence[float], attempts: int) -> dict[str, Any]:
         failed = min(values) <= self.threshold

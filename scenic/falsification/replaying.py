@@ -13,6 +13,7 @@ from scenic.batch.simulations import Running, Simulations
 from scenic.dataclass import dataclass
 from scenic.falsification.comparing import file_departures, row_departures
 from scenic.falsification.evaluating import Evaluation, Task
+from scenic.falsification.lineages import Ancestry, Held, Lineage, lineages_of
 from scenic.falsification.objectives import Objective, ObjectiveError
 from scenic.falsification.space import space_of
 from scenic.falsification.store import folders_of, kind_of, read_rows
@@ -47,6 +48,7 @@ class KeptRun:
         row: of a search, what was kept of the run; ``None`` of a simulation.
         trajectory: the file of its states, if there is one.
         scene: the file of its scene, if there is one.
+        lineage: of a run that was made by moves, those.
 
     """
 
@@ -56,6 +58,7 @@ class KeptRun:
     row: Mapping[str, Any] | None
     trajectory: Path | None = None
     scene: Path | None = None
+    lineage: Lineage | None = None
 
     @property
     def form(self) -> Form:
@@ -156,6 +159,7 @@ def _searched(folder: Path, number: int | None, worst: int | None) -> KeptRun:
         rows[number],
         file if file.exists() else None,
         scene if scene.exists() else None,
+        lineages_of(rows.values())[number] if rows[number].get("move") is not None else None,
     )
 
 
@@ -262,7 +266,8 @@ def _search_again(
         objectives = [Objective(**goal) for goal in goals]
     space = space_of(scenario, settings["space"])
     numbers = {int(address, 16): value for address, value in row.get("numbers", {}).items()}
-    if set(numbers) != {item.address for item in space.coordinates}:
+    is_guided = settings.get("guide") is not None
+    if not is_guided and set(numbers) != {item.address for item in space.coordinates}:
         raise ReplayError(
             "the program draws other values than when it was searched",
             help="replay the run with the program as it was, or search again",
@@ -281,16 +286,9 @@ def _search_again(
         float("inf"),  # so that whatever comes out is kept
         folder,
         watcher if shown else None,
+        1 if is_guided else None,
     )
-    if simulations is None:
-        import numpy as np
-
-        points = np.array([[numbers[item.address] for item in space.coordinates]])
-        (found,) = evaluation.together(run.number, points)
-    else:
-        found = evaluation(Task(run.number, numbers))
-        if found["status"] == "objective":
-            raise ObjectiveError(found["error"], help=found["help"])
+    found = _made_again(run, scenario, evaluation, numbers)
     made = folder / "counterexamples" / f"{run.number:04d}"
     result = Replay(found)
     if objectives is None:
@@ -316,6 +314,21 @@ def _search_again(
         result.pictures = watcher.pictures
         _show(result, made, scenario)
     return result
+
+
+def _made_again(
+    run: KeptRun, scenario: "Scenario", evaluation: Evaluation, numbers: Mapping[int, float]
+) -> dict[str, Any]:
+    """Return the row of a run that was made again; ``numbers`` are the draws that were chosen."""
+    held = run.settings.get("held")
+    task = Task(run.number, numbers)
+    if held is not None or run.lineage is not None:
+        ancestry = Ancestry(scenario, run.settings["seed"], None if held is None else Held.from_data(held))
+        task = ancestry.task(run.lineage or Lineage(run.number))
+    found = evaluation(task) if evaluation.simulations is not None else next(evaluation.static(task))
+    if found["status"] == "objective":
+        raise ObjectiveError(found["error"], help=found["help"])
+    return found
 
 
 def _anything(_result: object) -> float:

@@ -83,6 +83,7 @@ class Repetition:
     Attributes:
         log_probability: the logarithm of its estimate; ``None`` if it did not come to its end.
         levels: the values of the levels.
+        shares: the logarithms of the probabilities of values as small.
         accepted: the share of accepted moves at each level.
         ancestors: number of members of the first population from which the last one descends.
         runs: number of its runs.
@@ -92,6 +93,7 @@ class Repetition:
 
     log_probability: float | None = None
     levels: list[float] = field(default_factory=list)
+    shares: list[float] = field(default_factory=list)
     accepted: list[float] = field(default_factory=list)
     ancestors: int = 0
     runs: int = 0
@@ -172,6 +174,7 @@ class Splitting(Generic[_Point]):
                 return
             logarithm += math.log(len(kept) / size)
             repetition.levels.append(level)
+            repetition.shares.append(logarithm)
             order = self._generator.permutation(len(kept))
             members = [kept[place] for place in order]
             kernel.begin()

@@ -197,7 +197,7 @@ def test_failing_runs_count_for_both_outcomes() -> None:
         ({"confidence": 95}, "the confidence 95 is not between", "0.01"),
         ({"precision": 0.1, "at_most": 0.1, "n": None}, "contradict", "one of them"),
         ({"precision": 0.1}, "contradicts", "budget"),
-        ({"budget": 10}, "goes with", "fix the number"),
+        ({"budget": 10}, "goes with", "the number of runs is fixed"),
         ({"good": 0.1}, "belongs to a bound", "--at-most"),
         ({"good": 0.1, "at_most": 0.1, "n": None}, "not below the bound", "more runs"),
         ({"static": True}, "scenes alone meet all requirements", "--minimize"),

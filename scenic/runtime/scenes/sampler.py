@@ -1,13 +1,14 @@
 """A plan being sampled: the engine that knows what its rounds cost, and what is fixed in every scene."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scenic.graph.domain import Domain
-from scenic.graph.draws import Counter, Lanes, Points, Source
+from scenic.graph.draws import Counter, Lanes, Points, Source, Words
 from scenic.graph.node import Node
 from scenic.graph.points import PointSet
 from scenic.runtime.sampling.checks import NodeCheck
@@ -64,6 +65,8 @@ class Sampler:
         self._components = None if self.impossible else components_of(self.engine.plan)
         self._finder = self._finder_of(self._components)
         self._may_divide = False
+        self._whole: Engine | None = None
+        """The engine of the whole cube, where it has been needed."""
 
     @property
     def plan(self) -> Plan:
@@ -204,6 +207,23 @@ class Sampler:
         tasks = ((seed, k) for k in range(first, first + count))
         return engine.scenes(tasks, max_attempts=max_attempts)
 
+    def given(
+        self,
+        numbers: Mapping[int, NDArray[np.float64]],
+        words: Mapping[int, Words],
+        count: int,
+        *,
+        seed: int,
+        first: int,
+    ) -> Results:
+        """Scenes ``first`` to ``first + count`` of a seed whose draws ``(count,)``, by address, are given as those of the whole cube."""
+        if self.impossible:
+            return self._not_found((seed, k) for k in range(first, first + count))
+        if self._whole is None:
+            self._whole = Sampler(self._outline, numbers=self._numbers, words=self._words).engine
+        engine = self._whole.driven(self._fixing(_given(numbers, first, words)))
+        return engine.scenes(((seed, k) for k in range(first, first + count)), max_attempts=1)
+
     def first_candidates(
         self, numbers: Mapping[int, NDArray[np.float64]], count: int, *, seed: int, first: int
     ) -> list[tuple[int, Accepted | CandidateError]]:
@@ -261,12 +281,18 @@ class Sampler:
         return self._finder.driven(self._fixing(driven(points, self.plan.graph)))
 
 
-def _given(numbers: Mapping[int, NDArray[np.float64]], first: int) -> Callable[[Lanes], Source]:
-    """Return a function that makes the sources of lanes whose scenes, from ``first`` on, have these numbers."""
+def _given(
+    numbers: Mapping[int, NDArray[np.float64]], first: int, words: Mapping[int, Words] = MappingProxyType({})
+) -> Callable[[Lanes], Source]:
+    """Return a function that makes the sources of lanes whose scenes, from ``first`` on, have these numbers and words."""
 
     def source(lanes: Lanes) -> Source:
         rows = lanes.scenes - first
-        return Points({place: column[rows] for place, column in numbers.items()}, Counter(lanes.keys))
+        return Points(
+            {place: column[rows] for place, column in numbers.items()},
+            Counter(lanes.keys),
+            {place: column[rows] for place, column in words.items()},
+        )
 
     return source
 

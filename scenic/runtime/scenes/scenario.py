@@ -227,6 +227,27 @@ class Scenario(Generating):
             sampler.chosen(numbers, count, seed=seed, first=first, max_attempts=max_attempts)
         )
 
+    def of_draws(
+        self,
+        numbers: Mapping[int, NDArray[np.float64]],
+        words: Mapping[int, NDArray[np.uint64]],
+        count: int,
+        *,
+        seed: int,
+        first: int = 0,
+    ) -> Iterator[Scene | Exhausted]:
+        """Scenes ``first`` to ``first + count`` of a seed all of whose draws are given, as `scenic.runtime.scenes.saving.draws_of` tells them.
+
+        Args:
+            numbers: numbers ``(count,)`` of the axes, by address.
+            words: words ``(count,)`` of further draws, by address.
+            count: how many scenes.
+            seed: any integer.
+            first: number of the first scene; it decides which soft requirements a scene has to meet.
+
+        """
+        yield from self._scenes(self._sampler.given(numbers, words, count, seed=seed, first=first))
+
     @property
     def _without_narrowing(self) -> Sampler:
         """The sampler for external parameters that are chosen, whose axes it leaves whole."""
