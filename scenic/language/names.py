@@ -551,6 +551,8 @@ def _functions_of_elements() -> Iterator[Name]:
                 syntax=forms,
                 lifted=element.name in OPERATORS,
             )
+    documentation = "`with prop val` as a function, of the property's name as text."
+    yield _function("With(prop, val)", documentation, "scenic.runtime.program.veneer", syntax="with prop val")
 
 
 _PROPOSITIONS = tuple(

@@ -255,7 +255,7 @@ bike = new Bicycle at (0, 0), with regionContainedIn None, with behavior Crossin
 walker = new Pedestrian with behavior WalkForwardBehavior(speed=1)
 bin = new Trash
 require (distance from ego to bike) > 20
-assert warnings.warn
+assert warnings.warn and issubclass(SimulatorInterfaceWarning, UserWarning)
 param town = map_town, categories = blueprints.carModels
 """
 

@@ -38,7 +38,8 @@ def of_class(scene: Any, name: str) -> list[Any]:
 
 def test_the_model_brings_names_of_its_own_modules() -> None:
     scene = scene_of(
-        "ego = new Object at toVector((1, 2))\n"
+        "ego = new Object2D at toVector((toScalar(math.sqrt(1)), 2))\n"
+        "assert issubclass(OffsetAction, Action) and pickle.dumps\n"
         "param area = numpy.prod(trimesh.creation.box((1, 2, 3)).extents), axes = utils.Axes.__name__\n"
     )
     assert tuple(scene.egoObject.position) == (1, 2, 0)

@@ -1,7 +1,7 @@
 """A random choice among regions, as a region: each lane has the one that it draws."""
 
 from collections.abc import Iterator, Sequence
-from functools import reduce
+from functools import cached_property, reduce
 from typing import Any, TypeVar
 
 import numpy as np
@@ -13,8 +13,10 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.graph.operations import TABLE
 from scenic.language.errors import InvalidScenarioError
+from scenic.runtime.geometry.flat.segments import Lines
 from scenic.runtime.ground.context import here
 from scenic.runtime.regions.base import Mask, Points, Region
+from scenic.runtime.regions.lines import LineRegion, drawn_of_lines
 from scenic.runtime.regions.nearness import hull_of
 from scenic.runtime.regions.varying import VaryingRegion
 from scenic.runtime.values.choices import select
@@ -135,6 +137,11 @@ class RegionChoice(VaryingRegion):
         lanes = max(len(index.lower), len(found.lower), *(len(part.lower) for part in numbers))
         first, last = (np.broadcast_to(end, lanes) for end in (index.lower, index.upper))
         lower, upper = (np.array(np.broadcast_to(end, (lanes, 3))) for end in (found.lower, found.upper))
+        if self._lines is not None:
+            rows = np.flatnonzero((first == last) & (first >= 0) & (first < len(self.options)))
+            parts = drawn_of_lines(self._lines, first[rows].astype(np.intp), _rows(numbers[0], rows))
+            lower[rows], upper[rows] = parts.lower, parts.upper
+            return Bounds(lower, upper)
         for number, (option, mine) in enumerate(self._each(parameters)):
             rows = np.flatnonzero((first == number) & (last == number))
             if len(rows):
@@ -145,6 +152,12 @@ class RegionChoice(VaryingRegion):
                 if box is not None:
                     lower[rows], upper[rows] = box.lower, box.upper
         return Bounds(lower, upper)
+
+    @cached_property
+    def _lines(self) -> Lines | None:
+        """The options, if all are lines."""
+        lines = [option.pieces for option in self.options if isinstance(option, LineRegion)]
+        return Lines(tuple(lines)) if len(lines) == len(self.options) else None
 
     @staticmethod
     def _hull(parameters: Sequence[Bounds | None], boxes: Sequence[Bounds | None]) -> Bounds | None:

@@ -3,6 +3,7 @@
 import itertools
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -13,7 +14,7 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError, ScenicValueError
 from scenic.runtime.geometry.contact.collision import Body
-from scenic.runtime.geometry.flat.segments import Segments
+from scenic.runtime.geometry.flat.segments import Lines, Segments
 from scenic.runtime.ground.context import here, warn
 from scenic.runtime.regions import generic
 from scenic.runtime.regions.base import Mask, Points, Region
@@ -41,6 +42,16 @@ def _way_given(distance: Any, normalized: Any = False) -> tuple[tuple[Any], bool
         if is_random(normalized)
         else ((to_scalar(distance, "a distance along a line"),), bool(normalized))
     )
+
+
+def drawn_of_lines(lines: Lines, line: NDArray[np.intp], shares: Bounds) -> Bounds:
+    """Bounds ``(m, 3)`` of what numbers ``(m | 1,)`` of the unit interval draw from lines ``(m,)``."""
+    length = lines.lengths[line]
+    first, last = (
+        np.clip(shares.lower * length - SLACK, 0.0, length),
+        np.clip(shares.upper * length + SLACK, 0.0, length),
+    )
+    return Bounds(*lines.boxes_between(line, first, last))
 
 
 class LineRegion(Region):
@@ -72,11 +83,12 @@ class LineRegion(Region):
     ) -> tuple[Points, Mask | None]:
         return self.pieces.at_in(uniforms[0], lower, upper)
 
+    @cached_property
+    def _line(self) -> Lines:
+        return Lines((self.pieces,))
+
     def drawn_extent(self, numbers: Sequence[Bounds], *parameters: Bounds | None) -> Bounds | None:
-        ways = numbers[0]
-        length = self.pieces.length
-        first = np.clip(ways.lower * length - SLACK, 0.0, length)
-        return Bounds(*self.pieces.boxes_between(first, np.clip(ways.upper * length + SLACK, 0.0, length)))
+        return drawn_of_lines(self._line, np.zeros(len(numbers[0].lower), dtype=np.intp), numbers[0])
 
     def orientation_drawn(self, point: Any, numbers: Sequence[object]) -> Any:
         if self._follows_segments:

@@ -3,6 +3,7 @@
 import pathlib
 import warnings
 
+from scenic.core.simulators import SimulatorInterfaceWarning
 from scenic.domains.driving.model import *
 from scenic.domains.driving.actions import Steers, Walks
 from scenic.domains.driving.setting import is2DMode

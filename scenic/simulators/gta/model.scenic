@@ -71,3 +71,16 @@ def createPlatoonAt(car, numCars, model=None, dist=Range(2, 8), shift=Range(-0.5
         place = new OrientedPoint following roadDirection from last.front for _again(dist)
         cars.append(new Car ahead of place by (_again(shift), 0), with model chosen, facing _again(wiggle) relative to roadDirection)
     return cars
+
+
+def carAheadOfCar(car, gap, offsetX=0, wiggle=0):
+    """A car ahead of another one.
+
+    Arguments:
+        car: the other one.
+        gap: metres between the two.
+        offsetX: metres by which it is to the right.
+        wiggle: of its heading to that of the road, radians.
+    """
+    place = new OrientedPoint at car.front offset by (offsetX, gap), facing _again(wiggle) relative to roadDirection
+    return new Car ahead of place

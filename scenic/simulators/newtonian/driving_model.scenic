@@ -10,6 +10,7 @@ from scenic.simulators.newtonian.controls import Driven, Walking
 from scenic.simulators.newtonian.simulator import NewtonianSimulator
 
 param render = False
+render = globalParameters.render
 
 simulator NewtonianSimulator(network)
 

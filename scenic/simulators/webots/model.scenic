@@ -1,9 +1,14 @@
 """World model of Webots. Sampling needs no Webots; simulations run in the controller of a supervisor (`WebotsSimulator`)."""
 
+import math
+import pickle
+
 import numpy
 import trimesh
-from scenic.core.type_support import toVector
+from scenic.core.object_types import Object2D
+from scenic.core.type_support import toScalar, toVector
 from scenic.domains.driving.setting import is2DMode
+from scenic.simulators.actions import Action
 from scenic.simulators.webots import axes as utils
 from scenic.simulators.webots.actions import ApplyForceAction, OffsetAction, WriteFileAction
 from scenic.simulators.webots.simulator import OutsideWebots

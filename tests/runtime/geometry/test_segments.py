@@ -6,7 +6,7 @@ import shapely
 
 from scenic.graph import quaternions
 from scenic.runtime.geometry.flat import segments
-from scenic.runtime.geometry.flat.segments import Segments
+from scenic.runtime.geometry.flat.segments import Lines, Segments
 
 FEW_AND_MANY = (7, 95, 96, 97, 128, 400)
 """Long lines are asked through a tree."""
@@ -100,16 +100,25 @@ def test_more_pairs_than_are_looked_at_together(monkeypatch: pytest.MonkeyPatch)
             np.testing.assert_array_equal(found, known)
 
 
-def test_boxes_hold_the_parts_between_two_lengths() -> None:
+def test_boxes_hold_the_parts_of_lines_between_two_lengths() -> None:
     random = np.random.default_rng(3)
-    chains = [random.normal(size=(count, 3)).tolist() for count in (5, 2, 9)]
-    line = Segments.of_chains(chains)
-    ends = np.sort(random.random((2, 400)), axis=0) * line.length
-    lower, upper = line.boxes_between(*ends)
-    for share in random.random(50):
-        points = line.at(ends[0] + share * (ends[1] - ends[0]))
-        assert (lower - 1e-12 <= points).all()
-        assert (points <= upper + 1e-12).all()
+    parts = [
+        Segments.of_chains([random.normal(size=(count, 3)).tolist() for count in counts])
+        for counts in ((5, 2, 9), (2,), (4, 3))
+    ]
+    lines = Lines(tuple(parts))
+    which = random.integers(0, 3, 600)
+    ends = np.sort(random.random((2, 600)), axis=0)
+    ends[:, :9] = [[0.0] * 9, [0.0, 1.0, 0.5] * 3]
+    ends *= lines.lengths[which]
+    lower, upper = lines.boxes_between(which, *ends)
+    for number, line in enumerate(parts):
+        mine = which == number
+        first, last = ends[:, mine]
+        for share in random.random(50):
+            points = line.at(first + share * (last - first))
+            assert (lower[mine] - 1e-12 <= points).all()
+            assert (points <= upper[mine] + 1e-12).all()
     # Short parts have small boxes: no vertex is counted that a part does not pass.
     assert (upper - lower).max(axis=1)[ends[1] - ends[0] < 1e-3].max(initial=0) < 1e-2
 

@@ -56,7 +56,7 @@ def test_scenarios_have_a_common_base() -> None:
 def test_every_declared_function_is_in_scope() -> None:
     names = [
         function.name for each in (*OPERATORS.values(), *SPECIFIERS.values()) for function in each.functions
-    ]
+    ] + ["With"]
     assert (
         scene(f"ego = new Object\nparam value = [f.__name__ for f in ({', '.join(names)})]\n").params["value"]
         == names

@@ -43,7 +43,7 @@ class Segments:
         return cls(np.ascontiguousarray(ends[:, 0]), np.ascontiguousarray(ends[:, 1]))
 
     @cached_property
-    def _sums(self) -> Floats:
+    def sums(self) -> Floats:
         """Length of the line up to the end of each segment."""
         along = self.ends - self.starts
         return np.cumsum(np.sqrt((along * along).sum(axis=1)))
@@ -51,7 +51,7 @@ class Segments:
     @property
     def length(self) -> float:
         """Metres."""
-        return float(self._sums[-1])
+        return float(self.sums[-1])
 
     @cached_property
     def lower(self) -> Floats:
@@ -70,16 +70,20 @@ class Segments:
         yaw, pitch = np.arctan2(-x, y), np.arctan2(z, np.hypot(x, y))
         return quaternions.from_euler(yaw, pitch, np.zeros_like(yaw))
 
+    @cached_property
+    def before(self) -> Floats:
+        """Length of the line up to the start of each segment."""
+        return np.concatenate([[0.0], self.sums[:-1]])
+
     def number_at(self, ways: Floats) -> Indices:
         """The segments ``(n,)`` at lengths ``(n,)`` along the line."""
-        return np.minimum(np.searchsorted(self._sums, ways, side="left"), len(self._sums) - 1)
+        return np.minimum(np.searchsorted(self.sums, ways, side="left"), len(self.sums) - 1)
 
     def at(self, ways: Floats) -> Floats:
         """The points ``(n, 3)`` at lengths ``(n,)`` along the line."""
-        sums = self._sums
         chosen = self.number_at(ways)
-        before = np.where(chosen > 0, sums[chosen - 1], 0.0)
-        part = np.clip((ways - before) / (sums[chosen] - before), 0, 1)[:, np.newaxis]
+        before = self.before[chosen]
+        part = np.clip((ways - before) / (self.sums[chosen] - before), 0, 1)[:, np.newaxis]
         return np.asarray(self.starts[chosen] * (1 - part) + self.ends[chosen] * part)
 
     def at_in(self, numbers: Floats, lower: Floats, upper: Floats) -> tuple[Floats, Booleans]:
@@ -108,21 +112,6 @@ class Segments:
     def _tree(self) -> Any:
         ends = np.stack([self.starts, self.ends])
         return tree_of_boxes(ends.min(axis=0), ends.max(axis=0))
-
-    def boxes_between(self, first: Floats, last: Floats) -> tuple[Floats, Floats]:
-        """The corners ``(m, 3)`` of boxes around the parts of the line between lengths ``(m,)`` along it."""
-        ends = self.at(first), self.at(last)
-        lower, upper = np.minimum(*ends), np.maximum(*ends)
-        runs = np.stack([self.number_at(first), self.number_at(last)], axis=1)
-        several = np.flatnonzero(runs[:, 0] < runs[:, 1])
-        if len(several):
-            # Between a segment and the next one lie the end of the first and the start of the other.
-            after = np.concatenate([self.starts[1:], self.ends[-1:]])
-            places = runs[several].ravel()
-            for corner, extreme in ((lower, np.minimum), (upper, np.maximum)):
-                passed = extreme.reduceat(extreme(self.ends, after), places)[::2]
-                corner[several] = extreme(corner[several], passed)
-        return lower, upper
 
     def nearest(self, points: Floats) -> tuple[Floats, Indices, Floats]:
         """For points ``(n, 3)``: distance ``(n,)``, segment ``(n,)`` and place ``(n, 3)`` of the nearest point of the line.
@@ -182,3 +171,55 @@ class Segments:
 
 
 __all__ = ["Segments"]
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Several lines, for questions about parts of many of them at once."""
+
+    parts: tuple[Segments, ...]
+
+    @cached_property
+    def lengths(self) -> Floats:
+        """Metres, ``(n,)``."""
+        return np.array([part.length for part in self.parts])
+
+    @cached_property
+    def _arrays(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """Of the segments of all lines: starts and ends ``(k, 3)``, lengths of their lines up to these ``(k,)``."""
+        columns = zip(*((part.starts, part.ends, part.before, part.sums) for part in self.parts), strict=True)
+        starts, ends, before, sums = (np.concatenate(column) for column in columns)
+        return starts, ends, before, sums
+
+    @cached_property
+    def _first(self) -> Indices:
+        """The number of the first segment of each line, and at last that of all segments, ``(n + 1,)``."""
+        return np.cumsum([0, *(len(part.starts) for part in self.parts)])
+
+    @cached_property
+    def _keys(self) -> Floats:
+        """The ends of segments as number of the line plus share of its length, which rise."""
+        return np.concatenate([number + part.sums / part.length for number, part in enumerate(self.parts)])
+
+    def _segments_at(self, line: Indices, ways: Floats) -> Indices:
+        number = np.searchsorted(self._keys, line + ways / self.lengths[line], side="left")
+        return np.clip(number, self._first[line], self._first[line + 1] - 1)
+
+    def boxes_between(self, line: Indices, first: Floats, last: Floats) -> tuple[Floats, Floats]:
+        """The corners ``(m, 3)`` of boxes around the parts of lines ``(m,)`` between lengths ``(m,)`` along them."""
+        starts, ends, before, sums = self._arrays
+        runs = np.stack([self._segments_at(line, first), self._segments_at(line, last)], axis=1)
+        part = np.clip((np.stack([first, last], axis=1) - before[runs]) / (sums[runs] - before[runs]), 0, 1)[
+            ..., np.newaxis
+        ]
+        points = starts[runs] * (1 - part) + ends[runs] * part
+        lower, upper = points.min(axis=1), points.max(axis=1)
+        several = np.flatnonzero(runs[:, 0] < runs[:, 1])
+        if len(several):
+            # Between a segment and the next one lie the end of the first and the start of the other.
+            after = np.concatenate([starts[1:], ends[-1:]])
+            places = runs[several].ravel()
+            for corner, extreme in ((lower, np.minimum), (upper, np.maximum)):
+                passed = extreme.reduceat(extreme(ends, after), places)[::2]
+                corner[several] = extreme(corner[several], passed)
+        return lower, upper
