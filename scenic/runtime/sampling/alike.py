@@ -52,6 +52,7 @@ class Kind:
         domain: what its draws are narrowed to.
         addresses: addresses of the first group's draws, ascending, ``(d,)``.
         table: the corresponding addresses of all groups, ``(d, m)``.
+        checks: the numbers of each group's checks among those of the whole plan, ``(m, joints)``.
         soft_places: the numbers of each group's soft requirements among all of them, ``(m, joints)``; -1 for others.
 
     """
@@ -63,6 +64,7 @@ class Kind:
     domain: Domain
     addresses: Words
     table: Words
+    checks: NDArray[np.intp]
     soft_places: NDArray[np.intp]
 
 
@@ -218,15 +220,19 @@ def _kind(
         np.array([number for number, _ in members], dtype=np.intp),
         groups[first].joints,
         groups[first].objects,
-        np.array([group.numbers for group in chosen], dtype=np.intp).reshape(len(chosen), -1),
+        _rows([group.numbers for group in chosen]),
         narrowed,
         addresses,
         np.array([table[place] for place in sorted(table)], dtype=np.uint64).reshape(-1, len(members)),
-        np.array(
+        _rows([[joint.number for joint in group.joints] for group in chosen]),
+        _rows(
             [
                 [-1 if joint.soft_place is None else joint.soft_place for joint in group.joints]
                 for group in chosen
-            ],
-            dtype=np.intp,
-        ).reshape(len(chosen), -1),
+            ]
+        ),
     )
+
+
+def _rows(numbers: Sequence[Sequence[int]]) -> NDArray[np.intp]:
+    return np.array(numbers, dtype=np.intp).reshape(len(numbers), -1)

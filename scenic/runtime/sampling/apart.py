@@ -15,15 +15,17 @@ from numpy.typing import NDArray
 from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
 from scenic.graph.draws import Lanes, attempt_keys
+from scenic.graph.node import Node
+from scenic.runtime.geometry.ragged import expand
 from scenic.runtime.sampling.alike import Aliased, Group, Kind, kinds_of
 from scenic.runtime.sampling.blocks import Reads
-from scenic.runtime.sampling.checks import Check, CollisionCheck
+from scenic.runtime.sampling.checks import Check, CollisionCheck, Mask
 from scenic.runtime.sampling.engine import Engine, Plan
 from scenic.runtime.sampling.halving import Joint
 from scenic.runtime.sampling.meeting import Bodies
 from scenic.runtime.sampling.pending import Pending
 
-__all__ = ["Apart", "attempts_at_kind", "separated"]
+__all__ = ["Apart", "attempts_at_kind", "rehearsed", "separated"]
 
 FEWEST: Final = 4
 """Groups of a component that is divided so, at least."""
@@ -31,8 +33,14 @@ FEWEST: Final = 4
 TRIED: Final = 512
 """Candidates for a group of each kind of which some must pass."""
 
+OFTEN: Final = 0.8
+"""The share of candidates of a crowd above which it is not divided."""
+
 BUNCHED: Final = 0.05
 """The share of bunches of groups, put together at once, in which two collide, about."""
+
+_MEMBERS: Final = 256
+"""Groups of a kind that are rehearsed at a time."""
 
 MOST_KINDS: Final = 16
 """Kinds of groups, at most, whatever their number: each is evaluated by itself."""
@@ -198,11 +206,7 @@ def attempts_at_kind(
     attempts: NDArray[np.int64],
 ) -> Batch:
     """A batch of attempts ``(n,)`` at groups ``member`` ``(n,)`` of a kind, in some of the pending scenes, without those that fail a check."""
-    lanes = Lanes(
-        pending.seed[scenes], pending.k[scenes], attempts, attempt_keys(pending.key[scenes], attempts)
-    )
-    source = Aliased(engine.source_of(lanes), kind.addresses, kind.table, member)
-    batch = engine.batch(source, domain=kind.domain)
+    batch = _batch(engine, kind, pending, scenes, member, attempts)
     for place, joint in enumerate(kind.joints):
         if not len(batch.rows):
             return batch  # operations need not work on no lane at all
@@ -216,8 +220,61 @@ def attempts_at_kind(
         engine.note(joint.number, len(alive), int(np.count_nonzero(alive)), time.perf_counter() - begun)
         batch.keep(alive)
     if len(batch.rows):
-        batch.need([node for item in kind.objects for node in item.all])
+        batch.need(_nodes(kind))
     return batch
+
+
+def _batch(
+    engine: Engine,
+    kind: Kind,
+    pending: Pending,
+    scenes: NDArray[np.intp],
+    member: NDArray[np.intp],
+    attempts: NDArray[np.int64],
+) -> Batch:
+    lanes = Lanes(
+        pending.seed[scenes], pending.k[scenes], attempts, attempt_keys(pending.key[scenes], attempts)
+    )
+    source = Aliased(engine.source_of(lanes), kind.addresses, kind.table, member)
+    return engine.batch(source, domain=kind.domain)
+
+
+def _nodes(kind: Kind) -> list[Node]:
+    """The nodes of the bodies of a kind."""
+    return [node for item in kind.objects for node in item.all]
+
+
+def rehearsed(engine: Engine, apart: Apart) -> tuple[dict[int, Mask], int]:
+    """The candidates of a rehearsal, made group by group instead of whole.
+
+    Returns:
+        Which of them meet each check of a group but for collisions, by its number in the plan, and how many meet all checks.
+
+    """
+    pending, count = engine.pending([(0, 0)]), engine.rehearsed_of
+    bodies = Bodies()
+    met: dict[int, Mask] = {}
+    passes = np.ones(count, dtype=np.bool_)
+    first, lane, part = [], [], []
+    for kind in apart.kinds:
+        for members in np.array_split(np.arange(len(kind.members)), -(-len(kind.members) // _MEMBERS)):
+            member, attempts = np.repeat(members, count), np.tile(np.arange(count), len(members))
+            batch = _batch(engine, kind, pending, np.zeros_like(member), member, attempts)
+            batch.need([*(node for joint in kind.joints for node in joint.check.nodes), *_nodes(kind)])
+            for place, joint in enumerate(kind.joints):
+                holds = joint.check.test(batch).holds.reshape(len(members), count)
+                passes &= holds.all(axis=0)
+                if not isinstance(joint.check, CollisionCheck):
+                    met |= zip(kind.checks[members, place].tolist(), holds, strict=True)
+            row = bodies.add([item.body(batch) for item in kind.objects], kind.numbers[member])
+            owner, offset = expand(np.full(len(row), len(kind.objects)))
+            first.append(row[owner] + offset)
+            lane.append(attempts[owner])
+            part.append(kind.members[member[owner]])
+    chosen, lanes, parts = (np.concatenate(each) for each in (first, lane, part))
+    order = np.argsort(lanes, kind="stable")
+    passes &= bodies.apart(count, chosen[order], lanes[order], parts[order], apart.may_meet)
+    return met, int(np.count_nonzero(passes))
 
 
 class _Union:

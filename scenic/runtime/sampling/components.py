@@ -5,7 +5,7 @@ always apart, join nothing. Each connected component is a sampling problem of it
 draws is independent of the others, so that each may be looked for alone (`scenic.runtime.sampling.piecewise`).
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import accumulate
 from typing import Any, Final
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scenic.dataclass import dataclass
 from scenic.graph.bounding import over, overall
 from scenic.graph.bounds import Bounds
+from scenic.graph.forms import Forms
 from scenic.graph.node import Graph, Node
 from scenic.runtime.geometry.ragged import distinct
 from scenic.runtime.sampling.apart import Apart, separated
@@ -24,7 +25,10 @@ from scenic.runtime.sampling.checks import Check, CollisionCheck, NodeCheck, Obj
 from scenic.runtime.sampling.engine import Engine, Plan
 from scenic.runtime.sampling.halving import SELDOM, Divider, Tree, may_fault
 
-__all__ = ["Components", "components_of", "divided"]
+__all__ = ["Components", "components_of", "crowd_of", "divided"]
+
+CROWD: Final = 64
+"""Moving objects from which on a program is a crowd."""
 
 _MARGIN: Final = 1e-9
 """Relative: what rounding may add to distances and sizes, with room to spare."""
@@ -87,6 +91,21 @@ def divided(engine: Engine, components: Components | None, *, always: bool = Fal
     return Components(known.plans, owner, made.trees)
 
 
+def crowd_of(engine: Engine) -> Apart | None:
+    """Return the division of a plan of one component that is a crowd: so many groups that only meet that each is looked at by itself."""
+    plan = engine.plan
+    moving = [
+        item
+        for check in plan.checks
+        if isinstance(check, CollisionCheck)
+        for item in check.objects
+        if not item.is_fixed
+    ]
+    if len(moving) < CROWD or may_fault(plan):
+        return None
+    return separated(engine, plan, Reads(plan.graph, plan.domain), 0)
+
+
 def _passes_seldom(engine: Engine, plan: Plan) -> bool:
     """Return whether few of those candidates pass by which the whole is judged, so that other components do not matter."""
     return engine.of_part(plan).rehearsal() <= SELDOM * engine.rehearsed_of
@@ -95,36 +114,35 @@ def _passes_seldom(engine: Engine, plan: Plan) -> bool:
 def components_of(plan: Plan) -> Components | None:
     """The components of a plan; ``None`` where all hangs together."""
     joins = _Joins(plan)
+    others: list[Check] = []
     for check in plan.checks:
         if isinstance(check, CollisionCheck):
             for item in check.objects:
                 joins.add(item.all)
-        elif not _always_holds(check, overall(check.nodes[0])):
+        else:
+            others.append(check)
+    for check in others:
+        # Bounds cost more than what they save, but where something hangs on them.
+        if not joins.would_join(check.nodes) or not _always_holds(check, overall(check.nodes[0])):
             joins.add(check.nodes)
     return None if joins.count < 2 else _split(plan)
 
 
 def _split(plan: Plan) -> Components | None:
     joins, bounds = _Joins(plan), _Known(plan)
+    meetings = [
+        (index, _Meeting(check, check.pairs[_may_meet(check, bounds)], joins))
+        for index, check in enumerate(plan.checks)
+        if isinstance(check, CollisionCheck)
+    ]
     kept: list[tuple[int, int, Check]] = []
-    for index, check in enumerate(plan.checks):
-        if not isinstance(check, CollisionCheck):
-            continue
-        pairs = check.pairs[_may_meet(check, bounds)]
-        members = {member: joins.add(check.objects[member].all) for member in distinct(pairs).tolist()}
-        parts: dict[int, list[int]] = {}
-        for number, (first, second) in enumerate(pairs.tolist()):
-            joins.join(members[first], members[second])
-            # Of a pair of which one does not move the other one decides where it belongs.
-            own = members[first] if joins.has_draws(members[first]) else members[second]
-            parts.setdefault(own, []).append(number)
-        kept += [(index, own, check.of_pairs(pairs[numbers])) for own, numbers in parts.items()]
     for index, check in enumerate(plan.checks):
         if isinstance(check, CollisionCheck):
             continue
         # Bounds cost more than what they save, but where something hangs on them.
         if not joins.would_join(check.nodes) or not _always_holds(check, bounds(check.nodes[0])):
             kept.append((index, joins.add(check.nodes), check))
+    kept += [(index, member, check) for index, meeting in meetings for member, check in meeting.parts(joins)]
     kept.sort(key=_index)
     groups: dict[int, list[tuple[int, Check]]] = {}
     for index, member, check in kept:
@@ -133,7 +151,7 @@ def _split(plan: Plan) -> Components | None:
     if len(groups) < 2:
         return None
     numbers = {leader: number for number, leader in enumerate(groups)}
-    first, *others = (_merged(group) for group in groups.values())
+    first, *others = groups.values()
     places = {
         index: place
         for place, index in enumerate(i for i, item in enumerate(plan.checks) if item.probability < 1)
@@ -153,17 +171,46 @@ def _index(item: tuple[Any, ...]) -> Any:
     return item[0]
 
 
-def _merged(group: Sequence[tuple[int, Check]]) -> list[tuple[int, Check]]:
-    """The checks of a component; all its collisions are one check."""
-    merged: list[tuple[int, Check]] = []
-    collisions: dict[int, list[CollisionCheck]] = {}
-    for index, check in group:
-        if isinstance(check, CollisionCheck):
-            collisions.setdefault(index, []).append(check)
-        else:
-            merged.append((index, check))
-    merged += [(index, CollisionCheck.joined(some)) for index, some in collisions.items()]
-    return sorted(merged, key=_index)
+class _Meeting:
+    """The pairs of a check of collisions that may meet, whose objects' draws are joined."""
+
+    def __init__(self, check: CollisionCheck, pairs: NDArray[np.intp], joins: "_Joins") -> None:
+        self._check = check
+        self._pairs = pairs
+        self._members = np.zeros(len(check.objects), dtype=np.intp)
+        moves = np.zeros(len(check.objects), dtype=np.bool_)
+        for item in distinct(pairs).tolist():
+            self._members[item] = joins.add(check.objects[item].all)
+            moves[item] = joins.has_draws(int(self._members[item]))
+        one, two = pairs.T
+        # Of a pair of which one does not move the other one decides where it belongs.
+        self._own = self._members[np.where(moves[one], one, two)]
+        both = moves[one] & moves[two]
+        for first, second in _chained(one[both], two[both], len(check.objects)).tolist():
+            joins.join(int(self._members[first]), int(self._members[second]))
+
+    def parts(self, joins: "_Joins") -> Iterator[tuple[int, CollisionCheck]]:
+        """The checks of the pairs of each component, with members of these, when all is joined."""
+        own, place = np.unique(self._own, return_inverse=True)
+        leaders = np.array([joins.leader(member) for member in own.tolist()], dtype=np.intp)[place]
+        for leader in distinct(leaders).tolist():
+            mine = leaders == leader
+            whole = mine.all() and len(mine) == len(self._check.pairs)
+            yield leader, self._check if whole else self._check.of_pairs(self._pairs[mine])
+
+
+def _chained(one: NDArray[np.intp], two: NDArray[np.intp], count: int) -> NDArray[np.intp]:
+    """Return pairs ``(m, 2)``, fewer than ``count``, that connect what given pairs connect."""
+    label = np.arange(count)
+    while not (same := label[one] == label[two]).all():
+        one, two = one[~same], two[~same]
+        least = np.minimum(label[one], label[two])
+        np.minimum.at(label, label[one], least)
+        np.minimum.at(label, label[two], least)
+        while not (label == label[label]).all():
+            label = label[label]
+    chained = np.flatnonzero(label != np.arange(count))
+    return np.stack([label[chained], chained], axis=1)
 
 
 def _part(plan: Plan, group: Sequence[tuple[int, Check]], places: Mapping[int, int]) -> Plan:
@@ -196,15 +243,22 @@ def _always_holds(check: Check, bounds: Bounds | None) -> bool:
 
 
 class _Known:
-    """Bounds of nodes over the part of the cube that is sampled."""
+    """Bounds of nodes over the part of the cube that is sampled, computed once for nodes of one form."""
 
     def __init__(self, plan: Plan) -> None:
         self._axes = plan.graph.axes
         self._hull = plan.domain.hull
         self._known: dict[Node, Bounds | None] = {}
+        self._answers: dict[int, Bounds | None] = {}
+        lower, upper = self._hull[0][0].tolist(), self._hull[1][0].tolist()
+        axes = self._axes
+        self._forms = Forms(lambda node: (lower[axes[node]], upper[axes[node]]) if node.is_axis else None)
 
     def __call__(self, node: Node) -> Bounds | None:
-        return over([node], self._axes, *self._hull, self._known)[node]
+        form = self._forms.number(node)
+        if form not in self._answers:
+            self._answers[form] = over([node], self._axes, *self._hull, self._known)[node]
+        return self._answers[form]
 
 
 def _may_meet(check: CollisionCheck, bounds: _Known) -> NDArray[np.bool_]:

@@ -67,8 +67,8 @@ class Bodies:
 
     def keep(self, chosen: Indices) -> None:
         """Keep these rows only; they are numbered anew, in their order."""
-        for name in ("_places", "_mesh", "_allow", "_thing"):
-            setattr(self, name, getattr(self, name)[chosen])
+        for column in (self._places, self._mesh, self._allow, self._thing):
+            column[: len(chosen)] = column[chosen]
         self._count = len(chosen)
 
     def apart(

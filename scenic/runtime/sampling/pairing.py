@@ -33,7 +33,7 @@ _LEAVES: Final = 1 << 15
 _SCENES: Final = 1 << 15
 """Groups of all scenes that are looked for together, about."""
 
-_MOST_KEPT: Final = 1 << 20
+_MOST_KEPT: Final = 1 << 18
 """Candidates for groups above which those that are not needed any more are forgotten."""
 
 _PLENTY: Final = 1 << 40
@@ -169,6 +169,7 @@ class _Search:
         self._bodies = Bodies()
         self._made = 0
         """The number of candidates for groups that are known."""
+        self._most_made = _MOST_KEPT
         self._attempt: Numbers = np.empty(_LEAVES, dtype=np.int64)
         """The attempts that they are, from 1."""
         self._body: Indices = np.empty(_LEAVES, dtype=np.intp)
@@ -216,8 +217,9 @@ class _Search:
             self._supply(number - 1, below.ravel())
             alive = ~self._is_over[rows // level.parts]
             self._join(number, rows[alive], counts[alive])
-            if self._made > _MOST_KEPT:
+            if self._made > self._most_made:
                 self._forget()
+                self._most_made = max(_MOST_KEPT, 2 * self._made)
 
     def _join(self, number: int, rows: Indices, counts: Numbers) -> None:
         """Make the next combinations of candidates for what parts consist of, and keep those in which nothing collides."""
@@ -308,9 +310,11 @@ class _Search:
             level.kept = renamed[level.kept]
         owner, offset = expand(self._size[chosen])
         self._bodies.keep(self._body[chosen][owner] + offset)
-        self._attempt, self._size = self._attempt[chosen], self._size[chosen]
-        self._body = np.cumsum(self._size) - self._size
         self._made = len(chosen)
+        for column in (self._attempt, self._size):
+            column[: self._made] = column[chosen]
+        sizes = self._size[: self._made]
+        self._body[: self._made] = np.cumsum(sizes) - sizes
 
 
 def _levels(leaves: int, bunch: int, scenes: int) -> list[_Level]:

@@ -11,6 +11,7 @@ from scenic.dataclass import dataclass
 from scenic.graph.bounding import forward, overall
 from scenic.graph.bounds import Bounds, Floats
 from scenic.graph.domain import Domain
+from scenic.graph.forms import Forms
 from scenic.graph.kinds import Kind
 from scenic.graph.node import Graph, Node
 from scenic.graph.operations.possibilities import is_finite
@@ -104,10 +105,16 @@ def _finite(program: Program) -> list[Check]:
     """Random positions and angles must come out finite."""
     checks: list[Check] = []
     known: dict[Node, Bounds | None] = {}
+    forms, answers = Forms(), dict[int, bool]()
     for item in program.objects:
         span, _ = _place(program, item)
         for value in (item.position, item.yaw, item.pitch, item.roll):
-            if isinstance(value, Random) and _may_be_infinite(value.node, known):
+            if not isinstance(value, Random):
+                continue
+            form = forms.number(value.node)
+            if form not in answers:
+                answers[form] = _may_be_infinite(value.node, known)
+            if answers[form]:
                 size = operate("norm" if value is item.position else "absolute", value)
                 # What is undefined is not less than anything.
                 node = _if_present(item, truth(operate("less", size, math.inf)))

@@ -11,8 +11,9 @@ from scenic.graph.domain import Domain
 from scenic.graph.draws import Counter, Lanes, Points, Source, Words
 from scenic.graph.node import Node
 from scenic.graph.points import PointSet
+from scenic.runtime.sampling.apart import OFTEN, rehearsed
 from scenic.runtime.sampling.checks import NodeCheck
-from scenic.runtime.sampling.components import Components, components_of, divided
+from scenic.runtime.sampling.components import Components, components_of, crowd_of, divided
 from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Plan
 from scenic.runtime.sampling.halving import SELDOM
 from scenic.runtime.sampling.pending import Task
@@ -80,7 +81,7 @@ class Sampler:
 
     def prepare(self) -> None:
         """Do the one-time work that the first scene would otherwise wait for."""
-        if self.impossible:
+        if self.impossible or self._separate():
             return
         self._finder.prepare()
         masks = list(self.engine.met.values())
@@ -88,6 +89,26 @@ class Sampler:
         if passed is None and masks:
             passed = int(np.count_nonzero(np.logical_and.reduce(masks)))
         self._may_divide = passed is not None and passed <= SELDOM * self.engine.rehearsed_of
+
+    def _separate(self) -> bool:
+        """Divide a crowd before anything of the whole is evaluated, so that this takes as long as for one thing of each kind.
+
+        Returns:
+            Whether the program is one, of which not nearly all candidates pass.
+
+        """
+        engine = self.engine
+        apart = crowd_of(engine) if self._components is None else None
+        if apart is None:
+            return False
+        met, passed = rehearsed(engine, apart)
+        if passed > OFTEN * engine.rehearsed_of:
+            return False
+        engine.met.update(met)
+        engine.rehearsed = passed
+        self._components = Components((engine.plan,), apart.owners(), (apart,))
+        self._finder = self._finder_of(self._components)
+        return True
 
     def met(self) -> dict[Node, NDArray[np.bool_]]:
         """The candidates of the rehearsal that met a requirement, ``(n,)``, by its node; without requirements that it could not ask."""

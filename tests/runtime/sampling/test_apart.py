@@ -17,9 +17,10 @@ from scenic.runtime.geometry.meshes import primitives
 from scenic.runtime.geometry.meshes.bodies import Body
 from scenic.runtime.geometry.poses import Poses
 from scenic.runtime.sampling import pairing
-from scenic.runtime.sampling.apart import Apart, separated
+from scenic.runtime.sampling.apart import Apart, rehearsed, separated
 from scenic.runtime.sampling.blocks import Reads
 from scenic.runtime.sampling.components import Components
+from scenic.runtime.sampling.engine import Engine
 from scenic.runtime.sampling.meeting import Bodies
 from scenic.runtime.sampling.piecewise import PiecewiseEngine
 from scenic.runtime.scenes.scenario import Scenario
@@ -133,6 +134,28 @@ def test_alike_things_are_one_kind() -> None:
         "with requirements between": 3,
         "of several areas": 1,
     }
+
+
+def test_crowds_are_rehearsed_as_whole_candidates_are() -> None:
+    text = (
+        "area = RectangularRegion((0, 0), 0, 90, 30)\nnew Object at (50, 0), with length 20\n"
+        "for i in range(64):\n    new Object in area, facing Range(0, 360) deg, with width Uniform(1, 2), "
+        "with regionContainedIn area\n"
+    )
+    program = scenario(text)
+    finder = program._sampler._finder
+    assert isinstance(finder, PiecewiseEngine)
+    apart = finder._components.trees[0]
+    assert isinstance(apart, Apart)
+    whole = Engine(program._sampler.plan)
+    whole.prepare()
+    met, passed = rehearsed(program._sampler.engine, apart)
+    assert passed == whole.rehearsed
+    pending, count = whole.pending([(0, 0)]), whole.rehearsed_of
+    batch = whole.attempts_at(pending, np.zeros(count, dtype=np.intp), np.arange(count))
+    for number, mask in met.items():
+        assert (mask == whole.plan.checks[number].test(batch).holds).all()
+    assert len(met) == 64
 
 
 def test_a_crowd_that_hardly_ever_fits_is_found() -> None:
