@@ -16,6 +16,7 @@ from benchmarks.motion.courses import Course, Lines
 from benchmarks.motion.figures import Run
 from scenic.domains.driving.following import Driver
 from scenic.domains.driving.lane_driving import LaneChanger, junctions_of, lanes_along
+from scenic.domains.driving.maneuvering import next_maneuver
 from scenic.domains.driving.planning import path_of_lines, speeds_of
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.runtime.program.builtins import running_simulation
@@ -98,10 +99,11 @@ def following(
 ) -> tuple[list[Run], float]:
     """Cars that follow lanes from random places on centerlines, and pass through each other."""
     car = (
-        "new Car on Uniform(*lanes).centerline, with allowCollisions True, "
-        f"with behavior FollowLaneBehavior({speed})\n"
+        "lane = Uniform(*lanes)\nnew Car on lane.centerline, facing lane.orientation, with allowCollisions True, "
+        f"with behavior FollowLaneBehavior({speed}, lane)\n"
     )
-    text = "lanes = [lane for road in network.roads for lane in road.lanes]\nego = " + cars * car
+    text = "lanes = [lane for road in network.roads for lane in road.lanes]\n" + cars * car
+    text = text.replace("new Car", "ego = new Car", 1)
     courses, drivers, spent = _simulated(road_map, text, step, seconds, seed)
     runs = []
     for number, course in enumerate(courses):
@@ -129,9 +131,9 @@ def _lanes_before(lane: Any, length: float) -> list[Any]:
     return lanes
 
 
-def _lanes_after(lane: Any, length: float) -> list[Any]:
-    """A lane, before lanes after it that are together at least ``length`` metres long, as far as there are some."""
-    lanes = [lane]
+def _lanes_after(*lanes: Any, length: float) -> list[Any]:
+    """Lanes, before lanes after them that are together at least ``length`` metres long, as far as there are some."""
+    lanes = list(lanes)
     while sum(item.centerline.length for item in lanes) < length and len(lanes) < 8:
         ways = lanes[-1].maneuvers
         if not ways:
@@ -140,7 +142,9 @@ def _lanes_after(lane: Any, length: float) -> list[Any]:
     return lanes
 
 
-def _fastest(lanes: Sequence[Any], along: float, speed: float, junction: tuple[float, float]) -> float:
+def _fastest(
+    lanes: Sequence[Any], along: float, speed: float, junction: tuple[float, float] = (0.0, 0.0)
+) -> float:
     """The speed, up to the one that is wanted, from which a car at a place can brake comfortably, and before a junction."""
     lines = [lane.line for lane in lanes]
     path = path_of_lines(lines)
@@ -148,13 +152,14 @@ def _fastest(lanes: Sequence[Any], along: float, speed: float, junction: tuple[f
     junctions = junctions_of(path)
     comfort = Comfort()
     lengths = np.array(path.along)
-    begin = max(0, int(np.searchsorted(lengths, along)) - 1)
+    begin = min(max(0, int(np.searchsorted(lengths, along)) - 1), len(lengths) - 3)
     # A car begins with its steering wheel straight.
     slow = math.sqrt(1.0 / max(np.abs(path.curvatures[max(0, begin - 4) : begin + 5]).max(), 1e-6))
     within = (lengths[begin:] >= junction[0]) & (lengths[begin:] < junction[1])
     for start in np.arange(min(speed, slow), 1.0, -0.25):
+        # With a tenth to spare.
         _, rates = speeds_of(
-            path, begin, speed, float(start), comfort, limits=None, stops=None, junctions=junctions
+            path, begin, speed, 1.1 * float(start), comfort, limits=None, stops=None, junctions=junctions
         )
         braking = np.array(rates)
         # Half a second goes by before a car brakes fully.
@@ -183,17 +188,16 @@ def _car(
     along: float,
     speed: float,
     behavior: str,
-    junction: tuple[float, float],
     *,
     is_ego: bool,
 ) -> str:
     """The program's line of a car that drives along lines from a place on."""
     line = shapely.LineString(np.concatenate([lane.line for lane in lanes]))
+    along = min(along, line.length - 0.3)
     place, after = (line.interpolate(item).coords[0] for item in (along, along + 0.2))
     heading = math.atan2(place[0] - after[0], after[1] - place[1])
-    start = _fastest(lanes, along, speed, junction)
     return (
-        f"{'ego = ' if is_ego else ''}new Car at {place}, facing {heading!r}, with speed {start}, "
+        f"{'ego = ' if is_ego else ''}new Car at {place}, facing {heading!r}, with speed {speed}, "
         f"with regionContainedIn None, with allowCollisions True, with requireVisible False, with behavior {behavior}\n"
     )
 
@@ -203,7 +207,7 @@ def turning(road_map: Path, speed: float, step: float, ways: Sequence[Any]) -> t
     cars, lanes, lengths = [], [], []
     for way in ways:
         before = _lanes_before(way.startLane, BEFORE + EARLIER)
-        after = _lanes_after(way.endLane, AFTER + 15)
+        after = _lanes_after(way.endLane, length=AFTER + 15)
         whole = [*before, way.connectingLane, *after]
         length = sum(lane.centerline.length for lane in before)
         behavior = (
@@ -212,7 +216,7 @@ def turning(road_map: Path, speed: float, step: float, ways: Sequence[Any]) -> t
         )
         start = _straight([lane.line for lane in whole], max(3.0, length - BEFORE))
         inside = (length, length + way.connectingLane.centerline.length)
-        cars.append(_car(whole, start, speed, behavior, inside, is_ego=not cars))
+        cars.append(_car(whole, start, _fastest(whole, start, speed, inside), behavior, is_ego=not cars))
         lanes.append(whole)
         lengths.append(inside)
     courses, drivers, spent = _simulated(road_map, "".join(cars), step, 20.0, 1)
@@ -245,9 +249,18 @@ def changing(network: Any, road_map: Path, speed: float, step: float) -> tuple[l
     cars = []
     for section, beside in pairs:
         behavior = f"Change(network.elements[{beside.uid!r}], {speed})"
-        lanes = _lanes_after(section.lane, 100.0)
-        along = shapely.LineString(section.lane.line).project(shapely.Point(section.line[0]))
-        cars.append(_car(lanes, along + 1.0, speed, behavior, (0.0, 0.0), is_ego=not cars))
+        along = [
+            shapely.LineString(lane.line).project(shapely.Point(section.line[0])) + 1.0
+            for lane in (section.lane, beside.lane)
+        ]
+        ways = [(item.connectingLane, item.endLane) for item in next_maneuver(beside.lane)] or [()]
+        # Nobody knows which way the car takes.
+        start = min(
+            _fastest(_lanes_after(beside.lane, *filter(None, way), length=120.0), along[1], speed)
+            for way in ways
+        )
+        start = min(start, _fastest([section.lane], along[0], speed))
+        cars.append(_car([section.lane], along[0], start, behavior, is_ego=not cars))
     if not cars:
         return [], math.nan
     program = (

@@ -1,5 +1,6 @@
 """The motion of cars that follow lanes, change lanes and follow each other: comfortable, and on the road."""
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -8,8 +9,10 @@ import pytest
 
 import scenic
 from benchmarks.motion import Course
+from scenic.domains.driving.planning import Plan
+from scenic.domains.driving.roads import Network
 from scenic.language.errors import InvalidScenarioError
-from tests.maps import cross, straight
+from tests.maps import RoadText, cross, line, map_text, piece, straight, two_way
 
 
 @pytest.fixture(scope="module")
@@ -54,6 +57,45 @@ ego = new Car at (-110, -1.75), facing -90 deg, with speed 12,
     inside = np.abs(motion.places[1:-1]).max(axis=1) < 14
     assert along[inside].min() > -1.0
     assert along.min() == pytest.approx(-2.5, abs=0.3)
+
+
+def test_a_behavior_takes_over_the_steering_and_braking_of_the_one_before(folder: Path) -> None:
+    text = """
+behavior Twice():
+    do FollowLaneBehavior(4) for 1.05 seconds
+    do FollowLaneBehavior(4)
+ego = new Car at (100, -1.75), facing -90 deg, with speed 15, with behavior Twice()
+"""
+    motion = course(simulated(folder, text, steps=60))
+    assert motion.jerk[5:].max() < 6.5
+    assert motion.accelerations[1].min() > -3.2
+
+
+def test_paths_do_not_bend_sharply_where_long_lanes_meet(folder: Path) -> None:
+    network = Network.fromFile(folder / "cross.xodr")
+    lengths = set()
+    for way in network.maneuvers:
+        plan = Plan(network, way.startLane)
+        plan.choose(way)
+        lengths.add(round(way.connectingLane.centerline.length))
+        assert np.abs(plan.path.curvatures).max() < 1.2 / min(
+            12.5, way.connectingLane.centerline.length / 1.7
+        )
+        assert np.abs(np.diff(plan.path.curvatures)).max() < 0.03
+    assert max(lengths) > 24
+
+
+def test_a_car_in_the_second_half_of_a_lane_that_comes_back_stays_on_it(tmp_path: Path) -> None:
+    # A hairpin: the middle of the lane is nearer to its second half than the lane's own points there.
+    turn = piece(60, 0, 0, 25 * math.pi / 2, f'<arc curvature="{1 / 12.5!r}"/>', s=60)
+    shape = line(0, 0, 0, 60) + turn + line(60, 25, math.pi, 60, s=60 + 25 * math.pi / 2)
+    lanes = two_way(before=False, after=False, sidewalk=False)
+    (tmp_path / "bend.xodr").write_text(
+        map_text([RoadText("1", 120 + 25 * math.pi / 2, geometry=shape, lanes=lanes)])
+    )
+    text = "ego = new Car at (40, 26.75), facing 90 deg, with speed 5, with behavior FollowLaneBehavior(5)\n"
+    motion = course(simulated(tmp_path, text, "bend", steps=60))
+    assert np.abs(motion.places[:, 1] - 26.75).max() < 0.1
 
 
 def test_a_car_stops_at_the_end_of_the_network_and_its_behavior_ends(folder: Path) -> None:

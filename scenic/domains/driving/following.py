@@ -125,6 +125,7 @@ class Driver:
             self.comfort,
             limits=limits,
             stops=stops,
+            acceleration=max(self._acceleration, -self.comfort.deceleration),
             junctions=junctions,
         )
         self._look = 0.0
@@ -338,9 +339,13 @@ class _Line:
 
 def _applied(agent: Any) -> tuple[float, float]:
     """Steering of an agent in the last step, and its acceleration (m/s^2) as far as actions tell; 0 if none."""
-    for action in reversed(agent.lastActions):
+    simulation = running_simulation()
+    # Those of this step are chosen after the last one's have been forgotten.
+    taken = (
+        agent.lastActions or (simulation.actionSequence and simulation.actionSequence[-1].get(agent)) or ()
+    )
+    for action in reversed(taken):
         if isinstance(action, RegulatedControlAction):
-            simulation = running_simulation()
             pedal = action.throttle or -action.brake
             standing = pedal < 0 and agent.speed < 0.05
             return action.steer, 0.0 if standing else simulation.acceleration_of(agent, pedal)

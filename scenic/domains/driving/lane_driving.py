@@ -13,6 +13,7 @@ from scenic.domains.driving.actions import RegulatedControlAction
 from scenic.domains.driving.car_following import Gap
 from scenic.domains.driving.elements import Lane, LaneSection
 from scenic.domains.driving.following import Driver
+from scenic.domains.driving.kinds import ManeuverType
 from scenic.domains.driving.paths import Path
 from scenic.domains.driving.planning import Plan, join, path_of_lines
 from scenic.domains.driving.speed_profiles import Comfort
@@ -26,6 +27,8 @@ __all__ = ["LaneChanger", "LaneDriver", "RouteDriver", "lane_under"]
 
 _BUFFER: Final = 1.0
 """Metres between the front of a car that stops at the end of the network and the end."""
+_JOINING: Final = 20.0
+"""Metres of path that a car has ahead at least when it begins to follow it."""
 _LOST: Final = 1.5
 """Metres from the path from which a car that has been driven by something else takes its present lane."""
 _LONG: Final = 120.0
@@ -35,7 +38,7 @@ _TURN: Final = math.radians(20)
 
 
 def lane_under(agent: Any) -> Lane:
-    """The lane of a car: in an intersection, of those under it the one that leads in its direction best.
+    """The lane of a car: in an intersection, of those under it the one that leads from where it is in its direction best.
 
     Raises:
         RejectionException: there is none.
@@ -43,12 +46,23 @@ def lane_under(agent: Any) -> Lane:
     """
     intersection = agent.roadNetwork.intersectionAt(agent.position)
     if intersection is not None:
-        lanes = [item.connectingLane for item in intersection.maneuversAt(agent.position)]
-        if lanes:
-            best: Lane = min(lanes, key=lambda lane: abs(_turned(agent, lane)))
+        ways = intersection.maneuversAt(agent.position)
+        if ways:
+            # Of ways that have not parted yet the one straight ahead.
+            turns = {way.connectingLane: way.type is not ManeuverType.STRAIGHT for way in ways}
+            best: Lane = min(turns, key=lambda lane: _apart(agent, lane) + 0.05 * turns[lane])
             return best
     lane: Lane = agent.lane
     return lane
+
+
+def _apart(agent: Any, lane: Lane) -> float:
+    """How far a car is from following a lane: the angle to it in radians, and its distance, of which two metres count as one."""
+    import shapely
+
+    x, y, *_ = agent.position
+    distance = float(shapely.distance(shapely.linestrings(lane.line), shapely.points(x, y)))
+    return abs(_turned(agent, lane)) + distance / 2
 
 
 def _turned(agent: Any, lane: Lane) -> float:
@@ -125,8 +139,9 @@ class LaneDriver(Driver):
         self._due = plan.path.length - plan.reserve(speed, self.comfort.deceleration)
 
     def _is_covered(self, path: Path) -> bool:
-        """Return whether a path does not end behind the car."""
-        if path.length < self._near:
+        """Return whether a path does not end behind the car, or before the car has come to it."""
+        joining = 1.5 * self._joining_time * self._pace()
+        if path.length < self._near + max(joining, _JOINING):
             return False
         x, y = self._place()
         index, share, _ = path.locate(x, y, path.nearest(x, y, self._near))

@@ -154,6 +154,9 @@ class PathPieces:
             raw, curve = self._curve(inner.pop())
             middle = len(raw) // 2
             after, last = raw[: middle + 2], curve[middle + 2 - _SHARED : middle + 2]
+            if opens and not inner and np.hypot(*(after[0] - before[-1])) < SPACING / 2:
+                # Two points in one place have no direction.
+                after = after[1:]
         lines = [before[-1:], *map(self._line, inner), after[:1]]
         way = np.concatenate(lines)
         middle_part = resampled(way) if _length(way) > SPACING else way[:0]

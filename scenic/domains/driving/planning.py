@@ -126,7 +126,7 @@ def join(
     """
     x, y, *_ = place
     index, share, offset = path.locate(x, y, path.nearest(x, y, near))
-    if share < 0 or share > 1:
+    if (share < 0 and index == 0) or (share > 1 and index == len(path.along) - 2):
         return 0.0
     turned = (heading - path.headings[index] + math.pi) % (2 * math.pi) - math.pi
     if duration == 0.0 and abs(offset) < _OFF and abs(turned) < 0.05:
@@ -183,6 +183,7 @@ def speeds_of(
     *,
     limits: Floats | None,
     stops: float | None,
+    acceleration: float = 0.0,
     junctions: Sequence[tuple[int, int]] = (),
 ) -> tuple[list[float], list[float]]:
     """Speeds and accelerations at the points of a path from an index on.
@@ -195,14 +196,16 @@ def speeds_of(
         comfort: what limits the speed.
         limits: further largest speeds at all points of the path, m/s.
         stops: metres before the end of the path at which the car stops, if it does.
+        acceleration: of the car so far, m/s^2.
         junctions: stretches of the path, from and to an index, through which the car does not brake for what comes after.
 
     """
     along = np.array(path.along[begin:])
     curvatures = np.array(path.curvatures[begin:])
-    top = np.minimum(speeds_in_bends(along, curvatures, comfort), target)
+    top = speeds_in_bends(along, curvatures, comfort)
+    wanted = np.full(len(top), target)
     if limits is not None:
-        top = np.minimum(top, limits[begin : begin + len(top)])
+        wanted = np.minimum(wanted, limits[begin : begin + len(top)])
     count = len(along)
     if stops is not None:
         count = max(2, int(np.searchsorted(along, along[-1] - stops, side="right")))
@@ -210,7 +213,14 @@ def speeds_of(
         (max(0, low - begin), high - begin) for low, high in junctions if high > begin and low - begin < count
     ]
     speeds, accelerations = speeds_along(
-        along[:count], top[:count], speed, comfort, stops=stops is not None, junctions=ahead
+        along[:count],
+        top[:count],
+        speed,
+        comfort,
+        wanted=wanted[:count],
+        acceleration=acceleration,
+        stops=stops is not None,
+        junctions=ahead,
     )
     rest = [0.0] * (len(along) - count)
     return speeds.tolist() + rest, accelerations.tolist() + rest

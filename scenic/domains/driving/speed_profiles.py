@@ -82,6 +82,8 @@ def speeds_along(
     speed: float,
     comfort: Comfort,
     *,
+    wanted: Floats | float = math.inf,
+    acceleration: float = 0.0,
     stops: bool = False,
     junctions: Sequence[tuple[int, int]] = (),
 ) -> tuple[Floats, Floats]:
@@ -89,35 +91,47 @@ def speeds_along(
 
     Args:
         along: metres along the path ``(n,)``; the car is at the first point.
-        limits: largest speeds ``(n,)``.
+        limits: largest speeds ``(n,)``, for which a car that is too fast brakes hard.
         speed: of the car, m/s.
         comfort: limits of acceleration, deceleration and jerk.
+        wanted: further largest speeds ``(n,)``, for which it brakes comfortably.
+        acceleration: of the car so far, m/s^2.
         stops: the car stands at the last point.
         junctions: stretches, from and to an index, before which braking for lower limits ends, rather than in them.
 
     """
     window = (comfort.acceleration + comfort.deceleration) / comfort.jerk
-    squares = _eroded(along, limits, window / 2) ** 2
-    squares = _slow_before(along, squares, junctions, speed, window / 2, comfort.deceleration)
-    if stops:
-        squares[-1] = 0.0
+    squares = _allowed(along, limits, window / 2, stops=stops)
     deceleration = comfort.deceleration
     needed = _needed(along, squares, speed)
     if needed > _HARDER * deceleration:
         # Too fast for what lies ahead: an even, harder braking that begins at once.
         window = _AT_ONCE
-        squares = _eroded(along, limits, window / 2) ** 2
-        if stops:
-            squares[-1] = 0.0
+        squares = _allowed(along, limits, window / 2, stops=stops)
         deceleration = max(deceleration, min(1.1 * _needed(along, squares, speed), _EMERGENCY))
+    squares = np.minimum(squares, _eroded(along, np.minimum(limits, wanted), window / 2) ** 2)
+    last = squares[-1]
+    if stops:
+        # Whoever stops in a junction, at the end of the network, brakes there.
+        squares[-1] = squares[-2]
+    squares = _slow_before(along, squares, junctions, speed, window / 2, comfort.deceleration)
+    squares[-1] = last
     down, up = 2 * deceleration * along, 2 * comfort.acceleration * along
     # v(s)^2 <= v(t)^2 + 2 b (t - s) for every t ahead, and likewise for acceleration from every place behind.
     squares = np.minimum.accumulate((squares + down)[::-1])[::-1] - down
-    hardest = speed * speed - 2 * _EMERGENCY * (along - along[0])
+    hardest = speed * speed - 2 * deceleration * (along - along[0])
     squares[0] = speed * speed
     squares = np.minimum.accumulate(squares - up) + up
     squares = np.maximum(squares, np.maximum(hardest, 0.0))
-    return _averaged(along, np.sqrt(np.maximum(squares, 0.0)), window, stops=stops)
+    return _averaged(along, np.sqrt(np.maximum(squares, 0.0)), window, acceleration, stops=stops)
+
+
+def _allowed(along: Floats, limits: Floats, time: float, *, stops: bool) -> Floats:
+    """Squared speeds that keep limits for seconds before and after each point."""
+    squares: Floats = _eroded(along, limits, time) ** 2
+    if stops:
+        squares[-1] = 0.0
+    return squares
 
 
 def _slow_before(
@@ -170,7 +184,9 @@ def _eroded(along: Floats, limits: Floats, time: float) -> Floats:
     return lowest
 
 
-def _averaged(along: Floats, speeds: Floats, window: float, *, stops: bool) -> tuple[Floats, Floats]:
+def _averaged(
+    along: Floats, speeds: Floats, window: float, earlier: float, *, stops: bool
+) -> tuple[Floats, Floats]:
     """The motion averaged over a window of time, as speeds and accelerations at the points."""
     means = np.maximum((speeds[1:] + speeds[:-1]) / 2, _CREEP / 2)
     times = np.concatenate([[0.0], np.cumsum(np.diff(along) / means)])
@@ -179,9 +195,10 @@ def _averaged(along: Floats, speeds: Floats, window: float, *, stops: bool) -> t
     count = max(2, int(times[-1] / step) + 1)
     moments = np.arange(count) * step
     places = np.interp(moments, times, along)
-    # Before, the car has gone at its speed; after, it goes on at the last one.
+    # Before, the car has gone at an even acceleration; after, it goes on at the last speed.
     ahead = 0.0 if stops else speeds[-1]
-    before = places[0] - speeds[0] * step * np.arange(half, 0, -1)
+    past = step * np.arange(half, 0, -1)
+    before = places[0] - past * np.maximum(speeds[0] - earlier * past / 2, 0.0)
     after = places[-1] + ahead * step * np.arange(1, half + 1)
     whole = np.concatenate([before, places, after])
     sums = np.concatenate([[0.0], np.cumsum(whole)])
