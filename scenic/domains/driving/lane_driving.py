@@ -57,7 +57,7 @@ def lane_under(agent: Any) -> Lane:
 
 
 def _apart(agent: Any, lane: Lane) -> float:
-    """How far a car is from following a lane: the angle to it in radians, and its distance, of which two metres count as one."""
+    """The angle from a car to a lane in radians, and its distance, of which two metres count as one radian."""
     import shapely
 
     x, y, *_ = agent.position
