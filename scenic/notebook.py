@@ -106,7 +106,8 @@ def _row_html(row: SimulationRow) -> str:
     """A simulation: played, if it was made for that, with its end and the verdicts of its requirements."""
     if row.about is None:
         text = row.missing or (row.error.message if row.error else "")
-        return f"<p>simulation {row.k}: {markup.escape(text)}</p>"
+        why = "" if row.exhausted is None else _exhausted_html(row.exhausted)
+        return f"<p>simulation {row.k}: {markup.escape(text)}</p>{why}"
     head = f"<p>simulation {row.k}: {row.about['steps']} steps, {markup.escape(row.about['reason'])}</p>"
     verdicts = [
         (item["label"], item["verdict"].lower().replace("_", " "), _brief(item["robustness"]))

@@ -3,8 +3,8 @@
 The programs stand in the text files beside this module, separated by lines of three hyphens. The first line of a program, ``? words``,
 is a regular expression for the cause: the message or the help on a wrong line has to match it. A wrong line ends in ``#!`` and
 the line that was meant; alternatives are separated by ``||``, ``|`` precedes a line with an indentation of its own, and nothing
-after ``#!`` leaves the line out. Place, cause and repair of the two lists were written down before the messages were read:
-``first.txt`` before they were mended, ``second.txt`` afterwards.
+after ``#!`` leaves the line out. Place, cause and repair of the lists were written down before the messages were read:
+``first.txt`` before they were mended, each other list after those before it were. Each list is mended since.
 """
 
 import itertools

@@ -1,6 +1,7 @@
 """Many simulations of a scenario, made by several processes, each a function of seed and number alone."""
 
 import random
+import re
 from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import replace
@@ -13,17 +14,26 @@ from scenic.batch.folders.fingerprint import files_of_origin
 from scenic.batch.keeping import Form, Kept, Watcher, about_file, is_whole
 from scenic.batch.simulation_folders import SimulationFolder
 from scenic.dataclass import dataclass
-from scenic.language.diagnostics import Diagnostic
+from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.runtime.ground.arguments import check_seconds, whole_number
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
+    from scenic.runtime.sampling.report import Exhausted
     from scenic.runtime.scenes.scenario import Scenario
     from scenic.simulators.batch import Numbered
     from scenic.simulators.simulator import Simulator
 
-__all__ = ["Running", "SimulationError", "SimulationRow", "Simulations", "is_violated", "simulated"]
+__all__ = [
+    "Running",
+    "SimulationError",
+    "SimulationRow",
+    "Simulations",
+    "is_violated",
+    "nothing_happens",
+    "simulated",
+]
 
 _TRIES: Final = 3
 """Processes that may die at a simulation until it counts as failed."""
@@ -74,6 +84,7 @@ class SimulationRow:
         page: data for the page that plays it, if one is wanted.
         missing: why there is no simulation (no scene was found, or all tries were rejected).
         rejections: the reasons that rejected the tries with their counts, the most frequent first.
+        exhausted: the requirements that kept a scene from being found, where none was.
         error: what went wrong.
 
     """
@@ -84,6 +95,7 @@ class SimulationRow:
     missing: str | None = None
     rejections: tuple[tuple[str, int], ...] = ()
     error: Diagnostic | None = None
+    exhausted: "Exhausted | None" = None
 
 
 class SimulationError(RuntimeError):
@@ -264,7 +276,12 @@ class Simulations:
             numbered = self._simulated(k, kept)
             done = numbered.simulation
             if done is None:
-                return SimulationRow(k, missing=_why_missing(numbered), rejections=numbered.rejections)
+                return SimulationRow(
+                    k,
+                    missing=_why_missing(numbered),
+                    rejections=numbered.rejections,
+                    exhausted=numbered.exhausted,
+                )
             about = {
                 **course_document(done, k=k, tries=numbered.tries),
                 "settings": self._settings(),
@@ -310,6 +327,30 @@ class Simulations:
         if self._looking_back is None:
             self._looking_back = any(name in self._scenario.text for name in ("trajectory", "actionSequence"))
         return self._looking_back
+
+
+def nothing_happens(scenario: "Scenario", simulator: "Simulator") -> Diagnostic | None:
+    """SC407, if nothing moves in any simulation of a scenario: no object has a behavior or a velocity, and none falls."""
+    from scenic.runtime.values.values import is_random
+
+    if type(simulator).__name__ not in _WITHOUT_FALLING or _RUNS.search(scenario.text):
+        return None
+    for thing in scenario.objects:
+        velocities = (thing.velocity, thing.angularVelocity)
+        if thing.behavior is not None or any(is_random(each) or any(each) for each in velocities):
+            return None
+    return Diagnostic(
+        "SC407",
+        "nothing happens in this simulation: no object has a behavior",
+        severity=Severity.WARNING,
+        help="give an object a behavior: `with behavior FollowLaneBehavior()`",
+    )
+
+
+_WITHOUT_FALLING: Final = frozenset({"KinematicSimulator", "NewtonianSimulator", "DummySimulator"})
+"""Simulators in which what has no behavior and no velocity stays where it is."""
+_RUNS: Final = re.compile(r"\b(?:compose|monitor)\b")
+"""Words of programs in which more may happen than their objects do."""
 
 
 def is_violated(about: Mapping[str, Any]) -> bool:
@@ -411,7 +452,7 @@ def _failure(error: Exception) -> Diagnostic:
 
 def _why_missing(numbered: "Numbered") -> str:
     """Return the reason why there is no simulation of a number, in words."""
-    if not numbered.has_scene:
+    if numbered.exhausted is not None:
         return "no scene found"
     if numbered.is_random:
         return f"rejected ({numbered.tries} tried)"

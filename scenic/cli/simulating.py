@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from scenic.batch.engines import Engine
 from scenic.batch.simulation_folders import seed_of_simulations
-from scenic.batch.simulations import Running, SimulationRow, Simulations
+from scenic.batch.simulations import Running, SimulationRow, Simulations, nothing_happens
 from scenic.batch.summaries import Setting, csv_of, plot, summary
 from scenic.cli.batch_parts import FileSink, places_of, write_files
 from scenic.cli.options import settings_of
@@ -98,6 +98,8 @@ def _batches(request: SimulateRequest, seed: int) -> list[tuple[Setting, Simulat
             shown=request.view is not None, only_violations=request.keep == "violations",
         )  # fmt: skip
         batches.append((setting, batch))
+        idle = nothing_happens(loaded, batch.simulator) if len(batches) == 1 else None
+        show_diagnostics([] if idle is None else [idle])
     return batches
 
 
@@ -109,7 +111,7 @@ def _simulate(
     missing = [k for k in range(request.first, request.first + request.count) if k not in setting.rows]
     if setting.parameters:
         print(f"{setting.label}:")
-    code, due = CLEAN, next(numbers, None)
+    code, due, is_explained = CLEAN, next(numbers, None), False
     with closing(batch.rows(missing, engine)) as rows:
         while due is not None:
             if due not in setting.rows:
@@ -117,7 +119,12 @@ def _simulate(
                 setting.rows[row.k] = row
                 advance(1, 1)
                 continue
-            code = max(code, _show(setting.rows[due]))
+            row = setting.rows[due]
+            code = max(code, _show(row))
+            if row.exhausted is not None and not is_explained:
+                # The other scenes are missing for the same reasons.
+                print(row.exhausted.message())
+                is_explained = True
             if request.show_params:
                 _show_params(setting.rows[due])
             if request.show_records:

@@ -148,7 +148,7 @@ BOOLEAN: Final = Type("boolean", "a truth value", "write `True` or `False`")
 COLOR: Final = Type(
     "3 or 4 numbers in [0, 1]",
     "a colour (3 or 4 numbers from 0 to 1)",
-    "write red, green, blue and maybe opacity, as `(1, 0.5, 0)`",
+    "write red, green, blue and maybe opacity as numbers from 0 to 1, in parentheses",
     kinds=frozenset({"vector"}),
     lengths=frozenset({3, 4}),
 )

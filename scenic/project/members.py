@@ -5,9 +5,7 @@ The class of such a value follows from annotations of the library (`scenic.proje
 
 import ast
 import os
-import re
 from collections.abc import Collection, Iterator, Mapping
-from functools import lru_cache
 from types import MappingProxyType
 from typing import Final
 
@@ -30,7 +28,7 @@ from scenic.project.classes import (
 )
 from scenic.project.index import Exported, Project
 from scenic.project.modules import Module
-from scenic.project.symbols import Symbol
+from scenic.project.symbols import Symbol, SymbolKind
 
 __all__ = ["kind_of_exported", "member_findings"]
 
@@ -60,16 +58,15 @@ def member_findings(
     folders = {os.path.dirname(file) for file in files if file.startswith(LIBRARY)}
     if not folders:
         return
-    # Nearly all attributes have a name that stands in the library: only the others are looked into.
-    known = frozenset().union(_COMMON, *(_words_in(folder) for folder in folders))
     module = Module(source, tree, resolution, is_scenic=True, broken=False)
     stored = {node.attr for node, _ in resolution.nodes(ast.Attribute) if isinstance(node.ctx, ast.Store)}
     stored |= {node.property for node, _ in resolution.nodes(scenic.SpecifierPhrase) if node.property}
-    seen: dict[tuple[str, str], tuple[str, str | None, str] | None] = {}
+    called = {id(node.func) for node, _ in resolution.nodes(ast.Call)}
+    seen: dict[tuple[str, str], tuple[str, str | None, str, bool] | None] = {}
     for node, _ in resolution.nodes(ast.Attribute):
         if node.attr in stored or node.attr.startswith("_"):
             continue
-        if node.attr in known and not _is_near(node, brought):
+        if node.attr in _COMMON and not _is_near(node, brought):
             continue
         chain = _chain(node.value, resolution, brought)
         if chain is None:
@@ -79,7 +76,7 @@ def member_findings(
             seen[key] = _slip(project, module, node)
         found = seen[key]
         if found is not None:
-            kind, meant, advice = found
+            kind, meant, advice, is_method = found
             whole = source.span(node)
             place = Span(
                 whole.end_line, max(0, whole.end_column - len(node.attr)), whole.end_line, whole.end_column
@@ -91,19 +88,19 @@ def member_findings(
                 Severity.WARNING,
                 source.filename,
                 advice,
-                fix=Fix(f"Change to `{meant}`", (Edit(place, meant),)) if meant else None,
+                fix=_renamed(place, meant, source, is_called=id(node) in called and not is_method)
+                if meant
+                else None,
             )
 
 
-@lru_cache(maxsize=16)
-def _words_in(folder: str) -> frozenset[str]:
-    """The words of all files of a folder of the library, which does not change."""
-    words: set[str] = set()
-    for entry in os.scandir(folder):
-        if entry.name.endswith((".py", ".scenic")):
-            with open(entry.path, encoding="utf-8") as file:
-                words.update(re.findall(r"\w+", file.read()))
-    return frozenset(words)
+def _renamed(place: Span, meant: str, source: Source, *, is_called: bool) -> Fix | None:
+    """The repair of an attribute's name; what is called without arguments, as methods of others are, loses the parentheses."""
+    rest = source.line(place.end_line)[place.end_column :]
+    if is_called and not rest.startswith("()"):
+        return None
+    whole = Span(place.line, place.column, place.end_line, place.end_column + 2) if is_called else place
+    return Fix(f"Change to `{meant}`", (Edit(whole, meant),))
 
 
 def _is_near(node: ast.Attribute, brought: Mapping[str, Exported]) -> bool:
@@ -165,8 +162,8 @@ def _kind_of_class(project: Project, symbol: Symbol | None) -> str | None:
     return None
 
 
-def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, str | None, str] | None:
-    """The class of the owner of an attribute, the name that was meant if it is known, and advice; if the class has no such attribute."""
+def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, str | None, str, bool] | None:
+    """The class of the owner of an attribute, the name that was meant if it is known, advice, and whether a method is meant; if the class has no such attribute."""
     symbol = class_of(project, module, node.value)
     element = class_of_elements(project, module, node.value) if symbol is None else None
     if element is not None and node.attr not in _OF_SEQUENCES:
@@ -175,7 +172,7 @@ def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, s
         return (
             None
             if meant is None
-            else (f"sequence of {element.name}", f"[0].{meant}", f"did you mean `[0].{meant}`?")
+            else (f"sequence of {element.name}", f"[0].{meant}", f"did you mean `[0].{meant}`?", True)
         )
     if symbol is None:
         # An attribute of the class itself, such as a member of an enumeration.
@@ -186,11 +183,58 @@ def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, s
     if cls is None or cls.member(node.attr) is not None or cls.member("__getattr__") is not None:
         return None
     names = {each.name for each in cls.members if not each.name.startswith("_")}
-    meant = nearest(node.attr, names) or related(node.attr, names)
+    meant = nearest(node.attr, names) or _elsewhere(node.attr, names) or related(node.attr, names)
+    if meant is None:
+        owner = _owner_beside(symbol, node.attr)
+        if owner is not None:
+            return symbol.name, None, _OTHER_WAYS.get((symbol.name, owner), f"a `{owner}` has it"), False
     if meant is None and not (cls.complete and names):
         return None
     shown = ", ".join(f"`{each}`" for each in sorted(names)[:_SHOWN])
-    return symbol.name, meant, f"did you mean `{meant}`?" if meant else f"it has {shown}, ..."
+    known_member = None if meant is None else cls.member(meant)
+    is_method = known_member is not None and known_member.kind is SymbolKind.METHOD
+    if known_member is not None and known_member.symbol is not None:
+        decorators = getattr(known_member.symbol.node, "decorator_list", ())
+        is_method &= not any(ast.unparse(each).endswith("property") for each in decorators)
+    advice = f"did you mean `{meant}`?" if meant else f"it has {shown}, ..."
+    return symbol.name, meant, advice, is_method
+
+
+def _owner_beside(symbol: Symbol, name: str) -> str | None:
+    """A class beside a class of the library that defines a name itself."""
+    for node in () if symbol.module is None else symbol.module.tree.body:
+        if isinstance(node, ast.ClassDef) and node.name != symbol.name:
+            for part in node.body:
+                target = part.target if isinstance(part, ast.AnnAssign) else None
+                is_own = isinstance(part, ast.FunctionDef) and part.name == name
+                if is_own or (isinstance(target, ast.Name) and target.id == name):
+                    return node.name
+    return None
+
+
+_OTHER_WAYS: Final[Mapping[tuple[str, str], str]] = MappingProxyType(
+    {
+        ("Lane", "LaneSection"): "sections of lanes have it: of an object `ego.laneSection`, at a point "
+        "`network.laneSectionAt(point)`, of a lane one of `lane.sections`",
+        ("Road", "RoadSection"): "sections of roads have it: one of `road.sections`",
+    }
+)
+"""Advice where a class lacks what another one has."""
+_NEIGHBOURS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        **dict.fromkeys(("nextLane", "next_lane", "next", "following"), "successor"),
+        **dict.fromkeys(("prevLane", "previousLane", "previous_lane", "previous"), "predecessor"),
+        **dict.fromkeys(("center", "centerLine", "middle"), "centerline"),
+        **dict.fromkeys(("maxSpeed", "max_speed", "speedlimit"), "speedLimit"),
+        "junctions": "intersections",
+    }
+)
+"""Names that other libraries have for attributes of roads and lanes."""
+
+
+def _elsewhere(name: str, names: Collection[str]) -> str | None:
+    meant = _NEIGHBOURS.get(name)
+    return meant if meant in names else None
 
 
 _SHOWN: Final = 8

@@ -33,7 +33,8 @@ class Numbered:
     seed: int
     tries: int
     simulation: Simulation | None
-    has_scene: bool = True
+    exhausted: Exhausted | None = None
+    """The reason why no scene was found, if none was."""
     rejections: tuple[tuple[str, int], ...] = ()
     """Reasons for which tries were rejected, and how many each; the most frequent first."""
     is_random: bool = True
@@ -107,7 +108,7 @@ def simulate_number(
     points = Sobol() if sobol else None
     (scene,) = scenario.stream(1, seed=seed, first=k, max_attempts=max_attempts, source=points)
     if isinstance(scene, Exhausted):
-        return Numbered(k, seed, 0, None, has_scene=False)
+        return Numbered(k, seed, 0, None, exhausted=scene)
     reasons: Counter[str] = Counter()
     draws: Counter[str] = Counter()
     for number in range(1, tries + 1):

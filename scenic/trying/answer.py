@@ -309,13 +309,14 @@ _ON_A_SHEET: Final = 6
 
 
 def _simulate(loaded: "Scenario", trial: Trial, made: _Answer) -> None:
-    from scenic.batch.simulations import Running, Simulations
+    from scenic.batch.simulations import Running, Simulations, nothing_happens
 
     running = Running(
         trial.seed, trial.steps, keep_violations=True, tries=5, stuck_after=trial.limits.seconds
     )
     watcher = None if trial.moments is None else _Moments(trial.moments)
-    (row,) = Simulations(loaded, None, running, watcher=watcher).rows([0], None)
+    simulations = Simulations(loaded, None, running, watcher=watcher)
+    (row,) = simulations.rows([0], None)
     if row.error is not None:
         made.diagnostics.append(row.error)
         return
@@ -353,15 +354,8 @@ def _simulate(loaded: "Scenario", trial: Trial, made: _Answer) -> None:
                     help="change the behaviors, or reject such scenes by a requirement",
                 )
             )
-    if not any(_acts(thing) for thing in loaded.objects):
-        made.diagnostics.append(
-            Diagnostic(
-                "SC407",
-                "nothing happens in this simulation: no object has a behavior",
-                severity=Severity.WARNING,
-                help="give an object a behavior: `with behavior FollowLaneBehavior()`",
-            )
-        )
+    idle = nothing_happens(loaded, simulations.simulator)
+    made.diagnostics += () if idle is None else (idle,)
 
 
 def _rejected(reason: str, rejections: tuple[tuple[str, int], ...]) -> Diagnostic:
@@ -369,10 +363,6 @@ def _rejected(reason: str, rejections: tuple[tuple[str, int], ...]) -> Diagnosti
     return Diagnostic(
         "SC505", f"{reason}{most}", help="change what the simulation violates, or give it more steps"
     )
-
-
-def _acts(thing: Any) -> bool:
-    return thing.behavior is not None
 
 
 def _too_large(error: MemoryError) -> Diagnostic:

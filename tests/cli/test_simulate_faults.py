@@ -182,3 +182,21 @@ def test_a_full_disk_leaves_no_half_files(folder: Path, target: str) -> None:
     assert result.stderr.count("File too large: 'place-") == 2
     assert "nothing of this simulation is kept" in result.stderr
     assert kept(folder) == {}
+
+
+def test_scenes_that_are_not_found_and_runs_without_events(tmp_path: Path) -> None:
+    program = "ego = new Object at (Range(0, 1), 0)\nrequire ego.x > 2 or ego.y > 3\n"
+    (tmp_path / "program.scenic").write_text(program)
+    variables = {"NO_COLOR": "1", "COLUMNS": "100"}
+    done = run_here(
+        ["simulate", "program.scenic", "-n", 2, "--seed", 1], folder=tmp_path, variables=variables
+    )
+    assert done.returncode == 3
+    assert "nothing happens in this simulation" in done.stderr
+    lines = done.stdout.splitlines()
+    assert lines[0] == "simulation 0: no scene found"
+    assert "requirement on line 2 rejected every candidate" in lines
+    assert lines[-3:-1] == [
+        "                  100.0%    100.0%  requirement on line 2 (line 2)",
+        "simulation 1: no scene found",
+    ]

@@ -15,6 +15,27 @@ __all__ = ["RULES"]
 
 def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     match context.provided(node.func):
+        case "Uniform" if (text := _one_sequence(node, context)) is not None:
+            yield context.warning(
+                "SC407",
+                "`Uniform` of one value always gives it, and this value is a list",
+                node,
+                f"draw one of its elements: `Uniform(*{text})`",
+                fix=context.replacement(
+                    f"Write `Uniform(*{text})`", node, f"Uniform(*{text})", certain=False
+                ),
+            )
+        case "Discrete" if len(node.args) == 1 and isinstance(node.args[0], ast.List | ast.Tuple | ast.Set):
+            text = context.text(node.args[0])
+            yield context.error(
+                "SC404",
+                "`Discrete` takes a dictionary of values and their weights, `{value: weight, ...}`",
+                node.args[0],
+                f"for equal weights write `Uniform(*{text or 'values'})`",
+                fix=context.replacement("Write `Uniform`", node, f"Uniform({text[1:-1].rstrip(', ')})")
+                if text
+                else None,
+            )
         case "Uniform":
             for keyword in node.keywords:
                 if keyword.arg is not None:
@@ -45,6 +66,15 @@ def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diag
                     node.args[2],
                     "give the lower limit first",
                 )
+
+
+def _one_sequence(node: ast.Call, context: CheckContext) -> str | None:
+    """The text of the only argument of a call, if it is certainly a list."""
+    if len(node.args) != 1 or node.keywords:
+        return None
+    kind = context.kind_of(node.args[0])
+    is_list = kind is not None and kind.name == "list"
+    return context.text(node.args[0]) if is_list else None
 
 
 def _weights(node: ast.Call, context: CheckContext) -> Iterator[Diagnostic]:

@@ -24,7 +24,17 @@ _RUN: Final = {
 
 def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC135: ``ego = Object(width=3)``."""
-    if not isinstance(node.func, ast.Name) or context.classes.properties(node.func) is None:
+    if not isinstance(node.func, ast.Name):
+        return
+    if context.provided(node.func) == "workspace":
+        yield context.error(
+            "SC404",
+            "`workspace` is the region of the scene, and the class is called `Workspace`",
+            node.func,
+            "write `workspace = Workspace(region)`",
+            fix=context.renaming(node.func, "workspace", "Workspace"),
+        )
+    if context.classes.properties(node.func) is None:
         return
     name = node.func.id
     example = f"new {name}"
@@ -214,6 +224,20 @@ def _new(node: scenic.New, scope: Scope, context: CheckContext) -> Iterator[Diag
 def _take(node: scenic.Take, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC314: ``take SetBrakeAction``."""
     for action in node.actions:
+        called = action.func if isinstance(action, ast.Call) else action
+        definition = context.definition(called)
+        foreign = context.foreign(called)
+        if isinstance(definition if foreign is None else foreign.definition, scenic.BehaviorDef):
+            text = context.text(called) or "Name"
+            run = text if isinstance(action, ast.Call) else f"{text}()"
+            yield context.warning(
+                "SC314",
+                f"`take` takes actions, and does not run the behavior `{text}`",
+                action,
+                f"run it: `do {run}`",
+                fix=_do_instead(node, context) if len(node.actions) == 1 else None,
+            )
+            continue
         foreign = context.foreign(action)
         if foreign is not None and foreign.is_plain_class:
             yield context.warning(
@@ -222,6 +246,13 @@ def _take(node: scenic.Take, _scope: Scope, context: CheckContext) -> Iterator[D
                 action,
                 f"write `take {context.text(action) or foreign.name}(...)`",
             )
+
+
+def _do_instead(node: scenic.Take, context: CheckContext) -> Fix:
+    span = context.source.span(node)
+    return Fix(
+        "Write `do`", (Edit(Span(span.line, span.column, span.line, span.column + len("take")), "do"),)
+    )
 
 
 _MAY_RUN: Final = frozenset({*_RUN.values(), "function", "class", "list", "tuple", "dictionary"})

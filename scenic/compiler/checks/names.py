@@ -113,7 +113,7 @@ class _MissingNames:
         ):
             return None
         if name in self._meant:
-            advice = f"`==` compares; `{name} = ...` would define it"
+            advice = f"`==` and `<` compare; `{name} = ...` would define it"
             return self._undefined(node, advice) if node in self._compared else None
         if context.broken:
             # Its binding may be among what is broken: once is enough.
@@ -202,7 +202,11 @@ def _similar(name: str, own: Collection[str], provided: Collection[str]) -> str 
         found = nearest(name, {each for each in pool if each[:1].isupper()})
     if found is not None and distance(name.lower(), found.lower(), limit=1) <= 1:
         return found
-    return (related(name, pool) if len(name) >= _SHORTEST_OF_WORDS else None) or found
+    same_words = related(name, pool) if len(name) >= _SHORTEST_OF_WORDS else None
+    if found is not None and same_words is not None and len(same_words) < len(name) < len(found) + 3:
+        # `RectangleRegion` is a `RectangularRegion` rather than a `Region`.
+        return found
+    return same_words or found
 
 
 _SHORTEST_OF_WORDS: Final = 6

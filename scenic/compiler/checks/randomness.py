@@ -18,6 +18,9 @@ __all__ = ["RULES", "is_random"]
 _LATER: Final = (scenic.Require, scenic.Record, scenic.TerminateWhen)
 """Statements whose expressions are evaluated later, on samples."""
 
+_NUMBERS: Final = frozenset({"Range", "DiscreteRange", "Normal", "TruncatedNormal"})
+"""Distributions of numbers."""
+
 _DEEPEST: Final = 20
 """Depth to which values are examined."""
 
@@ -132,6 +135,9 @@ def _counts(
         + (
             "for a random number of objects make the most there can be, each `with present i < count`"
             if is_range
+            else "loop over definite values, `for i in range(3)`, and draw a random number in each round; for a random number of "
+            "objects make the most there can be, each `with present i < count`"
+            if isinstance(counted, ast.Call) and context.provided(counted.func) in _NUMBERS
             else "loop over all that it can be, or make each part random by itself"
         ),
     )
@@ -190,6 +196,17 @@ def _truth(node: ast.BoolOp | ast.UnaryOp, scope: Scope, context: CheckContext) 
     )
 
 
+def _matches(node: ast.Match, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
+    """SC403: ``match x:`` with a random ``x``."""
+    if is_random(node.subject, context) and _is_asked_now(node, scope, context):
+        yield context.error(
+            "SC403",
+            "deciding by a random value is not possible while the scenario is being built",
+            node.subject,
+            "its value is known only in a sampled scene; make the choice itself random with `Uniform(...)` or `Discrete({...})`",
+        )
+
+
 def _asserts(node: ast.Assert, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC403: ``assert x > 3`` with a random ``x``."""
     if is_random(node.test, context) and _is_asked_now(node, scope, context):
@@ -228,8 +245,19 @@ def _indexes(node: ast.Subscript, scope: Scope, context: CheckContext) -> Iterat
 
 
 def _calls(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC403: ``math.sqrt(x)`` with a random ``x``."""
+    """SC403: ``math.sqrt(x)``, ``sorted([x, y])`` with a random ``x``."""
     yield from _is_passed(node, scope, context)
+    if context.provided(node.func) == "sorted" and any(
+        _holds_random(each, context) for each in node.args[:1]
+    ):
+        if _is_asked_now(node, scope, context):
+            yield context.error(
+                "SC403",
+                "sorting random values is not possible while the scenario is being built",
+                node,
+                "their order is known only in a sampled scene; `min` and `max` take random values",
+            )
+        return
     match node.func:
         case ast.Attribute(value=ast.Name(id="math") as module) if _is_module(module, "math", context):
             pass
@@ -243,6 +271,18 @@ def _calls(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diag
             "use the functions of the language (`sin`, `cos`, `hypot`, `max`, `min`, `x ** 0.5`), or define a function of your own "
             "with `@distributionFunction`",
         )
+
+
+def _holds_random(value: ast.expr, context: CheckContext) -> bool:
+    """Return whether a list has certainly a random value in it, and more than one value."""
+    if isinstance(value, ast.Name):
+        return (assigned := _assigned(value, context)) is not None and _holds_random(assigned, context)
+    match value:
+        case ast.List(elts=parts) | ast.Tuple(elts=parts):
+            return len(parts) > 1 and any(is_random(each, context) for each in parts)
+        case ast.ListComp(elt=element):
+            return is_random(element, context)
+    return False
 
 
 def _is_module(name: ast.Name, module: str, context: CheckContext) -> bool:
@@ -308,6 +348,7 @@ RULES: Final[dict[type[ast.AST], NodeRule]] = {
     ast.If: _decides,
     ast.IfExp: _decides,
     ast.ListComp: _comprehends,
+    ast.Match: _matches,
     ast.SetComp: _comprehends,
     ast.Subscript: _indexes,
     ast.UnaryOp: _truth,

@@ -153,11 +153,17 @@ def begun_names(context: CheckContext) -> set[ast.Name]:
 
 
 def compared_names(context: CheckContext) -> set[ast.Name]:
-    """The names that nothing binds on the left of ``==`` in statements that only compare: they were meant to be bound."""
+    """The names that nothing binds on the left of ``==`` or ``<-`` in statements that only compare: they were meant to be bound."""
     names = set()
     for node, _ in context.nodes(ast.Expr):
         match node.value:
             case ast.Compare(left=ast.Name() as name, ops=[ast.Eq()]) if context.is_unbound(name):
+                names.add(name)
+            case ast.Compare(left=ast.Name() as name, ops=[ast.Lt()], comparators=[right]) if (
+                context.is_unbound(name)
+                and isinstance(right, ast.UnaryOp)
+                and "<-" in (context.text(node) or "")
+            ):
                 names.add(name)
     return names
 

@@ -6,6 +6,7 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import CheckContext, NodeRule
+from scenic.compiler.checks.randomness import is_random
 from scenic.compiler.checks.wanted import may_be_meant, wrong_kinds
 from scenic.compiler.scopes import Scope, ScopeKind
 from scenic.compiler.semantics.kinds import ValueKind
@@ -25,6 +26,14 @@ _COMPLETE: Final = frozenset({"vector", "orientation"})
 """Kinds all of whose attributes and methods are declared."""
 
 _COORDINATES: Final = frozenset({"x", "y", "z", "yaw", "pitch", "roll", "heading", "position", "orientation"})
+
+_ELSEWHERE: Final = {
+    **dict.fromkeys(("coordinates", "location", "pos", "translation", "xyz"), "position"),
+    **dict.fromkeys(("quaternion", "rotation"), "orientation"),
+    **dict.fromkeys(("angle", "direction", "theta"), "heading"),
+    "bounding_box": "boundingBox",
+}
+"""Attributes of objects in other libraries, and those of the language that mean the same."""
 
 _ORDERED: Final = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 
@@ -334,6 +343,8 @@ def _loop(node: ast.For, scope: Scope, context: CheckContext) -> Iterator[Diagno
     kind = context.kind_of(node.iter)
     if kind is None or kind.name not in _WITHOUT_ITEMS or may_be_meant(node, scope, context):
         return
+    if is_random(node.iter, context):
+        return  # `randomness` reports that.
     text = context.text(node.iter)
     is_number = kind.name == "number" and text
     yield context.error(
@@ -399,7 +410,7 @@ def _unknown_attribute(
     name = node.attr
     meant = nearest(name, known)
     if meant is None and kind.name in INSTANCES:
-        meant = related(name, {each for each in known if not each.startswith("_")})
+        meant = _ELSEWHERE.get(name) or related(name, {each for each in known if not each.startswith("_")})
     if meant is None and kind.name not in _COMPLETE:
         return  # Python code may give it to some of them.
     place = _end(node, context)

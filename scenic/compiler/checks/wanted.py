@@ -1,14 +1,16 @@
 """Values where types are declared: what is certainly of another kind is reported."""
 
 import ast
+import re
 from collections.abc import Iterator, Sequence
+from typing import Final
 
 from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.scopes import Scope
 from scenic.compiler.semantics.kinds import accepts
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic
-from scenic.language.types import COLOR, VECTOR, Type, wanted
+from scenic.language.types import BEHAVIOR, COLOR, VECTOR, Type, wanted
 
 __all__ = ["may_be_meant", "wrong_kinds"]
 
@@ -22,7 +24,12 @@ def wrong_kinds(
         yield from _too_bright(title, value, context)
     if value is None or kind is None or accepts(types, kind):
         return
+    if context.broken and kind.name == "function" and BEHAVIOR in types:
+        return  # `behaviour Go():` was read as a function.
     noun, advice = wanted(types)
+    if types[0] is COLOR and isinstance(value, ast.Constant) and isinstance(value.value, str):
+        yield _colour_name(title, value, value.value, context)
+        return
     odd = kind.odd or (kind.items if any(each.items is not None for each in types) else None)
     lengths = {length for each in types for length in each.lengths}
     if odd is not None and (kind.size in lengths or not lengths):
@@ -45,16 +52,82 @@ def wrong_kinds(
     yield context.error("SC404", message, value, advice or f"give it {noun}")
 
 
+_COLOURS: Final = {
+    "black": "(0, 0, 0)",
+    "blue": "(0, 0, 1)",
+    "brown": "(0.6, 0.3, 0.1)",
+    "cyan": "(0, 1, 1)",
+    "gray": "(0.5, 0.5, 0.5)",
+    "green": "(0, 0.5, 0)",
+    "grey": "(0.5, 0.5, 0.5)",
+    "magenta": "(1, 0, 1)",
+    "orange": "(1, 0.65, 0)",
+    "pink": "(1, 0.75, 0.8)",
+    "purple": "(0.5, 0, 0.5)",
+    "red": "(1, 0, 0)",
+    "silver": "(0.75, 0.75, 0.75)",
+    "white": "(1, 1, 1)",
+    "yellow": "(1, 1, 0)",
+}
+"""Names of colours (CSS Color Module), as the language writes them."""
+_HEXADECIMAL: Final = re.compile(r"#([0-9a-fA-F]{2})([0-9a-fA-F]{2})([0-9a-fA-F]{2})")
+
+
+def _colour_name(title: str, value: ast.expr, name: str, context: CheckContext) -> Diagnostic:
+    """SC404: ``with color "red"``, ``with color "#ff0000"``."""
+    parts = _HEXADECIMAL.fullmatch(name)
+    meant = _COLOURS.get(name.lower()) if parts is None else None
+    if parts is not None:
+        meant = f"({', '.join(f'{int(part, 16) / _MOST:.3g}' for part in parts.groups())})"
+    return context.error(
+        "SC404",
+        f"{title}: expected a colour, 3 or 4 numbers from 0 to 1, not text",
+        value,
+        f"write `{meant}`"
+        if meant
+        else "write red, green, blue and maybe opacity as numbers from 0 to 1, in parentheses",
+        fix=context.replacement(f"Write `{meant}`", value, meant) if meant else None,
+    )
+
+
+_MOST: Final = 255
+"""The greatest part of a colour in other programs."""
+
+
 def _too_bright(title: str, value: ast.Tuple | ast.List, context: CheckContext) -> Iterator[Diagnostic]:
-    for part in value.elts:
-        if isinstance(part, ast.Constant) and isinstance(part.value, int | float) and part.value > 1:
-            yield context.error(
-                "SC404",
-                f"{title}: a colour is made of numbers from 0 to 1, not {part.value}",
-                part,
-                "divide parts that go up to 255: `(255 / 255, 128 / 255, 0)`",
-            )
-            return
+    parts = [part.value if isinstance(part, ast.Constant) else None for part in value.elts]
+    numbers = [part for part in parts if isinstance(part, int | float)]
+    wrong = next(
+        (
+            part
+            for part, number in zip(value.elts, parts, strict=True)
+            if isinstance(number, int | float) and number > 1
+        ),
+        None,
+    )
+    if wrong is None or len(parts) not in COLOR.lengths:
+        return
+    # The opacity goes up to 1 in most programs.
+    divided = [
+        _divided(part, context) if number in numbers and at < len("rgb") else context.text(part) or ""
+        for at, (part, number) in enumerate(zip(value.elts, parts, strict=True))
+    ]
+    shown = f"({', '.join(divided)})"
+    fits = max(numbers) <= _MOST and all(divided)
+    yield context.error(
+        "SC404",
+        f"{title}: a colour is made of numbers from 0 to 1, not {context.text(wrong)}",
+        wrong,
+        f"divide parts that go up to {_MOST}: `{shown}`"
+        if fits
+        else "write red, green, blue and maybe opacity as numbers from 0 to 1",
+        fix=context.replacement(f"Write `{shown}`", value, shown, certain=False) if fits else None,
+    )
+
+
+def _divided(part: ast.expr, context: CheckContext) -> str:
+    text = context.text(part) or ""
+    return {"0": "0", f"{_MOST}": "1"}.get(text, f"{text} / {_MOST}")
 
 
 def may_be_meant(node: ast.AST, scope: Scope, context: CheckContext) -> bool:

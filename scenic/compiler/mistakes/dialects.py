@@ -6,7 +6,7 @@ from scenic.compiler.actions import Problem
 from scenic.compiler.generated import SPECIFIER_KINDS
 from scenic.compiler.mistakes.situation import Situation
 from scenic.compiler.mistakes.trial import Change
-from scenic.compiler.tokens import NEWLINE, NUMBER
+from scenic.compiler.tokens import DEDENT, NEWLINE, NUMBER
 
 __all__ = [
     "bound_of_condition",
@@ -32,8 +32,10 @@ _OWN_SPECIFIERS: Final = {
 
 def continuation(at: Situation) -> Problem | None:
     """``new Object at x,`` and on the next line, without indentation, ``with width 2``."""
-    kinds, previous = at.tokens.kinds, at.first - 2
-    if previous < 1 or kinds[at.first] not in SPECIFIER_KINDS or kinds[at.first - 1] != NEWLINE:
+    kinds, previous = at.tokens.kinds, at.first - 1
+    while previous > 0 and kinds[previous] in (NEWLINE, DEDENT):
+        previous -= 1
+    if previous < 1 or previous == at.first - 1 or kinds[at.first] not in SPECIFIER_KINDS:
         return None
     if at.tokens.texts[previous] != ",":
         return None

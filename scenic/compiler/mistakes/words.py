@@ -105,12 +105,24 @@ def misspelt(at: Situation) -> Problem | None:
             continue
         if at.tokens.kinds[index] != NAME and at.word(index) not in SYNONYMS:
             continue
+        parted = _parted(at.word(index))
+        if parted and at.repairs(Change(index, index + 1, parted)):
+            return _misspelt(at, index, *parted)
         for keyword in (*_synonyms(at.word(index)), *_near(at.word(index))):
             change = Change(index, index + 1, (keyword,))
             context = "block" if at.word(at.end - 1) == ":" else None
             if at.repairs(change) or (context and at.repairs(change, context=context)):
                 return _misspelt(at, index, keyword)
     return None
+
+
+def _parted(word: str) -> tuple[str, ...]:
+    """The two keywords that a word joins: ``leftof``, ``offset_by``."""
+    for connector in CONNECTORS:
+        first = word.lower().removesuffix(connector).rstrip("_")
+        if word.lower().endswith(connector) and first in _KEYWORDS:
+            return first, connector
+    return ()
 
 
 _PROPERTIES: Final = frozenset(properties_of("Object"))
@@ -130,13 +142,14 @@ def perhaps_misspelt(at: Situation) -> Problem | None:
     return None
 
 
-def _misspelt(at: Situation, index: int, keyword: str) -> Problem:
+def _misspelt(at: Situation, index: int, *keywords: str) -> Problem:
+    meant = " ".join(keywords)
     return at.problem(
         "SC118",
         at.place(index),
         f"unknown keyword `{at.word(index)}`",
-        f"did you mean `{keyword}`?",
-        fix=(f"replace it by `{keyword}`", [Change(index, index + 1, (keyword,))]),
+        f"did you mean `{meant}`?",
+        fix=(f"replace it by `{meant}`", [Change(index, index + 1, keywords)]),
     )
 
 

@@ -342,7 +342,11 @@ class KindOf:
 
 def _options(node: ast.Call) -> Iterator[ast.expr]:
     """Yield the options of a choice that the text shows; the call itself stands for unknown options."""
-    of_sequence = isinstance(node.func, ast.Name) and node.func.id == "Options" and len(node.args) == 1
+    name = node.func.id if isinstance(node.func, ast.Name) else ""
+    if name == "Discrete" and not any(isinstance(each, ast.Dict) for each in node.args):
+        yield node
+        return
+    of_sequence = name == "Options" and len(node.args) == 1
     for argument in node.args:
         if of_sequence and isinstance(argument, ast.List | ast.Tuple):
             yield from (node if isinstance(each, ast.Starred) else each for each in argument.elts)

@@ -8,7 +8,7 @@ from typing import Any
 
 from scenic.language.errors import RandomControlFlowError
 from scenic.language.types import SCALAR
-from scenic.runtime.ground.context import current, here, verbosity
+from scenic.runtime.ground.context import Emptied, current, here, verbosity
 from scenic.runtime.python.opaque import call_later, is_later
 from scenic.runtime.python.purity import global_names, is_pure
 from scenic.runtime.values.lazy import Lazy, defer, is_lazy
@@ -119,21 +119,21 @@ def filter(function: Callable[[Any], Any] | None, values: Any) -> Any:
         values = list(values)
         kept = _kept(function, values)
         if not kept:
-            _note_empty(kept, builtins.len(values))
+            _note_empty(kept, values, function)
         return kept
     chosen = _kept_of_options(function, values)
     if chosen is None:
         return call_later(_kept, function, values)
     if all(option == [] for option in options_of(chosen)):
-        _note_empty(chosen, sum(map(builtins.len, options_of(values))))
+        _note_empty(chosen, [item for option in options_of(values) for item in option], function)
     return chosen
 
 
-def _note_empty(result: object, count: int) -> None:
-    """Record the place where a filter left none of some elements, for the error of a choice from its result."""
+def _note_empty(result: object, elements: list[Any], function: object) -> None:
+    """Record the filter that left none of some elements, for the error of a choice from its result."""
     context = current.get()
     if context is not None and context.is_symbolic:
-        context.record.emptied.append((result, count, here()))
+        context.record.emptied.append(Emptied(result, elements, function, here()))
 
 
 def _kept_of_options(function: Callable[[Any], Any] | None, values: object) -> Any:

@@ -69,6 +69,15 @@ class StandIns:
     """Instances and their substitutes, by the identities of the instances."""
 
 
+class Emptied(NamedTuple):
+    """A filter that left nothing: its result, its elements and condition, and where it is called."""
+
+    result: object
+    elements: Sequence[Any]
+    function: object
+    place: Span | None
+
+
 @dataclass(slots=True)
 class Record:
     """Facts about the program that running it brings up, for whoever works on it afterwards."""
@@ -79,8 +88,8 @@ class Record:
     """Values that an external sampler may choose, by address."""
     unrolled: list[tuple[Sequence[Any], tuple[Any, ...]]] = field(default_factory=list)
     """Sequences that conditions were unrolled over, with the elements that they had."""
-    emptied: list[tuple[Any, int, Span | None]] = field(default_factory=list)
-    """Results of filters in which nothing is left: the result, of how many elements, and where."""
+    emptied: list[Emptied] = field(default_factory=list)
+    """Filters that left nothing."""
     files: dict[Path, None] = field(default_factory=dict)
     """Files whose content decides the scenes, in the order in which they are named."""
     imports: dict[str, None] = field(default_factory=dict)
@@ -185,6 +194,13 @@ class Context:
         """Place in the program of whoever called the runtime."""
         found = self._locate(sys._getframe(1))
         return self.concerns if found is None else found
+
+    def own_place(self) -> Span | None:
+        """Place in the program's own file that the present call comes from, by way of libraries or not."""
+        frame: FrameType | None = sys._getframe(1)
+        while frame is not None and frame.f_code.co_filename != self.filename:
+            frame = frame.f_back
+        return None if frame is None else self._locate(frame)
 
     def file(self) -> str | None:
         """The file of whoever called the runtime, if that is generated code."""

@@ -314,7 +314,7 @@ def _colour(_name: str, value: object) -> Any:
         raise ScenicValueError(
             f"a colour is 3 or 4 numbers from 0 to 1, not {value!r}",
             span=here(),
-            help="for example `with color (0.8, 0.2, 0.2)`",
+            help="write red, green, blue and maybe opacity as numbers from 0 to 1; divide parts that go up to 255 by 255",
         )
     return value if isinstance(value, tuple) else parts  # a `Color` stays one
 

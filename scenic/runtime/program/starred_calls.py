@@ -5,8 +5,9 @@ from typing import Any
 
 from scenic.graph.node import Node
 from scenic.graph.operations import TABLE
-from scenic.language.errors import InvalidScenarioError, RejectionException
-from scenic.runtime.ground.context import current, here
+from scenic.language.errors import RejectionException
+from scenic.runtime.ground.context import current
+from scenic.runtime.program.emptied_filters import emptied_error
 from scenic.runtime.python.opaque import OpaqueCode, call_later
 from scenic.runtime.python.purity import is_pure
 from scenic.runtime.values.distributions import Uniform
@@ -63,14 +64,9 @@ def _refuse_nothing(parts: Parts) -> None:
     context = current.get()
     if context is None or len(parts) != 1:
         return
-    for result, count, place in context.record.emptied:
-        if result is parts[0][1]:
-            line = "" if place is None else f" in line {place.line}"
-            raise InvalidScenarioError(
-                f"`Uniform` has nothing to choose from: the filter{line} left 0 of {count}",
-                span=here(),
-                help="choose another map, or ask for less in the filter",
-            )
+    for emptied in context.record.emptied:
+        if emptied.result is parts[0][1]:
+            raise emptied_error(context, emptied)
 
 
 def _for_each_option(parts: Parts, function: Callable[..., Any]) -> Any:

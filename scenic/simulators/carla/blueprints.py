@@ -4,9 +4,14 @@ Ids are those of CARLA's catalogues; sizes are width, length and height in metre
 simulator runs, its own bounding boxes count.
 """
 
+import os
+import re
 from types import MappingProxyType
 from typing import Any, Final
 
+from scenic.language.errors import InvalidScenarioError
+from scenic.language.spelling import nearest
+from scenic.runtime.ground.context import current, here, warn
 from scenic.runtime.python.opaque import call_later
 from scenic.runtime.values.values import is_random, options_of, per_option
 
@@ -149,14 +154,71 @@ def _established(category: str) -> str:
 
 _LISTS: Final = MappingProxyType({_established(category): category for category in CATALOGUE})
 
-__all__ = ["CATALOGUE", "Size", "dimension", "ids", *_LISTS]
+__all__ = ["CATALOGUE", "Size", "check_map", "dimension", "ids", "known_blueprint", *_LISTS]
 
 _SIZES: Final = MappingProxyType({name: size for kind in CATALOGUE.values() for name, size in kind.items()})
 
 
 def ids(category: str) -> tuple[str, ...]:
-    """The ids of a category's blueprints."""
+    """The ids of a category's blueprints.
+
+    Raises `InvalidScenarioError` for a category that CARLA does not have.
+    """
+    if category not in CATALOGUE:
+        meant = nearest(category, CATALOGUE)
+        raise InvalidScenarioError(
+            f"CARLA has no blueprints of the category {category!r}",
+            span=here(),
+            help=f"did you mean `{meant}`?" if meant else f"its categories are {', '.join(CATALOGUE)}",
+        )
     return tuple(CATALOGUE[category])
+
+
+def known_blueprint(blueprint: Any) -> Any:
+    """The blueprint as it is, after a warning (SC405) if it has the form of an id and CARLA's catalogues do not have it."""
+    context = current.get()
+    for each in options_of(blueprint) or [blueprint]:
+        if isinstance(each, str) and _ID.fullmatch(each) and each not in _SIZES:
+            meant = nearest(each, _SIZES)
+            warn(
+                f"CARLA's catalogues have no blueprint {each!r}",
+                code="SC405",
+                span=None if context is None else context.own_place(),
+                filename=None if context is None else context.filename,
+                help=f"did you mean `{meant}`?"
+                if meant
+                else "take one of a list, such as `Uniform(*blueprints.carModels)`",
+            )
+    return blueprint
+
+
+def check_map(carla_map: object, map_path: object) -> None:
+    """Warn (SC620) if the name of CARLA's map is a town's, and the road map is the file of another one."""
+    file = os.path.splitext(os.path.basename(str(map_path)))[0]
+    if not isinstance(carla_map, str) or _town(carla_map) == _town(file) or not _TOWN.match(carla_map):
+        return
+    context = current.get()
+    place, name = (
+        (None, None) if context is None else context.parameters.places.get("carla_map", (None, None))
+    )
+    warn(
+        f"the cars are placed on the roads of {os.path.basename(str(map_path))!r}, and CARLA is to load {carla_map!r}",
+        code="SC620",
+        span=place,
+        filename=name,
+        help=f"set `param carla_map = {file!r}`, or take the map of {carla_map}",
+    )
+
+
+def _town(name: str) -> str:
+    """The name of a map without its folder, and without what marks its layered form."""
+    return name.rpartition("/")[2].lower().removesuffix("_opt")
+
+
+_SHOWN: Final = 8
+"""Lists that a message names."""
+_TOWN: Final = re.compile(r"(?:.*/)?Town\d\d", re.IGNORECASE)
+_ID: Final = re.compile(r"(?:vehicle|walker\.pedestrian|static\.prop)\.[\w.-]+")
 
 
 def dimension(blueprint: Any, axis: int, default: object) -> Any:
@@ -176,4 +238,10 @@ def __getattr__(name: str) -> tuple[str, ...]:
     """The established lists: ``carModels`` are the ids of the category ``car``, ``busStopModels`` those of ``bus_stop``."""
     if name in _LISTS:
         return ids(_LISTS[name])
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    meant = nearest(name, _LISTS) if not name.startswith("__") else None
+    raise AttributeError(
+        f"there is no list of blueprints `{name}`"
+        + (f": did you mean `{meant}`?" if meant else f"; there are {', '.join(list(_LISTS)[:_SHOWN])}, ...")
+        if not name.startswith("__")
+        else f"module {__name__!r} has no attribute {name!r}"
+    )

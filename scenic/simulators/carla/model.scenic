@@ -10,7 +10,7 @@ from scenic.domains.driving.setting import is2DMode
 from scenic.simulators.carla import blueprints
 from scenic.simulators.carla.actions import *
 from scenic.simulators.carla.behaviors import *
-from scenic.simulators.carla.blueprints import dimension, ids
+from scenic.simulators.carla.blueprints import check_map, dimension, ids, known_blueprint
 from scenic.simulators.carla.simulator import CarlaSimulator
 from scenic.simulators.carla.lights import (
     freezeTrafficLights, getClosestTrafficLightStatus, getTrafficLightStatus, setAllIntersectionTrafficLightsStatus,
@@ -32,6 +32,7 @@ param weather = Uniform(
     'ClearSunset', 'CloudySunset', 'WetSunset', 'WetCloudySunset', 'SoftRainSunset', 'MidRainSunset', 'HardRainSunset',
 )
 
+check_map(globalParameters.carla_map, globalParameters.map)
 if globalParameters.render not in (0, 1):
     raise ValueError('the parameter render is 0 or 1')
 
@@ -58,7 +59,7 @@ class CarlaActor(DrivingObject):
     defaultWidth: 1
     defaultLength: 1
     defaultHeight: 1
-    width: dimension(self.blueprint, 0, self.defaultWidth)
+    width: dimension(known_blueprint(self.blueprint), 0, self.defaultWidth)
     length: dimension(self.blueprint, 1, self.defaultLength)
     height: dimension(self.blueprint, 2, self.defaultHeight)
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import scenic
 from scenic.compiler.check import check_text
+from scenic.compiler.fixes import apply_fixes
 from scenic.language.members import MEMBERS
 from tests.compiler.golden_cases import read_cases
 from tests.each import each
@@ -42,6 +43,9 @@ WRONG = [
     ("x = 'at ' + table.position", "`+`: text and a vector cannot be combined"),
     ("new Object with shape BoxShape", "`with shape`: expected a shape, not a class"),
     ('new Object with color "red"', "`with color`: expected a colour"),
+    ("x = Discrete([1, 2])", "`Discrete` takes a dictionary of values and their weights"),
+    ("workspace = workspace(room)", "`workspace` is the region of the scene"),
+    ("x = table.location", "an object has no attribute `location`"),
     ("new Object with color (255, 0, 0)", "`with color`: a colour is made of numbers from 0 to 1, not 255"),
     ("behavior B():\n    take self.spped", "no class of this program has a property `spped`"),
     ("x = Uniform[1, 2]", "`Uniform` has no items"),
@@ -181,3 +185,30 @@ def test_declared_members_are_those_of_the_runtime() -> None:
         public = {name for name in dir(params[kind][0]) if not name.startswith("_")}
         # Those that are left out are of the implementation.
         assert public - set(MEMBERS[kind]) <= {"of", "row"}, kind
+
+
+COLOURS = [
+    ('"red"', "(1, 0, 0)"),
+    ('"#ff8000"', "(1, 0.502, 0)"),
+    ("(255, 0, 0)", "(1, 0, 0)"),
+    ("(200, 100, 50)", "(200 / 255, 100 / 255, 50 / 255)"),
+    ("(200, 100, 50, 0.5)", "(200 / 255, 100 / 255, 50 / 255, 0.5)"),
+    ("(300, 0, 0)", None),
+    ('"reddish"', None),
+]
+
+
+@each(COLOURS)
+def test_colours_are_repaired_by_their_own_numbers(case: tuple[str, str | None]) -> None:
+    written, meant = case
+    text = f"ego = new Object with color {written}\n"
+    [found] = check_text(text, filename="<colour>")
+    if meant is None:
+        assert found.fix is None
+        assert "255" not in (found.help or "")
+    else:
+        assert f"`{meant}`" in (found.help or "")
+        assert found.fix is not None
+        repaired = apply_fixes(text, [found.fix])[0]
+        assert repaired == f"ego = new Object with color {meant}\n"
+        assert check_text(repaired, filename="<colour>") == ()

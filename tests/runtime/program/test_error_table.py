@@ -115,7 +115,7 @@ ERRORS: list[tuple[type[Exception], str, str, str]] = [
     # ScenicValueError
     (ScenicValueError, "SC405", "x = «CircularRegion((0, 0), -3)»", "sizes are in metres"),
     (ScenicValueError, "SC405", "x = «BoxShape(dimensions=(0, 1, 2))»", "they are width, length and height in"),
-    (ScenicValueError, "SC405", "new Object «with color (0, 0, 300)»", "for example `with color (0.8, 0.2, 0.2)`"),
+    (ScenicValueError, "SC405", "new Object «with color (0, 0, 300)»", "write red, green, blue and maybe opacity as numbers from 0 to 1; divide parts that go up to 255 by 255"),
     (ScenicValueError, "SC405", "x = «Discrete({1: -1})»", "weights need not sum to 1"),
     (ScenicValueError, "SC405", "new Object «with viewAngles (0, 1)»", "give them in radians, or with `deg`"),
     (ScenicValueError, "SC405", "«record 3 every 0 seconds as x»", ""),
