@@ -24,6 +24,8 @@ _GRACE: Final = 5.0
 """Seconds beyond the limit of a trial until its process is ended: it notices the limit itself between candidates."""
 _LONGEST_OUTPUT: Final = 4000
 """Characters of what a program prints that an answer contains."""
+_LARGEST_FILE: Final = 256 << 20
+"""Bytes of a file that a program may write."""
 _INTERVAL: Final = 0.5
 """Seconds between looks for the parent of a process."""
 _FACTOR: Final = 3
@@ -131,7 +133,9 @@ def _serve(connection: Connection, other: Connection) -> None:
                 trial: Trial = connection.recv()
             except (EOFError, OSError):
                 return
-            _limit_memory(inherited + trial.limits.memory)
+            _limit("RLIMIT_AS", inherited + trial.limits.memory)
+            # What a program prints is a file, which must not fill the disk.
+            _limit("RLIMIT_FSIZE", _LARGEST_FILE)
             output.seek(0)
             output.truncate()
             connection.send(_answered(trial, output))
@@ -177,12 +181,11 @@ def _address_space() -> int:
         return 0
 
 
-def _limit_memory(size: int) -> None:
+def _limit(name: str, size: int) -> None:
     try:
         import resource
     except ImportError:  # There are no such limits on Windows.
         return
-    _, hard = resource.getrlimit(resource.RLIMIT_AS)
-    resource.setrlimit(
-        resource.RLIMIT_AS, (size if hard == resource.RLIM_INFINITY else min(size, hard), hard)
-    )
+    kind: int = getattr(resource, name)
+    _, hard = resource.getrlimit(kind)
+    resource.setrlimit(kind, (size if hard == resource.RLIM_INFINITY else min(size, hard), hard))

@@ -2,9 +2,12 @@
 
 import json
 import os
+import socket
 import subprocess
 import sys
+import time
 from collections.abc import Awaitable, Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -187,3 +190,116 @@ def test_broken_json(tmp_path: Path) -> None:
     answers = [json.loads(line) for line in done.stdout.splitlines()]
     assert any(each.get("id") == 1 and "result" in each for each in answers)
     assert done.returncode == 0
+
+
+MOVING = """\
+behavior Walk():
+    for _ in range(3):
+        take SetVelocity((1, 0))
+from scenic.simulators.kinematic import SetVelocity
+ego = new Object at (Range(0, 9), 0), with behavior Walk
+require ego.x > 3
+require always ego.x < 100
+"""
+BAD_RUNS = [
+    # Loops without end, also where everything is caught.
+    ("while True: pass\n", {"SC608"}),
+    ("while True:\n    try:\n        while True: pass\n    except BaseException: pass\n", {"SC608"}),
+    # Much memory, the end of the process, and endless output.
+    ("x = bytearray(10 ** 12)\n", {"SC610"}),
+    ("import os\nos._exit(3)\n", {"SC610"}),
+    ("raise SystemExit(3)\n", {"SC401"}),
+    ("while True: print('x' * 10 ** 6)\n", {"SC400", "SC608"}),
+    ("import os\nos.write(1, b'{broken')\nego = new Object\n", set()),
+    ("x = input()\n", {"SC400"}),
+]
+"""Programs that do harm where they can, and the codes of their answers."""
+
+
+def test_simulations_and_analyses(tmp_path: Path) -> None:
+    """The tools that take long, over standard input and output, with pictures and progress."""
+
+    async def talk() -> None:
+        async with Client(over_stdio(tmp_path)) as client:
+            tools = {each.name: each for each in (await client.list_tools()).tools}
+            for tool in tools.values():
+                jsonschema.Draft202012Validator.check_schema(tool.input_schema)
+                assert tool.annotations is not None
+                assert tool.annotations.read_only_hint == (tool.name in READING)
+            arguments = {"text": MOVING, "steps": 5, "picture": True, "mode_2d": False}
+            simulated = await client.call_tool("simulate", arguments, progress_callback=progress)
+            assert [each.type for each in simulated.content] == ["text", "image"]
+            answer = simulated.structured_content
+            jsonschema.validate(answer, tools["simulate"].output_schema or {})
+            assert (answer["phase"], answer["ok"], answer["simulation"]["steps"]) == ("simulate", True, 5)
+            assert [each["verdict"] for each in answer["simulation"]["requirements"]] == ["TRUE", "PRESUMABLY_TRUE"]
+            analyzed = (await client.call_tool("analyze", {"text": MOVING})).structured_content
+            assert analyzed["values"][0]["before"] == [0, 9]
+            assert analyzed["values"][0]["after"] == pytest.approx([3, 9])
+            wrong = await client.call_tool("analyze", {"text": "ego = new Objct\n"})
+            assert wrong.is_error
+            assert "SC203" in str(wrong.content)
+            outside = await client.call_tool("try", {"text": MOVING, "filename": "../outside.scenic"})
+            assert outside.is_error
+
+    steps: list[float] = []
+
+    async def progress(done: float, _total: float | None, _message: str | None) -> None:
+        steps.append(done)
+
+    anyio.run(talk)
+    assert steps == sorted(steps)
+
+
+def test_harm_is_limited(tmp_path: Path) -> None:
+    """Each bad program has an answer soon, whatever the others do meanwhile, and leaves no process."""
+    child = "import subprocess\np = subprocess.Popen(['sleep', '1000'])\nopen('pid', 'w').write(str(p.pid))\nego = new Object\n"
+
+    async def talk() -> None:
+        async with Client(over_stdio(tmp_path)) as first, Client(over_stdio(tmp_path)) as second:
+
+            async def attempt(client: Client, text: str) -> None:
+                seconds = 1 if "while" in text else 30
+                result = await client.call_tool("try", {"text": text, "seconds": seconds})
+                answers[text] = result.structured_content
+
+            with anyio.fail_after(60):
+                async with anyio.create_task_group() as group:
+                    for number, (text, _) in enumerate([*BAD_RUNS, (child, set())]):
+                        group.start_soon(attempt, (first, second)[number % 2], text)
+            assert not (await first.call_tool("check", {"text": "ego = new Object\n"})).is_error
+            assert not (await second.call_tool("check", {"text": "ego = new Object\n"})).is_error
+
+    answers: dict[str, Any] = {}
+    anyio.run(talk)
+    for text, codes in BAD_RUNS:
+        errors = {each["code"] for each in answers[text]["diagnostics"] if each["severity"] == "error"}
+        assert (errors <= codes) if codes else not errors, (text, answers[text])
+        assert bool(errors) == bool(codes)
+        assert len(answers[text].get("output") or "") <= 4000
+    assert answers[child]["ok"]
+    assert not Path(f"/proc/{(tmp_path / 'pid').read_text()}/exe").exists()
+
+
+def test_http_on_this_machine(tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    command = [sys.executable, "-m", "scenic", "mcp", "--folder", str(tmp_path), "--http", str(port)]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+
+    async def talk() -> None:
+        async with Client(f"http://127.0.0.1:{port}/mcp") as client:
+            found = (await client.call_tool("check", {"text": "ego = nw Object\n"})).structured_content
+            assert [each["code"] for each in found["diagnostics"]] == ["SC118"]
+
+    try:
+        assert process.stderr is not None
+        assert str(port) in process.stderr.readline()
+        for _ in range(200):
+            with suppress(OSError), socket.create_connection(("127.0.0.1", port), 1):
+                break
+            time.sleep(0.05)
+        anyio.run(talk)
+    finally:
+        process.terminate()
+        process.wait(10)

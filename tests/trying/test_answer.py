@@ -70,6 +70,10 @@ def test_the_map_and_a_picture(tmp_path: Path) -> None:
 
 DRIVING = "param map = localPath('town.xodr')\nmodel scenic.domains.driving.model\n"
 CARLA = "param map = localPath('town.xodr')\n{}model scenic.simulators.carla.model\n"
+PICK = """\
+def pick(least):
+    return Uniform(*filter(lambda l: len(l.maneuvers) > least and l.uid, network.lanes))
+"""
 FAILURES = [
     # An empty choice, by condition and map.
     (
@@ -85,8 +89,7 @@ FAILURES = [
     ),
     # The same of what closes over a name.
     (
-        f"{DRIVING}def pick(least):\n    return Uniform(*filter(lambda l: len(l.maneuvers) > least and l.uid, network.lanes))\n"
-        "lane = pick(9)\n",
+        f"{DRIVING}{PICK}lane = pick(9)\n",
         "load",
         "SC401",
         ("`len(l.maneuvers) > least` alone leaves 0", "`l.uid` alone leaves 20"),
