@@ -232,7 +232,10 @@ def test_simulations_and_analyses(tmp_path: Path) -> None:
             answer = simulated.structured_content
             jsonschema.validate(answer, tools["simulate"].output_schema or {})
             assert (answer["phase"], answer["ok"], answer["simulation"]["steps"]) == ("simulate", True, 5)
-            assert [each["verdict"] for each in answer["simulation"]["requirements"]] == ["TRUE", "PRESUMABLY_TRUE"]
+            assert [each["verdict"] for each in answer["simulation"]["requirements"]] == [
+                "TRUE",
+                "PRESUMABLY_TRUE",
+            ]
             analyzed = (await client.call_tool("analyze", {"text": MOVING})).structured_content
             assert analyzed["values"][0]["before"] == [0, 9]
             assert analyzed["values"][0]["after"] == pytest.approx([3, 9])
