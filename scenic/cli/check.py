@@ -184,7 +184,8 @@ def check(
         show_diagnostics(diagnostics, sources)
         return code
     colours = output_file is None and has_colours(sys.stdout)
-    report = Report(diagnostics, sources, len(tasks), fixed, code, colours)
+    names = [task.filename for task in tasks]
+    report = Report(diagnostics, sources, len(tasks), fixed, code, colours, names)
     _write_report(report, "statistics" if statistics else output_format, output_file)
     return code
 

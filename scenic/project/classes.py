@@ -543,6 +543,8 @@ def _value_of_name(project: Project, module: Module, node: ast.Name, depth: int)
 
 
 def _value_of_binding(project: Project, module: Module, binding: Binding, depth: int) -> _Value | None:
+    if len(binding.sites) == 1 and (run := module.loop_of.get(binding.sites[0])) is not None:
+        return _element(_value_of(project, module, run, depth + 1))
     if binding.kinds == {BindingKind.SELF} or binding.kinds == {BindingKind.PARAMETER}:
         own = _class_of_self(module, binding.scope, binding.name)
         return None if own is None else _Value(own)

@@ -5,6 +5,7 @@ The class of such a value follows from annotations of the library (`scenic.proje
 
 import ast
 import os
+import re
 from collections.abc import Collection, Iterator, Mapping
 from types import MappingProxyType
 from typing import Final
@@ -17,7 +18,7 @@ from scenic.language.names import NAMES, NameKind
 from scenic.language.properties import attributes_of, properties_of
 from scenic.language.source import Source
 from scenic.language.spans import Span
-from scenic.language.spelling import nearest, related
+from scenic.language.spelling import distance, nearest, related
 from scenic.project.classes import (
     LIBRARY,
     class_of,
@@ -83,7 +84,7 @@ def member_findings(
             )
             yield Diagnostic(
                 "SC214",
-                f"a `{kind}` has no attribute `{node.attr}`",
+                f"{'an' if kind[0] in 'AEIOU' else 'a'} `{kind}` has no attribute `{node.attr}`",
                 place,
                 Severity.WARNING,
                 source.filename,
@@ -183,7 +184,13 @@ def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, s
     if cls is None or cls.member(node.attr) is not None or cls.member("__getattr__") is not None:
         return None
     names = {each.name for each in cls.members if not each.name.startswith("_")}
-    meant = nearest(node.attr, names) or _elsewhere(node.attr, names) or related(node.attr, names)
+    near = nearest(node.attr, names)
+    meant = near if near is not None and _has_like_words(node.attr, near) else _elsewhere(node.attr, names)
+    slip = meant
+    if meant is None:
+        meant = related(node.attr, names) or near
+        # A shorter name is another thing: `lanes` are no `numLanes`.
+        slip = meant if meant is not None and meant != near and len(meant) > len(node.attr) else None
     if meant is None:
         owner = _owner_beside(symbol, node.attr)
         if owner is not None:
@@ -197,7 +204,16 @@ def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, s
         decorators = getattr(known_member.symbol.node, "decorator_list", ())
         is_method &= not any(ast.unparse(each).endswith("property") for each in decorators)
     advice = f"did you mean `{meant}`?" if meant else f"it has {shown}, ..."
-    return symbol.name, meant, advice, is_method
+    return symbol.name, slip, advice, is_method
+
+
+def _has_like_words(name: str, meant: str) -> bool:
+    """Return whether no whole word of a name is another one: ``rightEdge`` is no misspelt ``rightLane``."""
+    one, other = (re.findall(r"[A-Z]?[a-z]+|[A-Z]+|\d+", each) for each in (name, meant))
+    if len(one) != len(other):
+        return True
+    pairs = zip(map(str.lower, one), map(str.lower, other), strict=True)
+    return all(distance(a, b, limit=2) <= max(1, len(a) // 3) for a, b in pairs)
 
 
 def _owner_beside(symbol: Symbol, name: str) -> str | None:
@@ -226,6 +242,7 @@ _NEIGHBOURS: Final[Mapping[str, str]] = MappingProxyType(
         **dict.fromkeys(("prevLane", "previousLane", "previous_lane", "previous"), "predecessor"),
         **dict.fromkeys(("center", "centerLine", "middle"), "centerline"),
         **dict.fromkeys(("maxSpeed", "max_speed", "speedlimit"), "speedLimit"),
+        **dict.fromkeys(("isSignaled", "signalized"), "isSignalized"),
         "junctions": "intersections",
     }
 )

@@ -68,12 +68,29 @@ class Module:
 
     @cached_property
     def loop_of(self) -> dict[ast.AST, ast.expr]:
-        """The values that each name runs through, of loops and comprehensions over one name."""
+        """The values that each name runs through, of loops, comprehensions and functions without a name that are called for each."""
         found: dict[ast.AST, ast.expr] = {}
-        for kind in (ast.For, ast.comprehension):
+        loops: list[ast.For | ast.comprehension] = [node for node, _ in self.resolution.nodes(ast.For)]
+        for kind in (ast.ListComp, ast.SetComp, ast.GeneratorExp, ast.DictComp):
             for node, _ in self.resolution.nodes(kind):
-                if isinstance(node.target, ast.Name):
-                    found[node.target] = node.iter
+                loops += node.generators
+        for loop in loops:
+            if isinstance(loop.target, ast.Name):
+                found[loop.target] = loop.iter
+        for node, _ in self.resolution.nodes(ast.Call):
+            match node:
+                case ast.Call(func=ast.Name(id="filter" | "map"), args=[ast.Lambda() as function, values]):
+                    pass
+                case ast.Call(
+                    func=ast.Name(id="max" | "min" | "sorted"),
+                    args=[values],
+                    keywords=[ast.keyword(arg="key", value=ast.Lambda() as function)],
+                ):
+                    pass
+                case _:
+                    continue
+            if len(function.args.args) == 1:
+                found[function.args.args[0]] = values
         return found
 
     @cached_property

@@ -14,6 +14,7 @@ __all__ = ["FORMATS", "Report", "Sources", "render", "render_text"]
 FORMATS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
     {
         "text": ("scenic.cli.render.text_format", "render_report"),
+        "phases": ("scenic.cli.render.phases_format", "render_phases"),
         "json": ("scenic.cli.render.json_format", "render_json"),
         "sarif": ("scenic.cli.render.sarif_format", "render_sarif"),
         "gitlab": ("scenic.cli.render.gitlab_format", "render_gitlab"),

@@ -14,7 +14,7 @@ __all__ = ["Report"]
 class Report:
     """The diagnostics of a run, in order, with the texts that they refer to.
 
-    ``files`` is how many files were checked, ``fixed`` how many repairs were made in them, ``exit_code`` what the
+    ``files`` is how many files were checked, ``names`` what they are called, ``fixed`` how many repairs were made in them, ``exit_code`` what the
     command ends with; ``colour`` says whether the output is for a terminal that has colours.
     """
 
@@ -24,3 +24,4 @@ class Report:
     fixed: int = 0
     exit_code: int = 0
     colour: bool = False
+    names: Sequence[str] = ()

@@ -211,10 +211,10 @@ def _is_begun(node: ast.AST, context: CheckContext) -> bool:
 
 
 def _is_forgotten(node: ast.AST, context: CheckContext) -> bool:
-    """Return whether a statement makes a behavior or scenario without `do`, which SC312 reports."""
-    if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Call):
+    """Return whether a statement makes or names a behavior or scenario without `do`, which SC312 reports."""
+    if not isinstance(node, ast.Expr):
         return False
-    function = node.value.func
+    function = node.value.func if isinstance(node.value, ast.Call) else node.value
     foreign = context.foreign(function)
     definition: Any = context.definition(function) if foreign is None else foreign.definition
     return isinstance(definition, scenic.BehaviorDef | scenic.ScenarioDef)

@@ -75,6 +75,9 @@ _MODULES: Final[Mapping[str, str]] = MappingProxyType(
 _KEYWORDS: Final = tuple(
     word for table in (HARD_KEYWORDS, SOFT_KEYWORDS) for word in table if len(word) > 2 and word.islower()
 )
+_ENDS: Final = frozenset({"end", "finish", "halt", "stop"})
+"""Words of other languages for ``terminate``."""
+_DEFINITIONS: Final = frozenset({"behavior", "monitor", "scenario"})
 _FOLLOWS_OBJECT: Final = re.compile(r"\bnew\b.*,$")
 _LONGEST: Final = 300
 """Lines with more characters are not tried with a keyword."""
@@ -86,6 +89,14 @@ def known_elsewhere(node: ast.Name, context: CheckContext) -> Meant | None:
     if name in properties_of("Object") and _FOLLOWS_OBJECT.search(text_before(context, node)):
         start = context.source.span(node)
         place = Span(start.line, start.column, start.line, start.column)
+        rest = context.source.line(start.end_line)[start.end_column :].lstrip()
+        if not rest or rest[0] in ",#":
+            is_flag = properties_of("Object")[name].type == "boolean"
+            words = f"with {name} {'True' if is_flag else '...'}"
+            return Meant(
+                f"write `{words}`: a property is set by `with`, to a value",
+                context.replacement(f"Write `{words}`", node, words) if is_flag else None,
+            )
         fix = Fix("Insert `with`", (Edit(place, "with "),))
         return Meant(f"write `with {name} ...`: a property is set by `with`", fix)
     if name in DRIVING_NAMES:
@@ -94,8 +105,14 @@ def known_elsewhere(node: ast.Name, context: CheckContext) -> Meant | None:
             f"`{what}` comes with a world model: begin the program with `param map = localPath('town.xodr')` and "
             "`model scenic.domains.driving.model`, or define it"
         )
+    if name in _DEFINITIONS and any(
+        node in each.decorator_list for each in context.nodes_around(node, ast.FunctionDef)
+    ):
+        return Meant(f"a {name} is defined by `{name} Name():`, without `@` and `def`")
     if name in _MODULES:
         return Meant(f"import it: `{_MODULES[name]}`")
+    if name in _ENDS and any(each.value is node for each in context.nodes_around(node, ast.Expr)):
+        return _replaced(node, "terminate", context)
     if name in _CONSTANTS:
         return _replaced(node, _CONSTANTS[name], context, certain=name != "undefined")
     call = next((each for each in context.nodes_around(node, ast.Call) if each.func is node), None)

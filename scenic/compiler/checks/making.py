@@ -53,6 +53,7 @@ def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diag
 def _assign(node: ast.Assign, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC311: ``ego = new Object at 1, 2``."""
     value = node.value
+    yield from _bound_simulator(node, context)
     if not (isinstance(value, ast.Tuple) and value.elts and isinstance(value.elts[0], scenic.New)):
         return
     first, rest = value.elts[0], value.elts[1:]
@@ -78,6 +79,24 @@ def _assign(node: ast.Assign, _scope: Scope, context: CheckContext) -> Iterator[
     )
 
 
+def _bound_simulator(node: ast.Assign, context: CheckContext) -> Iterator[Diagnostic]:
+    """SC307: ``simulator = NewtonianSimulator()``."""
+    match node:
+        case ast.Assign(
+            targets=[ast.Name(id="simulator") as name], value=ast.Call(func=ast.Name(id=made))
+        ) if made.endswith("Simulator") and len(context.mentions("simulator")) == 1:
+            text = context.text(node.value) or f"{made}(...)"
+            yield context.warning(
+                "SC307",
+                "this binds a name, and chooses no simulator",
+                name,
+                f"write `simulator {text}`, a statement",
+                fix=context.replacement("Write a statement", node, f"simulator {text}")
+                if context.text(node.value)
+                else None,
+            )
+
+
 def _end(context: CheckContext, node: ast.AST) -> tuple[int, int]:
     span = context.span(node)
     return span.end_line, span.end_column
@@ -91,10 +110,11 @@ def _last_operand(node: scenic.New) -> ast.expr | None:
 def _statement(node: ast.Expr, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC312: a behavior, monitor or scenario that is called without `do` or `require monitor`."""
     value = node.value
-    if not isinstance(value, ast.Call):
+    called = value.func if isinstance(value, ast.Call) else value
+    if not isinstance(called, ast.Name | ast.Attribute):
         return
-    foreign = context.foreign(value.func)
-    definition: Any = context.definition(value.func) if foreign is None else foreign.definition
+    foreign = context.foreign(called)
+    definition: Any = context.definition(called) if foreign is None else foreign.definition
     kind = _RUN.get(type(definition))
     if kind is None:
         return
@@ -112,7 +132,8 @@ def _statement(node: ast.Expr, scope: Scope, context: CheckContext) -> Iterator[
         advice = f"run it with `do {name}(...)` in the compose block of a scenario"
     else:
         advice = f"give it to an object `with behavior {name}(...)`, or run it with `do` in another behavior"
-    yield context.warning("SC312", f"this makes the {kind} `{name}`, and nothing runs it", node, advice)
+    does = "makes" if isinstance(value, ast.Call) else "names"
+    yield context.warning("SC312", f"this {does} the {kind} `{name}`, and nothing runs it", node, advice)
 
 
 def check_monitors(context: CheckContext) -> Iterator[Diagnostic]:

@@ -156,6 +156,12 @@ class _MissingNames:
             advice = f"import it: `from {IMPORTABLE[name]} import {name}`"
         else:
             advice = "define it before it is used, or import it"
+        if suggestion is not None and any(
+            node in each.decorator_list for each in context.nodes_around(node, ast.FunctionDef)
+        ):
+            known = _known_elsewhere(context, node)
+            if known is not None:
+                return known
         # What the program does not define may be any of the many names that are always there.
         certain = suggestion not in PROVIDED
         fix = context.renaming(node, name, suggestion, certain=certain) if suggestion else None

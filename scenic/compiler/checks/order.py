@@ -157,6 +157,17 @@ def _ego_of(
     if not early:
         return
     place = min(early, key=position)
+    other = next((name for name in scope.bindings if name != "ego" and name.lower() == "ego"), None)
+    if setting is None and other is not None:
+        site = scope.bindings[other].first_site
+        yield context.error(
+            "SC209",
+            f"the ego is used, and never set: `{other}` is a name like any other",
+            site,
+            "write `ego`",
+            fix=context.renaming(site, other, "ego", certain=False) if isinstance(site, ast.Name) else None,
+        )
+        return
     missing = "not set yet" if setting is not None else "never set"
     if isinstance(place, ast.Name):
         message = (

@@ -33,6 +33,16 @@ _DRAWS: Final[Mapping[str, str]] = MappingProxyType(
     }
 )
 """Draws of Python's generators, and the distributions of the language, which take the same arguments."""
+_CLOCKS: Final = frozenset(
+    {
+        "time.time",
+        "time.monotonic",
+        "time.perf_counter",
+        "datetime.datetime.now",
+        "datetime.datetime.today",
+        "datetime.date.today",
+    }
+)
 _PARAMETERS: Final = {"Uniform(*{})": 1, "Range(0, 1)": 0}
 """The numbers of arguments that the replacement takes, where it is not two."""
 
@@ -67,6 +77,14 @@ def _call(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagn
     where = where_of(node, scope)
     if name in _DRAWS and where.function is None and where.place not in DYNAMIC:
         yield _draw(node, name, context)
+    elif name in _CLOCKS and any(context.nodes_around(node, scenic.SpecifierPhrase)):
+        yield context.warning(
+            "SC407",
+            f"`{context.text(node.func) or name}` is asked once, while the program is loaded: all scenes get the same value, and other "
+            "runs another one",
+            node,
+            "draw a value, `Range(low, high)`, or set a parameter: `param time = 12`",
+        )
     elif name == "time.sleep" and where.place in DYNAMIC and where.function is None:
         text = context.text(node.args[0]) if len(node.args) == 1 else None
         duration = f"wait for {text or 'n'} seconds"

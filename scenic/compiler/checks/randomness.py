@@ -118,6 +118,14 @@ def _comprehends(node: Any, scope: Scope, context: CheckContext) -> Iterator[Dia
     """SC403: ``[new Object for i in range(x)]`` with a random ``x``."""
     for generator in node.generators:
         yield from _counts(node, generator.iter, scope, context)
+        for test in generator.ifs:
+            if is_random(test, context) and _is_asked_now(node, scope, context):
+                yield context.error(
+                    "SC403",
+                    "choosing elements by a random value is not possible while the scenario is being built",
+                    test,
+                    "its value is known only in a sampled scene; write `filter(lambda x: ..., values)`, which may be random",
+                )
 
 
 def _counts(

@@ -135,7 +135,9 @@ def _property(node: scenic.PropertyDef, _scope: Scope, context: CheckContext) ->
 
 def _assign(node: ast.Assign, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``workspace = room``, ``ego = 3``."""
-    kind = None if isinstance(node.value, ast.Tuple) else context.kind_of(node.value)
+    kind = context.kind_of(node.value)
+    if isinstance(node.value, ast.Tuple) and any(isinstance(part, scenic.New) for part in node.value.elts):
+        kind = None  # The comma is reported.
     for target in node.targets if kind is not None else ():
         name = context.provided(target)
         if kind is not None and kind.name == "workspace" and isinstance(target, ast.Name):
@@ -163,6 +165,38 @@ def _assign(node: ast.Assign, _scope: Scope, context: CheckContext) -> Iterator[
                 node.value,
                 "make one with `new Object`",
             )
+
+
+_NOT_CALLED: Final = frozenset(
+    {*INSTANCES, "number", "boolean", "text", "vector", "list", "tuple", "dictionary"}
+)
+"""Kinds of values that cannot be called."""
+
+
+def _call(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
+    """SC404: ``angle from ego (3, 4)``, where ``to`` is missing, ``3 (x)``."""
+    kind = context.kind_of(node.func)
+    if kind is None or kind.name not in _NOT_CALLED or may_be_meant(node, scope, context):
+        return
+    if kind.name in INSTANCES and kind.members is None:
+        return  # A class in another file may define `__call__`.
+    word = "to" if any(_ends_with(each, node) for each, _ in context.nodes(scenic.Operation)) else None
+    yield context.error(
+        "SC404",
+        f"{kind.phrase} cannot be called",
+        node,
+        f"a word is missing before the parentheses, such as `{word}`"
+        if word
+        else "a comma, an operator or a word is missing before the parentheses",
+    )
+
+
+def _ends_with(operation: scenic.Operation, node: ast.Call) -> bool:
+    """Return whether a call is the last operand of an operator with ``from``."""
+    return operation.operator in _MEASURES and any(operand is node for operand in operation.operands)
+
+
+_MEASURES: Final = frozenset({"distance", "angle", "altitude", "relative heading", "apparent heading"})
 
 
 def _workspace(target: ast.Name, context: CheckContext) -> Iterator[Diagnostic]:
@@ -508,6 +542,7 @@ RULES: Final[dict[type[ast.AST], NodeRule]] = {
     ast.Attribute: _attribute,
     ast.BinOp: _arithmetic,
     ast.BoolOp: _conjunction,
+    ast.Call: _call,
     ast.ClassDef: _class,
     ast.Compare: _compare,
     ast.For: _loop,

@@ -59,10 +59,10 @@ def setting_of_property(at: Situation) -> Problem | None:
     first = at.token - 1
     if not at.is_name(first) or at.tokens.kinds[first] in SPECIFIER_KINDS:
         return None
-    if at.is_plain_name(at.token) and at.word(at.token - 2) == "new" and not sign:
+    if at.is_plain_name(at.token) and at.word(at.token - 2) in ("new", "override") and not sign:
         first = at.token
     makes = [index for index in range(at.first, first) if at.word(index) in ("new", "override")]
-    begins = at.word(first - 1) == "," or at.word(first - 2) == "new" or first == at.first
+    begins = at.word(first - 1) == "," or at.word(first - 2) in ("new", "override") or first == at.first
     if not begins or not (makes or at.context() == "specifiers"):
         return None
     name = at.word(first)
