@@ -18,7 +18,9 @@ from scenic.language.errors import (
     SimulationCreationError,
 )
 from scenic.simulators.batch import simulate_number
+from scenic.simulators.kinematic import KinematicSimulator
 from scenic.simulators.newtonian.simulator import NewtonianSimulator
+from scenic.simulators.simulator import Simulator
 from tests.cli.commands import run_here
 from tests.maps import straight
 from tests.reports.programs import Programs, programs, values  # noqa: F401 - a fixture
@@ -223,6 +225,40 @@ def test_tables_of_rejections_quote_what_is_missing(programs: Programs) -> None:
     with pytest.raises(RejectionException) as caught:
         scenario.sample(1, seed=1, max_attempts=50)
     assert "`x.uid` is missing (line 6)" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "simulator", "message"),
+    [
+        (
+            "ego = new Car at (50, -2), with behavior FollowLaneBehavior(8)\n",
+            KinematicSimulator,
+            "KinematicSimulation cannot drive cars and knows no traffic lights",
+        ),
+        (
+            "monitor Lights():\n    freezeTrafficLights()\n    wait\nego = new Car at (50, -2)\nrequire monitor Lights()\n",
+            KinematicSimulator,
+            "KinematicSimulation cannot drive cars and knows no traffic lights",
+        ),
+        (
+            "ego = new Car at (50, -2)\n",
+            NewtonianSimulator,
+            "<unnamed Car> is a vehicle of another simulator's model",
+        ),
+    ],
+)
+def test_cars_of_one_simulator_in_another_say_what_to_do(
+    programs: Programs,  # noqa: F811
+    text: str,
+    simulator: type[Simulator],
+    message: str,
+) -> None:
+    scene = programs.compiled(text, map="street", model="scenic.simulators.carla.model", mode2D=True).sample(
+        1
+    )[0]
+    with pytest.raises((InvalidScenarioError, SimulationCreationError), match=message) as caught:
+        simulator().simulate(scene, maxSteps=2)
+    assert "scenic.simulators.newtonian.driving_model" in (caught.value.help or "")
 
 
 @pytest.mark.parametrize(

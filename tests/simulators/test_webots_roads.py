@@ -153,12 +153,12 @@ def test_scenes(tmp_path: Path) -> None:
         assert any(each.buffer(1e-6).contains(Point(walker.position.x, walker.position.y)) for each in places)
 
 
-@pytest.mark.parametrize("axes", ["ENU", "NUE"])
+@pytest.mark.parametrize("axes", ["ENU", "NUE", "EUN"])
 def test_scenes_are_added_to_their_world(tmp_path: Path, axes: str) -> None:
     """Read back, poses agree, and the world's own nodes are as they were."""
     world = CROSSING
-    if axes == "NUE":
-        world = '#VRML_SIM R2023a utf8\nWorldInfo { coordinateSystem "NUE" }\nRoad { id "1" wayPoints [ 0 0 0 50 0 0 ] }\n'
+    if axes != "ENU":
+        world = f'#VRML_SIM R2023a utf8\nWorldInfo {{ coordinateSystem "{axes}" }}\nRoad {{ id "1" wayPoints [ 0 0 0 50 0 0 ] }}\n'
     scenario = compiled(tmp_path, world, "ego = new BmwX5 on nonIntersection\nnew TrafficCone on road\n")
     scene = scenario.sample(1, seed=2)[0]
     scene.save(tmp_path / "out.wbt")

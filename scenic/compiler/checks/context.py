@@ -75,6 +75,19 @@ class CheckContext(Model):
         )
 
     @cached_property
+    def asked_attributes(self) -> frozenset[str]:
+        """The names of all attributes that the program asks for with ``hasattr``."""
+        calls = (node for node, _ in self.nodes(ast.Call))
+        return frozenset(
+            str(node.args[1].value)
+            for node in calls
+            if isinstance(node.func, ast.Name)
+            and node.func.id == "hasattr"
+            and len(node.args) == 2
+            and isinstance(node.args[1], ast.Constant)
+        )
+
+    @cached_property
     def given(self) -> frozenset[str]:
         """The properties that the program gives with `with`."""
         return frozenset(node.property for node, _ in self.nodes(scenic.SpecifierPhrase))

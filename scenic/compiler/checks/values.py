@@ -414,7 +414,7 @@ def _attribute(node: ast.Attribute, scope: Scope, context: CheckContext) -> Iter
     kind = context.kind_of(node.value)
     if kind is None and isinstance(node.value, ast.Name) and node.value.id == "self":
         yield from _of_agent(node, context)
-    if kind is None or may_be_meant(node, scope, context):
+    if kind is None or name in context.asked_attributes or may_be_meant(node, scope, context):
         return
     if kind.name == "number" and name in _COORDINATES:
         yield context.error(

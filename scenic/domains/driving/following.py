@@ -9,10 +9,10 @@ from scenic.domains.driving.actions import RegulatedControlAction, SetSteerActio
 from scenic.domains.driving.car_following import Gap, Leader, following_acceleration, leader_on
 from scenic.domains.driving.paths import Path
 from scenic.domains.driving.planning import speeds_of
+from scenic.domains.driving.running_traffic import ADVICE, running_traffic
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.watching import InsideWatch
 from scenic.language.errors import InvalidScenarioError
-from scenic.runtime.program.builtins import running_simulation
 
 __all__ = ["Driver"]
 
@@ -32,10 +32,6 @@ _HARD: Final = 1.8
 """Times the comfortable deceleration from which a driver brakes without regard for jolts."""
 _LOOKS: Final = 0.3
 """Seconds between two looks for who is ahead."""
-_DRIVABLE: Final = (
-    "pedestrians have `WalkTo` and `Walk`; vehicles are driven with the model of a simulator, such as "
-    "`model scenic.simulators.newtonian.driving_model` (from the command line: `--simulator newtonian`)"
-)
 
 
 class Driver:
@@ -62,10 +58,10 @@ class Driver:
         if not isinstance(agent, Steers):
             raise InvalidScenarioError(
                 f"{agent!r} cannot be driven: it has no throttle, brakes and steering wheel",
-                help=_DRIVABLE,
+                help=f"pedestrians have `WalkTo` and `Walk`; for vehicles {ADVICE}",
             )
         self._agent: Any = agent
-        self._simulation = running_simulation()
+        self._simulation = running_traffic()
         self.comfort = Comfort() if comfort is None else comfort
         self._gap = gap
         self._leader: Leader | None = None
@@ -339,7 +335,7 @@ class _Line:
 
 def _applied(agent: Any) -> tuple[float, float]:
     """Steering of an agent in the last step, and its acceleration (m/s^2) as far as actions tell; 0 if none."""
-    simulation = running_simulation()
+    simulation = running_traffic()
     # Those of this step are chosen after the last one's have been forgotten.
     taken = (
         agent.lastActions or (simulation.actionSequence and simulation.actionSequence[-1].get(agent)) or ()

@@ -8,8 +8,8 @@ import numpy as np
 from scenic.domains.driving.actions import RegulatedControlAction, SetReverseAction
 from scenic.domains.driving.elements import Lane
 from scenic.domains.driving.lane_driving import lane_under
+from scenic.domains.driving.running_traffic import running_traffic
 from scenic.language.errors import InvalidScenarioError, SimulationError
-from scenic.runtime.program.builtins import running_simulation
 
 __all__ = ["UTurner"]
 
@@ -45,7 +45,7 @@ class UTurner:
         import shapely
 
         self._agent = agent
-        self._simulation = running_simulation()
+        self._simulation = running_traffic()
         network = agent.roadNetwork
         lane = lane_under(agent)
         opposite = lane.group._opposite

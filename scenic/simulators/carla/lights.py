@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from scenic.runtime.program.builtins import running_simulation
+from scenic.domains.driving.running_traffic import running_traffic
 
 __all__ = [
     "freezeTrafficLights",
@@ -18,7 +18,7 @@ __all__ = [
 
 
 def _lights() -> Any:
-    return running_simulation().traffic_lights
+    return running_traffic().traffic_lights
 
 
 def freezeTrafficLights() -> None:
@@ -55,12 +55,12 @@ def getTrafficLightStatus(signal: Any) -> str:
 
 def setClosestTrafficLightStatus(vehicle: object, color: str, distance: float = 100) -> None:
     """Set the traffic light ahead of a vehicle within a distance in metres."""
-    running_simulation().set_closest_traffic_light(vehicle, color, distance)
+    running_traffic().set_closest_traffic_light(vehicle, color, distance)
 
 
 def getClosestTrafficLightStatus(vehicle: object, distance: float = 100) -> str:
     """The colour of the traffic light ahead of a vehicle within a distance in metres; ``none`` if there is none."""
-    found: str = running_simulation().closest_traffic_light(vehicle, distance)
+    found: str = running_traffic().closest_traffic_light(vehicle, distance)
     return found
 
 

@@ -9,7 +9,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, ClassVar, Final
 
+from scenic.domains.driving.actions import Steers
 from scenic.domains.driving.simulators import DrivingSimulation, DrivingSimulator
+from scenic.language.errors import SimulationCreationError
 from scenic.runtime.scenes.scene import Scene
 from scenic.runtime.values.values import Orientation, Vector, operate
 from scenic.simulators.cameras import Cameras
@@ -69,6 +71,11 @@ class NewtonianSimulation(DrivingSimulation):
 
     def createObjectInSimulator(self, obj: Any) -> None:
         """Take the object's pose and velocity over."""
+        if isinstance(obj, Steers) and not isinstance(obj, Driven):
+            raise SimulationCreationError(
+                f"{obj!r} is a vehicle of another simulator's model, which the built-in simulator cannot drive",
+                help="use its own model: `--model scenic.simulators.newtonian.driving_model` on the command line",
+            )
         self._states[id(obj)] = State(obj)
         if self._terrain is not None:
             self._terrain.stand([self._states[id(obj)]])

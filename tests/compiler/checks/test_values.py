@@ -121,6 +121,8 @@ RIGHT = [
     "def middle():\n    yield Vector(1, 2)\nx = middle().lenght",
     "x = Workspace(), CircularRegion(center=table, radius=Range(1, 2))",
     "x = table.norm(), table.angleTo((1, 2))",
+    "if hasattr(table, 'positions'):\n    x = table.positions",
+    "x = room.polygon if hasattr(room, 'polygon') else 3",
 ]
 SETTING = (
     "room = RectangularRegion((0, 0), 0, 4, 4)\ntable = new Object\n"
