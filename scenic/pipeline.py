@@ -28,11 +28,11 @@ from scenic.narrowing import prepared_sampler
 from scenic.runtime.description.definitions import ModularScenario
 from scenic.runtime.description.mutation import apply_noise
 from scenic.runtime.description.outcome import Module, Program
-from scenic.runtime.ground.context import Context, current
+from scenic.runtime.ground.context import Context, current, warn
 from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.program.prelude import Loader
 from scenic.runtime.python.importing import beside
-from scenic.runtime.python.random_state import preserved, seed_globals
+from scenic.runtime.python.random_state import is_as, preserved, seed_globals, states
 from scenic.runtime.regions.base import Region
 from scenic.runtime.regions.spaces import Everywhere, Nowhere, Workspace, everywhere
 from scenic.runtime.sampling.planning import Outline, outline
@@ -377,9 +377,12 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
         with placed(text, filename):
             with preserved(), beside(Path(filename).parent):
                 seed_globals(PROGRAM_SEED)
+                seeded = states()
                 module, state = modules.run(code, filename, {SOURCE_NAME: Source(text, filename)})
                 program.top = _run_chosen(module, state, options.scenario)
                 program.ego, program.workspace = state.ego, state.workspace
+                if not is_as(seeded):
+                    _warn_of_draws(text, filename)
                 apply_noise(program)
                 record = context.record
                 if record.looks or record.awaits or record.has_later_elements:
@@ -393,6 +396,16 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
     finally:
         current.reset(token)
     return _Ran(program, outlined, state.ego, workspace, program.variables, _regions(module))
+
+
+def _warn_of_draws(text: str, filename: str) -> None:
+    """Warn of a program that has drawn from the generators of Python or NumPy, once for all scenes."""
+    from scenic.compiler.check import check_text
+
+    for item in check_text(text, filename=filename):
+        if item.code == "SC407":
+            warn(item.message, code=item.code, span=item.span, filename=filename, help=item.help)
+            break
 
 
 def _outlined(program: Program, workspace: Workspace, options: _Options) -> Outline:

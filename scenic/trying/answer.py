@@ -115,9 +115,10 @@ class _Answer:
                 self.diagnostics.append(found)
             finally:
                 self.time[phase] = round(time.perf_counter() - begun, _PLACES)
-        self.diagnostics += [
-            each.message.diagnostic() for each in caught if isinstance(each.message, ScenicWarning)
-        ]
+        # The check may have found what the program warns of, with a repair.
+        known = {(each.code, each.span, each.message) for each in self.diagnostics}
+        warned = [each.message.diagnostic() for each in caught if isinstance(each.message, ScenicWarning)]
+        self.diagnostics += [each for each in warned if (each.code, each.span, each.message) not in known]
 
     @property
     def has_failed(self) -> bool:

@@ -3,12 +3,13 @@
 import os
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import pytest
 
 import scenic
-from scenic.language.errors import InvalidScenarioError
+from scenic.language.errors import InvalidScenarioError, ScenicWarning
 from tests.reports.programs import Programs, programs  # noqa: F401 - a fixture
 
 
@@ -144,3 +145,21 @@ def test_seeds_do_not_depend_on_caches_and_hashes(tmp_path: Path) -> None:
     )
     here = scenic.scenarioFromFile(path).sample(1, seed=5)[0]
     assert done.stdout == f"{[tuple(thing.position) for thing in here.objects]}\n"
+
+
+def test_draws_of_python_at_load_are_warned_of(programs: Programs) -> None:  # noqa: F811
+    """Once; draws of samples and of simulations are no mistake."""
+    text = "import random\nego = new Object at (random.randint(1, 5), random.random())\n"
+    with pytest.warns(ScenicWarning, match=r"`random\.randint` draws once") as caught:
+        scenario = programs.compiled(text)
+    assert [(item.message.code, item.lineno, item.message.help) for item in caught] == [
+        ("SC407", 2, "write `DiscreteRange(1, 5)`")
+    ]
+    assert len({scene.egoObject.position for scene in scenario.sample(5, seed=1)}) == 1
+    later = (
+        "import random\ndef f(x):\n    return x + random.random()\n"
+        "behavior B():\n    random.random()\n    wait\nego = new Object at (f(Range(0, 1)), 0), with behavior B\n"
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        programs.compiled(later)
