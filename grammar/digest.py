@@ -11,11 +11,11 @@ DECLARATIONS = ("keywords", "operators", "specifiers", "statements")
 
 
 def grammar_digest(grammar_path: Path) -> str:
-    """The SHA-256 of the grammar, the generator, the node classes that the grammar names, and the declarations."""
+    """The SHA-256 of the grammar and what stands beside it, the generator, the node classes that the grammar names, and the declarations."""
     folder = Path(__file__).parent
     package = folder.parent / "scenic"
     sources = [
-        grammar_path,
+        *sorted(grammar_path.parent.glob("*.gram")),
         *sorted((folder / "generator").glob("*.py")),
         package / "compiler" / "tree.py",
         *(package / "language" / f"{name}.py" for name in DECLARATIONS),

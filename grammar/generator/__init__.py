@@ -2,7 +2,8 @@
 
 pegen reads the notation; the rest is ours. What is written is plain Python, in
 ``scenic/compiler/_generated``: ``tables`` (keywords, operators), ``parser`` (the fast parser),
-``recording`` (the parser that finds out what is wrong with a text) and ``syntax`` (the rules as data).
+``recording`` (the parser that finds out what is wrong with a text), ``syntax`` (the rules as data) and ``context_free`` (the
+rules without ordered choice, narrowed by ``grammar/demands.gram``).
 """
 
 import os
@@ -11,6 +12,7 @@ from pathlib import Path
 
 from grammar.generator.analysis import Analysis
 from grammar.generator.checks import check
+from grammar.generator.context_free import emit_context_free
 from grammar.generator.declarations import check_declarations
 from grammar.generator.emitter import Emitter
 from grammar.generator.model import Grammar, GrammarError
@@ -18,9 +20,9 @@ from grammar.generator.reader import read_grammar, read_grammar_text
 from grammar.generator.syntax import emit_syntax
 from grammar.generator.tables import emit_tables
 
-__all__ = ["GrammarError", "generate", "modules", "read_grammar", "read_grammar_text"]
+__all__ = ["MODULES", "GrammarError", "generate", "modules", "read_grammar", "read_grammar_text"]
 
-MODULES = ("parser", "recording", "syntax", "tables")
+MODULES = ("context_free", "parser", "recording", "syntax", "tables")
 
 
 def generate(grammar_path: Path, output_folder: Path) -> None:
@@ -32,6 +34,7 @@ def generate(grammar_path: Path, output_folder: Path) -> None:
     """
     grammar = read_grammar(grammar_path)
     texts = modules(grammar)
+    texts["context_free"] = emit_context_free(grammar_path, _header(grammar))
     check_declarations(Analysis(grammar))
     output_folder.mkdir(parents=True, exist_ok=True)
     _replace(output_folder / "__init__.py", "")
@@ -40,19 +43,23 @@ def generate(grammar_path: Path, output_folder: Path) -> None:
 
 
 def modules(grammar: Grammar) -> dict[str, str]:
-    """The texts of all generated modules, by name; raises `GrammarError` if the grammar is wrong."""
+    """The texts of the modules that are made of the grammar alone, by name; raises `GrammarError` if the grammar is wrong."""
     analysis = Analysis(grammar)
     check(analysis)
-    header = (
-        "# Generated from grammar/scenic.gram by grammar/generator (make generate); do not edit.\n"
-        f'GRAMMAR_HASH = "{grammar.digest}"\n'
-    )
+    header = _header(grammar)
     return {
         "parser": Emitter(analysis, recording=False).emit(header),
         "recording": Emitter(analysis, recording=True).emit(header),
         "syntax": emit_syntax(analysis, header),
         "tables": emit_tables(analysis, header),
     }
+
+
+def _header(grammar: Grammar) -> str:
+    return (
+        "# Generated from grammar/scenic.gram by grammar/generator (make generate); do not edit.\n"
+        f'GRAMMAR_HASH = "{grammar.digest}"\n'
+    )
 
 
 def _replace(path: Path, text: str) -> None:

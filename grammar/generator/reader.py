@@ -43,8 +43,10 @@ def read_grammar(path: Path) -> Grammar:
     return read_grammar_text(path.read_text(encoding="utf-8"), digest=grammar_digest(path))
 
 
-def read_grammar_text(text: str, *, digest: str = "") -> Grammar:
-    """Read a grammar from its text; as `read_grammar`."""
+def read_grammar_text(text: str, *, digest: str = "", replacing: bool = False) -> Grammar:
+    """Read a grammar from its text; as `read_grammar`. With ``replacing`` a later rule stands in place of one of its name, and all words
+    in capitals are kinds of tokens.
+    """
     parser = GeneratedParser(Tokenizer(tokenize.generate_tokens(io.StringIO(text).readline)))
     # Not `parser.start()`: the Grammar object that it makes keeps only the last of several rules of one name.
     metas = parser.metas() or []
@@ -58,13 +60,16 @@ def read_grammar_text(text: str, *, digest: str = "") -> Grammar:
     unknown = settings.keys() - {"start", "recover"}
     if unknown or len(settings.get("start", [])) != 1:
         raise GrammarError(f"expected one `@start` and any `@recover`; unknown: {sorted(unknown)}")
-    return _Reader().grammar(rules, settings, digest)
+    if replacing:
+        rules = list({rule.name: rule for rule in rules}.values())
+    return _Reader(any_kinds=replacing).grammar(rules, settings, digest)
 
 
 class _Reader:
     """Turns pegen's objects into ours."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, any_kinds: bool) -> None:
+        self.any_kinds = any_kinds
         self.rules: dict[str, Rule] = {}
         self.groups: dict[tuple[Alternative, ...], str] = {}
         self.hard: set[str] = set()
@@ -116,7 +121,8 @@ class _Reader:
             case notation.NameLeaf(value="BLOCK_ENDED"):
                 return BlockEnded()
             case notation.NameLeaf():
-                return Token(node.value, literal=False) if node.value in KINDS else Reference(node.value)
+                is_kind = node.value in KINDS or (self.any_kinds and node.value.isupper())
+                return Token(node.value, literal=False) if is_kind else Reference(node.value)
             case notation.Group():
                 return self.group(node.rhs)
             case notation.Rhs():  # what stands in square brackets

@@ -18,11 +18,12 @@ from grammar.generator.model import (
     Optional,
     Reference,
     Repeat,
+    Rule,
     Token,
     TokenChoice,
 )
 
-__all__ = ["emit_syntax", "nodes_made"]
+__all__ = ["Row", "emit_syntax", "nodes_made", "rows_of"]
 
 Row: TypeAlias = tuple[object, ...]
 
@@ -54,6 +55,11 @@ def emit_syntax(analysis: Analysis, header: str) -> str:
     ]
     lines += [f"START = {grammar.start!r}", ""]
     return "\n".join(lines)
+
+
+def rows_of(grammar: Grammar, rule: Rule) -> Iterator[tuple[Row, ...]]:
+    """The alternatives of a rule as rows of items."""
+    return (tuple(_row(grammar, each)) for each in rule.alternatives if each.items)
 
 
 def nodes_made(alternative: Alternative) -> Iterator[str]:

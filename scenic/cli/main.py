@@ -38,6 +38,7 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
         "explain": ("scenic.cli.explain", "explain", "Explain a diagnostic by its code."),
         "playground": ("scenic.cli.playground", "playground", "Write and sample programs in the browser."),
         "mcp": ("scenic.cli.mcp_command", "mcp_command", "Serve tools for language models (MCP)."),
+        "grammar": ("scenic.cli.grammar", "grammar", "Show the grammar, for constrained decoding."),
         "lsp": ("scenic.cli.lsp", "lsp", "Start the language server, for editors."),
         "sample": ("scenic.cli.sample", "sample", "Sample scenes from a program."),
         "analyze": (
@@ -68,7 +69,18 @@ _COMMANDS: Final[Mapping[str, tuple[str, str, str]]] = MappingProxyType(
 
 _GROUPS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
     {
-        "Write programs": ("new", "check", "try", "format", "migrate", "explain", "playground", "lsp", "mcp"),
+        "Write programs": (
+            "new",
+            "check",
+            "try",
+            "format",
+            "migrate",
+            "explain",
+            "playground",
+            "lsp",
+            "mcp",
+            "grammar",
+        ),
         "Make scenes": ("sample", "analyze", "view", "dataset", "map"),
         "Run simulations": ("simulate", "falsify", "estimate", "replay"),
         "Inspect the tools": ("doctor", "cache", "completion", "ast", "python"),

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Final
 
 PACKAGE: Final = "scenic.compiler._generated"
-MODULES: Final = ("parser", "recording", "syntax", "tables")
+MODULES: Final = ("context_free", "parser", "recording", "syntax", "tables")
 
 
 def ensure_fresh(root: Path, folder: Path) -> bool:
@@ -94,6 +94,13 @@ build_parser: Final[Callable[..., Any]] = _parser.build
 def syntax_rules() -> Mapping[str, tuple[Any, ...]]:
     """The rules of the grammar as data, for `scenic.compiler.syntax`."""
     module: Any = importlib.import_module(f"{PACKAGE}.syntax")
+    rules: Mapping[str, tuple[Any, ...]] = module.RULES
+    return rules
+
+
+def context_free_rules() -> Mapping[str, tuple[Any, ...]]:
+    """The rules without ordered choice, for `scenic.constrained`."""
+    module: Any = importlib.import_module(f"{PACKAGE}.context_free")
     rules: Mapping[str, tuple[Any, ...]] = module.RULES
     return rules
 

@@ -33,6 +33,7 @@ __all__ = [
     "Word",
     "first_words",
     "reached_from",
+    "read_row",
     "words_in",
     "words_of",
 ]
@@ -150,17 +151,18 @@ def _item(raw: tuple[Any, ...]) -> Item:
         case ("rule", name):
             return Reference(name)
         case ("optional", row):
-            return Optional(_row(row))
+            return Optional(read_row(row))
         case ("many", row):
-            return Many(_row(row))
+            return Many(read_row(row))
         case ("list", row, separator):
-            return ListOf(_row(row), _row(separator))
+            return ListOf(read_row(row), read_row(separator))
         case ("choice", rows):
-            return Choice(tuple(_row(row) for row in rows))
+            return Choice(tuple(read_row(row) for row in rows))
     raise ValueError(f"the generated rules hold {raw!r}, which is no item")
 
 
-def _row(raw: Iterable[tuple[Any, ...]]) -> Row:
+def read_row(raw: Iterable[tuple[Any, ...]]) -> Row:
+    """The items that a generated row stands for."""
     return tuple(_item(each) for each in raw)
 
 
@@ -177,7 +179,7 @@ RULES: Final[Mapping[str, Rule]] = MappingProxyType(
         name: Rule(
             name,
             label,
-            tuple(Alternative(_row(row), node, _fields(made)) for row, node, made in alternatives),
+            tuple(Alternative(read_row(row), node, _fields(made)) for row, node, made in alternatives),
         )
         for name, (label, alternatives) in syntax_rules().items()
     }

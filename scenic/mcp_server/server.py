@@ -10,7 +10,7 @@ import tempfile
 from collections.abc import Callable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Annotated, Any, Final, TypeVar, cast
+from typing import Annotated, Any, Final, Literal, TypeVar, cast
 
 import anyio
 from mcp.server.mcpserver import Context, MCPServer
@@ -18,6 +18,7 @@ from mcp.server.mcpserver.exceptions import ToolError
 from mcp.server.mcpserver.resources import TextResource
 from mcp.types import CallToolResult, ContentBlock, ImageContent, TextContent, ToolAnnotations
 
+from scenic.constrained import grammar_text
 from scenic.language.diagnostics import CODES
 from scenic.mcp_server.programs import Programs, RequestError
 from scenic.mcp_server.reference import (
@@ -122,6 +123,11 @@ def _add_reference(server: MCPServer, programs: Programs) -> None:
     async def examples(query: str, count: int = 5) -> Examples:
         """Find checked example programs by words, such as `visible region` or `lane change`."""
         return cast(Examples, {"examples": search_examples(query, max(1, min(count, 20)))})
+
+    @server.tool(annotations=_READS)
+    async def grammar(format: Literal["lark", "gbnf", "ebnf", "json"] = "lark") -> Text:
+        """Show the grammar of the language, for constrained decoding: Lark for llguidance, GBNF for llama.cpp, EBNF for xgrammar, or data."""
+        return {"text": await _answered(lambda: grammar_text(format))}
 
     @server.tool(annotations=_READS)
     async def map_features(map: str) -> dict[str, Any]:

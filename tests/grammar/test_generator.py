@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from grammar.generator import GrammarError, generate, modules, read_grammar, read_grammar_text
+from grammar.generator import MODULES, GrammarError, generate, modules, read_grammar, read_grammar_text
 from grammar.generator.analysis import Analysis
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -173,7 +173,7 @@ def test_generation_is_deterministic_and_replaces_whole_files(tmp_path: Path) ->
     path = ROOT / "grammar" / "scenic.gram"
     generate(path, tmp_path / "new" / "folder")
     names = {each.name for each in (tmp_path / "new" / "folder").iterdir()}
-    assert names == {"__init__.py", "parser.py", "recording.py", "syntax.py", "tables.py"}
+    assert names == {"__init__.py", *(f"{name}.py" for name in MODULES)}
     before = (tmp_path / "new" / "folder" / "parser.py").read_text()
     assert before == modules(read_grammar(path))["parser"]
 

@@ -23,7 +23,7 @@ from scenic.mcp_server.programs import LONGEST
 from scenic.mcp_server.server import build_server
 
 TOWN = Path(__file__).parents[2] / "examples" / "driving" / "crossing.xodr"
-READING = {"migrate", "check", "fix", "format", "explain", "reference", "examples", "map_features"}
+READING = {"migrate", "check", "fix", "format", "explain", "reference", "examples", "grammar", "map_features"}
 RUNNING = {"try", "sample", "simulate", "analyze"}
 
 
@@ -52,6 +52,7 @@ def test_tools_that_read(tmp_path: Path) -> None:
         "migrate": {"text": "ego = Object at 3 @ 4, facing 30 deg\n"},
         "reference": {"topic": "facing"},
         "examples": {"query": "visible region"},
+        "grammar": {"format": "gbnf"},
         "map_features": {"map": "town.xodr"},
     }
 
@@ -74,6 +75,7 @@ def test_tools_that_read(tmp_path: Path) -> None:
     assert "SC111" in answers["explain"]["text"]
     assert "facing direction" in answers["reference"]["text"]
     assert any("visible" in each["program"] for each in answers["examples"]["examples"])
+    assert "root ::= " in answers["grammar"]["text"]
     assert answers["map_features"]["counts"]["intersections"] == 1
 
 

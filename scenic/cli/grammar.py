@@ -1,0 +1,40 @@
+"""``scenic grammar``: the grammar in the notation of an engine for constrained decoding."""
+
+import sys
+from pathlib import Path
+
+import click
+
+from scenic.constrained import FORMATS, grammar_text
+from scenic.formats.files import write
+
+__all__ = ["grammar"]
+
+
+@click.command()
+@click.option(
+    "--format",
+    "notation",
+    type=click.Choice(FORMATS),
+    default="lark",
+    show_default=True,
+    help="Notation: lark for llguidance, gbnf for llama.cpp, ebnf for xgrammar, json for the rules as data.",
+)
+@click.option(
+    "-o",
+    "--output",
+    metavar="OUT",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Write the grammar to this file.",
+)
+def grammar(notation: str, output: Path | None) -> None:
+    """Show the grammar of the language, so that a language model can be kept to it while it writes.
+
+    The texts that it describes have four blanks for each level of indentation, at most eight levels, and blanks beside operators that
+    are words.
+    """
+    text = grammar_text(notation)
+    if output is None:
+        sys.stdout.write(text)
+    else:
+        write(output, text.encode())

@@ -1,0 +1,167 @@
+r"""The shapes of tokens: names, numbers, strings, blanks, line ends.
+
+They are a little wider than the parser's: the name of a character in ``\N{...}`` is not looked up.
+"""
+
+import re
+import sys
+import unicodedata
+from collections.abc import Iterator, Mapping
+from functools import cache
+from types import MappingProxyType
+from typing import Final
+
+from scenic.compiler.syntax import TokenKind, Word
+from scenic.constrained.items import CharacterClass, TextChoice, TextItem, TextMany, TextOptional, TextRow
+
+__all__ = ["INDENTATION", "letters", "terminals"]
+
+INDENTATION: Final = 4
+"""Blanks for each level of indentation."""
+
+
+_MARKS: Final = {"'": '"\'"', '"': r'"\""'}
+"""The quotes, and each as a literal of the notation of `terminals`."""
+
+
+def _quoted(escape: str, *, beside: str = "") -> str:
+    """The texts in quotes of all kinds, in the notation of `terminals`; ``beside`` are characters that cannot stand in one."""
+    forms = []
+    for quote, mark in _MARKS.items():
+        forms.append(rf"{mark} ([^{quote}\\\n{beside}] | {escape})* {mark}")
+        long = rf"({mark} {mark}?)? ([^{quote}\\{beside}] | {escape})"
+        forms.append(rf"{mark} {mark} {mark} ({long})* {mark} {mark} {mark}")
+    return " | ".join(forms)
+
+
+_BEYOND_ASCII: Final = r"\u0080-\U0010FFFF"
+
+
+def _formatted() -> Iterator[str]:
+    """The parts of f-strings."""
+    for word, (quote, mark) in zip(("SINGLE", "DOUBLE"), _MARKS.items(), strict=True):
+        yield f"{word}_QUOTES ::= {mark} {mark}?"
+        for kind, marks, line_end in ((word, mark, r"\n"), (f"LONG_{word}", f"{mark} {mark} {mark}", "")):
+            text = rf"[^{quote}\\{{}}{line_end}] | FORMAT_ESCAPE"
+            yield f"{kind}_START ::= FORMAT_PREFIX {marks}"
+            yield f"{kind}_END ::= {marks}"
+            yield f"{kind}_MIDDLE ::= ({text})+"
+            yield f"{kind}_FORMAT ::= ({text})+"
+
+
+_DEFINITIONS: Final = (
+    r'DIGITS ::= [0-9] ("_"? [0-9])*',
+    r'BASED ::= [xX] ("_"? [0-9a-fA-F])+ | [oO] ("_"? [0-7])+ | [bB] ("_"? [01])+',
+    r'INTEGER ::= "0" (("_"? "0")* | BASED) | [1-9] ("_"? [0-9])*',
+    r'DECIMAL ::= (DIGITS "." DIGITS? | "." DIGITS) EXPONENT? | DIGITS EXPONENT',
+    r"EXPONENT ::= [eE] [+-]? DIGITS",
+    r"REAL ::= INTEGER | DECIMAL",
+    r"IMAGINARY ::= (DECIMAL | DIGITS) [jJ]",
+    r'PROBABILITY ::= "0"? "." DIGITS | "0" "."? | "1" ("." "0"*)? | DIGITS ("." DIGITS?)? [eE] "-" DIGITS',
+    r"HEX ::= [0-9a-fA-F]",
+    r'CODE ::= "x" HEX HEX | "u" HEX HEX HEX HEX | "U00" ("0" HEX | "10") HEX HEX HEX HEX',
+    r'CHARACTER ::= "N{" [A-Za-z] [A-Za-z0-9 -]* "}"',
+    r'ESCAPE ::= "\\" ([^xuUN] | CODE | CHARACTER)',
+    r'RAW ::= "\\" [^\x00]',
+    r'BYTE_ESCAPE ::= "\\" ([\x01-wy-\x7f] | "x" HEX HEX)',
+    r'RAW_BYTE ::= "\\" [\x01-\x7f]',
+    f"BARE_TEXT ::= {_quoted('ESCAPE')}",
+    f"RAW_TEXT ::= {_quoted('RAW')}",
+    r"TEXT ::= [uU]? BARE_TEXT | [rR] RAW_TEXT",
+    f"BARE_BYTES ::= {_quoted('BYTE_ESCAPE', beside=_BEYOND_ASCII)}",
+    f"RAW_BYTES ::= {_quoted('RAW_BYTE', beside=_BEYOND_ASCII)}",
+    r"BYTES ::= [bB] BARE_BYTES | ([bB] [rR] | [rR] [bB]) RAW_BYTES",
+    r"FORMAT_PREFIX ::= [fF] [rR]? | [rR] [fF]",
+    r"""EMPTY_FORMATTED ::= FORMAT_PREFIX ("''" | "\"\"")""",
+    r'FORMAT_ESCAPE ::= "\\" ([^xuUN{}] | CODE | CHARACTER)',
+    r'BRACES ::= "{{" | "}}"',
+    *_formatted(),
+    r'FIELD_OPEN ::= "{"',
+    r'FIELD_CLOSE ::= "}"',
+    r'FIELD_EQUALS ::= "="',
+    r'FIELD_MARK ::= "!"',
+    r'FIELD_COLON ::= ":"',
+    r"CONVERSION ::= [rsa]",
+    r'NEXT_LINE ::= "\r"? "\n"',
+    r'COMMENT ::= "#" [^\r\n]*',
+    r'BLANKS ::= ([ \t] | "\\" NEXT_LINE)+',
+    r'SPACE ::= ([ \t] | "\\" NEXT_LINE | COMMENT? NEXT_LINE)+',
+    r"EMPTY_LINES ::= ([ \t]* COMMENT? NEXT_LINE)+",
+    r"END ::= [ \t]* COMMENT? (NEXT_LINE [ \t]* COMMENT?)*",
+)
+
+
+class _Reader:
+    """Reads the right side of a definition."""
+
+    _TOKEN: Final = re.compile(r'\s*(?:("(?:\\.|[^"\\])*")|(\[(?:\\.|[^\]\\])*\])|(\w+)|([()|*+?]))')
+
+    def __init__(self, text: str) -> None:
+        self._tokens = [found.groups(default="") for found in self._TOKEN.finditer(text)]
+        self._at = 0
+
+    def _mark(self) -> str:
+        return self._tokens[self._at][3] if self._at < len(self._tokens) else ")"
+
+    def choice(self) -> TextItem:
+        rows = [self._row()]
+        while self._mark() == "|":
+            self._at += 1
+            rows.append(self._row())
+        return TextChoice(tuple(rows))
+
+    def _row(self) -> TextRow:
+        items: list[TextItem] = []
+        while self._mark() not in ("|", ")"):
+            item = self._item()
+            mark = self._mark()
+            if mark and mark in "*+?":
+                self._at += 1
+                item = TextOptional((item,)) if mark == "?" else TextMany((item,))
+                item = TextOptional((item,)) if mark == "*" else item
+            items.append(item)
+        return tuple(items)
+
+    def _item(self) -> TextItem:
+        literal, characters, name, _ = self._tokens[self._at]
+        self._at += 1
+        if literal:
+            return Word(
+                re.sub(r"\\(.)", lambda found: {"n": "\n", "r": "\r"}.get(found[1], found[1]), literal[1:-1])
+            )
+        if characters or name:
+            return CharacterClass(characters) if characters else TokenKind(name)
+        item = self.choice()
+        self._at += 1
+        return item
+
+
+@cache
+def terminals() -> Mapping[str, TextItem]:
+    """The definitions of the kinds of tokens, by name; names and line ends, which depend on more, are left out."""
+    pairs = (line.split(" ::= ", 1) for line in _DEFINITIONS)
+    return MappingProxyType({name: _Reader(text).choice() for name, text in pairs})
+
+
+@cache
+def letters(*, first: bool) -> str:
+    """The characters beyond ASCII that a name can begin with, or go on with, as ranges of a character class.
+
+    Characters that do not exist yet count as their neighbours, which halves the number of ranges.
+    """
+    prefix = "" if first else "a"
+    ranges: list[list[int]] = []
+    for code in range(0x80, sys.maxunicode + 1):
+        character = chr(code)
+        if (prefix + character).isidentifier():
+            if ranges and ranges[-1][1] == code - 1:
+                ranges[-1][1] = code
+            else:
+                ranges.append([code, code])
+        elif ranges and ranges[-1][1] == code - 1 and unicodedata.category(character) == "Cn":
+            ranges[-1][1] = code
+    return "".join(_escaped(low) + ("" if low == high else f"-{_escaped(high)}") for low, high in ranges)
+
+
+def _escaped(code: int) -> str:
+    return f"\\u{code:04X}" if code <= 0xFFFF else f"\\U{code:08X}"
