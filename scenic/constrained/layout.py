@@ -28,8 +28,6 @@ __all__ = ["Laid", "lay_out"]
 
 _OPENERS: Final = frozenset({Word("("), Word("["), Word("{"), TokenKind("FIELD_OPEN")})
 _CLOSERS: Final = frozenset({Word(")"), Word("]"), Word("}"), TokenKind("FIELD_CLOSE")})
-_UNITS: Final = frozenset({"deg", "seconds", "steps"})
-"""Words that may touch a number before them, as in ``30deg``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,9 +185,7 @@ class _Layout:
         if Edge.LINE in before:
             return (Line(place.deeper), here)
         blank = TokenKind("SPACE" if place.brackets else "BLANKS")
-        if not (Edge.WORD in before and Edge.WORD in first) or (
-            isinstance(item, Word) and item.text in _UNITS
-        ):
+        if not (Edge.WORD in before and Edge.WORD in first):
             return (TextOptional((blank,)), here)
         if Edge.SYMBOL in first:
             return (TextChoice(((blank, here), (self._use(item, place, bare=True),))),)

@@ -57,6 +57,8 @@ _DEFINITIONS: Final = (
     r"EXPONENT ::= [eE] [+-]? DIGITS",
     r"REAL ::= INTEGER | DECIMAL",
     r"IMAGINARY ::= (DECIMAL | DIGITS) [jJ]",
+    r'QUANTITY ::= (REAL | IMAGINARY) "deg"',
+    r'DURATION ::= REAL ("seconds" | "steps")',
     r'PROBABILITY ::= "0"? "." DIGITS | "0" "."? | "1" ("." "0"*)? | DIGITS ("." DIGITS?)? [eE] "-" DIGITS',
     r"HEX ::= [0-9a-fA-F]",
     r'CODE ::= "x" HEX HEX | "u" HEX HEX HEX HEX | "U00" ("0" HEX | "10") HEX HEX HEX HEX',
@@ -84,10 +86,10 @@ _DEFINITIONS: Final = (
     r"CONVERSION ::= [rsa]",
     r'NEXT_LINE ::= "\r"? "\n"',
     r'COMMENT ::= "#" [^\r\n]*',
-    r'BLANKS ::= ([ \t] | "\\" NEXT_LINE)+',
-    r'SPACE ::= ([ \t] | "\\" NEXT_LINE | COMMENT? NEXT_LINE)+',
-    r"EMPTY_LINES ::= ([ \t]* COMMENT? NEXT_LINE)+",
-    r"END ::= [ \t]* COMMENT? (NEXT_LINE [ \t]* COMMENT?)*",
+    r'BLANKS ::= ([ \t\x0c] | "\\" NEXT_LINE)+',
+    r'SPACE ::= ([ \t\x0c] | "\\" NEXT_LINE | COMMENT? NEXT_LINE)+',
+    r"EMPTY_LINES ::= ([ \t\x0c]* COMMENT? NEXT_LINE)+",
+    r"END ::= [ \t\x0c]* COMMENT? (NEXT_LINE [ \t\x0c]* COMMENT?)*",
 )
 
 
