@@ -311,7 +311,7 @@ Leave it out.
         "scenic/compiler/checks/conditions.py": (
             (
                 "RULES: Final",
-                """def _undoubted(node: ast.Assert, _scope: Scope, context: Context) -> Iterator[Diagnostic]:
+                """def _undoubted(node: ast.Assert, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     if isinstance(node.test, ast.Constant) and node.test.value is True:
         yield context.warning("SC389", "nobody doubts this", node, "leave it out")
 
