@@ -36,8 +36,17 @@ ROUNDS: Final = 40
 FIRST_ROUNDS: Final = 2
 """Passes after which contraction may stop: what one learns of inner nodes may help the next."""
 
-VISITS: Final = 20_000
-"""Nodes looked at in all passes over all sets of boxes, at most (but for the first passes)."""
+CANDIDATES: Final = 1000
+"""Candidates whose cost measures what narrowing may cost."""
+
+TIMES: Final = 100
+"""The work of narrowing, at most, over that of so many candidates; bounds of a box are one element, as values of a lane are."""
+
+MOST_WORK: Final = 5_000_000
+"""Elements, at most, whatever the program (but for the first passes)."""
+
+FIXED: Final = 64
+"""Elements that looking at a node costs, however few boxes there are."""
 
 PROGRESS: Final = 1e-3
 """Contraction continues while some axis of some box loses at least this share."""
@@ -129,12 +138,13 @@ def _pave(
     ``None`` where some group cannot hold.
     """
     groups = [part for group in independent(conditions) for part in _small_groups(graph, group, hull, met)]
+    work = min(MOST_WORK, TIMES * CANDIDATES * len(graph.nodes))
     pavings: list[Boxes] = []
     vain: Counter[tuple[int, ...]] = Counter()
     for group in groups:
         if _share_met(group, met) >= FACTOR_GAIN:
             continue
-        network = _Network(graph, group, VISITS // len(groups))
+        network = _Network(graph, group, work // len(groups))
         shape = len(group), len(network.inner), len(network.axes)
         if vain[shape] == STRIKES:
             continue
@@ -279,13 +289,13 @@ def _never_empty(bounds: Bounds) -> Bounds:
 class _Network:
     """The nodes below some conditions that readings of bounds look at, in the order of evaluation."""
 
-    def __init__(self, graph: Graph, conditions: Sequence[Fact], visits: int = VISITS) -> None:
+    def __init__(self, graph: Graph, conditions: Sequence[Fact], work: int = MOST_WORK) -> None:
         self.conditions = [condition.node for condition in conditions]
         self.order = _read(self.conditions)
         self.axes = {node: graph.axes[node] for node in self.order if node.is_axis}
         self.inner = [node for node in self.order if not node.is_axis and not node.is_constant]
         self.evaluated = _evaluated(self.conditions)
-        self._visits = visits
+        self._work = work
         self._cuts: dict[int, Floats] = {}
         """Of the axes of discrete distributions, by number: where the value changes."""
         for node in self.inner:
@@ -300,11 +310,12 @@ class _Network:
 
     def _narrow(self, boxes: Boxes, first: int = 0) -> tuple[Boxes, NDArray[np.intp]]:
         """The boxes narrowed as `contract` does, and which of them are left."""
-        rounds = max(FIRST_ROUNDS, min(ROUNDS, self._visits // max(1, len(self.inner))))
+        cost = max(1, len(self.inner)) * (FIXED + len(boxes))
+        rounds = max(FIRST_ROUNDS, min(ROUNDS, self._work // cost))
         state = _State(self, boxes)
         for number in range(rounds):
             before = boxes
-            self._visits -= len(self.inner)
+            self._work -= cost
             with np.errstate(all="ignore"):
                 state.forward()
                 state.backward()
@@ -330,13 +341,13 @@ class _Network:
         if share >= FACTOR_GAIN and not are_few:
             return boxes
         if share < RARE:
-            return pave_by_trial(self._narrow, boxes, axes, share, self._cuts, lambda: self._visits <= 0)
+            return pave_by_trial(self._narrow, boxes, axes, share, self._cuts, lambda: self._work <= 0)
         volume = boxes.volume(axes)
         patience, largest = PATIENCE, LARGEST_PAVING
         if are_few:
             patience, largest = SPLITS, LARGEST_ENUMERATION
         for number in range(SPLITS):
-            if not 0 < len(boxes.lower) <= largest // 2 or self._visits <= 0:
+            if not 0 < len(boxes.lower) <= largest // 2 or self._work <= 0:
                 break
             if number == patience and boxes.volume(axes) > (1 - PROGRESS) * volume:
                 break

@@ -512,20 +512,20 @@ def test_a_paving_has_so_many_boxes_at_most():
     assert contraction.LARGEST_PAVING / 4 < half.boxes <= contraction.LARGEST_PAVING
 
 
-def test_few_visits_are_shared_among_groups(monkeypatch):
+def test_work_is_shared_among_groups(monkeypatch):
     """What a program of many groups costs is bounded together, not each by itself."""
     given = []
     init = contraction._Network.__init__
 
-    def noted(self, graph, conditions, visits=contraction.VISITS):
-        given.append(visits)
-        init(self, graph, conditions, visits)
+    def noted(self, graph, conditions, work=contraction.MOST_WORK):
+        given.append(work)
+        init(self, graph, conditions, work)
 
     monkeypatch.setattr(contraction._Network, "__init__", noted)
     items = [band(uniform(0, 1), uniform(0, 1)) for _ in range(4)]
     prune(Graph([item.node for item in items]), items)
     assert len(given) == 5
-    assert sum(given[1:]) <= contraction.VISITS
+    assert sum(given[1:]) <= contraction.MOST_WORK
 
 
 @pytest.mark.parametrize("end", [0.0, 1.0])

@@ -208,6 +208,13 @@ def test_a_bridge_and_the_road_below_are_two_places(tmp_path):
     assert float(one.distanceTo(at)) == pytest.approx(1.0)  # of 5.5 m, 4.5 count as room above the road
     assert float(two.distanceTo(at)) == 0
     assert network.drivableRegion.size == pytest.approx(2 * 700)
+    points = np.random.default_rng(1).uniform((0, -50, -6), (100, 50, 12), (400, 3))
+    for element in (one, two, two.lanes[0]):
+        height = network.levels.elevation.heights(
+            np.full(len(points), network.road_number(element.uid[:5])), element.nearest(points)[:, :2]
+        )
+        above = np.maximum(np.abs(points[:, 2] - height) - 4.5, 0)
+        assert element.distances(points) == pytest.approx(np.hypot(element.beside(points), above))
 
 
 def test_following_the_direction_of_traffic_goes_uphill(tmp_path):

@@ -139,15 +139,15 @@ class Levels:
         first = order[np.flatnonzero(np.diff(owner[order], prepend=-1))]
         return owner[first], roads[first]
 
-    def fits(self, points: Floats, heights: Floats) -> Mask:
-        """At which points ``(n, 3)`` no other surface is nearer than one that has these heights ``(n,)`` there."""
+    def fits(self, points: Floats, heights: Callable[[Floats], Floats]) -> Mask:
+        """At which points ``(n, 3)`` no other surface is nearer than one whose heights ``(n,)`` at points are given by a function."""
         result = np.ones(len(points), dtype=np.bool_)
         some = np.flatnonzero(self.stacked(points[:, :2]))
         if len(some):
             owner, _, gaps = self._at(points[some])
             least = np.full(len(some), np.inf)
             np.minimum.at(least, owner, gaps)
-            result[some] = np.abs(points[some, 2] - heights[some]) <= least + _LEVEL
+            result[some] = np.abs(points[some, 2] - heights(points[some])) <= least + _LEVEL
         return result
 
 
@@ -181,7 +181,13 @@ class Ground:
 
     def fits(self, points: Floats) -> Mask:
         """For which points ``(n, 3)`` on its area it is meant, and not what passes above or below."""
-        return self.levels.fits(points, self.heights(points))
+        return self.levels.fits(points, self.heights)
+
+    def may_miss(self, points: Floats) -> Mask:
+        """Return a mask of the points ``(n, 3)`` that are too high or too low for some place on it, so that `clearances` may not be 0."""
+        least, most = self.bounds
+        fits: Mask = np.maximum(points[:, 2] - least, most - points[:, 2]) < _ROOM - 1e-6
+        return ~fits
 
     def clearances(self, points: Floats, places: Floats) -> Floats:
         """By how many metres points ``(n, 3)`` are too high or too low to belong to it, where its nearest places ``(n, 3)`` are."""

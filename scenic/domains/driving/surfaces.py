@@ -108,7 +108,11 @@ class Surface(PolygonalRegion):
         if self.ground is None:
             return super().distances(points, *columns)
         away = self.beside(points, *columns)
-        return np.hypot(away, self.ground.clearances(points, self.nearest(points, *columns)))
+        some = np.flatnonzero(self.ground.may_miss(points))
+        if len(some):
+            points = points[some]
+            away[some] = np.hypot(away[some], self.ground.clearances(points, self.nearest(points, *columns)))
+        return away
 
     def closestPointTo(self, point: Any) -> Vector:
         place = super().closestPointTo(point)
