@@ -105,7 +105,7 @@ class _Writer:
         ET.SubElement(
             self._world,
             "geom",
-            name="ground",
+            name="ground plane",  # names of objects have no blanks
             type="plane",
             pos=numbers((0, 0, min(0.0, lowest))),
             size="0 0 1",

@@ -97,12 +97,17 @@ class _Writer:
 
     def _ground(self, solids: tuple[Solid, ...]) -> None:
         lowest = min(0.0, *(bottom(solid) for solid in solids)) if solids else 0.0
-        model = ET.SubElement(self._world, "model", name="ground_plane")
+        model = ET.SubElement(self._world, "model", name="ground plane")  # names of objects have no blanks
         _texts(model, static="true", pose=f"0 0 {lowest!r} 0 0 0")
         link = ET.SubElement(model, "link", name="link")
-        for kind in ("collision", "visual"):
-            plane = ET.SubElement(ET.SubElement(ET.SubElement(link, kind, name=kind), "geometry"), "plane")
-            _texts(plane, normal="0 0 1", size="100 100")
+        # A half-space makes some versions of Drake crash, so that a thick board is touched in its place.
+        collision = ET.SubElement(link, "collision", name="collision")
+        _texts(collision, pose="0 0 -0.5 0 0 0")
+        board = ET.SubElement(ET.SubElement(collision, "geometry"), "box")
+        _texts(board, size="100 100 1")
+        visual = ET.SubElement(link, "visual", name="visual")
+        plane = ET.SubElement(ET.SubElement(visual, "geometry"), "plane")
+        _texts(plane, normal="0 0 1", size="100 100")
 
     # Models
 

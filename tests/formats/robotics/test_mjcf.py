@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import scenic
 from scenic.formats.robotics.mjcf import mjcf
 from scenic.formats.robotics.solids import solids_of
 from scenic.simulators.mujoco import MujocoSimulator
@@ -65,3 +66,12 @@ def test_steps_give_no_warning(tmp_path: Path) -> None:
     mujoco.mj_step(model, data, 1000)
     assert not any(warning.number for warning in data.warning)
     assert np.isfinite(data.qpos).all()
+
+
+def test_an_object_may_be_called_ground(tmp_path: Path) -> None:
+    scenario = scenic.scenarioFromString(
+        "ground = new Object with dynamics 'static'\nego = new Object at (0, 3)\n"
+    )
+    (scene,) = scenario.sample(1, seed=1)
+    model = mujoco.MjModel.from_xml_path(str(written(tmp_path, scene, inline=True)))
+    assert model.body("ground").id == 1

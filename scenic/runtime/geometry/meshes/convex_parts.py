@@ -1,16 +1,20 @@
 """Solids as convex parts, since physics knows contacts of convex things only."""
 
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from scenic.language.extras import installation
+from scenic.runtime.geometry.meshes.exact_parts import exact_parts
 from scenic.runtime.geometry.store import Arrays, kept
 from scenic.runtime.ground.context import warn
 
 __all__ = ["convex_parts"]
 
+_MOST: Final = 96
+"""Parts of an exact division, at most."""
 _NEARLY: Final = 0.98
 """A solid that fills so much of its convex hull is left to it."""
 _CONCAVITY: Final = 0.1
@@ -26,7 +30,8 @@ _FLAT: Final = 1e-7
 def convex_parts(mesh: Any) -> tuple[npt.NDArray[np.float64], ...]:
     """Vertices ``(n, 3)`` of convex parts that make up a solid; none if its hull is as good.
 
-    Parts of a mesh serve all its sizes. Finding them takes seconds, and is kept on disk.
+    Solids of few plane faces, such as furniture, are divided exactly, others approximately, which takes seconds. Parts of a mesh serve all its
+    sizes, and are kept on disk.
 
     Args:
         mesh: a `scenic.runtime.geometry.meshes.mesh.Mesh` in its unit box.
@@ -34,23 +39,30 @@ def convex_parts(mesh: Any) -> tuple[npt.NDArray[np.float64], ...]:
     """
     if not mesh.is_volume or mesh.is_convex or mesh.volume >= _NEARLY * mesh.hull.volume:
         return ()
-    library = _library()
-    if library is None:
-        return ()
-
-    def compute() -> Arrays:
-        detail = {"preprocess_mode": "on" if len(mesh.faces) > _MANY_FACES else "off"}
-        library.set_log_level("error")
-        solid = library.Mesh(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int32))
-        found = library.run_coacd(solid, threshold=_CONCAVITY, **detail, **_SEARCH)
-        parts = [np.asarray(vertices, np.float64) for vertices, _ in found]
-        return {"vertices": np.concatenate(parts), "ends": np.cumsum([len(part) for part in parts])}
-
-    arrays = kept("convex parts 1", mesh.digest, compute)
+    parts = kept("exact parts 1", mesh.digest, lambda: _stored(exact_parts(mesh.vertices, mesh.faces, _MOST)))
+    if not len(parts["ends"]):
+        library = _library()
+        if library is None:
+            return ()
+        parts = kept("convex parts 1", mesh.digest, lambda: _approximate(mesh, library))
     # The hulls may reach out of the solid a little, but never below what it stands on.
-    vertices = np.clip(arrays["vertices"], mesh.vertices.min(axis=0), mesh.vertices.max(axis=0))
-    parts = np.split(vertices, arrays["ends"][:-1])
-    return tuple(part for part in parts if _volume(part) > _FLAT)
+    vertices = np.clip(parts["vertices"], mesh.vertices.min(axis=0), mesh.vertices.max(axis=0))
+    return tuple(part for part in np.split(vertices, parts["ends"][:-1]) if _volume(part) > _FLAT)
+
+
+def _approximate(mesh: Any, library: Any) -> Arrays:
+    """The parts of a solid as CoACD finds them."""
+    detail = {"preprocess_mode": "on" if len(mesh.faces) > _MANY_FACES else "off"}
+    library.set_log_level("error")
+    solid = library.Mesh(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int32))
+    results = library.run_coacd(solid, threshold=_CONCAVITY, **detail, **_SEARCH)
+    return _stored([np.asarray(vertices, np.float64) for vertices, _ in results])
+
+
+def _stored(parts: Sequence[npt.NDArray[np.float64]] | None) -> Arrays:
+    """Parts as the store keeps them."""
+    vertices = np.concatenate(parts) if parts else np.empty((0, 3))
+    return {"vertices": vertices, "ends": np.cumsum([len(part) for part in parts or ()], dtype=np.int64)}
 
 
 def _library() -> Any:
