@@ -57,7 +57,7 @@ def mesh_bounds(solid: Solid) -> np.ndarray[Any, Any]:
 
 
 class Reader:
-    """What a library reads from a scene's file; deviations are relative to the size of what is compared where that exceeds 1."""
+    """The deviations of what a library reads from a scene's file, relative to the size of what is compared where that exceeds 1."""
 
     def __init__(self, form: str, path: Path, solids: tuple[Solid, ...], worlds: Worlds) -> None:
         self._worlds = worlds
