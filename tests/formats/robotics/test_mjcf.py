@@ -74,4 +74,4 @@ def test_an_object_may_be_called_ground(tmp_path: Path) -> None:
     )
     (scene,) = scenario.sample(1, seed=1)
     model = mujoco.MjModel.from_xml_path(str(written(tmp_path, scene, inline=True)))
-    assert model.body("ground").id == 1
+    assert {model.body(number).name for number in range(model.nbody)} == {"world", "ground", "ego"}
