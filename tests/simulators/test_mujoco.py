@@ -292,9 +292,10 @@ def test_what_does_not_collide_has_no_parts_that_do(bin_file: Path) -> None:
 
 def test_without_the_library_hulls_touch(bin_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "coacd", None)
-    # Another mesh, whose parts nobody has asked for.
-    finer = bin_file.with_name("finer.obj")
-    trimesh.load_mesh(bin_file).subdivide().export(finer)
+    # A round hollow, which has no exact parts.
+    finer = bin_file.with_name("bowl.obj")
+    hollow = trimesh.creation.icosphere(3, 0.42).apply_translation((0, 0, 0.45))
+    trimesh.boolean.difference([trimesh.creation.box((1, 1, 0.9)), hollow]).export(finer)
     text = (
         f"ego = new Object with shape MeshShape.fromFile({str(finer)!r}), at (0, 0, 0.45), with dynamics 'static', "
         "with width 1, with length 1, with height 0.9\n"
