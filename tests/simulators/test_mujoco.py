@@ -308,7 +308,7 @@ def test_without_the_library_hulls_touch(bin_file: Path, monkeypatch: pytest.Mon
 
 def test_a_hand_reaches_the_parts_of_what_it_holds(bin_file: Path) -> None:
     """Not the hull: a hand within the bin, far from its walls, holds nothing."""
-    for x, holds in (("0", False), ("0.34", True)):
+    for x, holds in (("0", False), ("0.345", True)):
         text = (
             told("Grasp(bin)")
             + f"ego = new Gripper at ({x}, 0, 0.6), with behavior B\n"
