@@ -1,6 +1,7 @@
 """Runs of cars on maps: along lanes, through all maneuvers, and from lane to lane."""
 
 import math
+import random
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -58,6 +59,7 @@ def _simulated(
     text = f"param map = {str(road_map)!r}\nmodel scenic.simulators.newtonian.driving_model\n{cars}"
     scenario = scenic.scenarioFromString(text, mode2D=True)
     scene = scenario.sample(1, seed=seed)[0]
+    random.seed(seed)
     with _drivers() as drivers:
         begun = time.process_time()
         done = scenario.getSimulator().simulate(scene, maxSteps=round(seconds / step), timestep=step)

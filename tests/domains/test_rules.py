@@ -76,6 +76,16 @@ def test_a_light_changes_and_the_car_goes_on(folder: Path) -> None:
     assert np.abs(places(done)[-1]).max() > 30
 
 
+def test_whoever_begins_in_an_intersection_holds_its_way(folder: Path) -> None:
+    text = """
+ego = new Car at (16, 1.75), facing 90 deg, with behavior DriveByRulesBehavior(8)
+new Car at (-1.75, 30), facing 180 deg, with speed 8, with behavior DriveByRulesBehavior(8)
+"""
+    done = simulated(folder, text, "cross", 90)
+    apart = np.hypot(*(places(done, 0) - places(done, 1)).T)
+    assert apart.min() > 5
+
+
 def test_a_stop_sign_is_a_full_stop(folder: Path) -> None:
     way = places(simulated(folder, WEST.format(more=""), "stop", 200))
     standing = np.hypot(*np.diff(way, axis=0).T) < 0.01

@@ -269,6 +269,11 @@ class Path:
         away = (np.array(self._x[low:high]) - x) ** 2 + (np.array(self._y[low:high]) - y) ** 2
         return low + int(away.argmin())
 
+    def along_at(self, x: float, y: float, index: int) -> float:
+        """Metres along the path to the place of it that is nearest to a point, looked for from a point of the path on."""
+        index, share, _ = self.locate(x, y, index)
+        return self.along[index] + min(max(share, 0.0), 1.0) * (self.along[index + 1] - self.along[index])
+
     def index_at(self, along: float, index: int) -> int:
         """The index of the last point at or before a place metres along the path, looked for from a point of the path on."""
         lengths, last = self.along, len(self.along) - 2

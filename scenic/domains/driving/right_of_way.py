@@ -104,6 +104,11 @@ class RightOfWay:
         own = self._taken.get(maneuver.intersection.uid, {}).get(id(agent))
         return own is not None and own[1] is maneuver
 
+    def hold(self, agent: Any, maneuver: Maneuver) -> None:
+        """Note the way of a car that is in an intersection, whoever else is there."""
+        assert maneuver.intersection is not None
+        self._taken.setdefault(maneuver.intersection.uid, {})[id(agent)] = agent, maneuver
+
     def take(self, claim: Claim, *, by_priority: bool = True) -> bool:
         """Take a way if it is free; return whether it is.
 

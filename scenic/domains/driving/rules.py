@@ -30,6 +30,10 @@ _APPROACH: Final = Gap(0.4, 0.5)
 """The gap kept to a line at which a car halts."""
 _TOO_HARD: Final = 3.5
 """Deceleration (m/s^2) that a light that turns yellow, or a way that is taken, does not ask for."""
+_EMERGENCY: Final = 6.0
+"""Deceleration (m/s^2) that a light that turns yellow asks for, if the car would come to it too late."""
+_YELLOW: Final = 2.6
+"""Seconds after which a light that has turned yellow may be red."""
 _CHECKS: Final = 0.2
 """Seconds between two looks at rules."""
 _LONG: Final = 60.0
@@ -49,6 +53,7 @@ class _Halt:
         signals: that hold.
         crossing: a pedestrian crossing.
         is_stopped_for: the car has stood at the line.
+        stops_at_yellow: what was decided when the light turned yellow, while it is so.
 
     """
 
@@ -58,6 +63,7 @@ class _Halt:
     signals: tuple[Any, ...] = ()
     crossing: Any = None
     is_stopped_for: bool = False
+    stops_at_yellow: bool | None = None
 
 
 class RulesDriver(LaneDriver):
@@ -132,7 +138,9 @@ class RulesDriver(LaneDriver):
         lanes = path.lanes
         for number in range(self._marks, len(lanes)):
             begin, lane = lanes[number]
-            start = path.along[min(begin, len(path.along) - 1)]
+            # Where lanes begin along a smooth path is known to a metre; a car halts before a line, not on it.
+            x, y = lane.line[-1 if self._backward else 0].tolist()
+            start = path.along_at(x, y, begin)
             if number and lanes[number - 1][1] is lane:
                 continue
             before = next((item for _, item in reversed(lanes[:number]) if item is not lane), None)
@@ -198,7 +206,12 @@ class RulesDriver(LaneDriver):
                     self._simulation.right_of_way.leave(agent, halt.maneuver)
                 continue
             remaining.append(halt)
-            if found is not None or halt.along - front > reach or front > halt.along + 1.0:
+            if front > halt.along + 1.0:
+                if halt.maneuver is not None and "priority" not in self._ignored:
+                    # Whoever is in it already, as at the beginning, is in the way of others.
+                    self._simulation.right_of_way.hold(agent, halt.maneuver)
+                continue
+            if found is not None or halt.along - front > reach:
                 continue
             if self._must_halt(halt, speed, halt.along - front, now):
                 found = halt.along
@@ -263,12 +276,24 @@ class RulesDriver(LaneDriver):
             if not signal.isTrafficLight:
                 continue
             color = self._simulation.signalState(signal)
-            needed = speed * speed / (2 * max(distance - _BEFORE / 2, 0.1))
             if color == "red":
                 return distance > -0.5
-            if color == "yellow" and needed < _TOO_HARD:
-                return True
+            if color == "yellow":
+                if halt.stops_at_yellow is None:
+                    halt.stops_at_yellow = self._stops_at_yellow(halt, speed, distance)
+                return halt.stops_at_yellow
+            halt.stops_at_yellow = None
         return False
+
+    def _stops_at_yellow(self, halt: _Halt, speed: float, distance: float) -> bool:
+        """Return whether a car stops at a light that turns yellow: if it can, or else would come there too late."""
+        needed = speed * speed / (2 * max(distance - _BEFORE / 2, 0.1))
+        if needed < _TOO_HARD:
+            return True
+        place = self._path.index_at(halt.along, self._index) - self._begin
+        then = self._speeds[min(place, len(self._speeds) - 1)]
+        late = 2 * max(distance, 0.0) / max(speed + then, 1.0) > _YELLOW
+        return late and needed < _EMERGENCY
 
     def _has_room(self, halt: _Halt) -> bool:
         """Return whether the car would not have to stop within the intersection, behind another car."""
