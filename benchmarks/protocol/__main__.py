@@ -10,6 +10,7 @@ from benchmarks.protocol.documents import bursts, edits, positions
 from benchmarks.protocol.features import capabilities, depth, size
 from benchmarks.protocol.lifecycle import base_protocol, life_cycle, parent
 from benchmarks.protocol.peer import Failure
+from benchmarks.protocol.runs import runs
 
 __all__ = ["main", "outcome"]
 
@@ -21,6 +22,7 @@ _PARTS: Final[dict[str, Callable[[int], Iterator[Any]]]] = {
     "edits": edits,
     "bursts": lambda _edits: bursts(),
     "capabilities": lambda _edits: capabilities(),
+    "runs": lambda _edits: runs(),
     "depth": lambda _edits: depth(),
     "size": lambda _edits: size(),
 }

@@ -155,12 +155,15 @@ class Peer:
         encoding: str = "utf-16",
         process: int | None = None,
         capabilities: Mapping[str, Any] | None = None,
+        trusted: bool | None = None,
     ) -> None:
-        """Initialize the server."""
+        """Initialize the server; ``trusted`` says whether programs may be run."""
         offered = {**(_CAPABILITIES if capabilities is None else capabilities)}
         if capabilities is None:
             offered["general"] = {"positionEncodings": [encoding]}
         params = {"processId": process, "rootUri": None, "capabilities": offered, "workspaceFolders": None}
+        if trusted is not None:
+            params["initializationOptions"] = {"trusted": trusted}
         self.capabilities = self.request("initialize", params)["capabilities"]
         self.notify("initialized", {})
 

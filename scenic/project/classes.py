@@ -125,7 +125,8 @@ def _examined(project: Project, symbol: Symbol, depth: int) -> Class | None:
         node, complete = sites[0], True
     else:
         complete = symbol.binding is not None and _are_alike(sites)
-    complete = complete and not node.keywords and not node.decorator_list
+    # Decorators and metaclasses of the library add no attributes.
+    complete = complete and (is_of_library(module.filename) or not (node.keywords or node.decorator_list))
     is_scenic = False
     members: dict[str, Member] = {}
     inherited: list[Class] = []

@@ -197,7 +197,17 @@ def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, s
             return symbol.name, None, _OTHER_WAYS.get((symbol.name, owner), f"a `{owner}` has it"), False
     if meant is None and not (cls.complete and names):
         return None
-    shown = ", ".join(f"`{each}`" for each in sorted(names)[:_SHOWN])
+    home = os.path.dirname(symbol.filename)
+    own = [
+        each.name
+        for each in cls.members
+        if each.name in names
+        and each.symbol is not None
+        and os.path.dirname(each.symbol.filename or "") == home
+        and each.name[:1] != "_"
+        and "_" not in each.name  # the library writes what programs use without
+    ]
+    shown = ", ".join(f"`{each}`" for each in sorted(own or names)[:_SHOWN])
     known_member = None if meant is None else cls.member(meant)
     is_method = known_member is not None and known_member.kind is SymbolKind.METHOD
     if known_member is not None and known_member.symbol is not None:

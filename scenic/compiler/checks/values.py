@@ -1,6 +1,7 @@
 """Values of a kind that cannot be used where they stand, and attributes that values of a kind do not have."""
 
 import ast
+import sys
 from collections.abc import Collection, Iterator
 from typing import Final
 
@@ -445,9 +446,18 @@ def _unknown_attribute(
     meant = nearest(name, known)
     if meant is None and kind.name in INSTANCES:
         meant = _ELSEWHERE.get(name) or related(name, {each for each in known if not each.startswith("_")})
-    if meant is None and kind.name not in _COMPLETE:
-        return  # Python code may give it to some of them.
     place = _end(node, context)
+    if meant is None and kind.name not in _COMPLETE:
+        # Python code may give it to some of them.
+        if kind.name in INSTANCES and name not in _MEMBERS_OF_OBJECTS and not _has_python(context):
+            yield context.warning(
+                "SC214",
+                f"{kind.phrase} has no attribute `{name}`, and nothing in this program gives it one",
+                place,
+                f"its attributes are {', '.join(sorted(each for each in known if each in _PROPERTIES)[:6])}, ...; a class declares more "
+                f"(`{name}: value`), or `with {name} value`",
+            )
+        return
     yield context.error(
         "SC214",
         f"{kind.phrase} has no attribute `{name}`",
@@ -455,6 +465,17 @@ def _unknown_attribute(
         f"did you mean `{meant}`?" if meant else f"its attributes are {', '.join(sorted(known)[:6])}, ...",
         fix=context.renaming(place, name, meant) if meant else None,
     )
+
+
+def _has_python(context: CheckContext) -> bool:
+    """Return whether code may set or ask attributes in ways that the text does not show, as modules other than the standard library's may."""
+    if context.resolution.reflective or any(
+        context.mentions(each) for each in ("getattr", "hasattr", "setattr")
+    ):
+        return True
+    names = [alias.name for node, _ in context.nodes(ast.Import) for alias in node.names]
+    names += [node.module or "" for node, _ in context.nodes(ast.ImportFrom)]
+    return any(each.partition(".")[0] not in (*sys.stdlib_module_names, "scenic") for each in names)
 
 
 def _of_agent(node: ast.Attribute, context: CheckContext) -> Iterator[Diagnostic]:

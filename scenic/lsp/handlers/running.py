@@ -81,7 +81,10 @@ def _execute(session: Session, params: types.ExecuteCommandParams) -> Future[str
 
 def _remark(session: Session, document: Document, scenario: str | None) -> None:
     """Find out, beside the loop, what a program that has just run says about its lines; then have the client ask for it."""
-    if not any(session.can(f"workspace.{what}.refresh_support") for what in _REMARKED):
+    if not any(
+        session.can(f"workspace.{what}.refresh_support") or session.has(f"text_document.{what}")
+        for what in _REMARKED
+    ):
         return  # Nobody would ask.
     loop, snapshot = asyncio.get_running_loop(), document.snapshot
 
