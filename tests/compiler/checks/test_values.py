@@ -95,7 +95,6 @@ RIGHT = [
     "new Object with width table.width * 2",
     "spots = [1]\nspots.append(2)\nnew Object at spots",
     "x = table.extra",
-    "new Robot with extra 3\nx = table.extre",
     "class Car:\n    size: self.extra",
     "x = globalParameters.unlike",
     "spot = 3\nspot = (1, 2)\nnew Object at spot",
