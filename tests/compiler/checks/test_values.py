@@ -94,7 +94,6 @@ RIGHT = [
     "new Object facing table.orientation",
     "new Object with width table.width * 2",
     "spots = [1]\nspots.append(2)\nnew Object at spots",
-    "x = table.extra",
     "class Car:\n    size: self.extra",
     "x = globalParameters.unlike",
     "spot = 3\nspot = (1, 2)\nnew Object at spot",
