@@ -5,7 +5,6 @@ They are a little wider than the parser's: the name of a character in ``\N{...}`
 
 import re
 import sys
-import unicodedata
 from collections.abc import Iterator, Mapping
 from functools import cache
 from types import MappingProxyType
@@ -28,8 +27,8 @@ def _quoted(escape: str, *, beside: str = "") -> str:
     """The texts in quotes of all kinds, in the notation of `terminals`; ``beside`` are characters that cannot stand in one."""
     forms = []
     for quote, mark in _MARKS.items():
-        forms.append(rf"{mark} ([^{quote}\\\n{beside}] | {escape})* {mark}")
-        long = rf"({mark} {mark}?)? ([^{quote}\\{beside}] | {escape})"
+        forms.append(rf"{mark} ([^{quote}\\\r\n\x00{beside}] | {escape})* {mark}")
+        long = rf"({mark} {mark}?)? ([^{quote}\\\x00{beside}] | {escape})"
         forms.append(rf"{mark} {mark} {mark} ({long})* {mark} {mark} {mark}")
     return " | ".join(forms)
 
@@ -41,8 +40,8 @@ def _formatted() -> Iterator[str]:
     """The parts of f-strings."""
     for word, (quote, mark) in zip(("SINGLE", "DOUBLE"), _MARKS.items(), strict=True):
         yield f"{word}_QUOTES ::= {mark} {mark}?"
-        for kind, marks, line_end in ((word, mark, r"\n"), (f"LONG_{word}", f"{mark} {mark} {mark}", "")):
-            text = rf"[^{quote}\\{{}}{line_end}] | FORMAT_ESCAPE"
+        for kind, marks, line_end in ((word, mark, r"\r\n"), (f"LONG_{word}", f"{mark} {mark} {mark}", "")):
+            text = rf"[^{quote}\\{{}}\x00{line_end}] | FORMAT_ESCAPE"
             yield f"{kind}_START ::= FORMAT_PREFIX {marks}"
             yield f"{kind}_END ::= {marks}"
             yield f"{kind}_MIDDLE ::= ({text})+"
@@ -63,7 +62,7 @@ _DEFINITIONS: Final = (
     r"HEX ::= [0-9a-fA-F]",
     r'CODE ::= "x" HEX HEX | "u" HEX HEX HEX HEX | "U00" ("0" HEX | "10") HEX HEX HEX HEX',
     r'CHARACTER ::= "N{" [A-Za-z] [A-Za-z0-9 -]* "}"',
-    r'ESCAPE ::= "\\" ([^xuUN] | CODE | CHARACTER)',
+    r'ESCAPE ::= "\\" ([^xuUN\x00] | CODE | CHARACTER)',
     r'RAW ::= "\\" [^\x00]',
     r'BYTE_ESCAPE ::= "\\" ([\x01-wy-\x7f] | "x" HEX HEX)',
     r'RAW_BYTE ::= "\\" [\x01-\x7f]',
@@ -75,7 +74,7 @@ _DEFINITIONS: Final = (
     r"BYTES ::= [bB] BARE_BYTES | ([bB] [rR] | [rR] [bB]) RAW_BYTES",
     r"FORMAT_PREFIX ::= [fF] [rR]? | [rR] [fF]",
     r"""EMPTY_FORMATTED ::= FORMAT_PREFIX ("''" | "\"\"")""",
-    r'FORMAT_ESCAPE ::= "\\" ([^xuUN{}] | CODE | CHARACTER)',
+    r'FORMAT_ESCAPE ::= "\\" ([^xuUN{}\x00] | CODE | CHARACTER)',
     r'BRACES ::= "{{" | "}}"',
     *_formatted(),
     r'FIELD_OPEN ::= "{"',
@@ -85,7 +84,7 @@ _DEFINITIONS: Final = (
     r'FIELD_COLON ::= ":"',
     r"CONVERSION ::= [rsa]",
     r'NEXT_LINE ::= "\r"? "\n"',
-    r'COMMENT ::= "#" [^\r\n]*',
+    r'COMMENT ::= "#" [^\r\n\x00]*',
     r'BLANKS ::= ([ \t\x0c] | "\\" NEXT_LINE)+',
     r'SPACE ::= ([ \t\x0c] | "\\" NEXT_LINE | COMMENT? NEXT_LINE)+',
     r"EMPTY_LINES ::= ([ \t\x0c]* COMMENT? NEXT_LINE)+",
@@ -147,10 +146,7 @@ def terminals() -> Mapping[str, TextItem]:
 
 @cache
 def letters(*, first: bool) -> str:
-    """The characters beyond ASCII that a name can begin with, or go on with, as ranges of a character class.
-
-    Characters that do not exist yet count as their neighbours, which halves the number of ranges.
-    """
+    """The characters beyond ASCII that a name can begin with, or go on with, as ranges of a character class."""
     prefix = "" if first else "a"
     ranges: list[list[int]] = []
     for code in range(0x80, sys.maxunicode + 1):
@@ -160,8 +156,6 @@ def letters(*, first: bool) -> str:
                 ranges[-1][1] = code
             else:
                 ranges.append([code, code])
-        elif ranges and ranges[-1][1] == code - 1 and unicodedata.category(character) == "Cn":
-            ranges[-1][1] = code
     return "".join(_escaped(low) + ("" if low == high else f"-{_escaped(high)}") for low, high in ranges)
 
 
