@@ -14,7 +14,10 @@ def main() -> None:
         description="mistakes judged by the place, cause and repair they are given"
     )
     parser.add_argument(
-        "lists", nargs="*", default=["first", "second", "third", "fourth", "fifth"], help="the lists to judge"
+        "lists",
+        nargs="*",
+        default=["first", "second", "third", "fourth", "fifth", "sixth"],
+        help="the lists to judge",
     )
     parser.add_argument("--show", action="store_true", help="print the messages of all mistakes")
     arguments = parser.parse_args()

@@ -95,6 +95,8 @@ class Session:
         self.tokens = Results()
         self.remarks: dict[str, Remarks] = {}
         """By address: what the last run of a document says about its text."""
+        self.shows_remarks = False
+        """True once the client has asked for lenses or hints, which contain the remarks."""
         self.generation = 0
         """A number that grows whenever the facts that one document implies for others may have changed."""
         self.project = Project()

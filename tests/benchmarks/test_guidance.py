@@ -5,7 +5,7 @@ import pytest
 from benchmarks.guidance import judge, read
 
 
-@pytest.mark.parametrize("name", ["first", "second", "third", "fourth", "fifth"])
+@pytest.mark.parametrize("name", ["first", "second", "third", "fourth", "fifth", "sixth"])
 def test_messages_lead_to_the_repair(name: str) -> None:
     judgements = list(judge(list(read(name))))
     count = len(judgements)

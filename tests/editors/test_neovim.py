@@ -243,6 +243,38 @@ def test_scenes_are_sampled(editor: Editor, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+def test_shares_are_shown_after_a_run(editor: Editor, tmp_path: Path) -> None:
+    editor.lines = [
+        "x = Range(-10, 10)",
+        "ego = new Object at (x, 0)",
+        "require x > 5",
+        "require (x * x) % 2 > 1",
+    ]
+    page = tmp_path / "page"
+    editor.lua("vim.lsp.codelens.refresh()")
+    editor.lua(
+        "local page = ...; require('scenic').show(7, function(path) vim.loop.fs_copyfile(path, page) end)",
+        str(page),
+    )
+
+    def shares() -> list[str]:
+        editor.lua("vim.lsp.codelens.refresh()")
+        titles = editor.lua(
+            """
+            local titles = {}
+            for _, lens in ipairs(vim.lsp.codelens.get(0)) do
+              if lens.command then table.insert(titles, lens.command.title) end
+            end
+            return titles
+            """
+        )
+        return [each for each in titles or [] if "rejects" in each]
+
+    editor.until(page.exists, 60)
+    assert len(editor.until(shares, 60)) == 2
+
+
+@pytest.mark.slow
 def test_programs_are_simulated(editor: Editor, tmp_path: Path) -> None:
     editor.lines = [
         "behavior B():",

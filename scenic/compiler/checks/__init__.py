@@ -116,6 +116,10 @@ def check(context: CheckContext, go_on: Callable[[], None] = lambda: None) -> tu
     return tuple(_capped(sorted(diagnostics, key=_order)))
 
 
+_ATTRIBUTE: Final = "SC214"
+"""The code of unknown attributes, about which who knows other modules knows more."""
+
+
 def lint(context: CheckContext, go_on: Callable[[], None] = lambda: None) -> tuple[Diagnostic, ...]:
     """Findings about constructs that hardly mean what they say, or are bound to fail when they are reached; ordered by place.
 
@@ -130,7 +134,9 @@ def lint(context: CheckContext, go_on: Callable[[], None] = lambda: None) -> tup
             go_on()
             # A name that cannot be imported is not unused as well.
             diagnostics += (
-                item for item in rule(context) if rule is not uses.check_uses or item.span not in places
+                item
+                for item in rule(context)
+                if item.span not in places or (rule is not uses.check_uses and item.code != _ATTRIBUTE)
             )
         return tuple(_capped(sorted(dict.fromkeys(diagnostics), key=_order)))
 

@@ -75,6 +75,8 @@ _MODULES: Final[Mapping[str, str]] = MappingProxyType(
 _KEYWORDS: Final = tuple(
     word for table in (HARD_KEYWORDS, SOFT_KEYWORDS) for word in table if len(word) > 2 and word.islower()
 )
+_LOOKS: Final = frozenset({"looking", "oriented", "pointing", "turned"})
+"""Words for the direction of an object, before ``at`` and ``to``."""
 _ENDS: Final = frozenset({"end", "finish", "halt", "stop"})
 """Words of other languages for ``terminate``."""
 _DEFINITIONS: Final = frozenset({"behavior", "monitor", "scenario"})
@@ -105,6 +107,8 @@ def known_elsewhere(node: ast.Name, context: CheckContext) -> Meant | None:
             f"`{what}` comes with a world model: begin the program with `param map = localPath('town.xodr')` and "
             "`model scenic.domains.driving.model`, or define it"
         )
+    if name in _LOOKS and _FOLLOWS_OBJECT.search(text_before(context, node)):
+        return Meant("write `facing toward ...`")
     if name in _DEFINITIONS and any(
         node in each.decorator_list for each in context.nodes_around(node, ast.FunctionDef)
     ):

@@ -189,6 +189,14 @@ def _require_monitor(
 
 def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC314: ``with behavior`` with something else than a behavior."""
+    if node.property == "monitor":
+        text = context.text(node.operands[0]) if node.operands and node.operands[0] is not None else None
+        yield context.warning(
+            "SC314",
+            "an object has no monitor: monitors run beside the whole simulation",
+            node,
+            f"write `require monitor {text or 'M()'}`, a statement",
+        )
     if node.specifier == "with" and node.property == "behavior":
         for value in filter(None, node.operands[:1]):
             yield from _wrong(value, ("behavior",), "with behavior", context, classes=True)

@@ -155,6 +155,22 @@ def _is_action(definition: ast.ClassDef) -> bool:
     return len(names) > 1 and any(name.endswith("Action") for name in names)
 
 
+def _annotation(node: ast.AnnAssign, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
+    """SC307: ``self.height: 3`` in a method, which Python reads as an annotation."""
+    match node:
+        case ast.AnnAssign(
+            target=ast.Attribute() as target, annotation=ast.Constant(value=int() | float()), value=None
+        ):
+            text = f"{context.text(target)} = {context.text(node.annotation)}"
+            yield context.warning(
+                "SC307",
+                "this annotates an attribute with a number, and sets nothing",
+                node,
+                f"write `{text}`; properties with a default are declared in the class: `{target.attr}: value`",
+                fix=context.replacement(f"Write `{text}`", node, text),
+            )
+
+
 def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC307: ``def __init__`` in a class of objects."""
     if context.classes.of(node) is None:
@@ -199,6 +215,7 @@ def check_maps(context: CheckContext) -> Iterator[Diagnostic]:
 
 
 RULES: Final[dict[type[ast.AST], NodeRule]] = {
+    ast.AnnAssign: _annotation,
     ast.Call: _call,
     ast.ClassDef: _class,
     ast.Expr: _statement,

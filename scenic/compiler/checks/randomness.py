@@ -21,6 +21,7 @@ _LATER: Final = (scenic.Require, scenic.Record, scenic.TerminateWhen)
 _NUMBERS: Final = frozenset({"Range", "DiscreteRange", "Normal", "TruncatedNormal"})
 """Distributions of numbers."""
 
+_COMPREHENSIONS: Final = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 _DEEPEST: Final = 20
 """Depth to which values are examined."""
 
@@ -264,6 +265,20 @@ def _calls(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diag
                 "sorting random values is not possible while the scenario is being built",
                 node,
                 "their order is known only in a sampled scene; `min` and `max` take random values",
+            )
+        return
+    if context.provided(node.func) == "range" and any(is_random(each, context) for each in node.args):
+        loops = (
+            *context.nodes_around(node, ast.For),
+            *(each for cls in _COMPREHENSIONS for each in context.nodes_around(node, cls)),
+        )
+        if _is_asked_now(node, scope, context) and not any(loops):
+            yield context.error(
+                "SC403",
+                "`range` of a random number is not possible while the scenario is being built",
+                node,
+                "for a random integer write `DiscreteRange(low, high)`; for a random number of objects make the most there can be, each "
+                "`with present i < count`",
             )
         return
     match node.func:

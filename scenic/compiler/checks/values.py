@@ -67,6 +67,19 @@ def _operation(node: scenic.Operation, scope: Scope, context: CheckContext) -> I
     """``distance to 3``, ``position @ 3``."""
     if node.operator == "@" and not may_be_meant(node, scope, context):
         yield from _coordinates(node, context)
+    if (
+        node.operator == "at"
+        and (kind := context.kind_of(node.operands[0])) is not None
+        and kind.name in INSTANCES
+    ):
+        text = context.text(node.operands[1]) if node.operands[1] is not None else None
+        yield context.error(
+            "SC404",
+            f"`at` after {kind.phrase}: only a vector field has a value at a place",
+            node,
+            f"a distance is given by `by`: `by {text or 'distance'}`; a further specifier begins after a comma",
+        )
+        return
     if node.operator in OPERATORS and node.operator != "@" and not may_be_meant(node, scope, context):
         operator = OPERATORS[node.operator]
         for operand, value in zip(operator.operands, node.operands, strict=False):
@@ -449,13 +462,17 @@ def _unknown_attribute(
     place = _end(node, context)
     if meant is None and kind.name not in _COMPLETE:
         # Python code may give it to some of them.
-        if kind.name in INSTANCES and name not in _MEMBERS_OF_OBJECTS and not _has_python(context):
+        # Some regions have more, but nothing of the language is written with underscores.
+        is_open = kind.name not in INSTANCES and not (kind.name == "region" and "_" in name)
+        if not is_open and name not in _MEMBERS_OF_OBJECTS and not _has_python(context):
+            own = (each for each in known if each in _PROPERTIES or kind.name == "region")
+            ways = f"a class declares more (`{name}: value`), or `with {name} value`"
             yield context.warning(
                 "SC214",
                 f"{kind.phrase} has no attribute `{name}`, and nothing in this program gives it one",
                 place,
-                f"its attributes are {', '.join(sorted(each for each in known if each in _PROPERTIES)[:6])}, ...; a class declares more "
-                f"(`{name}: value`), or `with {name} value`",
+                f"its attributes are {', '.join(sorted(own)[:6])}, ..."
+                + ("" if kind.name == "region" else f"; {ways}"),
             )
         return
     yield context.error(

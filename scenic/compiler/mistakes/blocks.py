@@ -231,6 +231,14 @@ def try_alone(at: Situation) -> Problem | None:
     if not at.expects("`except`, `finally` or `interrupt when`"):
         return None
     place = at.trials.line(at.start)
+    if at.word(at.token) == "when":
+        return at.problem(
+            "SC114",
+            at.here(),
+            "`interrupt` is missing before `when`",
+            "write `interrupt when condition:`",
+            fix=("insert `interrupt`", [insertion(at.token, "interrupt")]),
+        )
     if at.is_plain_name(at.token):
         # A misspelt clause?
         clause = at.elsewhere(at.token, at.token + 1)

@@ -1,5 +1,6 @@
 """Forms that other notations have and Scenic has not, as people and language models write them from memory."""
 
+from itertools import pairwise
 from typing import Final
 
 from scenic.compiler.actions import Problem
@@ -7,6 +8,7 @@ from scenic.compiler.generated import SPECIFIER_KINDS
 from scenic.compiler.mistakes.situation import Situation
 from scenic.compiler.mistakes.trial import Change
 from scenic.compiler.tokens import DEDENT, NEWLINE, NUMBER
+from scenic.language.properties import properties_of
 
 __all__ = [
     "bound_of_condition",
@@ -76,7 +78,11 @@ def setting_of_property(at: Situation) -> Problem | None:
     if specifier is not None:
         reason = f"there is no specifier `{name}`"
     title = "insert `with`" if specifier is None else f"write `{specifier}`"
-    return at.problem("SC114", at.place(first), reason, f"write `{meant}`", fix=(title, [change]))
+    is_known = (
+        specifier is not None or name in properties_of("Object") or (name, ":") in pairwise(at.tokens.texts)
+    )
+    fix = (title, [change]) if is_known else None
+    return at.problem("SC114", at.place(first), reason, f"write `{meant}`", fix=fix)
 
 
 _SIDES: Final = {"front": ("ahead", "of"), "back": ("behind",), "rear": ("behind",)}

@@ -300,6 +300,8 @@ _PLACES: Final = {
     ("inside", "of"): ("in",),
     ("inside",): ("in",),
     ("within",): ("in",),
+    ("upon",): ("on",),
+    ("atop",): ("on",),
     ("under",): ("below",),
     ("underneath",): ("below",),
     ("beneath",): ("below",),

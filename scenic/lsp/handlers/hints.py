@@ -23,6 +23,7 @@ _KINDS: Final = {
 
 
 def _inlay_hints(session: Session, params: types.InlayHintParams) -> list[types.InlayHint]:
+    session.shows_remarks = True
     later = "tooltip" in session.lists("text_document.inlay_hint.resolve_support.properties")
     return [
         types.InlayHint(
@@ -64,6 +65,7 @@ def _inline_values(session: Session, params: types.InlineValueParams) -> list[ty
 
 
 def _lenses(session: Session, params: types.CodeLensParams) -> list[types.CodeLens]:
+    session.shows_remarks = True
     document = session.document(params.text_document.uri)
     found = []
     for lens in lenses(document.snapshot):

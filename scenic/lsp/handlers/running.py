@@ -81,11 +81,8 @@ def _execute(session: Session, params: types.ExecuteCommandParams) -> Future[str
 
 def _remark(session: Session, document: Document, scenario: str | None) -> None:
     """Find out, beside the loop, what a program that has just run says about its lines; then have the client ask for it."""
-    if not any(
-        session.can(f"workspace.{what}.refresh_support") or session.has(f"text_document.{what}")
-        for what in _REMARKED
-    ):
-        return  # Nobody would ask.
+    if not session.shows_remarks:
+        return
     loop, snapshot = asyncio.get_running_loop(), document.snapshot
 
     def keep(done: Future[Remarks]) -> None:
