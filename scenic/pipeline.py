@@ -10,15 +10,13 @@ from types import CodeType, FrameType, ModuleType, TracebackType
 from typing import TYPE_CHECKING, Any, Final
 
 from scenic.compiler import loader
-from scenic.compiler.compile import compile_text
-from scenic.compiler.parser import bare_text
 from scenic.compiler.tracebacks import SOURCE_NAME, Locator
 from scenic.dataclass import dataclass
 from scenic.failures import placed
 from scenic.language.errors import (
     InvalidScenarioError,
     ScenarioChoiceError,
-    compile_error,
+    ScenicSyntaxError,
 )
 from scenic.language.garbage import promote_young
 from scenic.language.source import Source, read_source
@@ -28,6 +26,7 @@ from scenic.narrowing import prepared_sampler
 from scenic.runtime.description.definitions import ModularScenario
 from scenic.runtime.description.mutation import apply_noise
 from scenic.runtime.description.outcome import Module, Program
+from scenic.runtime.geometry.store import programs_folder
 from scenic.runtime.ground.context import Context, current, warn
 from scenic.runtime.instances.objects import Object, Point
 from scenic.runtime.program.prelude import Loader
@@ -166,7 +165,7 @@ def load(
         strict_params=not extra_params,
         settle=None if settle is None else (settle, settle_tolerance, settle_keep),
     )
-    return _scenario(source.text, source.filename, options)
+    return _scenario(source.text, source.filename, options, keep=str(path) != "-")
 
 
 _EXTENSIONS: Final = (".scenic", ".sc")
@@ -192,7 +191,7 @@ def scenarioFromFile(
     if Path(path).suffix not in _EXTENSIONS:
         raise RuntimeError(f"'{path}' is no Scenic program by its name: it ends in neither .scenic nor .sc")
     options = _Options(dict(params or {}), model, scenario, mode2D, _pruning_wanted())
-    return _scenario(source.text, str(path), options)
+    return _scenario(source.text, str(path), options, keep=True)
 
 
 def scenarioFromString(
@@ -275,6 +274,8 @@ class _Options:
 
     def digest(self, text: str) -> str:
         """The digest of a program, whatever its comments and blanks, and of all options that change its scenes."""
+        from scenic.compiler.parser import bare_text  # takes long to import, and few runs need it
+
         return program_digest(
             bare_text(text),
             {
@@ -328,9 +329,9 @@ class _Ran:
     regions: Mapping[str, Region]
 
 
-def _scenario(text: str, filename: str, options: _Options) -> Scenario:
+def _scenario(text: str, filename: str, options: _Options, *, keep: bool = False) -> Scenario:
     """From text to scenario: compile, run, outline, contract."""
-    ran = _run(_compiled(text, filename), text, filename, options)
+    ran = _run(_compiled(text, filename, keep=keep), text, filename, options)
     scenario = Scenario(
         ran.program,
         ran.outline,
@@ -348,14 +349,13 @@ def _scenario(text: str, filename: str, options: _Options) -> Scenario:
     return scenario
 
 
-def _compiled(text: str, filename: str) -> CodeType:
-    compiled = compile_text(text, filename=filename)
-    if compiled.code is None:
-        errors = [item for item in compiled.diagnostics if item.severity == "error"]
-        failure = compile_error(errors, filename=filename)
+def _compiled(text: str, filename: str, *, keep: bool) -> CodeType:
+    """The code of a program, which ``keep`` puts into the store for later runs."""
+    try:
+        return loader.program_code(Source(text, filename), programs_folder() if keep else None)
+    except ScenicSyntaxError as failure:
         failure.program = text
-        raise failure
-    return compiled.code
+        raise
 
 
 def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:

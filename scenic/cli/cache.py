@@ -9,7 +9,7 @@ __all__ = ["cache"]
 
 @click.group()
 def cache() -> None:
-    """Inspect or empty the cache of results about meshes and maps, which only saves time."""
+    """Inspect or empty the cache of results about meshes and maps, and of compiled programs, which only saves time."""
 
 
 @cache.command()

@@ -6,6 +6,7 @@ A cache that does not match its source, or is damaged, is ignored and written an
 program is simply compiled each time.
 """
 
+import contextlib
 import hashlib
 import marshal
 import os
@@ -19,15 +20,25 @@ from typing import Final
 
 import scenic.compiler
 import scenic.language
-from scenic.compiler.compile import compile_text
 from scenic.language.diagnostics import Severity
 from scenic.language.errors import compile_error
 from scenic.language.source import Source, read_source
 
-__all__ = ["SUFFIXES", "ScenicLoader", "cache_file", "find_module", "load_code"]
+__all__ = [
+    "PROGRAM_SUFFIX",
+    "SUFFIXES",
+    "ScenicLoader",
+    "cache_file",
+    "find_module",
+    "load_code",
+    "program_code",
+]
 
 SUFFIXES: Final = (".scenic", ".sc")
 """File extensions of Scenic programs, the preferred one first."""
+
+PROGRAM_SUFFIX: Final = ".program"
+"""The ending of files that keep the code of programs."""
 
 _DIGEST: Final = 32
 
@@ -88,13 +99,55 @@ class ScenicLoader(SourceFileLoader):
             code = _read(kept, key)
             if code is not None:
                 return code
-        compiled = compile_text(source.text, filename=source.filename)
-        if compiled.code is None:
-            by_severity = sorted(compiled.diagnostics, key=lambda item: item.severity is not Severity.ERROR)
-            raise compile_error(by_severity, filename=source.filename)
+        code = _compiled(source)
         if kept is not None and not sys.dont_write_bytecode:
-            _write(kept, key, compiled.code)
-        return compiled.code
+            _write(kept, key, code)
+        return code
+
+
+def _compiled(source: Source, *, errors_only: bool = False) -> CodeType:
+    """The code of a program; raises an error that holds its diagnostics, errors first, if it has any."""
+    from scenic.compiler.compile import compile_text  # takes long to import, and kept code needs none of it
+
+    compiled = compile_text(source.text, filename=source.filename)
+    if compiled.code is None:
+        found = sorted(compiled.diagnostics, key=lambda item: item.severity is not Severity.ERROR)
+        if errors_only:
+            found = [item for item in found if item.severity is Severity.ERROR]
+        raise compile_error(found, filename=source.filename)
+    return compiled.code
+
+
+def program_code(source: Source, folder: Path | None) -> CodeType:
+    """The code of the program of a command, kept in a folder of its user's, where there is one, and not beside the program.
+
+    Raises `ScenicSyntaxError`, which holds its errors, if it has any.
+    """
+    fingerprint = None if folder is None or sys.dont_write_bytecode else _fingerprint()
+    if folder is None or fingerprint is None or not _is_private(folder):
+        return _compiled(source, errors_only=True)
+    key = _key(source)
+    settings = f"{fingerprint}-{sys.implementation.cache_tag}-{sys.flags.optimize}"
+    file = folder / f"{hashlib.sha256(key + settings.encode()).hexdigest()}{PROGRAM_SUFFIX}"
+    code = _read(file, key)
+    if code is None:
+        code = _compiled(source, errors_only=True)
+        _write(file, key, code)
+    else:
+        with contextlib.suppress(OSError):
+            os.utime(file)  # what was used longest ago is removed first
+    return code
+
+
+def _is_private(folder: Path) -> bool:
+    """Return whether nobody else may write to a folder, which is made if need be: code from there is run."""
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        status = folder.stat()
+    except OSError:
+        return False
+    owner = getattr(os, "getuid", None)
+    return owner is None or (status.st_uid == owner() and not status.st_mode & 0o022)
 
 
 def cache_file(filename: str) -> Path | None:

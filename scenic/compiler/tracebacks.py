@@ -18,8 +18,8 @@ from pathlib import Path
 from types import CodeType, FrameType, TracebackType
 from typing import Final
 
-from scenic.compiler.lowering.build import PRELUDE
 from scenic.dataclass import dataclass
+from scenic.language.generated_code import PRELUDE
 from scenic.language.source import Source
 from scenic.language.spans import Span
 

@@ -8,11 +8,11 @@ import ast
 from collections.abc import Iterator
 from typing import Final
 
-from scenic.compiler.lowering.build import PRELUDE
 from scenic.compiler.lowering.instances import instance_name, is_kept
 from scenic.compiler.scopes import BindingKind, Scope
 from scenic.dataclass import dataclass
 from scenic.ide.snapshot import Snapshot
+from scenic.language.generated_code import PRELUDE
 from scenic.language.names import TRACKED
 from scenic.language.spans import Span
 

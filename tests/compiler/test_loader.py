@@ -1,14 +1,17 @@
 """Finding, compiling and caching modules."""
 
 import os
+import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from scenic.compiler import compile as compiling
 from scenic.compiler import loader
-from scenic.compiler.loader import ScenicLoader, cache_file, find_module, load_code
+from scenic.compiler.loader import ScenicLoader, cache_file, find_module, load_code, program_code
 from scenic.language.errors import ScenicError, ScenicSyntaxError
+from scenic.language.source import Source
 
 
 def value(path: Path) -> object:
@@ -28,13 +31,13 @@ def program(tmp_path: Path) -> Path:
 def compilations(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The files that are compiled while the test runs."""
     done: list[str] = []
-    compile_text = loader.compile_text
+    compile_text = compiling.compile_text
 
     def noted(text: str, *, filename: str) -> object:
         done.append(filename)
         return compile_text(text, filename=filename)
 
-    monkeypatch.setattr(loader, "compile_text", noted)
+    monkeypatch.setattr(compiling, "compile_text", noted)
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     return done
 
@@ -192,3 +195,57 @@ def test_as_an_importlib_loader(program: Path) -> None:
     assert module.x == 1
     assert found.get_source("room") == "x = 1\n"
     assert "room" not in sys.modules
+
+
+def test_programs_of_commands_are_kept_in_a_private_folder(tmp_path: Path, compilations: list[str]) -> None:
+    source, folder = Source("x = 1\n", str(tmp_path / "room.scenic")), tmp_path / "store"
+    code = program_code(source, folder)
+    assert program_code(source, folder) == code
+    assert len(compilations) == 1
+    assert [file.suffix for file in folder.iterdir()] == [".program"]
+    assert {file.name for file in tmp_path.iterdir()} == {"store"}
+    program_code(Source("x = 2\n", source.filename), folder)
+    program_code(Source(source.text, str(tmp_path / "other.scenic")), folder)
+    assert len(compilations) == 3
+    for file in folder.iterdir():
+        file.write_bytes(file.read_bytes()[:-1] + b"?")
+    assert program_code(source, folder) == code
+    folder.chmod(0o777)
+    program_code(source, folder)
+    program_code(source, None)
+    assert len(compilations) == 6
+
+
+def test_wrong_programs_are_not_kept(tmp_path: Path, compilations: list[str]) -> None:
+    for _ in range(2):
+        with pytest.raises(ScenicSyntaxError):
+            program_code(Source("new\n", "room.scenic"), tmp_path / "store")
+    assert len(compilations) == 2
+    assert not list((tmp_path / "store").iterdir())
+
+
+def test_a_kept_program_is_sampled_without_the_compiler(tmp_path: Path) -> None:
+    path = tmp_path / "room.scenic"
+    path.write_text("ego = new Object at (Normal(0, 1), 0)\n")
+    script = (
+        "import sys, scenic; scene, = scenic.load(sys.argv[1]).sample(1, seed=1); "
+        "print(scene.egoObject.x, *sorted({'scenic.compiler.compile', 'scipy.special', 'scipy.stats'} & set(sys.modules)))"
+    )
+    environment = {
+        name: value
+        for name, value in os.environ.items()
+        if name not in ("SCENIC_CACHE", "PYTHONDONTWRITEBYTECODE")
+    }
+    environment["SCENIC_CACHE_DIR"] = str(tmp_path / "cache")
+    first, second = (
+        subprocess.run(
+            [sys.executable, "-c", script, str(path)],
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout.split()
+        for _ in range(2)
+    )
+    assert first[1:] == ["scenic.compiler.compile"]
+    assert second == first[:1]

@@ -3,10 +3,11 @@
 import ast
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import Any, Final, TypeVar
+from typing import Any, TypeVar
+
+from scenic.language.generated_code import PRELUDE
 
 __all__ = [
-    "PRELUDE",
     "at",
     "constant",
     "function",
@@ -23,9 +24,6 @@ __all__ = [
     "store_on_instance",
     "tuple_",
 ]
-
-PRELUDE: Final = "__scenic__"
-"""The global through which generated code reaches the runtime."""
 
 _Node = TypeVar("_Node", bound=ast.AST)
 

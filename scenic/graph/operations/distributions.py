@@ -21,6 +21,7 @@ from scenic.graph.operations.choosing import can_give, choose, hull_of_possible,
 from scenic.graph.operations.encoding import chain, disjunction
 from scenic.graph.operations.narrowing import Mask, before_rounding, where
 from scenic.graph.operations.normal import conditioned_cumulative, conditioned_quantile
+from scenic.graph.operations.normal_functions import ndtr, ndtri
 from scenic.graph.operations.numbers import EXACT
 from scenic.graph.operations.possibilities import is_finite
 
@@ -52,8 +53,6 @@ def _range(call: Call, axis: Column, low: Column, high: Column) -> Column:
 
 
 def _normal(_call: Call, axis: Column, mean: Column, deviation: Column) -> Column:
-    from scipy.special import ndtri
-
     return np.asarray(mean + deviation * ndtri(np.ascontiguousarray(axis)))
 
 
@@ -343,8 +342,6 @@ def _range_solver(terms: Terms, _payload: object, _axis: object, low: Any, high:
 
 
 def _normal_bounds(_payload: object, axis: Bounds, mean: Bounds, deviation: Bounds) -> Bounds:
-    from scipy.special import ndtri
-
     inside = _opened(axis)
     z = intervals.widened(intervals.relaxed(Bounds(ndtri(inside.lower), ndtri(inside.upper)), 1e-12), 1e-12)
     return intervals.add(mean, intervals.multiply(deviation, z))
@@ -353,8 +350,6 @@ def _normal_bounds(_payload: object, axis: Bounds, mean: Bounds, deviation: Boun
 def _normal_inverse(
     _payload: object, result: Bounds, axis: Bounds, mean: Bounds, deviation: Bounds
 ) -> list[Bounds | None]:
-    from scipy.special import ndtr, ndtri
-
     shift = before_rounding(intervals.subtract(before_rounding(result), mean))
     z = intervals.widened(intervals.relaxed(intervals.divide(shift, deviation), 1e-12), 1e-12)
     # Far in the tail a probability is a few units in the last place, or rounded to nothing.

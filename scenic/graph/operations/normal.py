@@ -5,6 +5,7 @@ from typing import Final
 import numpy as np
 
 from scenic.graph.bounds import Floats
+from scenic.graph.operations.normal_functions import log_ndtr, ndtr, ndtri, ndtri_exp
 
 _DEEP: Final = 30.0
 """Standard deviations from the mean beyond which probabilities are handled by their logarithms."""
@@ -19,8 +20,6 @@ def conditioned_quantile(a: Floats, b: Floats, u: Floats) -> Floats:
     Near the mean through the distribution function, deep in a tail through its logarithm, and far out, where that
     cancels too, through the exponential that the tail then is.
     """
-    from scipy.special import log_ndtr, ndtr, ndtri, ndtri_exp
-
     # An interval in the upper half is reflected down, where probabilities keep their relative accuracy.
     flip = a > 0
     low, high, p = np.broadcast_arrays(np.where(flip, -b, a), np.where(flip, -a, b), np.where(flip, 1 - u, u))
@@ -47,8 +46,6 @@ def conditioned_cumulative(a: Floats, b: Floats, z: Floats) -> tuple[Floats, Flo
     ``z`` lies in ``[a, b]``. Ratios of probabilities are taken through logarithms; the error grows where those are large
     or the interval is narrow.
     """
-    from scipy.special import log_ndtr
-
     flip = a > 0
     low, high, place = np.broadcast_arrays(
         np.where(flip, -b, a), np.where(flip, -a, b), np.where(flip, -z, z)

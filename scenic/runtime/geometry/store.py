@@ -29,6 +29,9 @@ MOST_BYTES: Final = 256 << 20
 _SUFFIX: Final = ".arrays"
 """Of files: a checksum, the names as JSON, the arrays in NumPy's own format. An archive takes longer to open."""
 
+_PROGRAMS: Final = "programs"
+"""The folder in the store for compiled programs (`scenic.compiler.loader`)."""
+
 _KEPT: Final = 0.75
 """Part of the size that is left after a clearance."""
 
@@ -87,6 +90,12 @@ def store_folder() -> Path | None:
         return None
 
 
+def programs_folder() -> Path | None:
+    """The folder of compiled programs in the store, if there is a store."""
+    folder = store_folder()
+    return None if folder is None else folder / _PROGRAMS
+
+
 def _key(kind: str, content: bytes) -> str:
     return hashlib.sha256(kind.encode() + b"\0" + content).hexdigest()
 
@@ -135,7 +144,12 @@ def _write(path: Path, arrays: Arrays) -> None:
 def kept_files(folder: Path) -> list[tuple[int, int, Path]]:
     """The files of a store: when each was last used (nanoseconds), its bytes, and its path."""
     files = []
-    for path in (*folder.glob(f"*{_SUFFIX}"), *folder.glob("*.npz")):  # which earlier versions wrote
+    programs = folder / _PROGRAMS
+    for path in (
+        *folder.glob(f"*{_SUFFIX}"),
+        *folder.glob("*.npz"),  # which earlier versions wrote
+        *programs.glob("*.program"),
+    ):
         with contextlib.suppress(OSError):  # another process may have removed it
             status = path.stat()
             files.append((status.st_mtime_ns, status.st_size, path))

@@ -11,6 +11,7 @@ from functools import cached_property, lru_cache
 from types import CellType, FunctionType, GetSetDescriptorType, MemberDescriptorType
 from typing import Any, Final
 
+from scenic.language.generated_code import PRELUDE
 from scenic.language.operators import OPERATORS
 
 __all__ = [
@@ -30,9 +31,6 @@ __all__ = [
     "own_functions",
     "slots",
 ]
-
-PRELUDE = "__scenic__"
-"""The global name by which generated code finds the prelude, through which functions read the ego."""
 
 EGOLESS: Final = frozenset({"assigned", "at_present", "convert", "spread"})
 """Methods of the prelude that functions call without reading the ego or the workspace."""
