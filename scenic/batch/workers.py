@@ -15,7 +15,7 @@ import pickle
 import signal
 import socket
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess, parent_process
 from typing import Any, Final, TypeVar
@@ -99,10 +99,15 @@ def run(
                 give()
                 yield index, result
     finally:
-        for process in processes:
-            process.terminate()
-        for process in processes:
-            process.join()
+        _end(processes)
+
+
+def _end(processes: Sequence[BaseProcess]) -> None:
+    """End processes, whatever they do."""
+    for process in processes:
+        process.terminate()
+    for process in processes:
+        process.join()
 
 
 def _work(function: Callable[[Any], Any], connection: Connection, inherited: Connection | None) -> None:

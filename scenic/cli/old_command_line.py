@@ -60,12 +60,9 @@ def translated(arguments: Sequence[str], commands: Sequence[str]) -> list[str] |
         item in commands for item in arguments[:1]
     ):
         return None
-    rest = list(arguments)
-    files: list[str] = []
-    options: list[str] = []
-    command = "sample"
-    simulate, steps = False, None
-    more: list[str] = []
+    rest, files = list(arguments), list[str]()
+    options, more = list[str](), list[str]()
+    command, simulate, steps = "sample", False, None
     while rest:
         item = rest.pop(0)
         name, joined, value = item.partition("=")
@@ -89,11 +86,9 @@ def translated(arguments: Sequence[str], commands: Sequence[str]) -> list[str] |
                 options += ["--tries", given]
             elif ours is not None:
                 options += [ours, given.lstrip("-") if item == "--gather-stats" else given]
-        elif item in GLOBAL:
-            continue
-        elif item.startswith("-"):
-            return None
-        else:
+        elif item not in GLOBAL:
+            if item.startswith("-"):
+                return None
             files.append(item)
     if len(files) != 1 or (simulate and "simulate" not in commands):
         return None

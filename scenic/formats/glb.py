@@ -57,11 +57,8 @@ def glb(scene: Scene) -> bytes:
             )
         nodes.append(_node(instance, index, meshes[key], names[index]))
     cameras, lights = _cameras(scene, nodes), _sun(scene, nodes)
-    root = {
-        "name": "scene",
-        # A quarter turn about X: Z up becomes Y up, and north (Y) becomes -Z, which is ahead in glTF.
-        "rotation": [-(0.5**0.5), 0.0, 0.0, 0.5**0.5],
-    }
+    # A quarter turn about X: Z up becomes Y up, and north (Y) becomes -Z, which is ahead in glTF.
+    root: dict[str, Any] = {"name": "scene", "rotation": [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]}
     if nodes:
         root["children"] = list(range(len(nodes)))
     document: dict[str, Any] = {

@@ -109,20 +109,18 @@ def webots_world(
         if made_later or (world is not None and name in world.names):
             continue
         proto = getattr(thing, "webotsProto", None)
-        if proto is not None:
-            address = _address(str(proto))
-            if address not in protos:
-                protos.append(address)
-            nodes.append(_robot(thing, PurePosixPath(address).stem, name, label, frame))
-            continue
-        nodes.append(solid(thing, stem, files, name, label, instance.color, frame=frame))
+        if proto is None:
+            nodes.append(solid(thing, stem, files, name, label, instance.color, frame=frame))
+        else:
+            protos.append(_address(str(proto)))
+            nodes.append(_robot(thing, PurePosixPath(protos[-1]).stem, name, label, frame))
+    protos = list(dict.fromkeys(protos))
     supervisor = "" if program is None else _supervisor(scene, Path(program).absolute(), params, files)
     if world is not None:
         return World(_extended(world, protos, "".join(nodes) + supervisor), files)
     externals = "".join(f"EXTERNPROTO {_text(address)}\n" for address in protos)
-    return World(
-        f"{_HEADER}\n{externals}\n{_surroundings(scene, instances)}{''.join(nodes)}{supervisor}", files
-    )
+    surroundings = _surroundings(scene, instances)
+    return World(f"{_HEADER}\n{externals}\n{surroundings}{''.join(nodes)}{supervisor}", files)
 
 
 def _address(proto: str) -> str:

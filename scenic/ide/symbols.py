@@ -111,22 +111,9 @@ def _of_statement(
         bases = ", ".join(_text(snapshot, base) for base in node.bases)
         children = tuple(_of_block(snapshot, node.body, depth, in_class=True))
         yield _symbol(snapshot, node, OutlineKind.CLASS, f"({bases})" if bases else "", children)
-    elif isinstance(node, scenic.BehaviorDef):
-        yield _symbol(
-            snapshot,
-            node,
-            OutlineKind.BEHAVIOR,
-            _signature(snapshot, node),
-            _inner(snapshot, node.body, depth),
-        )
-    elif isinstance(node, scenic.MonitorDef):
-        yield _symbol(
-            snapshot,
-            node,
-            OutlineKind.MONITOR,
-            _signature(snapshot, node),
-            _inner(snapshot, node.body, depth),
-        )
+    elif isinstance(node, scenic.BehaviorDef | scenic.MonitorDef):
+        kind = OutlineKind.BEHAVIOR if isinstance(node, scenic.BehaviorDef) else OutlineKind.MONITOR
+        yield _symbol(snapshot, node, kind, _signature(snapshot, node), _inner(snapshot, node.body, depth))
     elif isinstance(node, scenic.ScenarioDef):
         body = [*(node.setup or ()), *(node.compose or ())]
         children = tuple(_of_block(snapshot, body, depth))

@@ -104,12 +104,7 @@ def eliminate(tables: Sequence[Table], weights: Mapping[int, Floats], order: Seq
         product = np.broadcast_to(weights[variable], (*sizes, len(weights[variable]))).copy()
         for theirs, entries in factors:
             product *= _spread(theirs, entries, scope)
-        rows = product.reshape(-1, product.shape[-1])
-        cumulative = np.cumsum(rows, axis=1)
-        sums = cumulative[:, -1].copy()
-        cumulative /= np.where(sums > 0, sums, 1.0)[:, np.newaxis]
-        # What comes after the last value of positive weight is never reached, whatever rounding does.
-        cumulative[(rows[:, ::-1].cumsum(axis=1)[:, ::-1] - rows) <= 0] = 1.0
+        cumulative, sums = _law_of_rows(product.reshape(-1, product.shape[-1]))
         steps.append(Step(variable, given, sizes, cumulative))
         most = float(sums.max(initial=0.0))
         if most <= 0:
@@ -120,6 +115,16 @@ def eliminate(tables: Sequence[Table], weights: Mapping[int, Floats], order: Seq
         else:
             logarithm += np.log(sums[0] / most)
     return Elimination(tuple(reversed(steps)), float(np.exp(logarithm)))
+
+
+def _law_of_rows(rows: NDArray[np.float64]) -> tuple[Floats, Floats]:
+    """The law that the weights of each row give, summed up, and the sums of the rows."""
+    cumulative = np.cumsum(rows, axis=1)
+    sums = cumulative[:, -1].copy()
+    cumulative /= np.where(sums > 0, sums, 1.0)[:, np.newaxis]
+    # What comes after the last value of positive weight is never reached, whatever rounding does.
+    cumulative[(rows[:, ::-1].cumsum(axis=1)[:, ::-1] - rows) <= 0] = 1.0
+    return cumulative, sums
 
 
 def _spread(theirs: Sequence[int], entries: NDArray[np.float64], scope: Sequence[int]) -> NDArray[np.float64]:

@@ -26,16 +26,7 @@ def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diag
                 ),
             )
         case "Discrete" if len(node.args) == 1 and isinstance(node.args[0], ast.List | ast.Tuple | ast.Set):
-            text = context.text(node.args[0])
-            yield context.error(
-                "SC404",
-                "`Discrete` takes a dictionary of values and their weights, `{value: weight, ...}`",
-                node.args[0],
-                f"for equal weights write `Uniform(*{text or 'values'})`",
-                fix=context.replacement("Write `Uniform`", node, f"Uniform({text[1:-1].rstrip(', ')})")
-                if text
-                else None,
-            )
+            yield _without_weights(node, context)
         case "Uniform":
             for keyword in node.keywords:
                 if keyword.arg is not None:
@@ -75,6 +66,19 @@ def _one_sequence(node: ast.Call, context: CheckContext) -> str | None:
     kind = context.kind_of(node.args[0])
     is_list = kind is not None and kind.name == "list"
     return context.text(node.args[0]) if is_list else None
+
+
+def _without_weights(node: ast.Call, context: CheckContext) -> Diagnostic:
+    text = context.text(node.args[0])
+    return context.error(
+        "SC404",
+        "`Discrete` takes a dictionary of values and their weights, `{value: weight, ...}`",
+        node.args[0],
+        f"for equal weights write `Uniform(*{text or 'values'})`",
+        fix=context.replacement("Write `Uniform`", node, f"Uniform({text[1:-1].rstrip(', ')})")
+        if text
+        else None,
+    )
 
 
 def _weights(node: ast.Call, context: CheckContext) -> Iterator[Diagnostic]:

@@ -156,18 +156,20 @@ def _ego_of(
             early.append(node)
     if not early:
         return
-    place = min(early, key=position)
+    yield _too_early(context, scope, min(early, key=position), setting)
+
+
+def _too_early(context: CheckContext, scope: Scope, place: ast.AST, setting: ast.Name | None) -> Diagnostic:
     other = next((name for name in scope.bindings if name != "ego" and name.lower() == "ego"), None)
     if setting is None and other is not None:
         site = scope.bindings[other].first_site
-        yield context.error(
+        return context.error(
             "SC209",
             f"the ego is used, and never set: `{other}` is a name like any other",
             site,
             "write `ego`",
             fix=context.renaming(site, other, "ego", certain=False) if isinstance(site, ast.Name) else None,
         )
-        return
     missing = "not set yet" if setting is not None else "never set"
     if isinstance(place, ast.Name):
         message = (
@@ -177,7 +179,7 @@ def _ego_of(
         message = f"`{_title(place)}` refers to the ego, which is {missing}"
     # The ego of a scenario may also come from the one that runs it.
     say = context.error if scope is context.resolution.module else context.warning
-    yield say(
+    return say(
         "SC209",
         message,
         place,

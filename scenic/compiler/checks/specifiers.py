@@ -1,7 +1,7 @@
 """Specifiers of one object that specify the same, or that need one another (section 6.1)."""
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -215,13 +215,18 @@ def _cycle(
     # other modules are checked there.
     own = properties if context.foreign(node.cls) is None and context.classes.is_circular(properties) else ()
     cycle = find_cycle([*(name for name in providers if needed(name)), *own], needed)
-    if cycle is None:
-        return
+    if cycle is not None:
+        yield _needs_itself(node, cycle, providers, context)
+
+
+def _needs_itself(
+    node: scenic.New, cycle: Sequence[str], providers: Mapping[str, Any], context: CheckContext
+) -> Diagnostic:
     places = [providers[name] for name in cycle if providers.get(name) is not None]
     chain = ", ".join(f"`{a}` needs `{b}`" for a, b in zip(cycle, [*cycle[1:], cycle[0]], strict=True))
     place: ast.AST = places[0] if places else node.cls
     others = [other for other in dict.fromkeys(places) if other is not place]
-    yield context.error(
+    return context.error(
         "SC308",
         f"these properties depend on each other: {chain}",
         place,

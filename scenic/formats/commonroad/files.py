@@ -65,9 +65,8 @@ def commonroad_document(
             "CommonRoad needs an ego, whose drive is the planning problem",
             help="name one of the objects `ego`",
         )
-    records = source.commonroad_records(scene.params)
-    if colors:
-        records = _lit(records, colors, timestep)
+    unlit = source.commonroad_records(scene.params)
+    records = _lit(unlit, colors, timestep) if colors else unlit
     root = ElementTree.Element("commonRoad", _attributes(records, scene.k, timestep))
     numbers = Numbers()
     add_location(root, records)

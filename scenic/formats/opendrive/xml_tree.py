@@ -72,6 +72,15 @@ def read_tree(content: bytes, filename: str) -> tuple[Element, str]:
         else:
             stack.pop()
 
+    parser.StartElementHandler = start
+    parser.EndElementHandler = end
+    _parse(parser, content, filename)
+    return root.children[0], "".join(reference).strip()
+
+
+def _parse(parser: expat.XMLParserType, content: bytes, filename: str) -> None:
+    """Read the whole content; raise `MapError` where it is not XML, or wants entities expanded."""
+
     def refuse(name: str, *_rest: object) -> None:
         raise MapError(
             f"the map declares the XML entity {name!r}, which is not allowed",
@@ -80,8 +89,6 @@ def read_tree(content: bytes, filename: str) -> tuple[Element, str]:
             help="maps need no entities: write the text itself",
         )
 
-    parser.StartElementHandler = start
-    parser.EndElementHandler = end
     parser.EntityDeclHandler = refuse
     try:
         parser.Parse(content, True)
@@ -92,7 +99,6 @@ def read_tree(content: bytes, filename: str) -> tuple[Element, str]:
             span=_line(error.lineno),
             help="a map is an OpenDRIVE file; save or download it again",
         ) from None
-    return root.children[0], "".join(reference).strip()
 
 
 def _line(number: int) -> Span:
