@@ -16,6 +16,7 @@ extensions = [
     "sphinx_copybutton",
     "docs._extensions.programs",
     "docs._extensions.declared",
+    "docs._extensions.films",
     "docs._extensions.commands",
     "docs._extensions.for_models",
     "docs._extensions.gallery",

@@ -23,6 +23,7 @@ _THEMES = {
     "warehouse": "Warehouses",
     "roads": "Roads without a map",
     "driving": "Driving on maps",
+    "scenarios": "Ten scenarios of road traffic",
     "drones": "Drones",
     "underwater": "Under water",
     "terrain": "Terrain",
@@ -31,6 +32,7 @@ _THEMES = {
 }
 _OPTIONS = {
     "driving": {"plan": "", "2d": ""},
+    "scenarios": {"plan": "", "2d": ""},
     "roads": {"frame": "objects"},
     "occlusion": {"frame": "objects", "from": "-20,35"},
     "corridor": {"from": "60,35"},

@@ -70,7 +70,8 @@ class Track:
         turns = heading + np.linspace(0, 2 * np.pi, 12, endpoint=False)
         circle = np.column_stack([np.cos(turns), np.sin(turns), np.zeros(12)]) * reach
         # Seen from behind, what lies before it is of more interest than what lies behind.
-        ahead = _AHEAD * math.cos(math.radians(outlook.elevation)) * reach
+        forward = math.cos(math.radians(outlook.elevation)) * math.cos(math.radians(outlook.azimuth))
+        ahead = _AHEAD * max(forward, 0.0) * reach
         middle = self._places[state] + ahead * np.array([-np.sin(heading), np.cos(heading), 0.0])
         return framing(middle + circle, aspect, replace(outlook, azimuth=azimuth))
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from scenic.runtime.program.builtins import running_simulation
+from scenic.runtime.program.builtins import is_simulating, running_simulation
 
 __all__ = [
     "PostEncroachment",
@@ -146,6 +146,8 @@ def is_running_red(car: Any) -> bool:
 
     `record` this measure in each step; the number of true values times the step is the time in red.
     """
+    if not is_simulating():
+        return False  # nothing drives in a scene
     simulation = running_simulation()
     network = car.roadNetwork
     ahead, back = ((side * car.length / 2) for side in (1, -1))

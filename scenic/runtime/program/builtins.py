@@ -28,6 +28,11 @@ def running_simulation() -> Any:
     return context.run.simulation
 
 
+def is_simulating() -> bool:
+    """Return whether a simulation is running, not only a scene being drawn."""
+    return isinstance(current.get(), RunContext)
+
+
 def present_objects() -> Sequence[Any]:
     """The objects of the running simulation, or those of the scene whose requirements are evaluated.
 
