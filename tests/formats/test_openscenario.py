@@ -209,3 +209,14 @@ def test_files_name_the_map_from_where_they_are(
     file = document.find("RoadNetwork/LogicFile")
     assert file is not None
     assert Path(file.attrib["filepath"]).is_file()
+
+
+@pytest.mark.parametrize("flat", [True, False])
+def test_files_meet_the_schema_of_the_standard(town: Path, tmp_path: Path, flat: bool) -> None:
+    import schemas  # with scenariogeneration: the files of ASAM
+    from lxml import etree
+
+    schema = etree.XMLSchema(etree.parse(str(Path(schemas.__path__[0]) / "OpenSCENARIO_1_3_1.xsd")))
+    path = tmp_path / "simulation.xosc"
+    toOpenScenario(simulated(town, TRAFFIC, flat=flat)).write_xml(str(path))
+    schema.assertValid(etree.parse(str(path)))
