@@ -26,6 +26,8 @@ _SIMPLE: Final = 0.05
 """Metres by which drawn borders may deviate."""
 _MARKING: Final = 0.15
 """Metres across the line between two lanes."""
+_STRIPE: Final = 0.5
+"""Metres across a stripe of a crossing, and between two."""
 _STEP: Final = 4.0
 """Metres between the corners of areas that follow the height of a road."""
 _LIFTS: Final = MappingProxyType(
@@ -79,7 +81,8 @@ class MapPatches:
             ("intersection", network.intersections),
             ("crossing", network.crossings),
         ):
-            found += [(kind, element, element.polygon) for element in elements]
+            shown = _stripes if kind == "crossing" else _whole
+            found += [(kind, element, shown(element.polygon)) for element in elements]
         for road in network.roads:
             edges = {id(edge): edge for lane in road.lanes for edge in (lane.left, lane.right)}
             lines = shapely.union_all([shapely.LineString(edge) for edge in edges.values()])
@@ -98,7 +101,7 @@ class MapPatches:
         for index in sorted(tree.query(square, predicate="intersects").tolist()):
             kind, element, polygon = areas[index]
             cut = shapely.intersection(polygon, square)
-            if kind != "lane":
+            if kind not in ("lane", "crossing"):
                 cut = shapely.simplify(cut, _SIMPLE)
             if shapely.area(cut) > 0:
                 parts.setdefault(kind, []).append((element, cut))
@@ -127,3 +130,33 @@ class MapPatches:
             list(_LIFTS).index(kind),
             not self._network.is_elevated,
         )
+
+
+def _whole(polygon: Any) -> Any:
+    return polygon
+
+
+def _stripes(polygon: Any) -> Any:
+    """The stripes of a crossing, across the way of pedestrians."""
+    import shapely
+
+    box = shapely.get_coordinates(shapely.minimum_rotated_rectangle(polygon))
+    if len(box) < 4:
+        return polygon
+    sides = np.diff(box[:3], axis=0)
+    lengths = np.hypot(*sides.T)
+    along, across = (sides / lengths[:, None])[np.argsort(lengths)[::-1]]
+    length, width = np.sort(lengths)[::-1]
+    middle = box[:4].mean(axis=0)
+    starts = np.arange(-length / 2, length / 2, 2 * _STRIPE)
+    half = across * width / 2
+    stripes = [
+        [
+            middle + along * s - half,
+            middle + along * e - half,
+            middle + along * e + half,
+            middle + along * s + half,
+        ]
+        for s, e in zip(starts, starts + _STRIPE, strict=True)
+    ]
+    return shapely.intersection(polygon, shapely.union_all(shapely.polygons(np.array(stripes))))
