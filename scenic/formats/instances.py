@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.dataclass import dataclass
-from scenic.formats.lamps import COLORS, first_colors, lamp_form
+from scenic.formats.lamps import COLORS, lamp_form, shown_colors
 from scenic.formats.mesh_coordinates import coordinates_of
 from scenic.formats.painted_solids import Appearance
 from scenic.formats.poses import Four, Triple, quaternion_of, rotation_matrix
@@ -333,8 +333,7 @@ def picture(scenes: Iterable[Scene], *, ground: bool = False) -> Picture:
         params.append(scene.params)
         places = places_of(drawn[-1] if ground else ())
         grounds.append(gallery.ground(scene.workspace, places))
-        colors = first_colors(scene.workspace, scene.params)
-        lamps.append(lit(gallery.lamps(scene.workspace, places), colors))
+        lamps.append(lit(gallery.lamps(scene.workspace, places), shown_colors(scene)))
     return Picture(gallery.surfaces, tuple(drawn), tuple(params), tuple(grounds), tuple(lamps))
 
 

@@ -11,7 +11,15 @@ import numpy.typing as npt
 from scenic.formats.painted_solids import Appearance, Modeller
 from scenic.formats.poses import Triple
 
-__all__ = ["COLORS", "NO_COLORS", "color_numbers", "first_colors", "lamp_form", "light_colors"]
+__all__ = [
+    "COLORS",
+    "NO_COLORS",
+    "color_numbers",
+    "first_colors",
+    "lamp_form",
+    "light_colors",
+    "shown_colors",
+]
 
 Bytes = npt.NDArray[np.uint8]
 
@@ -44,6 +52,12 @@ def first_colors(workspace: object, params: Mapping[str, object]) -> Mapping[str
     """The colours of a workspace's lights when a simulation of a scene with such parameters begins."""
     colors = getattr(workspace, "first_colors", None)
     return {} if colors is None else colors(params)
+
+
+def shown_colors(scene: Any) -> Mapping[str, str]:
+    """The colours of lights in a scene: the present ones, if it is that of a running simulation, else the first ones."""
+    present: Mapping[str, str] | None = getattr(scene, "light_colors", None)
+    return first_colors(scene.workspace, scene.params) if present is None else present
 
 
 def light_colors(simulation: Any) -> Mapping[str, str]:

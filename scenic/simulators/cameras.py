@@ -7,6 +7,7 @@ import numpy as np
 
 from scenic.formats.instances import Gallery
 from scenic.formats.labels import observe
+from scenic.formats.lamps import light_colors
 from scenic.formats.sensors import sensor_viewpoint
 from scenic.runtime.elements.sensors import CameraSensor, Sensor
 
@@ -61,6 +62,12 @@ class Present:
         self.seed, self.k, self.attempts = scene.seed, scene.k, scene.attempts
         self.params: Mapping[str, object] = scene.params
         self.folder = scene.folder
+        self._simulation = simulation
+
+    @property
+    def light_colors(self) -> Mapping[str, str]:
+        """The colours of traffic lights now, by their keys."""
+        return light_colors(self._simulation)
 
     def origin(self, thing: object) -> Any:
         """Raise ``KeyError``: origins of objects are not needed while images are made."""

@@ -17,6 +17,7 @@ from scenic.formats.html import Page
 from scenic.formats.instances import picture
 from scenic.formats.lamps import COLORS, light_colors
 from scenic.formats.scenes import Scene
+from scenic.simulators.cameras import Present
 from scenic.simulators.newtonian.simulator import NewtonianSimulator
 from tests.maps import cross
 
@@ -108,3 +109,15 @@ def test_states_show_the_colours_of_the_simulation(maps: Path) -> None:
     red = [(image[..., 0] > 180) & (image[..., 1] < 90) for image in images]
     before, after = (int(mask.sum()) for mask in red)
     assert after > before + 5
+
+
+def test_pictures_of_a_running_simulation_show_the_present_colours(maps: Path) -> None:
+    scene = sampled(maps, "light", "{'green': 1.0, 'yellow': 0.5, 'all_red': 0.25}")
+    seen: list[set[tuple[float, ...]]] = []
+
+    def look(simulation: Any, *_: Any) -> None:
+        (lamps,) = picture([Present(simulation)], ground=True).lamps
+        seen.append({item.color[:3] for item in lamps})
+
+    NewtonianSimulator().simulate(scene, maxSteps=16, on_state=look)
+    assert [seen[0], seen[12], seen[16]] == [{COLORS[name]} for name in ("green", "yellow", "red")]
