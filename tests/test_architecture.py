@@ -42,7 +42,12 @@ LAYERS = {
     "playground": {"ide"},
     "templates": set(),
     "deep": {"analysis", "formats", "runtime", "graph", "language", "compiler"},
-    "constrained": {"compiler"},
+    "constrained": {
+        "compiler",
+        "language",
+        "project",
+        "simulators",
+    },  # of simulators, the list of blueprints alone
     "mcp_server": {"constrained", "migration", "domains", "ide", "language", "compiler", "project"},
     "trying": {"batch", "domains", "formats", "runtime", "graph", "language", "compiler", "project"},
     "cli": {

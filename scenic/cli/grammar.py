@@ -5,8 +5,9 @@ from pathlib import Path
 
 import click
 
-from scenic.constrained import FORMATS, grammar_text
+from scenic.constrained import FORMATS, grammar_text, worlds
 from scenic.formats.files import write
+from scenic.language.spelling import nearest
 
 __all__ = ["grammar"]
 
@@ -27,13 +28,22 @@ __all__ = ["grammar"]
     type=click.Path(path_type=Path, dir_okay=False),
     help="Write the grammar to this file.",
 )
-def grammar(notation: str, output: Path | None) -> None:
+@click.option(
+    "--world",
+    metavar="NAME",
+    help="Allow only the classes, behaviors and blueprints of this world model, such as driving or carla, and names that begin with `My`.",
+)
+def grammar(notation: str, output: Path | None, world: str | None) -> None:
     """Show the grammar of the language, so that a language model can be kept to it while it writes.
 
     The texts that it describes have four blanks for each level of indentation, at most eight levels, and blanks beside operators that
     are words.
     """
-    text = grammar_text(notation)
+    if world is not None and world not in worlds():
+        near = nearest(world, worlds())
+        advice = f"Did you mean {near!r}?" if near else f"There are {', '.join(worlds())}."
+        raise click.UsageError(f"There is no world {world!r}. {advice}")
+    text = grammar_text(notation, world)
     if output is None:
         sys.stdout.write(text)
     else:

@@ -6,6 +6,7 @@ ends between tokens (`scenic.constrained.layout`), in the notations of the engin
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -13,13 +14,15 @@ from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.syntax import Choice, Item, ListOf, Many, Optional, Reference, Row, TokenKind, Word
 from scenic.constrained.layout import Laid, lay_out
 from scenic.constrained.rules import read_rules
+from scenic.constrained.terminals import Tokens, tokens
+from scenic.constrained.worlds import read_world, restricted, restricted_tokens, worlds
 from scenic.constrained.writing import write_ebnf, write_gbnf, write_lark
 
-__all__ = ["FORMATS", "grammar_text"]
+__all__ = ["FORMATS", "grammar_text", "worlds"]
 
 _START: Final = "file"
 
-_WRITERS: Final[Mapping[str, Callable[[Laid], str]]] = MappingProxyType(
+_WRITERS: Final[Mapping[str, Callable[[Laid, Tokens], str]]] = MappingProxyType(
     {"lark": write_lark, "gbnf": write_gbnf, "ebnf": write_ebnf}
 )
 
@@ -27,21 +30,25 @@ FORMATS: Final = (*_WRITERS, "json")
 """The notations: Lark for llguidance, GBNF for llama.cpp, EBNF for xgrammar, and the rules as data."""
 
 
-def grammar_text(notation: str) -> str:
-    """The grammar in one of `FORMATS`.
+def grammar_text(notation: str, world: str | None = None) -> str:
+    """The grammar in one of `FORMATS`, of all programs or of those for one of `worlds`.
 
-    Raises `KeyError` for another. Lark, GBNF and EBNF describe texts with four blanks for each of at most eight levels of
+    Raises `KeyError` for others. Lark, GBNF and EBNF describe texts with four blanks for each of at most eight levels of
     indentation; in JSON the rules consist of tokens, and the layout is left to the reader.
     """
-    rules = read_rules()
+    rules, kinds = read_rules(), tokens()
+    place = None if world is None else read_world(world)
+    if place is not None:
+        rules, kinds = restricted(rules, place), restricted_tokens(place)
     if notation == "json":
         data = {
             "start": _START,
             "keywords": sorted(HARD_KEYWORDS),
+            "world": None if place is None else asdict(place),
             "rules": {name: [_row_data(row) for row in rows] for name, rows in rules.items()},
         }
         return json.dumps(data, indent=1) + "\n"
-    return _WRITERS[notation](lay_out(rules, _START))
+    return _WRITERS[notation](lay_out(rules, _START), kinds)
 
 
 def _row_data(row: Row) -> list[dict[str, Any]]:

@@ -50,6 +50,7 @@ _KIND_EDGES: Final[Mapping[str, tuple[Edges, Edges]]] = {
     "TEXT": (_WORD | _SYMBOL, _SYMBOL),
     "BARE_TEXT": (_SYMBOL, _SYMBOL),
     "BYTES": (_WORD, _SYMBOL),
+    "BLUEPRINT": (_SYMBOL, _SYMBOL),
     "EMPTY_FORMATTED": (_WORD, _SYMBOL),
     "BRACES": (_GLUED, _GLUED),
     "FIELD_OPEN": (_GLUED, _SYMBOL),

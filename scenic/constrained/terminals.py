@@ -7,24 +7,33 @@ import re
 import sys
 from collections.abc import Iterator, Mapping
 from functools import cache
-from types import MappingProxyType
 from typing import Final
 
+from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.syntax import TokenKind, Word
 from scenic.constrained.items import CharacterClass, TextChoice, TextItem, TextMany, TextOptional, TextRow
+from scenic.dataclass import dataclass
 
-__all__ = ["INDENTATION", "letters", "terminals"]
+__all__ = ["INDENTATION", "Tokens", "letters", "tokens"]
 
 INDENTATION: Final = 4
 """Blanks for each level of indentation."""
 
 
+@dataclass(frozen=True, slots=True)
+class Tokens:
+    """Kinds of tokens: the definitions of some, and of kinds of names the words that are none."""
+
+    definitions: Mapping[str, TextItem]
+    names: Mapping[str, frozenset[str]]
+
+
 _MARKS: Final = {"'": '"\'"', '"': r'"\""'}
-"""The quotes, and each as a literal of the notation of `terminals`."""
+"""The quotes, and each as a literal of the notation of `tokens`."""
 
 
 def _quoted(escape: str, *, beside: str = "") -> str:
-    """The texts in quotes of all kinds, in the notation of `terminals`; ``beside`` are characters that cannot stand in one."""
+    """The texts in quotes of all kinds, in the notation of `tokens`; ``beside`` are characters that cannot stand in one."""
     forms = []
     for quote, mark in _MARKS.items():
         forms.append(rf"{mark} ([^{quote}\\\r\n\x00{beside}] | {escape})* {mark}")
@@ -138,10 +147,11 @@ class _Reader:
 
 
 @cache
-def terminals() -> Mapping[str, TextItem]:
-    """The definitions of the kinds of tokens, by name; names and line ends, which depend on more, are left out."""
+def tokens() -> Tokens:
+    """The kinds of tokens of the language; line ends, which depend on the indentation, are left out."""
     pairs = (line.split(" ::= ", 1) for line in _DEFINITIONS)
-    return MappingProxyType({name: _Reader(text).choice() for name, text in pairs})
+    definitions = {name: _Reader(text).choice() for name, text in pairs}
+    return Tokens(definitions, {"NAME": frozenset(HARD_KEYWORDS)})
 
 
 @cache

@@ -9,7 +9,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from typing import Final
 
-from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.syntax import TokenKind, Word
 from scenic.constrained.items import (
     CharacterClass,
@@ -24,7 +23,7 @@ from scenic.constrained.items import (
     within,
 )
 from scenic.constrained.layout import Laid
-from scenic.constrained.terminals import INDENTATION, letters, terminals
+from scenic.constrained.terminals import INDENTATION, Tokens, letters
 
 __all__ = ["MOST_LEVELS", "write_ebnf", "write_gbnf", "write_lark"]
 
@@ -35,19 +34,19 @@ _DIGITS: Final = "0123456789"
 _ASCII_PARTS: Final = f"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz{_DIGITS}_"
 
 
-def write_lark(laid: Laid) -> str:
+def write_lark(laid: Laid, tokens: Tokens) -> str:
     """The grammar in the dialect of Lark that llguidance reads."""
-    return _Lark(laid).text()
+    return _Lark(laid, tokens).text()
 
 
-def write_gbnf(laid: Laid) -> str:
+def write_gbnf(laid: Laid, tokens: Tokens) -> str:
     """The grammar as llama.cpp reads it."""
-    return _Gbnf(laid).text()
+    return _Gbnf(laid, tokens).text()
 
 
-def write_ebnf(laid: Laid) -> str:
+def write_ebnf(laid: Laid, tokens: Tokens) -> str:
     """The grammar as xgrammar reads it."""
-    return _Ebnf(laid).text()
+    return _Ebnf(laid, tokens).text()
 
 
 class _Writer(ABC):
@@ -55,8 +54,9 @@ class _Writer(ABC):
 
     define = " ::= "
 
-    def __init__(self, laid: Laid) -> None:
+    def __init__(self, laid: Laid, tokens: Tokens) -> None:
         self._laid = laid
+        self._tokens = tokens
         self._level = 0
 
     def text(self) -> str:
@@ -79,7 +79,7 @@ class _Writer(ABC):
 
     @abstractmethod
     def names(self) -> Iterator[str]:
-        """The definition of the kind ``NAME``, which keywords are not."""
+        """The definitions of the kinds of names, which some words are not."""
 
     def characters(self, text: str) -> str:
         return text
@@ -143,7 +143,7 @@ class _Writer(ABC):
             yield f"{self.token(f'LINE_{level}')}{self.define}{self.token('EMPTY_LINES')}{blanks}"
 
     def _terminals(self) -> Iterator[str]:
-        for name, item in terminals().items():
+        for name, item in self._tokens.definitions.items():
             rows = item.rows if isinstance(item, TextChoice) else ((item,),)
             yield self._definition(self.token(name), rows)
 
@@ -195,8 +195,9 @@ class _Lark(_Writer):
         return f"/{text}/"
 
     def names(self) -> Iterator[str]:
-        words = "|".join(sorted(HARD_KEYWORDS))
-        yield f"NAME: /[A-Za-z_{letters(first=True)}][A-Za-z0-9_{letters(first=False)}]*/ & ~/({words})/"
+        for kind, words in self._tokens.names.items():
+            others = "|".join(sorted(words))
+            yield f"{kind}: /[A-Za-z_{letters(first=True)}][A-Za-z0-9_{letters(first=False)}]*/ & ~/({others})/"
 
 
 class _Gbnf(_Writer):
@@ -211,31 +212,34 @@ class _Gbnf(_Writer):
         return self.rule(f"t_{name.lower()}")
 
     def names(self) -> Iterator[str]:
-        """A tree of the beginnings of keywords: a name leaves it somewhere."""
+        """Trees of the beginnings of the words that are no names: a name leaves its tree somewhere."""
         rule = self.rule
         yield f"{rule('name_part')} ::= [A-Za-z0-9_{letters(first=False)}]"
         yield f"{rule('letter_beyond')} ::= [{letters(first=True)}]"
         yield f"{rule('part_beyond')} ::= [{letters(first=False)}]"
-        words = sorted(HARD_KEYWORDS)
-        for beginning in sorted({word[:length] for word in words for length in range(len(word) + 1)}):
-            following = sorted(
-                {word[len(beginning)] for word in words if word[: len(beginning)] == beginning != word}
-            )
-            others = "".join(
-                character
-                for character in _ASCII_PARTS
-                if character not in following and (beginning or character not in _DIGITS)
-            )
-            ways = [f'"{letter}" {self._after(beginning + letter)}' for letter in following]
-            ways.append(
-                f"([{others}] | {rule('part_beyond' if beginning else 'letter_beyond')}) {rule('name_part')}*"
-            )
-            if beginning and beginning not in words:
-                ways.insert(0, '""')
-            yield f"{self._after(beginning)} ::= {' | '.join(ways)}"
+        for kind, words in self._tokens.names.items():
+            for beginning in sorted({word[:length] for word in words for length in range(len(word) + 1)}):
+                yield f"{self._after(kind, beginning)} ::= {' | '.join(self._ways(kind, words, beginning))}"
 
-    def _after(self, beginning: str) -> str:
-        return self.rule(f"name_after_{beginning}") if beginning else self.token("NAME")
+    def _ways(self, kind: str, words: frozenset[str], beginning: str) -> Iterator[str]:
+        """The ways to go on after the beginning of one of ``words``, so that none of them results."""
+        following = sorted(
+            {word[len(beginning)] for word in words if word.startswith(beginning) and word != beginning}
+        )
+        if beginning and beginning not in words:
+            yield '""'
+        for letter in following:
+            yield f'"{letter}" {self._after(kind, beginning + letter)}'
+        others = "".join(
+            character
+            for character in _ASCII_PARTS
+            if character not in following and (beginning or character not in _DIGITS)
+        )
+        beyond = self.rule("part_beyond" if beginning else "letter_beyond")
+        yield f"([{others}] | {beyond}) {self.rule('name_part')}*"
+
+    def _after(self, kind: str, beginning: str) -> str:
+        return self.rule(f"{kind.lower()}_after_{beginning}") if beginning else self.token(kind)
 
 
 class _Ebnf(_Gbnf):

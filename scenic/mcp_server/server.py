@@ -18,7 +18,7 @@ from mcp.server.mcpserver.exceptions import ToolError
 from mcp.server.mcpserver.resources import TextResource
 from mcp.types import CallToolResult, ContentBlock, ImageContent, TextContent, ToolAnnotations
 
-from scenic.constrained import grammar_text
+from scenic.constrained import grammar_text, worlds
 from scenic.language.diagnostics import CODES
 from scenic.mcp_server.programs import Programs, RequestError
 from scenic.mcp_server.reference import (
@@ -125,9 +125,13 @@ def _add_reference(server: MCPServer, programs: Programs) -> None:
         return cast(Examples, {"examples": search_examples(query, max(1, min(count, 20)))})
 
     @server.tool(annotations=_READS)
-    async def grammar(format: Literal["lark", "gbnf", "ebnf", "json"] = "lark") -> Text:
-        """Show the grammar of the language, for constrained decoding: Lark for llguidance, GBNF for llama.cpp, EBNF for xgrammar, or data."""
-        return {"text": await _answered(lambda: grammar_text(format))}
+    async def grammar(format: Literal["lark", "gbnf", "ebnf", "json"] = "lark", world: str = "") -> Text:
+        """Show the grammar of the language, for constrained decoding: Lark for llguidance, GBNF for llama.cpp, EBNF for xgrammar, or data.
+        With a world, such as `driving` or `carla`, allow only its classes, behaviors and blueprints, and names that begin with `My`.
+        """
+        if world and world not in worlds():
+            raise ToolError(f"there is no world {world!r}; there are {', '.join(worlds())}")
+        return {"text": await _answered(lambda: grammar_text(format, world or None))}
 
     @server.tool(annotations=_READS)
     async def map_features(map: str) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """The grammars for constrained decoding accept what the parser accepts, in engines that others wrote."""
 
 import json
+import re
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -21,8 +22,8 @@ ROOT = Path(__file__).parents[2]
 
 
 @cache
-def _matcher() -> Any:
-    """What llguidance makes of the grammar, for a model whose tokens are single bytes."""
+def _matcher(world: str | None) -> Any:
+    """The matcher that llguidance makes of a grammar, for a model whose tokens are single bytes."""
     llguidance = pytest.importorskip("llguidance")
 
     class Bytes:
@@ -35,14 +36,16 @@ def _matcher() -> Any:
             return list(text.encode() if isinstance(text, str) else text)
 
     tokenizer = llguidance.LLTokenizer(llguidance.TokenizerWrapper(Bytes()))
-    matcher = llguidance.LLMatcher(tokenizer, llguidance.LLMatcher.grammar_from_lark(grammar_text("lark")))
+    matcher = llguidance.LLMatcher(
+        tokenizer, llguidance.LLMatcher.grammar_from_lark(grammar_text("lark", world))
+    )
     assert not matcher.is_error(), matcher.get_error()
     return matcher
 
 
-def _refused(text: str) -> str | None:
-    """What stands before the place where the engine refuses a text; ``None`` if it accepts it."""
-    matcher = _matcher().deep_copy()
+def _refused(text: str, world: str | None = None) -> str | None:
+    """The text before the place where the engine refuses one; ``None`` if it accepts it."""
+    matcher = _matcher(world).deep_copy()
     data = text.encode()
     read = matcher.try_consume_tokens(list(data))
     if read == len(data) and matcher.is_accepting():
@@ -108,6 +111,41 @@ def test_mistakes_are_refused(text: str) -> None:
     assert _refused(text) is not None
 
 
+@pytest.mark.parametrize(
+    ("world", "right", "wrong"),
+    [
+        ("driving", "ego = new Car", "ego = new Tree"),
+        ("driving", "ego = new MyCar", "ego = new YourCar"),
+        ("driving", "new Car with behavior FollowLaneBehavior(3)", "new Car with behavior FollowLane()"),
+        (
+            "driving",
+            "new Car with behavior Uniform(WalkForwardBehavior(), MyWalk())",
+            "new Car with behavior 3",
+        ),
+        ("driving", "new Car with behaviors FollowLane()", "model scenic.domains.drive.model"),
+        (
+            "driving",
+            "new Car at x, with speed 3, facing toward y",
+            "new Car at x, with speed, facing toward y",
+        ),
+        ("driving", "behavior MyDrive():\n    do FollowLaneBehavior() for 3 seconds", "do Drive()"),
+        ("driving", "do choose {MyDrive(): 1, TurnBehavior(x): 2}", "do choose {Drive(): 1}"),
+        ("carla", 'new Car with blueprint "vehicle.audi.a2"', 'new Car with blueprint "vehicle.audi.a1"'),
+        ("carla", "model scenic.simulators.carla.model\nnew Prop", "model scenic.domains.driving.model"),
+    ],
+)
+def test_worlds_have_their_names_and_no_others(world: str, right: str, wrong: str) -> None:
+    assert not parse(right).diagnostics
+    assert _refused(right, world) is None
+    assert _refused(wrong, world) is not None
+
+
+def test_a_world_that_there_is_not() -> None:
+    shown = CliRunner().invoke(grammar, ["--world", "drivng"])
+    assert shown.exit_code == 2
+    assert "Did you mean 'driving'?" in shown.output
+
+
 def test_each_format_defines_what_it_uses() -> None:
     """Each notation has the same rules; in JSON, the rules of tokens."""
     runner = CliRunner()
@@ -115,13 +153,17 @@ def test_each_format_defines_what_it_uses() -> None:
         shown = runner.invoke(grammar, ["--format", notation])
         assert shown.exit_code == 0
         assert shown.output == grammar_text(notation)
+    assert json.loads(grammar_text("json", "driving"))["world"]["module"] == "scenic.domains.driving.model"
     data = json.loads(grammar_text("json"))
     assert set(data["keywords"]) == set(HARD_KEYWORDS)
     assert set(_rules_in(data["rules"])) <= data["rules"].keys()
-    for notation in ("gbnf", "ebnf"):
-        lines = [line for line in grammar_text(notation).splitlines() if not line.startswith("#")]
+    for notation, world in (("gbnf", None), ("ebnf", "carla")):
+        lines = [line for line in grammar_text(notation, world).splitlines() if not line.startswith("#")]
         defined = [line.split(" ::= ")[0] for line in lines]
         assert len(defined) == len(set(defined))
+        # Without literals and classes of characters only names and marks remain.
+        rest = re.sub(r'"(?:\\.|[^"\\])*"|\[(?:\\.|[^\]\\])*\]', "", "\n".join(lines))
+        assert set(re.findall(r"[\w-]+", rest)) - {"root"} == set(defined) - {"root"}
 
 
 def _rules_in(data: Any) -> Any:
@@ -138,8 +180,6 @@ def _rules_in(data: Any) -> Any:
 
 def test_letters_are_those_of_names() -> None:
     """Every character of a name is in the class, and no character of text that is none."""
-    import re
-
     for first, prefix in ((True, ""), (False, "a")):
         pattern = re.compile(f"[{letters(first=first)}]")
         for character in "éßλжあ漢𝐱ª":
