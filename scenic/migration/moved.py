@@ -4,7 +4,15 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Final
 
-__all__ = ["LIBRARY_NAMES", "LOST_CLASSES", "MOVED_MODULES", "PARAMETERS", "PYTHON_API"]
+__all__ = [
+    "LIBRARY_NAMES",
+    "LOST_CLASSES",
+    "MAP_LOADERS",
+    "MAP_LOADING",
+    "MOVED_MODULES",
+    "PARAMETERS",
+    "PYTHON_API",
+]
 
 MOVED_MODULES: Final[Mapping[str, str]] = MappingProxyType(
     {
@@ -17,10 +25,22 @@ MOVED_MODULES: Final[Mapping[str, str]] = MappingProxyType(
         "scenic.simulators.gta.gta_model": "scenic.simulators.gta.model",
         "scenic.simulators.lgsvl.lgsvl_model": "scenic.simulators.lgsvl.model",
         "scenic.simulators.domains.driving.model": "scenic.domains.driving.model",
+        "scenic.simulators.domains.driving.network": "scenic.domains.driving.network",
+        "scenic.simulators.domains.driving.roads": "scenic.domains.driving.roads",
         "scenic.simulators.formats.opendrive.model": "scenic.domains.driving.model",
     }
 )
 """World models and libraries: the module of Scenic 2, and the module of today."""
+
+MAP_LOADERS: Final[Mapping[str, str]] = MappingProxyType(
+    {"loadNetwork": "param map = ", "loadLocalNetwork": "param map = localPath("}
+)
+"""Functions of the first driving library that read a map, and what stands there today before its path."""
+
+MAP_LOADING: Final = frozenset(
+    {"scenic.simulators.domains.driving.network", "scenic.domains.driving.network"}
+)
+"""Their modules."""
 
 LOST_CLASSES: Final = frozenset(
     {"scenic.simulators.webots.mars.model", "scenic.simulators.webots.mars.mars_model"}

@@ -129,6 +129,7 @@ _RULES: Final = (
         "define them in the program, with `webotsName` or `webotsType`",
     ),
     Rule("python-module", "modules that are Python in Scenic 3"),
+    Rule("loaded-map", "maps are given by `param map`"),
     Rule("map-file", "maps at the place of today"),
     Rule(
         "missing-map",

@@ -8,8 +8,9 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.migration.maps import SUFFIXES
-from scenic.migration.moved import LOST_CLASSES, MOVED_MODULES, PARAMETERS
+from scenic.migration.moved import LOST_CLASSES, MAP_LOADERS, MAP_LOADING, MOVED_MODULES, PARAMETERS
 from scenic.migration.pieces import TextPiece
+from scenic.migration.texts import Edit
 from scenic.project.search import Finder, ModuleKind
 
 __all__ = ["rewrite_statements"]
@@ -20,6 +21,7 @@ _NESTED: Final = (ast.FunctionDef, scenic.BehaviorDef, scenic.MonitorDef, scenic
 def rewrite_statements(piece: TextPiece, finder: Finder) -> None:
     """Apply the rules about statements."""
     _monitors(piece)
+    _loaded_maps(piece)
     _modules(piece, finder)
     _parameters(piece)
     _maps(piece)
@@ -149,10 +151,40 @@ def _modules(piece: TextPiece, finder: Finder) -> None:
                     start, end = piece.place(node)
                     text = f"from {MOVED_MODULES.get(name, name)} import *"
                     piece.edit("python-module", node, start, end, text)
-            case ast.ImportFrom(module=str(name), level=0):
+            case ast.ImportFrom(module=str(name), level=0) if not _brings_loaders(node):
                 _moved(piece, node, (name,))
             case ast.Import(names=aliases):
                 _moved(piece, node, tuple(alias.name for alias in aliases))
+
+
+def _brings_loaders(node: ast.ImportFrom) -> bool:
+    """Return whether an import brings functions that read a map, and nothing else."""
+    return node.module in MAP_LOADING and all(alias.name in MAP_LOADERS for alias in node.names)
+
+
+def _loaded_maps(piece: TextPiece) -> None:
+    """Maps that programs of the first driving library read by a call: parameters of the world model today."""
+    imports = [
+        node
+        for node in piece.of(ast.ImportFrom)
+        if isinstance(node, ast.ImportFrom) and _brings_loaders(node)
+    ]
+    loaded = False
+    for node in piece.of(ast.Expr) if imports else ():
+        match node:
+            case ast.Expr(value=ast.Call(func=ast.Name(id=name), args=[*_, path], keywords=[]) as call) if (
+                name in MAP_LOADERS and len(call.args) == (1 if name == "loadNetwork" else 2)
+            ):
+                start, end = piece.place(call)
+                piece.edit("loaded-map", node, start, piece.place(path)[0], MAP_LOADERS[name])
+                if name == "loadNetwork":
+                    piece.edits.append(Edit(piece.place(path)[1], end, ""))
+                loaded = True
+    for node in imports if loaded else ():
+        start, end = piece.place(node)
+        alone = piece.source.text[end : end + 1] == "\n"
+        text = "param use2DMap = True" if not piece.flat else "" if alone else "pass"
+        piece.edits.append(Edit(start, end + (alone and not text), text))
 
 
 def _moved(piece: TextPiece, node: ast.AST, names: tuple[str, ...]) -> None:

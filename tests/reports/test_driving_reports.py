@@ -22,7 +22,7 @@ from scenic.simulators.kinematic import KinematicSimulator
 from scenic.simulators.newtonian.simulator import NewtonianSimulator
 from scenic.simulators.simulator import Simulator
 from tests.cli.commands import run_here
-from tests.maps import straight
+from tests.maps import RoadText, lane, lanes, line, map_text, straight
 from tests.reports.programs import Programs, programs, values  # noqa: F401 - a fixture
 
 
@@ -347,3 +347,24 @@ def test_films_are_written_without_a_display(
         assert (film.n_frames, film.info["duration"]) == (4, 100)
     NewtonianSimulator(render=True).simulate(scene, maxSteps=1)
     assert [path.name for path in tmp_path.iterdir()] == ["simulation.gif"]
+
+
+def test_regions_looked_up_at_random_places_contain_objects(programs: Programs) -> None:  # noqa: F811
+    """The second lane has one to its left; where the look-up gives none, the object may be anywhere."""
+    two = RoadText("1", 200, line(0, 0, 0, 200), lanes("", lane(-1) + lane(-2)))
+    (programs.folder / "two.xodr").write_text(map_text([two]))
+    scenario = programs.compiled(
+        "ego = new Car\nother = new Object at (Range(20, 180), Range(-6.5, -0.5)), with allowCollisions True,\n"
+        "    with regionContainedIn network.laneSectionAt(ego)._laneToLeft\n",
+        map="two",
+        mode2D=True,
+    )
+    network = scenario.sample(1, seed=1)[0].egoObject.roadNetwork
+    places: dict[bool, list[float]] = {True: [], False: []}
+    for scene in scenario.sample(60, seed=1):
+        ego, other = scene.objects
+        places[network.laneSectionAt(ego)._laneToLeft is None].append(other.position.y)
+    assert len(places[False]) > 9
+    assert all(-3.5 <= y <= 0 for y in places[False])
+    assert min(places[True]) < -4
+    assert max(places[True]) > -3
