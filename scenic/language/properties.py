@@ -83,12 +83,16 @@ class BuiltinProperty:
 
 @dataclass(frozen=True, slots=True)
 class Attribute:
-    """An attribute or method that instances have without its being a property: it cannot be specified."""
+    """An attribute or method that instances have without its being a property: it cannot be specified.
+
+    ``yields``: unless a class defines a property of the same name, which is then meant.
+    """
 
     name: str
     type: str
     documentation: str
     is_method: bool = False
+    yields: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -464,10 +468,10 @@ _OBJECT = BuiltinClass(
             for name in names
         ),
         Attribute("corners", "tuple of vectors", "The eight corners of the bounding box."),
-        Attribute("hw", "scalar", "Half the width."),
-        Attribute("hl", "scalar", "Half the length."),
-        Attribute("hh", "scalar", "Half the height."),
-        Attribute("radius", "scalar", "Half the diagonal of the bounding box."),
+        Attribute("hw", "scalar", "Half the width.", yields=True),
+        Attribute("hl", "scalar", "Half the length.", yields=True),
+        Attribute("hh", "scalar", "Half the height.", yields=True),
+        Attribute("radius", "scalar", "Half the diagonal of the bounding box.", yields=True),
         Attribute(
             "inradius", "scalar", "A distance from the position within which everything is inside the object."
         ),

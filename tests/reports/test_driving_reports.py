@@ -2,6 +2,7 @@
 
 import re
 import sys
+import warnings
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
@@ -15,6 +16,7 @@ from scenic.language.errors import (
     InvalidScenarioError,
     RejectionException,
     ScenicTypeError,
+    ScenicWarning,
     SimulationCreationError,
 )
 from scenic.simulators.batch import simulate_number
@@ -192,6 +194,7 @@ def test_what_cannot_be_spawned_is_named(
     fake.Location = fake.Rotation = lambda **values: SimpleNamespace(**values)
     fake.Transform = fake.WeatherParameters = lambda *_, **__: None
     monkeypatch.setitem(sys.modules, "carla", fake)
+    warnings.simplefilter("ignore", ScenicWarning)  # of the first blueprint
     scenario = programs.compiled(
         f"param weather = {{'precipitation': 1}}\nego = new Car at (50, -1.75), facing -90 deg, with blueprint '{blueprint}'\n",
         map="street",

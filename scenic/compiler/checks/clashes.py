@@ -44,7 +44,7 @@ def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator
                         if name == "orientation"
                         else "use another name",
                     )
-                if name in taken:
+                if name in taken and not taken[name].yields:
                     what = "a method" if taken[name].is_method else "an attribute"
                     yield context.error(
                         "SC402",

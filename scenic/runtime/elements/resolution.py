@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from inspect import getattr_static
 from typing import Any
 
 from scenic.dataclass import dataclass
@@ -10,7 +11,7 @@ from scenic.language.spans import Span
 from scenic.language.spelling import nearest_property
 from scenic.runtime.elements.specifiers import Specifier, kind_of_specifier
 from scenic.runtime.ground.context import here, warn
-from scenic.runtime.instances.objects import TWO_D_DEFAULTS, Object, Point
+from scenic.runtime.instances.objects import TWO_D_DEFAULTS, Object, Point, Yielding
 from scenic.runtime.instances.properties import Finals, Property, normalised
 from scenic.runtime.shapes.shapes import BoxShape
 from scenic.runtime.values.lazy import MEMO, reads_of
@@ -224,7 +225,7 @@ def resolve(
     """Decide who provides what, and in which order."""
     _reject_duplicates(specifiers)
     for name, entry in properties.items():
-        if hasattr(cls, name):
+        if _is_taken(cls, name):
             raise _clash(cls, name, entry.definitions[0].span)
     is_doubtful = _check(cls, specifiers, properties)
     claims, modifiers = _claims(specifiers, properties)
@@ -280,7 +281,7 @@ def _check_property(
             raise SpecifierError(
                 f"property {name!r} cannot be directly specified", span=specifier.span, help=hint
             )
-    elif hasattr(cls, name):
+    elif _is_taken(cls, name):
         raise _clash(cls, name, specifier.span)
     elif (meant := nearest_property(name, properties)) is not None:
         warn(
@@ -291,6 +292,11 @@ def _check_property(
         )
         return True
     return False
+
+
+def _is_taken(cls: type[Point], name: str) -> bool:
+    """Return whether a class has an attribute that no property may replace."""
+    return hasattr(cls, name) and not isinstance(getattr_static(cls, name), Yielding)
 
 
 def _clash(cls: type[Point], name: str, span: Span | None) -> SpecifierError:
@@ -447,13 +453,21 @@ def check_assigned(instance: Any, name: str, *, mode_2d: bool) -> None:
     """
     entry = instance.scenic_properties.get(name)
     values = instance.__dict__
-    if entry is None or name not in values:
+    derived = isinstance(getattr_static(type(instance), name, None), Yielding)
+    if name not in values or (entry is None and not derived):
         return
-    if entry.final:
+    if entry is None or entry.final:
+        of = (
+            ": width, length and height"
+            if derived
+            else ": yaw, pitch and roll"
+            if name in _DIRECTIONS
+            else ""
+        )
         raise InvalidScenarioError(
             f"property {name!r} follows from others and cannot be assigned",
             span=here(),
-            help="assign what it follows from" + (": yaw, pitch and roll" if name in _DIRECTIONS else ""),
+            help=f"assign what it follows from{of}",
         )
     value = settle(values[name], instance)
     values.pop(MEMO, None)

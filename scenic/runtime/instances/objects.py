@@ -302,6 +302,17 @@ class OrientedPoint(Point):
         return self.relativePosition(offset)
 
 
+class Yielding:
+    """An attribute that is computed by a method, unless a class defines a property of its name: then that is meant."""
+
+    def __init__(self, compute: Callable[[Any], Any]) -> None:
+        self._compute = compute
+        self.__doc__ = compute.__doc__
+
+    def __get__(self, instance: Any, owner: type | None = None) -> Any:
+        return self if instance is None else self._compute(instance)
+
+
 class Object(OrientedPoint):
     """A physical object: a shape with a size, in a place, that collides with others."""
 
@@ -318,25 +329,25 @@ class Object(OrientedPoint):
         },
     )
 
-    @property
+    @Yielding
     def hw(self) -> Any:
         """Half the width, in metres."""
         return operate("divide", self.width, 2)
 
-    @property
+    @Yielding
     def hl(self) -> Any:
         """Half the length, in metres."""
         return operate("divide", self.length, 2)
 
-    @property
+    @Yielding
     def hh(self) -> Any:
         """Half the height, in metres."""
         return operate("divide", self.height, 2)
 
-    @property
+    @Yielding
     def radius(self) -> Any:
         """Half the diagonal of the bounding box, in metres."""
-        return operate("norm", vector(self.hw, self.hl, self.hh))
+        return operate("divide", operate("norm", vector(self.width, self.length, self.height)), 2)
 
     @property
     def corners(self) -> tuple[Any, ...]:
@@ -359,7 +370,7 @@ class Object(OrientedPoint):
     def planarInradius(self) -> Any:
         """The radius of a disc about the position within which everything is inside seen from above, in metres."""
         if isinstance(self.shape, BoxShape):
-            return operate("minimum", self.hw, self.hl)
+            return operate("divide", operate("minimum", self.width, self.length), 2)
         return planar_inradius(self)
 
     def distanceTo(self, point: object) -> Any:

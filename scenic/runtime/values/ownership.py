@@ -32,7 +32,7 @@ __all__ = [
     "slots",
 ]
 
-EGOLESS: Final = frozenset({"assigned", "at_present", "convert", "spread"})
+EGOLESS: Final = frozenset({"assigned", "convert", "spread"})
 """Methods of the prelude that functions call without reading the ego or the workspace."""
 
 EGOLESS_OPERATORS: Final = frozenset(

@@ -530,7 +530,8 @@ def test_assigned_properties_are_converted_and_what_follows_from_them_follows_an
         ("other.width *= -1", "'width' must be greater than 0"),
         ("other.behavior = 3", "'behavior' must be a behavior"),
         ("other.heading = 1", "'heading' follows from others and cannot be assigned"),
-        ("other.hw = 1", "property 'hw' of 'Object' object has no setter"),
+        ("other.hw = 1", "'hw' follows from others and cannot be assigned"),
+        ("other.corners = 1", "property 'corners' of 'Object' object has no setter"),
     ],
 )
 def test_assignments_that_no_property_can_have_are_refused_at_their_place(

@@ -410,3 +410,18 @@ def test_an_error_in_a_default_is_told_where_it_is(name: str, operand: str) -> N
     error = failure(f"class A:\n    {name}: 1 + ({value})\nego = new A\n")
     begin = len(f"    {name}: 1 + (") + 1
     assert place(error)[:2] == ("SC404", f"2:{begin}-2:{begin + len(value)}")
+
+
+def test_a_class_may_have_its_own_radius() -> None:
+    """And other names of what otherwise follows from the size; of other objects they keep their meaning."""
+    text = (
+        "class Plate:\n    radius: Range(0.2, 0.3)\n    width: self.radius * 2\n    length: self.radius * 2\n"
+        "class Bar:\n    hw: 3\nego = new Plate\nbar = new Bar at (3, 3)\nball = new Object at (6, 6), with radius 7\n"
+        "box = new Object at (9, 9)\nassert ego.planarInradius is not None\n"
+        "param radii = (ego.radius, ball.radius, box.radius), halves = (ego.hw, bar.hw, box.hw), one = Uniform(ego, ball).radius\n"
+    )
+    for given in (item.params for item in scenario(text).sample(4, seed=1)):
+        own, ball, derived = given["radii"]
+        assert (0.2 <= own <= 0.3, ball, derived) == (True, 7, pytest.approx(math.sqrt(3) / 2))
+        assert given["halves"] == (pytest.approx(own), 3, 0.5)
+        assert given["one"] in (own, ball)
