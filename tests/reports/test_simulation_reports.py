@@ -1,6 +1,7 @@
 """Reports about simulations: actions, invariants, names, requirements over time."""
 
 import gc
+import json
 import tracemalloc
 
 import pytest
@@ -83,3 +84,13 @@ def test_memory_of_many_simulations(programs: Programs) -> None:  # noqa: F811
         assert run(20) - before < 200_000
     finally:
         tracemalloc.stop()
+
+
+def test_records_go_to_paths_beside_the_program(programs: Programs) -> None:  # noqa: F811
+    programs.simulated(
+        "ego = new Object at (1, 2)\n"
+        "record ego.position to localPath('places.jsonl')\nrecord ego.x to Files(localPath('x_{step}.json'))\n",
+        2,
+    )
+    assert len((programs.folder / "places.jsonl").read_text().splitlines()) == 3
+    assert json.loads((programs.folder / "x_1.json").read_text()) == 1

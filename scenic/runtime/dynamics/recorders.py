@@ -1,6 +1,7 @@
 """Files that store recorded values: the extension selects the format, and a file holds either a series or one value."""
 
 import json
+import os
 from array import array
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -60,7 +61,7 @@ class _Pattern(Recorder):
 
     writers: Mapping[str, Callable[..., Any]] = MappingProxyType({})
 
-    def __init__(self, pattern: str, /, **options: Any) -> None:
+    def __init__(self, pattern: str | os.PathLike[str], /, **options: Any) -> None:
         extension = Path(pattern).suffix.lower()
         if extension not in self.writers:
             known = ", ".join(sorted(name for name in self.writers if name))
@@ -69,7 +70,7 @@ class _Pattern(Recorder):
                 span=here(),
                 help=f"use one of {known}",
             )
-        self.pattern = pattern
+        self.pattern = os.fspath(pattern)
         self.options = options
         self._write = self.writers[extension]
 
@@ -157,16 +158,16 @@ class Files(_Pattern):
         self._steps = array("q")
 
 
-def for_pattern(pattern: str) -> Recorder:
+def for_pattern(pattern: str | os.PathLike[str]) -> Recorder:
     """The recorder that a pattern of file names means: one file a value if the name depends on the step."""
     from string import Formatter  # slow to import
 
-    fields = [field for _, field, _, _ in Formatter().parse(pattern) if field is not None]
+    fields = [field for _, field, _, _ in Formatter().parse(os.fspath(pattern)) if field is not None]
     automatic = [str(index) if field == "" else field for index, field in enumerate(fields)]
     for field in automatic:
         if field.partition(".")[0] not in ("0", "1", "2", "simulation", "step", "time"):
             raise ScenicValueError(
-                f"unknown field {field!r} in the pattern {pattern!r}",
+                f"unknown field {field!r} in the pattern {os.fspath(pattern)!r}",
                 span=here(),
                 help="fields are {simulation}, {step} and {time}",
             )

@@ -1,6 +1,7 @@
 """``record``: values of expressions, kept in the result of a simulation and written to files (section 12.8)."""
 
 import math
+import os
 from collections import deque
 from copy import copy
 from typing import TYPE_CHECKING, Any
@@ -127,7 +128,7 @@ def check_target(target: object, span: Span | None) -> None:
     """Raise an error for something to which nothing can be recorded."""
     if target is None or isinstance(target, Recorder):
         return
-    if not isinstance(target, str):
+    if not isinstance(target, str | os.PathLike):
         raise ScenicTypeError(
             f"`record ... to`: expected a pattern of file names or a recorder, not {describe(target)}",
             span=span,
