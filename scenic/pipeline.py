@@ -1,6 +1,7 @@
 """Joins the layers: compile, run the program once, analyse, plan. What the API and the commands call."""
 
 import inspect
+import re
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import field, replace
@@ -402,10 +403,15 @@ def _warn_of_draws(text: str, filename: str) -> None:
     """Warn of a program that has drawn from the generators of Python or NumPy, once for all scenes."""
     from scenic.compiler.check import check_text
 
-    for item in check_text(text, filename=filename):
-        if item.code == "SC407":
-            warn(item.message, code=item.code, span=item.span, filename=filename, help=item.help)
-            break
+    found = next((item for item in check_text(text, filename=filename) if item.code == "SC407"), None)
+    if found is not None:
+        warn(found.message, code=found.code, span=found.span, filename=filename, help=found.help)
+    elif re.search(r"\brandom\b", text) and not re.search(r"\bseed\(|SC407", text):
+        # Not of libraries, which draw while they are imported, nor where a seed or a comment says that it is meant.
+        warn(
+            "the program draws once by Python's or NumPy's `random` while it is loaded: all scenes get the same values",
+            help="draw by `Range`, `DiscreteRange`, `Normal` or `Uniform`, and give functions these values",
+        )
 
 
 def _outlined(program: Program, workspace: Workspace, options: _Options) -> Outline:

@@ -148,7 +148,7 @@ def test_seeds_do_not_depend_on_caches_and_hashes(tmp_path: Path) -> None:
 
 
 def test_draws_of_python_at_load_are_warned_of(programs: Programs) -> None:  # noqa: F811
-    """Once; draws of samples and of simulations are no mistake."""
+    """Once; draws of simulations, and those that are meant, are no mistake."""
     text = "import random\nego = new Object at (random.randint(1, 5), random.random())\n"
     with pytest.warns(ScenicWarning, match=r"`random\.randint` draws once") as caught:
         scenario = programs.compiled(text)
@@ -156,10 +156,15 @@ def test_draws_of_python_at_load_are_warned_of(programs: Programs) -> None:  # n
         ("SC407", 2, "write `DiscreteRange(1, 5)`")
     ]
     assert len({scene.egoObject.position for scene in scenario.sample(5, seed=1)}) == 1
-    later = (
-        "import random\ndef f(x):\n    return x + random.random()\n"
-        "behavior B():\n    random.random()\n    wait\nego = new Object at (f(Range(0, 1)), 0), with behavior B\n"
+    hidden = (
+        "import random\ndef f(x):\n    return x + random.random()\nego = new Object at (f(Range(0, 1)), 0)\n"
     )
+    with pytest.warns(ScenicWarning, match="draws once by Python's or NumPy's `random`"):
+        scenario = programs.compiled(hidden)
+    places = [scene.egoObject.position.x for scene in scenario.sample(50, seed=1)]
+    assert max(places) - min(places) < 1
+    behaving = "behavior B():\n    random.random()\n    wait\nego = new Object with behavior B()\n"
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        programs.compiled(later)
+        programs.compiled(f"import random\n{behaving}")
+        programs.compiled("import random\nrandom.seed(3)\n" + hidden)
