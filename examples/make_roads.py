@@ -134,95 +134,91 @@ def connection(number: int, incoming: int, connecting: int, lanes: Sequence[tupl
     )
 
 
+_RING: Final = 4.5
+_HALF: Final = 0.5
+"""Angle at the middle of a roundabout between an arm and where the ring's next road begins."""
+
+
 def roundabout(radius: float = 18.0, arms: int = 4, arm: float = 90.0) -> str:
     """A roundabout of one lane, 4.5 m wide, with roads of two lanes that give way to the ring."""
-    near, half = radius + 17.0, 0.5
-    inner = radius - 2.25
-    ring, entry = width(4.5), width(3.5)
     roads, rest = [], []
     for k in range(arms):
-        way, here, last = 2 * math.pi * k / arms, 100 + k, (k - 1) % arms
-        first, after = way + half, way + 2 * math.pi / arms - half
-        to_next = f'elementType="junction" elementId="{100 + (k + 1) % arms}"'
-        # Arms come from outside; their lanes towards the ring are on the right.
-        outside = ((near + arm) * math.cos(way), (near + arm) * math.sin(way), way + math.pi)
-        gives_way = (
-            f'<signals><signal id="{k + 1}" name="" s="{arm - 1.0!r}" t="-4.5" zOffset="2.2" orientation="+" dynamic="no" '
-            'country="DE" type="205" subtype="-1"/></signals>'
-        )
-        roads.append(
-            road(
-                k + 1,
-                straight(outside, arm),
-                section(0.0, [lane(1, entry)], [lane(-1, entry)]),
-                after=f'elementType="junction" elementId="{here}"',
-                speed=50.0,
-                signals=gives_way,
-            )
-        )
-        roads.append(
-            road(
-                10 + k,
-                arc((0.0, 0.0), inner, first, after),
-                section(0.0, [], [lane(-1, ring)]),
-                before=f'elementType="junction" elementId="{here}"',
-                after=to_next,
-                speed=30.0,
-            )
-        )
-        mouth = (near * math.cos(way), near * math.sin(way))
-        onto = arc((0.0, 0.0), inner, way - half, first)
-        ways = (
-            (
-                20,
-                onto,
-                width(4.5),
-                (f'elementType="road" elementId="{10 + last}" contactPoint="end"', -1),
-                (f'elementType="road" elementId="{10 + k}" contactPoint="start"', -1),
-            ),
-            (
-                30,
-                curve(
-                    (*mouth, way + math.pi),
-                    (*onto.end[:2], onto.end[2] + (2 * math.pi if onto.end[2] < way else 0.0)),
-                ),
-                "",
-                (f'elementType="road" elementId="{k + 1}" contactPoint="end"', -1),
-                (f'elementType="road" elementId="{10 + k}" contactPoint="start"', -1),
-            ),
-            (
-                40,
-                curve(
-                    (inner * math.cos(way - half), inner * math.sin(way - half), way - half + math.pi / 2),
-                    (*mouth, way),
-                ),
-                "",
-                (f'elementType="road" elementId="{10 + last}" contactPoint="end"', -1),
-                (f'elementType="road" elementId="{k + 1}" contactPoint="end"', 1),
-            ),
-        )
-        for number, line, widths, (before, from_lane), (behind, to_lane) in ways:
-            wide = widths or (width(3.5, 4.5, line.length) if number == 30 else width(4.5, 3.5, line.length))
-            roads.append(
-                road(
-                    number + k,
-                    line,
-                    section(0.0, [], [lane(-1, wide, before=from_lane, after=to_lane)]),
-                    before=before,
-                    after=behind,
-                    junction=here,
-                    speed=30.0,
-                )
-            )
+        roads += [_arm(k, arms, radius, arm), _ring(k, arms, radius), *_mouth(k, arms, radius)]
+        last = (k - 1) % arms
         connections = [
             connection(0, 10 + last, 20 + k, [(-1, -1)]),
             connection(1, k + 1, 30 + k, [(-1, -1)]),
             connection(2, 10 + last, 40 + k, [(-1, -1)]),
         ]
-        rest.append(f'<junction id="{here}" name="">{"".join(connections)}</junction>')
+        rest.append(f'<junction id="{100 + k}" name="">{"".join(connections)}</junction>')
     members = "".join(f'<junctionReference junction="{100 + k}"/>' for k in range(arms))
     rest.append(f'<junctionGroup id="1" name="" type="roundabout">{members}</junctionGroup>')
     return document(roads, rest)
+
+
+def _joined(number: int) -> str:
+    return f'elementType="junction" elementId="{number}"'
+
+
+def _end_of(number: int, contact: str) -> str:
+    return f'elementType="road" elementId="{number}" contactPoint="{contact}"'
+
+
+def _near(radius: float) -> float:
+    """Metres from the middle of a roundabout to the ends of its arms."""
+    return radius + 17.0
+
+
+def _arm(k: int, arms: int, radius: float, length: float) -> str:
+    """An arm: it comes from outside, so that its lane towards the ring is on the right."""
+    way = 2 * math.pi * k / arms
+    away = _near(radius) + length
+    outside = (away * math.cos(way), away * math.sin(way), way + math.pi)
+    gives_way = (
+        f'<signals><signal id="{k + 1}" name="" s="{length - 1.0!r}" t="-4.5" zOffset="2.2" orientation="+" dynamic="no" '
+        'country="DE" type="205" subtype="-1"/></signals>'
+    )
+    lanes = section(0.0, [lane(1, width(3.5))], [lane(-1, width(3.5))])
+    return road(
+        k + 1, straight(outside, length), lanes, after=_joined(100 + k), speed=50.0, signals=gives_way
+    )
+
+
+def _ring(k: int, arms: int, radius: float) -> str:
+    """The road of the ring from one arm to the next."""
+    way, after = 2 * math.pi * k / arms, 2 * math.pi * (k + 1) / arms
+    line = arc((0.0, 0.0), radius - _RING / 2, way + _HALF, after - _HALF)
+    lanes = section(0.0, [], [lane(-1, width(_RING))])
+    return road(10 + k, line, lanes, before=_joined(100 + k), after=_joined(100 + (k + 1) % arms), speed=30.0)
+
+
+def _mouth(k: int, arms: int, radius: float) -> list[str]:
+    """The roads where an arm meets the ring: round, in and out."""
+    way, inner, last = 2 * math.pi * k / arms, radius - _RING / 2, (k - 1) % arms
+    mouth = (_near(radius) * math.cos(way), _near(radius) * math.sin(way))
+    onto = arc((0.0, 0.0), inner, way - _HALF, way + _HALF)
+    x, y, heading = onto.end
+    leaving = (inner * math.cos(way - _HALF), inner * math.sin(way - _HALF), way - _HALF + math.pi / 2)
+    entry = curve((*mouth, way + math.pi), (x, y, heading))
+    exit_line = curve(leaving, (*mouth, way))
+    ring_before, ring_after, own = _end_of(10 + last, "end"), _end_of(10 + k, "start"), _end_of(k + 1, "end")
+    ways = (
+        (20, onto, width(_RING), ring_before, ring_after, -1),
+        (30, entry, width(3.5, _RING, entry.length), own, ring_after, -1),
+        (40, exit_line, width(_RING, 3.5, exit_line.length), ring_before, own, 1),
+    )
+    return [
+        road(
+            number + k,
+            line,
+            section(0.0, [], [lane(-1, wide, before=-1, after=follower)]),
+            before=before,
+            after=after,
+            junction=100 + k,
+            speed=30.0,
+        )
+        for number, line, wide, before, after, follower in ways
+    ]
 
 
 def ramp(before: float = 300.0, beside: float = 200.0, after: float = 400.0) -> str:

@@ -128,7 +128,6 @@ def replay(
     """
     from scenic.falsification.replaying import kept_run, program_of
     from scenic.falsification.replaying import replay as made_again
-    from scenic.formats.files import write
     from scenic.pipeline import load
 
     if number is not None and worst is not None:
@@ -157,21 +156,9 @@ def replay(
     if found.page is None and (view, png, film) != (None, None, None):
         print("nothing is shown, since there is no simulation")
     if view is not None and found.page is not None:
-        write(view, found.page.encode())
-        if opened:
-            print(f"opens {view}")
-            webbrowser.open(view.resolve().as_uri() + (f"#follow={quote(follow)}" if follow else ""))
+        _write_page(view, found.page, follow, opened=opened)
     if found.pictures is not None and (png is not None or film is not None):
-        from scenic.formats.camera import Outlook
-        from scenic.formats.render import SIZE
-
-        if follow is not None:
-            from scenic.formats.following import BEHIND
-
-            name = int(follow) if follow.isdecimal() else follow
-            places = {"azimuth": BEHIND[0], "elevation": BEHIND[1], **outlook}
-            outlook = {**places, "follow": name, "reach": around}
-        _draw(found.pictures, png, film, every, image_size or SIZE, Outlook(**outlook))
+        _draw(found.pictures, png, film, every, image_size, _camera(outlook, follow, around))
     for words in found.unknown:
         print(f"not compared: {words}")
     if not found.departures:
@@ -208,19 +195,41 @@ def _check(view: Path | None, png: Path | None, film: Path | None) -> None:
         check_writable(film)
 
 
+def _write_page(view: Path, page: str, follow: str | None, *, opened: bool) -> None:
+    from scenic.formats.files import write
+
+    write(view, page.encode())
+    if opened:
+        print(f"opens {view}")
+        webbrowser.open(view.resolve().as_uri() + (f"#follow={quote(follow)}" if follow else ""))
+
+
+def _camera(outlook: Mapping[str, Any], follow: str | None, around: float | None) -> "Outlook":
+    """The camera of images and films, which may follow an object."""
+    from scenic.formats.camera import Outlook
+    from scenic.formats.following import BEHIND
+
+    if follow is None:
+        return Outlook(**outlook)
+    name = int(follow) if follow.isdecimal() else follow
+    return Outlook(**{"azimuth": BEHIND[0], "elevation": BEHIND[1], **outlook}, follow=name, reach=around)
+
+
 def _draw(
     pictures: "StatePictures",
     png: Path | None,
     film: Path | None,
     every: int | None,
-    size: tuple[int, int],
+    size: tuple[int, int] | None,
     outlook: "Outlook",
 ) -> None:
     """Write images and the film."""
     from scenic.formats.course_pictures import evenly, film_of, sheet
     from scenic.formats.files import make_folder, write
     from scenic.formats.png import encoded
+    from scenic.formats.render import SIZE
 
+    size = size or SIZE
     last = len(pictures) - 1
     chosen = evenly(len(pictures), _IMAGES) if every is None else [*range(0, last, every), last]
     if png is not None and png.suffix:

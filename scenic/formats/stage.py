@@ -75,14 +75,8 @@ class Stage:
         self.reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
         low = [surfaces[piece.surface].vertices[:, 2].min() for piece in pieces if not piece.is_flat]
         # The ground lies below roads that have heights.
-        self.ground = (
-            float(
-                min(ground_height(points), *(height - 0.1 for height in low))
-                if low
-                else ground_height(points)
-            )
-            - self.center[2]
-        )
+        lowest = min([ground_height(points), *(height - 0.1 for height in low)])
+        self.ground = float(lowest) - self.center[2]
         triangles, normals, owners = [], [], []
         self._coordinates: dict[int, _Coordinates] = {}
         for index, instance in enumerate(instances):
@@ -121,14 +115,7 @@ class Stage:
         # Images bring their own colours.
         rgba[[k for k, item in self.textures.items() if isinstance(item, ImageTexture)], :3] = 1
         albedo = linear(rgba[:, :3])[self.owner]
-        painted = np.zeros(len(albedo), np.int32)
-        for index, instance in enumerate(instances):
-            paints = surfaces[instance.surface].face_paints()
-            if paints is not None:
-                own = np.flatnonzero(~np.isnan(paints[:, 0]))
-                places = own + sum(map(len, owners[:index]))
-                albedo[places] = linear(paints[own])
-                painted[places] = 1 + np.unique(paints[own], axis=0, return_inverse=True)[1].reshape(-1)
+        painted = _paint([surfaces[instance.surface] for instance in instances], albedo)
         self.sunny, self.shady = _light_on(scenery, corner_normals, albedo)
         # Flat triangles are most of the pixels; entries of one array after the other are quick to take.
         flat = np.concatenate([self.sunny[:, 0], self.shady[:, 0]], axis=1).T
@@ -243,6 +230,23 @@ def _density(values: Singles, triangles: Singles) -> Singles:
     )
     share = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / np.maximum(area, np.float32(1e-12))
     return np.asarray(np.sqrt(share), np.float32)
+
+
+def _paint(surfaces: Sequence[Surface], albedo: npt.NDArray[np.float32]) -> npt.NDArray[np.int32]:
+    """Give triangles of surfaces, one after the other, the linear colours of their own, in ``albedo``.
+
+    Returns a number for each triangle ``(t,)``, 0 for those without a colour of their own, that differs between colours of a surface.
+    """
+    painted = np.zeros(len(albedo), np.int32)
+    first = 0
+    for surface in surfaces:
+        paints = surface.face_paints()
+        if paints is not None:
+            own = np.flatnonzero(~np.isnan(paints[:, 0]))
+            albedo[first + own] = linear(paints[own])
+            painted[first + own] = 1 + np.unique(paints[own], axis=0, return_inverse=True)[1].reshape(-1)
+        first += len(surface.faces)
+    return painted
 
 
 def _textures(instances: Sequence[Instance]) -> dict[int, Texture | ImageTexture]:
