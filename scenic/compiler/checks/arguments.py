@@ -184,7 +184,8 @@ def _arguments(node: ast.Call, callee: _Callee, context: CheckContext) -> Iterat
     yield from problems
     if isinstance(callee.definition, scenic.BehaviorDef) and not spread:
         yield from _apart(node, positional, callee, context)
-        yield from _unlike_default(node, callee, context)
+    if not spread:
+        yield from _no_numbers(node, callee, context)
     if problems or spread or spread_names:
         return
     given_names = filled | {keyword.arg for keyword in node.keywords if keyword.arg in by_name}
@@ -244,23 +245,31 @@ _NOT_NUMBERS: Final = frozenset(
 )
 
 
-def _unlike_default(node: ast.Call, callee: _Callee, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC404: ``FollowLaneBehavior(target_speed="fast")``: text for a parameter whose default is a number."""
+def _no_numbers(node: ast.Call, callee: _Callee, context: CheckContext) -> Iterator[Diagnostic]:
+    """SC404: ``FollowLaneBehavior(target_speed="fast")``: text for a parameter whose default or annotation is a number."""
     args = callee.args
-    positional = [*args.posonlyargs, *args.args]
+    every = [*args.posonlyargs, *args.args]
+    positional = every[callee.skip :]
     defaults = dict(
         zip(
-            [each.arg for each in positional[len(positional) - len(args.defaults) :]],
+            [each.arg for each in every[len(every) - len(args.defaults) :]],
             args.defaults,
             strict=True,
         )
     )
     given = dict(zip([each.arg for each in positional], node.args, strict=False))
     given.update((each.arg, each.value) for each in node.keywords if each.arg is not None)
+    annotated = {
+        each.arg
+        for each in positional
+        if isinstance(each.annotation, ast.Name) and each.annotation.id in ("float", "int")
+    }
     for name, value in given.items():
         default = defaults.get(name)
         number = default.value if isinstance(default, ast.Constant) else None
-        if isinstance(number, bool) or not isinstance(number, int | float):
+        is_default = isinstance(number, int | float) and not isinstance(number, bool)
+        is_default = is_default and isinstance(callee.definition, scenic.BehaviorDef)
+        if not is_default and (default is not None or name not in annotated):
             continue
         kind = context.kind_of(value)
         if (
@@ -277,7 +286,9 @@ def _unlike_default(node: ast.Call, callee: _Callee, context: CheckContext) -> I
             "SC404",
             f"{callee.title} needs a number as `{name}`, not {kind.phrase}",
             value,
-            f"write `{plain}` without quotes" if is_number else f"give a number; the default is {number}",
+            f"write `{plain}` without quotes"
+            if is_number
+            else "give a number" + (f"; the default is {number!r}" if is_default else ""),
             fix=context.replacement("Remove the quotes", value, plain) if is_number else None,
         )
 

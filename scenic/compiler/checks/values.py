@@ -150,8 +150,10 @@ def _property(node: scenic.PropertyDef, _scope: Scope, context: CheckContext) ->
 def _assign(node: ast.Assign, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``workspace = room``, ``ego = 3``."""
     kind = context.kind_of(node.value)
-    if isinstance(node.value, ast.Tuple) and any(isinstance(part, scenic.New) for part in node.value.elts):
-        kind = None  # The comma is reported.
+    if isinstance(node.value, ast.Tuple) and (
+        len(node.value.elts) < 2 or any(isinstance(part, scenic.New) for part in node.value.elts)
+    ):
+        kind = None  # The comma is reported, or the line goes on after it.
     for target in node.targets if kind is not None else ():
         name = context.provided(target)
         if kind is not None and kind.name == "workspace" and isinstance(target, ast.Name):

@@ -48,6 +48,11 @@ WRONG = [
     ("x = table.location", "an object has no attribute `location`"),
     ("x = table.blurb", "an object has no attribute `blurb`, and nothing in this program gives it one"),
     ("x = angle from table (3, 4)", "an object cannot be called"),
+    (
+        "def f(size: float):\n    return size\nx = f('3')",
+        "the function `f` needs a number as `size`, not text",
+    ),
+    ("new Object behind table at 3", "`at` after an object: only a vector field has a value at a place"),
     ("ego = (1, 2)", "the ego must be an object, not a tuple of 2"),
     ("new Object with color (255, 0, 0)", "`with color`: a colour is made of numbers from 0 to 1, not 255"),
     ("behavior B():\n    take self.spped", "no class of this program has a property `spped`"),
