@@ -21,6 +21,7 @@ from scenic.language.spans import Span
 from scenic.language.spelling import distance, nearest, related
 from scenic.project.classes import (
     LIBRARY,
+    Class,
     class_of,
     class_of_elements,
     class_of_exported,
@@ -184,37 +185,49 @@ def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, s
     if cls is None or cls.member(node.attr) is not None or cls.member("__getattr__") is not None:
         return None
     names = {each.name for each in cls.members if not each.name.startswith("_")}
-    near = nearest(node.attr, names)
-    meant = near if near is not None and _has_like_words(node.attr, near) else _elsewhere(node.attr, names)
-    slip = meant
-    if meant is None:
-        meant = related(node.attr, names) or near
-        # A shorter name is another thing: `lanes` are no `numLanes`.
-        slip = meant if meant is not None and meant != near and len(meant) > len(node.attr) else None
+    meant, is_slip = _meant(node.attr, names)
     if meant is None:
         owner = _owner_beside(symbol, node.attr)
         if owner is not None:
             return symbol.name, None, _OTHER_WAYS.get((symbol.name, owner), f"a `{owner}` has it"), False
-    if meant is None and not (cls.complete and names):
-        return None
-    home = os.path.dirname(symbol.filename)
+        if not (cls.complete and names):
+            return None
+        return symbol.name, None, f"it has {_some(cls, names)}, ...", False
+    return symbol.name, meant if is_slip else None, f"did you mean `{meant}`?", _is_called(cls, meant)
+
+
+def _meant(name: str, names: Collection[str]) -> tuple[str | None, bool]:
+    """The name that is probably meant, and whether it can be put in place of the other."""
+    near = nearest(name, names)
+    meant = near if near is not None and _has_like_words(name, near) else _elsewhere(name, names)
+    if meant is not None:
+        return meant, True
+    akin = related(name, names)
+    # A shorter name is another thing: `lanes` are no `numLanes`.
+    return (akin, len(akin) > len(name)) if akin is not None else (near, False)
+
+
+def _is_called(cls: Class, name: str) -> bool:
+    """Return whether a member is a method, rather than a property."""
+    member = cls.member(name)
+    if member is None or member.symbol is None or member.kind is not SymbolKind.METHOD:
+        return False
+    decorators = getattr(member.symbol.node, "decorator_list", ())
+    return not any(ast.unparse(each).endswith("property") for each in decorators)
+
+
+def _some(cls: Class, names: Collection[str]) -> str:
+    """Some names that programs use of a class of the library, which its own code has in other writing."""
+    home = os.path.dirname(cls.symbol.filename or "")
     own = [
         each.name
         for each in cls.members
         if each.name in names
         and each.symbol is not None
         and os.path.dirname(each.symbol.filename or "") == home
-        and each.name[:1] != "_"
-        and "_" not in each.name  # the library writes what programs use without
+        and "_" not in each.name
     ]
-    shown = ", ".join(f"`{each}`" for each in sorted(own or names)[:_SHOWN])
-    known_member = None if meant is None else cls.member(meant)
-    is_method = known_member is not None and known_member.kind is SymbolKind.METHOD
-    if known_member is not None and known_member.symbol is not None:
-        decorators = getattr(known_member.symbol.node, "decorator_list", ())
-        is_method &= not any(ast.unparse(each).endswith("property") for each in decorators)
-    advice = f"did you mean `{meant}`?" if meant else f"it has {shown}, ..."
-    return symbol.name, slip, advice, is_method
+    return ", ".join(f"`{each}`" for each in sorted(own or names)[:_SHOWN])
 
 
 def _has_like_words(name: str, meant: str) -> bool:

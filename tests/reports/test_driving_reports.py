@@ -170,6 +170,7 @@ class _Carla:
         """Find something in the place."""
 
 
+@pytest.mark.filterwarnings("ignore:CARLA's catalogues have no blueprint")
 @pytest.mark.parametrize(
     ("blueprint", "message"),
     [
