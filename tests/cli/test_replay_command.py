@@ -198,3 +198,23 @@ def test_what_is_no_run_is_said(place: Path) -> None:
         again = run_here(["replay", *words], folder=place)
         assert again.returncode == 1
         assert message in again.stderr
+
+
+def test_images_follow_an_object(place: Path) -> None:
+    common = ["replay", "runs", 0, "--image-size", "90x60", "--png"]
+    for name in ("ego", "lead", "0"):
+        done = run_here([*common, f"{name}.png", "--follow", name, "--around", 6], folder=place)
+        assert done.returncode == 0, done.stderr
+    # What stands still beside a road without marks is seen from where it is; the other one leaves it.
+    assert (
+        (place / "ego.png").read_bytes()
+        == (place / "0.png").read_bytes()
+        != (place / "lead.png").read_bytes()
+    )
+    wrong = run_here([*common, "wrong.png", "--follow", "leed"], folder=place)
+    assert wrong.returncode != 0
+    assert "there is no object 'leed' to follow" in wrong.stderr
+    assert "did you mean 'lead'?" in wrong.stderr
+    assert not (place / "wrong.png").exists()
+    alone = run_here([*common, "wrong.png", "--around", 6], folder=place)
+    assert (alone.returncode, "--around belongs to --follow" in alone.stderr) == (2, True)
