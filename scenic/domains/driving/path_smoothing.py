@@ -11,6 +11,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.domains.driving.tight_bends import nearer_in_bends
+
 __all__ = ["SPACING", "curvatures_of", "headings_of", "resampled", "smoothed"]
 
 Floats = NDArray[np.float64]
@@ -113,7 +115,8 @@ def smoothed(points: Floats, first: Floats | None = None, last: Floats | None = 
         if not wide.any() and not sharp.any():
             break
         weights[wide] *= np.minimum(away[wide] / tubes[wide], 4) ** 3
-    return curve
+    bent = (allowed < 1) & (pinned == 0)
+    return nearer_in_bends(curve, points, bent, _TIGHTEST) if bent.any() else curve
 
 
 def _bends(points: Floats) -> Floats:
