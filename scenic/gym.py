@@ -53,7 +53,7 @@ except ImportError as error:
         "environments need the package gymnasium", help=f"install it: {installation('gym')}"
     ) from error
 
-__all__ = ["Choice", "Continuous", "Moment", "ScenicEnv", "ScenicVectorEnv"]
+__all__ = ["Choice", "Continuous", "Joints", "Moment", "ScenicEnv", "ScenicVectorEnv", "joint_limits"]
 
 Observed: TypeAlias = dict[str, Any]
 _Rejected = (RejectSimulationException, RejectionException, GuardViolation)
@@ -78,6 +78,42 @@ class Continuous:
     def __call__(self, chosen: object) -> tuple[Any, ...]:
         """The actions for a point of the space."""
         return _several(self._make(*(float(number) for number in np.asarray(chosen))))
+
+
+class Joints:
+    """Actions by joint: a ``Box`` with a number for each joint, in the order of ``limits``.
+
+    Args:
+        make: an action class that takes numbers by the names of joints, such as ``SetJointPositions``.
+        limits: least and greatest value of each joint by its name; `joint_limits` reads them from a description.
+
+    """
+
+    def __init__(
+        self, make: Callable[[Mapping[str, float]], Any], limits: Mapping[str, tuple[float, float]]
+    ) -> None:
+        low, high = (np.array(ends, dtype=np.float32) for ends in zip(*limits.values(), strict=True))
+        self.space: spaces.Space[Any] = spaces.Box(low, high, dtype=np.float32)
+        self._names = tuple(limits)
+        self._make = make
+
+    def __call__(self, chosen: object) -> tuple[Any, ...]:
+        """The action for a point of the space."""
+        numbers = (float(number) for number in np.asarray(chosen))
+        return _several(self._make(dict(zip(self._names, numbers, strict=True))))
+
+
+def joint_limits(description: str | Path) -> dict[str, tuple[float, float]]:
+    """The limits of all joints of an MJCF or URDF file by name, radians or metres; those without a limit have a turn.
+
+    Raises:
+        DescriptionError: the file cannot be read.
+
+    """
+    from scenic.simulators.mujoco.descriptions import read_description
+
+    joints = read_description(description).joints
+    return {name: (max(joint.low, -math.pi), min(joint.high, math.pi)) for name, joint in joints.items()}
 
 
 class Choice:
@@ -133,7 +169,7 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
 
     Args:
         scenario: a scenario, or the path of a program.
-        actions: what the agent may do: `Continuous` or `Choice`.
+        actions: what the agent may do: `Continuous`, `Joints` or `Choice`.
         observations: names of properties by the name of the object that has them (``ego``, or a variable of the program); or of
             the agent alone. ``observations.front`` is what its camera ``front`` sees. The space is a ``Dict`` of boxes
             named ``ego.position`` and the like.
@@ -158,7 +194,7 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
         self,
         scenario: Scenario | str | Path,
         *,
-        actions: Continuous | Choice,
+        actions: Continuous | Joints | Choice,
         observations: Mapping[str, Sequence[str]] | Sequence[str],
         reward: str | Callable[[Moment], SupportsFloat],
         agent: str = "ego",
@@ -461,6 +497,8 @@ def _value(thing: Any, name: str, space: spaces.Space[Any]) -> Any:
 def _numbers(thing: object, name: str, value: object) -> list[float]:
     if is_number(value):
         return [float(value)]
+    if isinstance(value, Mapping) and value and all(map(is_number, value.values())):  # of joints by name
+        return [float(part) for part in value.values()]
     if isinstance(value, Orientation):
         return list(value.q)
     if isinstance(value, Vector | tuple | list) and all(is_number(part) for part in value):

@@ -2,6 +2,7 @@
 
 import importlib.util
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ if importlib.util.find_spec("gymnasium") is None:
 import gymnasium
 from gymnasium.utils.env_checker import check_env
 
-from scenic.gym import Choice, Continuous, Moment, ScenicEnv, ScenicVectorEnv
+from scenic.gym import Choice, Continuous, Joints, Moment, ScenicEnv, ScenicVectorEnv, joint_limits
 from scenic.simulators.batch import choose_simulator, simulate_number
 from scenic.simulators.kinematic import SetVelocity, SetWheelSpeeds
 
@@ -349,3 +350,30 @@ def test_environments_in_processes_play_the_episodes_of_the_seed() -> None:
             assert rewards.tolist() == [0, 0]
     finally:
         vector.close()
+
+
+def test_joints_are_actions_and_observations() -> None:
+    pytest.importorskip("mujoco")
+    from scenic.simulators.mujoco import SetJointPositions
+
+    path = Path(__file__).parents[1] / "examples" / "arm" / "arm.xml"
+    text = f"""
+model scenic.simulators.mujoco.model
+ego = new Robot at (0, 0, 0.04), with description r"{path}", with joints {{'turn': Range(-1, 1)}}
+"""
+    limits = joint_limits(path)
+    env = ScenicEnv(
+        scenic.scenarioFromString(text),
+        actions=Joints(SetJointPositions, limits),
+        observations=["jointValues", "jointVelocities"],
+        reward=lambda now: -abs(now.agent.jointValues["turn"] - 0.5),
+    )
+    assert env.action_space.shape == (len(limits),)
+    observed, _ = env.reset(seed=1)
+    assert observed["ego.jointValues"].shape == (len(limits),)
+    target = np.zeros(len(limits), np.float32)
+    target[list(limits).index("turn")] = 0.5
+    for _ in range(30):
+        observed, reward, *_ = env.step(target)
+    assert reward == pytest.approx(0, abs=0.03)
+    env.close()

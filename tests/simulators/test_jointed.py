@@ -222,6 +222,94 @@ record final ego.jointVelocities as speeds
         assert records["speeds"][joint] == pytest.approx(speed, abs=0.05)
 
 
+def test_a_robot_may_have_a_description(tmp_path: Path) -> None:
+    text = f"""
+ego = new Robot at (0, 0, 0.04), with description r"{ARM}", with joints {{'turn': Range(-1, 1)}}
+other = new Robot at (2, 0, 0.06)
+"""
+    (scene,) = loaded(text, tmp_path).sample(1, seed=1)
+    robot, wheeled = scene.egoObject, scene.objects[-1]
+    assert (robot.dynamics, wheeled.dynamics) == ("articulated", "differential")
+    assert set(robot.jointValues) == set(description_of(str(ARM)).joints)
+    assert robot.width == pytest.approx(0.16, abs=1e-3)
+    assert (wheeled.width, wheeled.height, len(wheeled.links)) == (0.35, 0.12, 0)
+    MujocoSimulator(timestep=0.1).simulate(scene, maxSteps=2)
+
+
+def test_a_gripper_knows_what_it_touches_and_drives_their_torques(tmp_path: Path) -> None:
+    text = f"""
+behavior Close():
+    take SetGripper(0)
+    while True:
+        wait
+block = new Body at (0, 0, 0.85), with width 0.03, with length 0.03, with height 0.03, with density 100, with friction 2
+ego = new Articulated at (0, 0, 0.04), with description r"{ARM}", with gripper ('left', 'right'),
+    with joints {{'left': 0.03, 'right': 0.03}}, with behavior Close(), with present True
+place = ego.frame('grip')
+record initial ego.gripperContacts as before
+record final [thing is block for thing in ego.gripperContacts] as after
+record final ego.jointTorques as torques
+"""
+    tip = (
+        scenic.scenarioFromString(
+            MODEL + text.replace("0, 0, 0.85", "3, 0, 0.85") + "param tip = place.position\n",
+            filename=str(tmp_path / "a.scenic"),
+        )
+        .sample(1, seed=1)[0]
+        .params["tip"]
+    )
+    scene = loaded(text.replace("0, 0, 0.85", f"{tip.x}, {tip.y}, {tip.z}"), tmp_path).sample(1, seed=1)[0]
+    records = MujocoSimulator(timestep=0.05).simulate(scene, maxSteps=6).records
+    assert records["before"] == ()
+    assert records["after"] == [True]
+    # It is squeezed from both sides.
+    assert records["torques"]["left"] < -1
+    assert records["torques"]["right"] < -1
+
+
+LOOP = """<robot name="loop"><link name="a"/><link name="b"/>
+<joint name="one" type="fixed"><parent link="a"/><child link="b"/></joint>
+<joint name="two" type="fixed"><parent link="b"/><child link="a"/></joint></robot>"""
+NO_MESH = """<robot name="bare"><link name="a"><collision><geometry><mesh filename="away.obj"/></geometry></collision></link></robot>"""
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (LOOP, "cannot read"),
+        (NO_MESH, "away"),
+        ("", "cannot read"),
+        ("<robot name='none'/>", "it.urdf"),
+        ("<mujoco/>", "no body"),
+    ],
+)
+def test_descriptions_that_cannot_be(content: str, message: str, tmp_path: Path) -> None:
+    (tmp_path / "it.urdf").write_text(content)
+    with pytest.raises(DescriptionError, match=message) as caught:
+        loaded("ego = new Robot with description 'it.urdf'\n", tmp_path)
+    assert caught.value.help
+    assert caught.value.span is not None
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        ("SetJointPositions({'elbo': 1})", "no joint 'elbo'"),
+        ("MoveTo('gripp', (0, 0.3, 0.3))", "no frame 'gripp'"),
+    ],
+)
+def test_names_that_are_unknown_in_a_simulation(call: str, message: str, tmp_path: Path) -> None:
+    text = f"""
+behavior Act():
+    take {call}
+ego = new Articulated at (0, 0, 0.04), with description r"{ARM}", with behavior Act()
+"""
+    scene = loaded(text, tmp_path).sample(1, seed=1)[0]
+    with pytest.raises(DescriptionError, match=message) as caught:
+        MujocoSimulator(timestep=0.1).simulate(scene, maxSteps=2)
+    assert "did you mean" in (caught.value.help or "")
+
+
 def test_an_unchanged_description_is_read_once(tmp_path: Path) -> None:
     path = tmp_path / "arm.xml"
     path.write_bytes(ARM.read_bytes())

@@ -910,3 +910,32 @@ def test_bodies_at_rest_sleep_until_something_touches_them() -> None:
     assert places[20][0] == pytest.approx(0, abs=1e-3)
     assert places[-1][0] > 0.5
     assert tuple(places[-1][1]) == pytest.approx((3, 0, 0.1), abs=1e-3)
+
+
+def test_a_car_drives_the_curve_that_its_front_wheels_ask_for() -> None:
+    scene = scene_of(
+        "behavior Drive():\n"
+        "    take SetThrottle(1.5), SetSteering(0)\n"
+        "    for i in range(19):\n"
+        "        wait\n"
+        "    take SetThrottle(0), SetSteering(0.2)\n"
+        "    for i in range(59):\n"
+        "        wait\n"
+        "    take SetThrottle(-2), SetSteering(0)\n"
+        "    while True:\n"
+        "        wait\n"
+        "ego = new Car at (0, 0, 0.76), with behavior Drive()\n"
+        "record ego.speed as speed\n"
+        "record ego.position as place\n"
+        "record ego.yaw as yaw\n"
+    )
+    records = MujocoSimulator(timestep=0.1).simulate(scene, maxSteps=110).records
+    speeds = dict(records["speed"])
+    yaws, places = dict(records["yaw"]), dict(records["place"])
+    assert speeds[20] == pytest.approx(3, rel=0.05)
+    assert abs(places[20].x) < 0.05
+    # A turn of speed times curvature, about tan(0.2) / wheelbase.
+    turned = (yaws[70] - yaws[40]) / 3
+    assert turned == pytest.approx(3 * math.tan(0.2) / (0.6 * 4.3), rel=0.08)
+    assert speeds[110] == pytest.approx(0, abs=0.05)
+    assert all(place.z == pytest.approx(0.75, abs=0.04) for place in places.values())

@@ -3,7 +3,14 @@
 A program takes the names from here (``from scenic.simulators.mujoco import *``), or says ``model scenic.simulators.mujoco.model``.
 """
 
-from scenic.simulators.commands import Fly, SetAcceleration, SetVelocity, SetWheelSpeeds
+from scenic.simulators.commands import (
+    Fly,
+    SetAcceleration,
+    SetSteering,
+    SetThrottle,
+    SetVelocity,
+    SetWheelSpeeds,
+)
 from scenic.simulators.mujoco.actions import (
     ApplyForce,
     Grasp,
@@ -30,6 +37,8 @@ __all__ = [
     "SetJointPositions",
     "SetJointTorques",
     "SetJointVelocities",
+    "SetSteering",
+    "SetThrottle",
     "SetVelocity",
     "SetWheelSpeeds",
 ]

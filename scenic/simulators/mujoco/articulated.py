@@ -143,6 +143,8 @@ def assemble(thing: Any, part: type[Any]) -> None:
     description = description_of(thing.description)
     thing.__dict__["jointValues"] = joint_values(description, thing.joints)
     thing.__dict__["description"] = str(description.path)
+    for name in ("jointVelocities", "jointTorques"):
+        thing.__dict__[name] = dict.fromkeys(description.joints, 0.0)
     thing.__dict__["_assembly"] = thing
     frames = _Frames(thing, origin_of(description))
     links: dict[str, Any] = {BASE: thing}

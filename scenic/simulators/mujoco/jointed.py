@@ -90,6 +90,28 @@ class Jointed:
         """Present speeds of the joints, radians or metres per second."""
         return {name: float(self._joint(name).qvel[0]) for name in self.description.joints}
 
+    def torques(self) -> dict[str, float]:
+        """Torques (newton metres) or forces (newtons) that drives exert on the joints."""
+        data = self._simulation.data
+        dofs = {
+            name: int(self._simulation.model.joint(self._prefix + name).dofadr[0])
+            for name in self.description.joints
+        }
+        return {name: float(data.qfrc_actuator[dof] + data.qfrc_applied[dof]) for name, dof in dofs.items()}
+
+    def gripper_bodies(self) -> list[int]:
+        """Numbers of the bodies that the joints of the thing's gripper move."""
+        model = self._simulation.model
+        roots = {
+            int(model.jnt_bodyid[model.joint(self._prefix + name).id])
+            for name in getattr(self._thing, "gripper", ())
+        }
+        moved: list[int] = []
+        for body in range(model.nbody):  # parents come first
+            if body in roots or int(model.body_parentid[body]) in moved:
+                moved.append(body)
+        return moved
+
     def place(self, link: str, middle: Floats) -> tuple[Floats, Floats]:
         """The place of a point of a link ``(3,)``, and the link's orientation ``(x, y, z, w)``."""
         body = self._simulation.data.body(self._prefix + link)

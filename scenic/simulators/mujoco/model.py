@@ -5,6 +5,7 @@ and touch others with its convex parts. The frame of a body is that of the objec
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import field
 from typing import Any, Final
 
@@ -18,9 +19,19 @@ from scenic.simulators.commands import model_of
 from scenic.simulators.mujoco.jointed import attach
 from scenic.simulators.mujoco.library import library
 
-__all__ = ["MODELS", "Builder", "Part"]
+__all__ = ["MODELS", "Builder", "Part", "wheelbase", "wheels"]
 
-MODELS: Final = ("point", "free", "static", "guided", "differential", "quadrotor", "articulated", "link")
+MODELS: Final = (
+    "point",
+    "free",
+    "static",
+    "guided",
+    "differential",
+    "bicycle",
+    "quadrotor",
+    "articulated",
+    "link",
+)
 DENSITY: Final = 1000.0
 """Of objects that say neither mass nor density, kilograms per cubic metre: that of water."""
 
@@ -28,6 +39,8 @@ _TRACK: Final = 0.98
 """Distance of a robot's wheels, as a part of its width: they stand within its box."""
 _WHEEL_MASS: Final = 0.05
 """Of each wheel, as a part of the robot's mass."""
+_BASE: Final = 0.6
+"""Distance of a car's axles, as a part of its length, as in the kinematic simulator."""
 _SERVO: Final = 0.05
 """Seconds in which the drive of a robot corrects most of a difference in speed."""
 _STIFF: Final = (0.01, 1.0)
@@ -71,6 +84,18 @@ class Part:
     def track(self) -> float:
         """Distance of its wheels, metres."""
         return _TRACK * float(self.thing.width)
+
+
+def wheelbase(thing: Any) -> float:
+    """The distance between the axles of a car, metres."""
+    return _BASE * float(thing.length)
+
+
+def wheels(thing: Any, track: float) -> Iterator[tuple[str, float, float]]:
+    """The wheels of a car: their names, and where they are in its frame, metres to the right and forward."""
+    for side, x in (("left", -0.5 * track), ("right", 0.5 * track)):
+        for end, y in (("front", 0.5 * wheelbase(thing)), ("rear", -0.5 * wheelbase(thing))):
+            yield f"{end} {side}", x, y
 
 
 class Builder:
@@ -137,6 +162,8 @@ class Builder:
             weight = self._weight(thing)
             if model == "differential":
                 self._robot(body, part, weight)
+            elif model == "bicycle":
+                self._car(body, part, weight)
             else:
                 self._form(body, part, {**weight, "priority": 1})
             if model == "guided":
@@ -278,26 +305,8 @@ class Builder:
         low = -0.5 * height
         for side, x in (("left", -0.5 * part.track), ("right", 0.5 * part.track)):
             thickness = 0.5 * (width - part.track)
-            wheel = body.add_body(name=f"{part.name} {side}", pos=[x, 0, low + part.radius])
-            joint = wheel.add_joint(
-                name=f"{part.name} {side}", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[-1, 0, 0]
-            )
-            joint.armature = 0.01 * mass * part.radius**2
-            wheel.add_geom(
-                type=mujoco.mjtGeom.mjGEOM_ELLIPSOID,
-                size=[thickness, part.radius, part.radius],
-                mass=mass * _WHEEL_MASS,
-                solref=list(_HARD),
-                friction=[1.0, 0.005, 0.0001],
-                priority=2,
-                rgba=[0.15, 0.15, 0.16, 1],
-            )
-            drive = self.spec.add_actuator(
-                name=f"{part.name} {side}",
-                target=f"{part.name} {side}",
-                trntype=mujoco.mjtTrn.mjTRN_JOINT,
-            )
-            drive.set_to_velocity(kv=mass * part.radius**2 / (2 * _SERVO))
+            place = (x, 0.0, low + part.radius)
+            self._wheel(body, part, side, place, thickness, mass, drive=mass * part.radius**2 / (2 * _SERVO))
         ball = 0.5 * clearance
         # A little above the ground, so that the wheels carry the robot.
         for y in (-0.5 * length + ball, 0.5 * length - ball):
@@ -312,6 +321,87 @@ class Builder:
                 rgba=[0.3, 0.3, 0.3, 1],
             )
         part.mass = mass
+
+    def _wheel(
+        self,
+        holder: Any,
+        part: Part,
+        name: str,
+        place: tuple[float, float, float],
+        thickness: float,
+        mass: float,
+        *,
+        drive: float,
+    ) -> None:
+        """A wheel of an object of a mass (kilograms), with a drive that corrects differences in speed."""
+        kinds, full = self._mj, f"{part.name} {name}"
+        wheel = holder.add_body(name=full, pos=list(place))
+        joint = wheel.add_joint(name=full, type=kinds.mjtJoint.mjJNT_HINGE, axis=[-1, 0, 0])
+        joint.armature = 0.01 * mass * part.radius**2
+        wheel.add_geom(
+            type=kinds.mjtGeom.mjGEOM_ELLIPSOID,
+            size=[thickness, part.radius, part.radius],
+            mass=mass * _WHEEL_MASS,
+            solref=list(_HARD),
+            friction=[1.0, 0.005, 0.0001],
+            priority=2,
+            rgba=[0.15, 0.15, 0.16, 1],
+        )
+        motor = self.spec.add_actuator(name=full, target=full, trntype=kinds.mjtTrn.mjTRN_JOINT)
+        motor.set_to_velocity(kv=drive)
+
+    def _car(self, body: Any, part: Part, weight: dict[str, float]) -> None:
+        """A body on four driven wheels, of which the front ones are steered."""
+        thing = part.thing
+        width, length, height = float(thing.width), float(thing.length), float(thing.height)
+        radius = getattr(thing, "wheelRadius", None)
+        part.radius = 0.22 * height if radius is None else float(radius)
+        if not 0 < 2 * part.radius <= min(height, 0.5 * length) * (1 + 1e-9):
+            raise SimulationCreationError(
+                f"the wheels of {thing!r} do not fit into it: wheelRadius is {part.radius:g}",
+                help="`wheelRadius` (metres) is at most half of the object's height and a quarter of its length",
+            )
+        clearance = 0.6 * part.radius
+        tall = height - clearance
+        part.mass = mass = weight["mass"] if "mass" in weight else weight["density"] * width * length * tall
+        self._form(body, part, {"mass": mass, "priority": 1}, bottom=clearance)
+        # Most of a car's mass is low, or it would tip over in curves.
+        body.explicitinertial = True
+        body.mass = mass * (1 - 4 * _WHEEL_MASS)
+        body.ipos = [0.0, 0.0, -0.5 * height + 1.2 * part.radius]
+        body.inertia = [
+            body.mass / 12 * sum(extent**2 for extent in extents)
+            for extents in ((length, tall), (width, tall), (width, length))
+        ]
+        thickness = 0.1 * width
+        drive = mass * part.radius**2 / (4 * _SERVO)
+        for name, x, y in wheels(thing, part.track - thickness):
+            place = (x, y, part.radius - 0.5 * height)
+            if y > 0:
+                holder, place = self._steering(body, part, name, place), (0.0, 0.0, 0.0)
+                self._wheel(holder, part, name, place, thickness, mass, drive=drive)
+                # Things touch their parents' parents otherwise.
+                self.spec.add_exclude(bodyname1=part.name, bodyname2=f"{part.name} {name}")
+            else:
+                self._wheel(body, part, name, place, thickness, mass, drive=drive)
+
+    def _steering(self, body: Any, part: Part, name: str, place: tuple[float, float, float]) -> Any:
+        """The body that holds a steered wheel, with the drive that turns it."""
+        kinds, full = self._mj, f"{part.name} {name} steering"
+        holder = body.add_body(name=full, pos=list(place))
+        holder.add_geom(
+            type=kinds.mjtGeom.mjGEOM_SPHERE,
+            size=[0.2 * part.radius, 0, 0],
+            mass=0.01 * part.mass,
+            contype=0,
+            conaffinity=0,
+            group=_NOT_DRAWN,
+        )
+        joint = holder.add_joint(name=full, type=kinds.mjtJoint.mjJNT_HINGE, axis=[0, 0, 1])
+        joint.armature = 0.01 * part.mass * part.radius**2
+        servo = self.spec.add_actuator(name=full, target=full, trntype=kinds.mjtTrn.mjTRN_JOINT)
+        servo.set_to_position(kp=5 * part.mass * wheelbase(part.thing) * part.radius, dampratio=1.0)
+        return holder
 
     def _guide(self, body: Any, part: Part) -> None:
         """A floating body, welded to a frame that moves by commands."""

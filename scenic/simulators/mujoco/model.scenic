@@ -37,13 +37,18 @@ class Articulated(Body):
     joints: {}
     jointValues[dynamic]: {}
     jointVelocities[dynamic]: {}
+    jointTorques[dynamic]: {}
+    """Torques (newton metres) or forces (newtons) of the drives of joints."""
+    gripperContacts[dynamic]: ()
+    """The objects that links touch which the joints of the gripper move."""
     jointSpeed: 1.5
     gripper: ()
     links: {}
     shape: base_shape(self.description)
 
     def _assembled(self):
-        assemble(self, Link)
+        if self.dynamics == 'articulated':
+            assemble(self, Link)
 
     def link(self, name):
         """The object that is a link."""
@@ -57,16 +62,29 @@ class Articulated(Body):
         """Whether the frame can be at an object or place without the links touching each other."""
         return reaches(self, target, frame, down, tolerance)
 
-class Robot(Body):
-    """Drives on two wheels, whose speeds `SetWheelSpeeds` sets."""
-    dynamics: 'differential'
-    width: 0.35
-    length: 0.35
-    height: 0.12
+class Robot(Articulated):
+    """A robot that an MJCF or URDF file describes, as an `Articulated`; without `description` it drives on two wheels.
+
+    `SetWheelSpeeds` sets the speeds of these.
+    """
+    dynamics: 'differential' if self.description is None else 'articulated'
+    shape: BoxShape() if self.description is None else base_shape(self.description)
+    width: 0.35 if self.description is None else self.shape.width
+    length: 0.35 if self.description is None else self.shape.length
+    height: 0.12 if self.description is None else self.shape.height
     wheelRadius: 0.04
-    density: 300
+    density: 300 if self.description is None else 1000
     touches[dynamic]: ()
     """Places in its own frame where others have touched its sides during the last step."""
+
+class Car(Body):
+    """Drives on four wheels, of which the front ones are steered: `SetThrottle` and `SetSteering`."""
+    dynamics: 'bicycle'
+    width: 1.8
+    length: 4.3
+    height: 1.5
+    mass: 1200
+    wheelRadius: 0.33
 
 class Gripper(Body):
     """A hand that moves as `SetVelocity` says, and holds what it touches from `Grasp` to `Release`."""

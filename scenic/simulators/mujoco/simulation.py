@@ -16,7 +16,7 @@ from scenic.simulators.mujoco.articulated import description_of, middle_of
 from scenic.simulators.mujoco.images import Images
 from scenic.simulators.mujoco.jointed import Jointed
 from scenic.simulators.mujoco.library import library, quietly
-from scenic.simulators.mujoco.model import Builder, Part, grip_name
+from scenic.simulators.mujoco.model import Builder, Part, grip_name, wheelbase, wheels
 from scenic.simulators.simulation import Simulation
 
 __all__ = ["MujocoSimulation"]
@@ -114,7 +114,7 @@ class MujocoSimulation(Simulation):
             self._jointed[id(part.thing)].start()
         if not part.moves:
             return
-        if part.model != "differential":
+        if part.model not in ("differential", "bicycle"):
             part.mass = float(self.model.body(part.name).mass[0])
         place = self._joint(part)[1]
         obj = part.thing
@@ -125,6 +125,17 @@ class MujocoSimulation(Simulation):
             part.command.update(zip(("vx", "vy", "vz"), tuple(obj.velocity), strict=True))
         elif part.model == "quadrotor":
             part.command.update(thrust=self._gravity, pitch=0.0, roll=0.0, turn=0.0, yaw=obj.orientation.yaw)
+        elif part.model == "bicycle":
+            part.command.update(
+                speed=float(_matrix(obj.orientation)[:, 1] @ np.array(tuple(obj.velocity))),
+                throttle=0.0,
+                steering=0.0,
+            )
+            self._drive(part, 0.0)
+            for name, _, _ in wheels(obj, part.track):
+                self.data.qvel[self.model.joint(f"{part.name} {name}").dofadr[0]] = (
+                    part.command["speed"] / part.radius
+                )
         elif part.model == "differential":
             forward = float(_matrix(obj.orientation)[:, 1] @ np.array(tuple(obj.velocity)))
             self.command(obj, {"left": forward, "right": forward})
@@ -212,7 +223,7 @@ class MujocoSimulation(Simulation):
         """Advance by the steps of the physics that make a step of the simulation."""
         mujoco = library()
         jointed = list(self._jointed.values())
-        steered = [part for part in self._parts.values() if part.model in ("guided", "quadrotor")]
+        steered = [part for part in self._parts.values() if part.model in ("guided", "quadrotor", "bicycle")]
         feeling = [part for part in self._parts.values() if part.moves and hasattr(part.thing, "touches")]
         self._touches = {id(part.thing): [] for part in feeling}
         self._push()
@@ -253,9 +264,27 @@ class MujocoSimulation(Simulation):
                 mocap = self.model.body(f"{part.name} guide").mocapid[0]
                 self._accelerate(command, step)
                 self.data.mocap_pos[mocap] += [command[name] * step for name in ("vx", "vy", "vz")]
+            elif part.model == "bicycle":
+                self._drive(part, step)
             else:
                 command["yaw"] += command["turn"] * step
                 self._fly(part)
+
+    def _drive(self, part: Part, step: float) -> None:
+        """Let the wheels of a car roll, each along its own circle about the centre of the curve (R. Ackermann's steering)."""
+        command, base = part.command, wheelbase(part.thing)
+        before = command["speed"]
+        after = before + command["throttle"] * step
+        command["speed"] = 0.0 if before >= 0 > after else after  # braking ends in a stop
+        curvature = math.tan(command["steering"]) / base
+        for name, x, y in wheels(part.thing, part.track):
+            across, along = 1 + curvature * x, curvature * (y + 0.5 * base)
+            speed = command["speed"] * math.hypot(across, along)
+            self.data.ctrl[self.model.actuator(f"{part.name} {name}").id] = speed / part.radius
+            if y > 0:
+                self.data.ctrl[self.model.actuator(f"{part.name} {name} steering").id] = math.atan2(
+                    along, across
+                )
 
     def _feel(self, parts: list[Part]) -> None:
         """Note where others touch the sides of these bodies."""
@@ -373,7 +402,13 @@ class MujocoSimulation(Simulation):
         values: dict[str, Any] = {}
         if part.model == "articulated":
             jointed = self._jointed[id(part.thing)]
-            values = {"jointValues": jointed.values(), "jointVelocities": jointed.velocities()}
+            values = {
+                "jointValues": jointed.values(),
+                "jointVelocities": jointed.velocities(),
+                "jointTorques": jointed.torques(),
+            }
+            if "gripperContacts" in properties:
+                values["gripperContacts"] = self._held(jointed)
         elif (jointed := self._jointed.get(id(part.thing.base))) is not None:  # type: ignore[assignment] # or none
             middle = middle_of(jointed.description, part.thing.linkName)
             place, (x, y, z, w) = jointed.place(part.thing.linkName, middle)
@@ -382,6 +417,26 @@ class MujocoSimulation(Simulation):
             yaw, pitch, roll = turn.eulerAngles
             values = {"position": Vector.of(tuple(place.tolist())), "yaw": yaw, "pitch": pitch, "roll": roll}
         return {name: values[name] if name in values else stored[name] for name in properties}
+
+    def _held(self, jointed: Jointed) -> tuple[Any, ...]:
+        """The objects that the links of a gripper touch."""
+        fingers = jointed.gripper_bodies()
+        contacts = self.data.contact
+        if not fingers or not len(contacts.geom):
+            return ()
+        bodies = self.model.geom_bodyid[contacts.geom]
+        one, other = bodies[:, 0], bodies[:, 1]
+        among = [np.isin(side, fingers) for side in (one, other)]
+        touched = {
+            int(body) for body in np.concatenate([other[among[0] & ~among[1]], one[among[1] & ~among[0]]])
+        }
+        return tuple(part.thing for part in self._parts.values() if touched & self._bodies(part))
+
+    def _bodies(self, part: Part) -> set[int]:
+        """Numbers of the bodies of the model that are an object; none for things with joints and their links."""
+        if part.model in ("articulated", "link"):
+            return set()
+        return {int(self.model.body(part.name).id)}
 
     def jointed(self, agent: object) -> Jointed:
         """The joints of an agent."""
