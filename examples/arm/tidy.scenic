@@ -1,5 +1,7 @@
 """A small arm takes a thing from a table with random clutter and puts it into an open drawer."""
 
+from scenic import RGBSensor
+
 model scenic.simulators.mujoco.model
 
 table = new Fixture at (0, 0, 0.35), with width 1.4, with length 1.2, with height 0.7, with color (0.8, 0.78, 0.74)
@@ -26,6 +28,17 @@ arm = new Articulated at (0, -0.35), on table, with description "arm.xml", with 
     with joints {'turn': Range(-20, 20) deg, 'lift': -20 deg, 'elbow': -60 deg, 'bend': -80 deg},
     with behavior PickAndPlace(cup, goal.position, 'grip')
 ego = arm
+
+# For images: `scenic sample tidy.scenic -n 100 --camera front --camera above -o images`.
+class Eye(Fixture):
+    width: 0.04
+    length: 0.04
+    height: 0.04
+    render: False
+    collides: False
+
+new Eye at (0.9, 1.1, 1.5), facing directly toward table, with sensors {"front": RGBSensor(width=640, height=480)}
+new Eye at (0, 0.1, 2.2), facing directly toward table, with sensors {"above": RGBSensor(width=640, height=480)}
 
 require arm.reaches(cup, 'grip', down=True)
 require arm.reaches(goal, 'grip', down=True)

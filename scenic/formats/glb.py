@@ -13,11 +13,13 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from scenic.formats.image_coordinates import image_coordinates
 from scenic.formats.instances import Instance, Surface, distinct_labels, picture
 from scenic.formats.poses import Four, Triple
 from scenic.formats.scenery import scenery_of
 from scenic.formats.scenes import Scene
 from scenic.formats.sensors import viewpoints
+from scenic.formats.textures import ImageTexture, placed_errors, texture_of
 from scenic.graph import quaternions
 
 _FLOAT: Final = 5126
@@ -25,6 +27,7 @@ _UINT16: Final = 5123
 _UINT32: Final = 5125
 _ARRAY_BUFFER: Final = 34962
 _ELEMENT_BUFFER: Final = 34963
+_REPEAT: Final = 10497
 _LIGHTS: Final = "KHR_lights_punctual"
 _SUNLIGHT: Final = 3.0
 """Strength of the usual sun; viewers take glTF's lux for brightness."""
@@ -37,24 +40,34 @@ def glb(scene: Scene) -> bytes:
     drawn = picture([scene])
     buffers = _Buffers()
     primitives = [buffers.surface(surface) for surface in drawn.surfaces]
-    materials: dict[Four, int] = {}
-    meshes: dict[tuple[int, Four], int] = {}
+    looks = _Looks(buffers)
+    meshes: dict[object, int] = {}
     mesh_list: list[dict[str, Any]] = []
     nodes: list[dict[str, Any]] = []
     names = distinct_labels(drawn.scenes[0])
     for index, instance in enumerate(drawn.scenes[0]):
-        key = (instance.surface, instance.color)
-        if key not in meshes:
-            meshes[key] = len(mesh_list)
-            mesh_list.append(
-                {
-                    "primitives": [
-                        {**part, "material": materials.setdefault(color, len(materials))}
-                        for paint, part in primitives[instance.surface]
-                        for color in [instance.color if paint is None else (*paint, instance.color[3])]
-                    ]
-                }
-            )
+        with placed_errors(scene):
+            texture = texture_of(instance.thing.properties.get("texture"), instance.color, instance.folder)
+            image = texture if isinstance(texture, ImageTexture) else None
+            # An image covers objects of each size in its own way.
+            own = (id(instance.thing),) if image is not None else ()
+            key = (instance.surface, instance.color, *own)
+            if key not in meshes:
+                meshes[key] = len(mesh_list)
+                parts = (
+                    primitives[instance.surface]
+                    if image is None
+                    else [(None, buffers.covered(drawn.surfaces[instance.surface], instance, image))]
+                )
+                mesh_list.append(
+                    {
+                        "primitives": [
+                            {**part, "material": looks.material(color, image)}
+                            for paint, part in parts
+                            for color in [instance.color if paint is None else (*paint, instance.color[3])]
+                        ]
+                    }
+                )
         nodes.append(_node(instance, index, meshes[key], names[index]))
     cameras, lights = _cameras(scene, nodes), _sun(scene, nodes)
     # A quarter turn about X: Z up becomes Y up, and north (Y) becomes -Z, which is ahead in glTF.
@@ -70,7 +83,7 @@ def glb(scene: Scene) -> bytes:
     if mesh_list:
         document |= {
             "meshes": mesh_list,
-            "materials": [_material(color) for color in materials],
+            **looks.document(),
             "accessors": buffers.accessors,
             "bufferViews": buffers.views,
             "buffers": [{"byteLength": len(buffers.data)}],
@@ -156,6 +169,50 @@ def _linear(value: float) -> float:
     return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
 
 
+class _Looks:
+    """Materials and images."""
+
+    def __init__(self, buffers: "_Buffers") -> None:
+        self._buffers = buffers
+        self._materials: dict[object, int] = {}
+        self._list: list[dict[str, Any]] = []
+        self._images: dict[str, int] = {}
+        self._image_list: list[dict[str, Any]] = []
+
+    def material(self, color: Four, image: ImageTexture | None) -> int:
+        """The number of the material of a colour, or of an image."""
+        digest = None if image is None else image.digest()
+        key = (color, digest)
+        if key not in self._materials:
+            self._materials[key] = len(self._list)
+            material = _material(color)
+            if image is not None and digest is not None:
+                factors = material["pbrMetallicRoughness"]
+                factors["baseColorFactor"] = [1.0, 1.0, 1.0, color[3]]  # the image is multiplied with it
+                factors["baseColorTexture"] = {"index": self._image(image, digest)}
+            self._list.append(material)
+        return self._materials[key]
+
+    def _image(self, image: ImageTexture, digest: str) -> int:
+        if digest not in self._images:
+            self._images[digest] = len(self._image_list)
+            content = image.path.read_bytes()
+            kind = "image/png" if content.startswith(b"\x89PNG") else "image/jpeg"
+            self._image_list.append({"bufferView": self._buffers.view(content), "mimeType": kind})
+        return self._images[digest]
+
+    def document(self) -> dict[str, Any]:
+        """The parts of the document."""
+        if not self._image_list:
+            return {"materials": self._list}
+        return {
+            "materials": self._list,
+            "images": self._image_list,
+            "textures": [{"source": number, "sampler": 0} for number in range(len(self._image_list))],
+            "samplers": [{"wrapS": _REPEAT, "wrapT": _REPEAT}],
+        }
+
+
 class _Buffers:
     """The binary part and its descriptions."""
 
@@ -179,6 +236,33 @@ class _Buffers:
             (paint, {"attributes": attributes, "indices": self._indices(faces, len(vertices))})
             for paint, faces in surface.painted()
         ]
+
+    def covered(self, surface: Surface, instance: Instance, image: ImageTexture) -> dict[str, Any]:
+        """Store a surface with an image on it, corner by corner."""
+        corners = surface.faces.reshape(-1)
+        vertices = surface.vertices[corners].astype("<f4")
+        positions = self._add(vertices, "VEC3", _FLOAT, _ARRAY_BUFFER)
+        self.accessors[positions] |= {
+            "min": vertices.min(axis=0).tolist(),
+            "max": vertices.max(axis=0).tolist(),
+        }
+        shape = instance.thing.shape
+        places = image_coordinates(shape.mesh, image, instance.size, shape.source.as_dict()).reshape(-1, 2)
+        # Images of glTF begin above.
+        places = np.column_stack([places[:, 0], 1 - places[:, 1]]).astype("<f4")
+        return {
+            "attributes": {
+                "POSITION": positions,
+                "NORMAL": self._add(surface.normals[corners].astype("<f4"), "VEC3", _FLOAT, _ARRAY_BUFFER),
+                "TEXCOORD_0": self._add(places, "VEC2", _FLOAT, _ARRAY_BUFFER),
+            }
+        }
+
+    def view(self, content: bytes) -> int:
+        """Store bytes that are no array."""
+        self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(content)})
+        self.data += content + b"\0" * (-len(content) % 4)
+        return len(self.views) - 1
 
     def _indices(self, faces: npt.NDArray[np.int64], count: int) -> int:
         small = count < 0xFFFF

@@ -2,6 +2,7 @@ import io
 import json
 import math
 import struct
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 import trimesh
 from scipy.spatial.transform import Rotation
 
+import scenic
 from scenic.formats.glb import glb
 from tests.formats.stand_ins import BALL, Chair, Object, Scene, Turn
 
@@ -119,3 +121,36 @@ def test_cameras_and_the_sun_are_in_the_file() -> None:
     assert backwards(sun) == pytest.approx([0, 0.5**0.5, 0.5**0.5], abs=1e-9)
     assert document["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] == pytest.approx(1.5)
     assert document["nodes"][-1]["children"] == [0, 1, 2]
+
+
+def test_images_cover_objects_as_in_their_own_pictures(tmp_path: Path) -> None:
+    """Seen by another library: the colours at the middles of the sides of a box, whose image has a colour in each quarter."""
+    from PIL import Image
+
+    corners = np.zeros((64, 64, 3), np.uint8)
+    corners[:32, :32], corners[:32, 32:], corners[32:, :32], corners[32:, 32:] = (
+        (250, 0, 0), (0, 250, 0), (0, 0, 250), (250, 250, 0)
+    )  # fmt: skip
+    Image.fromarray(corners).save(tmp_path / "four.png")
+    text = (
+        "ego = new Object with texture 'four.png', with width 2, with length 2, with height 2\n"
+        "new Object at (5, 0), with color (1, 0, 0)\n"
+    )
+    scenario = scenic.scenarioFromString(text, filename=str(tmp_path / "a.scenic"))
+    (scene,) = scenario.sample(1, seed=1)
+    loaded = trimesh.load_scene(io.BytesIO(glb(scene)), file_type="glb")
+    box = next(
+        mesh
+        for name, mesh in loaded.geometry.items()
+        if mesh.visual.kind == "texture" and mesh.visual.material.baseColorTexture
+    )
+    assert np.array_equal(np.asarray(box.visual.material.baseColorTexture)[..., :3], corners)
+    # The side that looks to -Y, as seen from there: X to the right, Z up. Meshes are in the unit box.
+    points, wanted = [(-0.25, -0.5, 0.25), (0.25, -0.5, 0.25), (-0.25, -0.5, -0.25), (0.25, -0.5, -0.25)], []
+    for point in points:
+        _, _, face = trimesh.proximity.closest_point(box, [point])
+        weights = trimesh.triangles.points_to_barycentric(box.triangles[face], [point])
+        u, v = (weights[0][:, None] * box.visual.uv[box.faces[face[0]]]).sum(axis=0)
+        # trimesh turns the second coordinate back, upwards.
+        wanted.append(tuple(corners[int((1 - v % 1) * 64) % 64, int((u % 1) * 64)].tolist()))
+    assert wanted == [(250, 0, 0), (0, 250, 0), (0, 0, 250), (250, 250, 0)]

@@ -247,6 +247,7 @@ ego = new Articulated at (0, 0, 0.04), with description r"{ARM}", with gripper (
     with joints {{'left': 0.03, 'right': 0.03}}, with behavior Close(), with present True
 place = ego.frame('grip')
 record initial ego.gripperContacts as before
+record initial ego.links['hand'].position as hand
 record final [thing is block for thing in ego.gripperContacts] as after
 record final ego.jointTorques as torques
 """
@@ -261,6 +262,8 @@ record final ego.jointTorques as torques
     scene = loaded(text.replace("0, 0, 0.85", f"{tip.x}, {tip.y}, {tip.z}"), tmp_path).sample(1, seed=1)[0]
     records = MujocoSimulator(timestep=0.05).simulate(scene, maxSteps=6).records
     assert records["before"] == ()
+    hand = next(thing for thing in scene.objects if getattr(thing, "linkName", None) == "hand")
+    assert tuple(records["hand"]) == pytest.approx(tuple(hand.position), abs=1e-9)
     assert records["after"] == [True]
     # It is squeezed from both sides.
     assert records["torques"]["left"] < -1

@@ -637,7 +637,7 @@ def test_the_command_simulates(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("properties", "message"),
     [
-        ("with dynamics 'bicycle'", "no dynamics 'bicycle'"),
+        ("with dynamics 'walker'", "no dynamics 'walker'"),
         ("with mass -1", "the mass of .* must be a positive number, not -1"),
         ("with density 'lead'", "the density of .* must be a positive number"),
         ("with friction -0.1", "the friction of"),

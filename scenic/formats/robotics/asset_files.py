@@ -7,6 +7,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from scenic.formats.image_coordinates import image_coordinates
 from scenic.formats.robotics.solids import Solid
 from scenic.formats.textures import ImageTexture
 
@@ -35,25 +36,9 @@ def mesh_file(solid: Solid) -> tuple[str, bytes]:
 
 
 def texture_coordinates(solid: Solid) -> npt.NDArray[np.float64]:
-    """Texture coordinates ``(f, 3, 2)`` of the triangles of a solid with an image: those of its file, else from six sides."""
-    from scenic.formats.mesh_coordinates import coordinates_of
-
-    mesh, texture = solid.mesh, solid.texture
-    assert texture is not None
-    faces = np.asarray(mesh.faces)
-    size = np.asarray(solid.size)
-    places = (mesh.vertices * size)[faces]
-    cross = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
-    normals = np.repeat(cross / np.maximum(np.linalg.norm(cross, axis=1, keepdims=True), 1e-30), 3, axis=0)
-    projected, _ = texture.projected(
-        places.reshape(-1, 3).astype(np.float32), normals.astype(np.float32), solid.size
-    )
-    found = np.asarray(projected, np.float64).reshape(-1, 3, 2)
-    if texture.projection == "mesh":
-        own = coordinates_of(solid.thing.shape.source.as_dict(), mesh.vertices, faces)
-        if own is not None:
-            found = np.where(np.isnan(own), found, own)
-    return found
+    """Texture coordinates ``(f, 3, 2)`` of the triangles of a solid with an image."""
+    assert solid.texture is not None
+    return image_coordinates(solid.mesh, solid.texture, solid.size, solid.thing.shape.source.as_dict())
 
 
 def image_file(texture: ImageTexture) -> tuple[str, bytes]:

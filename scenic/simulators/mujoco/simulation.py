@@ -77,6 +77,12 @@ class MujocoSimulation(Simulation):
         self._compile()
         for part in self._parts.values():
             self._start(part)
+        self._place_links()
+
+    def _place_links(self) -> None:
+        """Compute where links are, which is read before the first step."""
+        if self._jointed:
+            library().mj_kinematics(self.model, self.data)
 
     def createObjectInSimulator(self, obj: Any) -> None:
         """A body for the object; in a simulation that runs the others stay as they are."""
@@ -87,6 +93,7 @@ class MujocoSimulation(Simulation):
         if self.model is not None:
             self._compile()
             self._start(part)
+            self._place_links()
 
     def _compile(self) -> None:
         mujoco, spec = library(), self._builder.spec
