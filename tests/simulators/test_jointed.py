@@ -178,6 +178,31 @@ def test_reaching_agrees_with_a_search_by_brute_force() -> None:
     assert decided > 20
 
 
+def test_obstacles_keep_an_arm_away(tmp_path: Path) -> None:
+    """A lid over the place is in the way of an arm that comes from above, wherever all of it stands; far away it is not."""
+    text = f"""
+turn = Range(0, 360) deg
+ego = new Articulated at (3, 1, 0.04), facing turn, with description r"{ARM}"
+place = new Point at Vector(0, 0.4, 0.2).rotatedBy(turn) + (3, 1, 0)
+lid = new Fixture at place.position + (0, 0, Uniform(0.06, 5)), facing turn, with width 0.6, with length 0.6, with height 0.02,
+    with allowCollisions True
+param free = ego.reaches(place, 'grip', down=True)
+param under = ego.reaches(place, 'grip', down=True, avoiding=[lid])
+param height = lid.position.z
+"""
+    scenes = loaded(text, tmp_path).sample(12, seed=2)
+    assert all(scene.params["free"] for scene in scenes)
+    assert all(scene.params["under"] == (scene.params["height"] > 1) for scene in scenes)
+    assert len({scene.params["under"] for scene in scenes}) == 2
+
+
+def test_only_objects_are_obstacles(tmp_path: Path) -> None:
+    text = f"ego = new Articulated with description r'{ARM}'\nparam x = ego.reaches((0, 1, 1), 'grip', avoiding=[3])\n"
+    with pytest.raises(Located, match="avoiding") as caught:
+        loaded(text, tmp_path)
+    assert caught.value.span is not None
+
+
 def simulated(behavior: str, tmp_path: Path, steps: int, **options: Any) -> Any:
     text = f"""
 table = new Fixture at (0, 0, 0.35), with width 1.4, with length 1.4, with height 0.7

@@ -45,7 +45,7 @@ def scene_files(scene: Scene, form: str, stem: str) -> dict[str, bytes]:
 def write_scene(scene: Scene, path: Path) -> None:
     """Write one scene by the ending of the file's name; meshes are in it where the format has them, else in a folder beside it.
 
-    The scene's own file is written last: a failure leaves none.
+    The scene's own file is written last: a failure leaves none, and no other file that was not there.
     """
     makers: Mapping[str, Callable[[], dict[str, bytes]]] = {
         "usd": lambda: usd_file(scene, path.name),
@@ -53,8 +53,15 @@ def write_scene(scene: Scene, path: Path) -> None:
         "sdf": lambda: sdf(scene, path.name),
     }
     (name, content), *others = makers[ENDINGS[path.suffix.lower()]]().items()
-    for other, data in others:
-        target = path.parent / other
+    targets = [(path.parent / other, data) for other, data in others]
+    for target, _ in targets:
         make_folder(target.parent)
-        write(target, data)
-    write(path.parent / name, content)
+    fresh = [target for target, _ in targets if not target.exists()]
+    try:
+        for target, data in targets:
+            write(target, data)
+        write(path.parent / name, content)
+    except BaseException:
+        for target in fresh:
+            target.unlink(missing_ok=True)
+        raise

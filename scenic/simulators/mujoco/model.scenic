@@ -58,9 +58,9 @@ class Articulated(Body):
         """The frame of a body or site, which follows from the joints, as an oriented point."""
         return frame_of(self, name)
 
-    def reaches(self, target, frame, down=False, tolerance=0.01):
-        """Whether the frame can be at an object or place without the links touching each other."""
-        return reaches(self, target, frame, down, tolerance)
+    def reaches(self, target, frame, down=False, tolerance=0.01, avoiding=()):
+        """Whether the frame can be at an object or place without the links touching each other or objects to avoid."""
+        return reaches(self, target, frame, down, tolerance, avoiding)
 
 class Robot(Articulated):
     """A robot that an MJCF or URDF file describes, as an `Articulated`; without `description` it drives on two wheels.
