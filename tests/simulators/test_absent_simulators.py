@@ -20,6 +20,8 @@ new Pedestrian""",
 ego = new EgoCar
 first = new Car ahead of ego by Range(4, 10), with model CarModel.uniformModel()
 createPlatoonAt(first, 3, dist=Range(1, 2), wiggle=Range(-5, 5) deg)
+beside = carAheadOfCar(ego, 3, offsetX=-4, wiggle=Range(-5, 5) deg)
+require abs((distance from beside to (ego.front offset by (-4, 3))) - beside.length / 2) < 1e-3
 new Bus
 new Compact
 require ego.model.name == 'BLISTA'""",
@@ -39,7 +41,7 @@ def test_programs_sample_and_say_what_running_would_need(folder: Path) -> None:
         text = f"param map = localPath('cross.xodr')\nmodel scenic.simulators.{name}.model\n{PROGRAMS[name]}"
         scenario = scenic.scenarioFromString(text, filename=str(folder / "main.scenic"), mode2D=True)
         (scene,) = scenario.sample(1, seed=2)
-        assert len(scene.objects) == PROGRAMS[name].count("new ") - (name == "lgsvl") + 2 * (name == "gta")
+        assert len(scene.objects) == PROGRAMS[name].count("new ") - (name == "lgsvl") + 3 * (name == "gta")
         with pytest.raises(UnsupportedError, match=r"there is no adapter to .* (need|would)"):
             scenario.getSimulator().simulate(scene, maxSteps=1)
 
