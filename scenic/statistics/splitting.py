@@ -35,6 +35,12 @@ _LEAST: Final = 50
 _FLAT: Final = 0.9
 """Share of the population on one level from which there is no progress."""
 
+_DISTINCT: Final = 0.5
+"""Share of different runs among equal values below which moves are to blame for these."""
+
+_MORE: Final = 1.5
+"""Levels there may be, for each of a pilot that was stuck."""
+
 _ACCEPTED: Final = 0.44
 """Share of accepted moves to aim at."""
 
@@ -87,7 +93,8 @@ class Repetition:
         accepted: the share of accepted moves at each level.
         ancestors: number of members of the first population from which the last one descends.
         runs: number of its runs.
-        is_flat: whether it stopped since most values were equal.
+        is_flat: whether it stopped since the values of most runs were equal.
+        is_stuck: whether it stopped since moves did not leave a few runs.
 
     """
 
@@ -98,11 +105,16 @@ class Repetition:
     ancestors: int = 0
     runs: int = 0
     is_flat: bool = False
+    is_stuck: bool = False
 
     @property
     def mixes_badly(self) -> bool:
         """Return whether hardly any move was accepted at some level, or all members of the last one descend from very few."""
-        return min(self.accepted, default=1.0) < _BADLY or (bool(self.levels) and self.ancestors < 3)
+        return (
+            self.is_stuck
+            or min(self.accepted, default=1.0) < _BADLY
+            or (bool(self.levels) and self.ancestors < 3)
+        )
 
 
 @dataclass(slots=True)
@@ -134,14 +146,16 @@ class Splitting(Generic[_Point]):
         self.first_values: list[float] = []
         """The values of all runs of the program's law, that of the pilot included."""
         self.is_out_of_budget = False
+        self._kernel = _Kernel(self._generator)
 
     def runs(self) -> _Making[_Point]:
         """The runs to be made, some at a time; each time the outcomes of all of them are sent back, in order."""
         yield from self._repeat(self.pilot, _PILOT, 0)
         pilot = self.pilot
-        if self.is_out_of_budget or pilot.is_flat or pilot.log_probability is None:
+        if self.is_out_of_budget or pilot.is_flat or not pilot.runs:
             return
-        per_member = pilot.runs / _PILOT
+        # A pilot that was stuck has not seen all levels.
+        per_member = pilot.runs / _PILOT * (_MORE if pilot.is_stuck else 1)
         for number in range(1, self._count + 1):
             repetition = Repetition()
             size = int(self._left / (self._count + 1 - number) / per_member)
@@ -159,7 +173,7 @@ class Splitting(Generic[_Point]):
         yield from self._first(repetition, size, number, members)
         if len(members) < size:
             return
-        logarithm, kernel = 0.0, _Kernel(self._generator)
+        logarithm, kernel = 0.0, self._kernel
         while True:
             failed = sum(member.value <= 0 for member in members)
             if failed >= _KEPT * size:
@@ -170,14 +184,16 @@ class Splitting(Generic[_Point]):
             level = values[max(1, int(_KEPT * size)) - 1]
             kept = [member for member in members if member.value <= level]
             if len(kept) > _FLAT * size or len(repetition.levels) == _MOST_LEVELS:
-                repetition.is_flat = True
+                # Equal values of different runs show nothing to follow, those of the same run only that moves do not leave it.
+                is_stuck = len({member.point for member in kept}) < _DISTINCT * size
+                repetition.is_stuck, repetition.is_flat = is_stuck, not is_stuck
                 return
             logarithm += math.log(len(kept) / size)
             repetition.levels.append(level)
             repetition.shares.append(logarithm)
             order = self._generator.permutation(len(kept))
             members = [kept[place] for place in order]
-            kernel.begin()
+            kernel.begin(len(repetition.levels))
             yield from self._descend(repetition, members, size, level, number, kernel)
             if len(members) < size:
                 return
@@ -249,10 +265,15 @@ class _Kernel:
         self._tried = [0, 0]
         self._accepted = 0
         self._share = 0.5
+        self._level = 0
+        self._learned: dict[int, tuple[list[float], float]] = {}
+        """Lengths of steps, and the share of moves of blocks, by level."""
 
-    def begin(self) -> None:
-        """A new level begins."""
+    def begin(self, level: int) -> None:
+        """A new level begins; steps are at first those at which an earlier repetition has arrived there, else at the level before."""
         self._jumps, self._tried, self._accepted = [0.0, 0.0], [0, 0], 0
+        self._steps, self._share = self._learned.setdefault(level, (list(self._steps), self._share))
+        self._level = level
 
     @property
     def accepted(self) -> float:
@@ -290,6 +311,7 @@ class _Kernel:
             gain = 0.5 * min(1.0, len(pairs) / 30)
             longer = math.exp(gain * (accepted / len(pairs) - _ACCEPTED))
             self._steps[kind] = min(0.999, self._steps[kind] * longer)
+        self._learned[self._level] = (self._steps, self._share)
 
 
 def repeated_probability(log_probabilities: Sequence[float]) -> float:
