@@ -24,8 +24,11 @@ Floats = NDArray[np.float64]
 _FOLLOWED: Final = ("ce", "cma")
 """Samplers whose last points lie where counterexamples are."""
 
-_FOLLOWED_POINTS: Final = 200
+_FOLLOWED_POINTS: Final = 20
 """Counterexamples of a search that are followed: those that the program draws most easily."""
+
+_NARROWEST: Final = 0.7
+"""Least standard deviation of a number that is drawn, after a map to a standard normal: a sampler narrows its points to a line."""
 
 _LEAST: Final = 10
 """Counterexamples that a search must have found."""
@@ -94,7 +97,8 @@ def guide_of(folder: Path, program: str) -> Guide:
     points = np.clip(points, 2.0**-53, 1 - 2.0**-53)
     # A sampler goes on to ever worse failures, of which nearly none is ever drawn: after a map to normals the likely ones are near 0.
     order = np.argsort(np.square(ndtri(points)).sum(axis=1), kind="stable")
-    return Guide(addresses, Proposal.around(points[order[:_FOLLOWED_POINTS]]))
+    near = Proposal.around(points[order[:_FOLLOWED_POINTS]])
+    return Guide(addresses, Proposal(near.means, np.maximum(near.deviations, _NARROWEST)))
 
 
 @dataclass(frozen=True, slots=True)

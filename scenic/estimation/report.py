@@ -2,6 +2,7 @@
 
 import html
 import math
+import re
 from collections.abc import Mapping, Sequence
 from typing import Final
 
@@ -16,6 +17,12 @@ __all__ = ["estimate_page", "interval_plot"]
 
 _WIDTH: Final = 860
 _HEIGHT: Final = 300
+_ROW: Final = 26
+"""Height of a line in the plot of settings."""
+
+_WIDE_LEFT: Final = 180
+"""Room for the names of settings."""
+
 _LEFT, _RIGHT, _TOP, _BOTTOM = 70, 24, 16, 44
 _POINTS: Final = 160
 """Numbers of runs at which the interval is drawn."""
@@ -41,7 +48,7 @@ def estimate_page(results: Mapping[str, Estimate], title: str) -> str:
             )
             for label, item in results.items()
         ]
-        parts.append(table(head, rows))
+        parts += [table(head, rows), settings_plot(results)]
     parts += [f"<p>{html.escape(line)}</p>" for item in results.values() for line in comparison_words(item)]
     for label, result in results.items():
         if label:
@@ -60,11 +67,16 @@ def _row(label: str, result: Estimate, tally: Tally) -> tuple[str, ...]:
     )
 
 
+def _marked(line: str) -> str:
+    """A sentence as HTML."""
+    return re.sub("`([^`]*)`", r"<code>\1</code>", html.escape(line[:1].upper() + line[1:]))
+
+
 def _section(result: Estimate) -> list[str]:
     """The parts of the page about one estimate."""
-    parts = [f"<p>{html.escape(line)}.</p>" for line in headline(result)]
+    parts = [f"<p>{_marked(line)}.</p>" for line in headline(result)]
     parts.append(f"<p>The interval is one {html.escape(method_words(result))}. Seed {result.seed}.</p>")
-    remarks = "".join(f"<li>{html.escape(line)}</li>" for line in notes(result))
+    remarks = "".join(f"<li>{_marked(line)}</li>" for line in notes(result))
     if remarks:
         parts.append(f"<ul>{remarks}</ul>")
     if result.rare is not None and result.rare.is_known:
@@ -81,6 +93,38 @@ def _section(result: Estimate) -> list[str]:
         if len(rows) > 1:
             parts.append("<p>Each interval is right with its own confidence, not all of them together.</p>")
     return parts
+
+
+def settings_plot(results: Mapping[str, Estimate]) -> str:
+    """The probability and its interval for each setting, as SVG."""
+    shown = {label: item for label, item in results.items() if not math.isnan(item.probability)}
+    if not shown:
+        return ""
+    top = min(1.0, 1.1 * max(item.interval.high for item in shown.values()))
+    height = _TOP + _ROW * len(shown) + _BOTTOM
+
+    def x(share: float) -> float:
+        return _WIDE_LEFT + share / top * (_WIDTH - _WIDE_LEFT - _RIGHT)
+
+    parts = [
+        f"<line x1='{x(value):.1f}' x2='{x(value):.1f}' y1='{_TOP}' y2='{height - _BOTTOM}' stroke='#ddd'/>"
+        f"<text x='{x(value):.1f}' y='{height - _BOTTOM + 18}' text-anchor='middle'>{value:.3g}</text>"
+        for value in _ticks(top)
+    ]
+    for place, (label, item) in enumerate(shown.items()):
+        y = _TOP + _ROW * (place + 0.5)
+        low, high = item.interval
+        parts.append(
+            f"<text x='{_WIDE_LEFT - 10}' y='{y + 4:.1f}' text-anchor='end'>{html.escape(label)}</text>"
+            f"<line x1='{x(low):.1f}' x2='{x(high):.1f}' y1='{y:.1f}' y2='{y:.1f}' stroke='#2e86c1' stroke-width='3'/>"
+            f"<circle cx='{x(item.probability):.1f}' cy='{y:.1f}' r='4' fill='#1b4f72'/>"
+        )
+    confidence = percent(next(iter(shown.values())).confidence)
+    words = (
+        f"<text x='{_WIDTH / 2:.0f}' y='{height - 8}' text-anchor='middle'>probability of a counterexample, with its interval of"
+        f" {confidence}</text>"
+    )
+    return f"<svg viewBox='0 0 {_WIDTH} {height}' width='100%'>{''.join(parts)}{words}</svg>"
 
 
 def interval_plot(result: Estimate) -> str:

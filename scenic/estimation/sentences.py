@@ -31,7 +31,7 @@ def counted(number: int, thing: str) -> str:
 
 def percent(confidence: float) -> str:
     """A confidence in percent."""
-    return f"{100 * confidence:.10g}%"
+    return f"{100 * confidence:.4g}%"
 
 
 def described(probability: float, interval: Interval, confidence: float) -> str:

@@ -125,3 +125,11 @@ def test_two_programs_are_compared_by_equal_runs() -> None:
     assert "interval" in words
     assert "McNemar" in words
     assert ("by chance" in words) == (pairs.p_value < 0.05)
+
+
+def test_settings_are_drawn_side_by_side() -> None:
+    results = {name: made(rows_with(*["FALSE"] * 4, *["TRUE"] * 30)) for name in ("n=1", "n=2")}
+    page = estimate_page(results, "p")
+    assert page.count("with its interval of 95%") == 1
+    assert page.count("<td>n=1</td>") == 1
+    assert "<code>safe</code>" in estimate_page({"": made(rows_with(*[None] * 40))}, "p")
