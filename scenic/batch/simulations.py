@@ -452,7 +452,7 @@ def _failure(error: Exception) -> Diagnostic:
 
 def _why_missing(numbered: "Numbered") -> str:
     """Return the reason why there is no simulation of a number, in words."""
-    if numbered.exhausted is not None:
+    if not numbered.has_scene:
         return "no scene found"
     if numbered.is_random:
         return f"rejected ({numbered.tries} tried)"

@@ -40,6 +40,11 @@ class Numbered:
     is_random: bool = True
     """False if another try would be the same simulation again: the simulator is deterministic, and nothing was drawn."""
 
+    @property
+    def has_scene(self) -> bool:
+        """True if a scene was found."""
+        return self.exhausted is None
+
 
 def choose_simulator(name: str | None, scenario: Scenario) -> Simulator:
     """The simulator of a name: ``kinematic``, ``mujoco``, ``newtonian``, ``dummy`` or ``MODULE:CLASS``; by default the program's own, or ``kinematic``.
