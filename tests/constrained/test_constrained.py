@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -11,11 +12,14 @@ from click.testing import CliRunner
 
 from fuzz.draws import RandomDraws
 from fuzz.grammar import make_program
-from fuzz.layout import lay_out
+from fuzz.layout import lay_out as lay_out_pieces
 from scenic.cli.grammar import grammar
 from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.parser import parse
 from scenic.constrained import FORMATS, grammar_text
+from scenic.constrained.items import TextChoice, TextMany, TextOptional, TextRow, Use, Variant
+from scenic.constrained.layout import lay_out
+from scenic.constrained.rules import read_rules
 from scenic.constrained.terminals import letters
 
 ROOT = Path(__file__).parents[2]
@@ -63,7 +67,7 @@ def test_sentences_are_accepted() -> None:
     """Texts that another generator makes of the grammar of the parser, as they are usually laid out."""
     count = 0
     for seed in range(60):
-        text = lay_out(make_program(RandomDraws(seed)).pieces)
+        text = lay_out_pieces(make_program(RandomDraws(seed)).pieces)
         if not parse(text).diagnostics:
             count += 1
             assert _refused(text) is None, text
@@ -164,6 +168,36 @@ def test_each_format_defines_what_it_uses() -> None:
         # Without literals and classes of characters only names and marks remain.
         rest = re.sub(r'"(?:\\.|[^"\\])*"|\[(?:\\.|[^\]\\])*\]', "", "\n".join(lines))
         assert set(re.findall(r"[\w-]+", rest)) - {"root"} == set(defined) - {"root"}
+
+
+def test_no_rule_begins_with_itself() -> None:
+    """The parser of llama.cpp would not come to an end."""
+    rules = lay_out(read_rules(), "file").rules
+    begins = {variant: set(_beginnings(rows)) for variant, rows in rules.items()}
+    for variant in rules:
+        reached, pending = set(), list(begins[variant])
+        while pending:
+            other = pending.pop()
+            if other not in reached:
+                reached.add(other)
+                pending += begins[other]
+        assert variant not in reached
+
+
+def _beginnings(rows: tuple[TextRow, ...]) -> Iterator[Variant]:
+    for row in rows:
+        for item in row:
+            match item:
+                case Use():
+                    yield item.variant
+                case TextOptional() | TextMany():
+                    yield from _beginnings((item.row,))
+                case TextChoice():
+                    yield from _beginnings(item.rows)
+                case _:
+                    pass
+            if not isinstance(item, TextOptional):
+                break
 
 
 def _rules_in(data: Any) -> Any:
