@@ -1,7 +1,5 @@
 """A small arm takes a thing from a table with random clutter and puts it into an open drawer."""
 
-from scenic import RGBSensor
-
 model scenic.simulators.mujoco.model
 
 table = new Fixture at (0, 0, 0.35), with width 1.4, with length 1.2, with height 0.7, with color (0.8, 0.78, 0.74)
@@ -29,7 +27,7 @@ arm = new Articulated at (0, -0.35), on table, with description "arm.xml", with 
     with behavior PickAndPlace(cup, goal.position, 'grip')
 ego = arm
 
-# For images: `scenic sample tidy.scenic -n 100 --camera front --camera above -o images`.
+# For images: `scenic sample tidy.scenic -n 100 --camera front --camera above --image-size 640x480 -o images`.
 class Eye(Fixture):
     width: 0.04
     length: 0.04
@@ -37,8 +35,8 @@ class Eye(Fixture):
     render: False
     collides: False
 
-new Eye at (0.9, 1.1, 1.5), facing directly toward table, with sensors {"front": RGBSensor(width=640, height=480)}
-new Eye at (0, 0.1, 2.2), facing directly toward table, with sensors {"above": RGBSensor(width=640, height=480)}
+front = new Eye at (0.9, 1.1, 1.5), facing directly toward table
+above = new Eye at (0, 0.1, 2.2), facing directly toward table
 
 require arm.reaches(cup, 'grip', down=True)
 require arm.reaches(goal, 'grip', down=True)

@@ -14,6 +14,7 @@ from scenic.cli.output import has_colours
 
 if TYPE_CHECKING:
     from scenic.batch.engines import Engine
+    from scenic.runtime.scenes.scenario import Scenario
 
 __all__ = [
     "NOT_ALL",
@@ -22,6 +23,7 @@ __all__ = [
     "batch_run",
     "ended_by_signals",
     "engine_of",
+    "find_convex_parts",
     "progress_bar",
 ]
 
@@ -98,6 +100,16 @@ def progress_bar(count: int, doing: str, *, shown: bool) -> Iterator[Advance]:
             progress.update(task, advance=scenes, rate=rate)
 
         yield advance
+
+
+def find_convex_parts(scenario: "Scenario") -> None:
+    """Search for convex parts of a program's meshes that no run has found so far, with a progress bar."""
+    from scenic.batch.part_search import meshes_without_parts, search_parts
+
+    meshes = meshes_without_parts(scenario)
+    if meshes:
+        with progress_bar(len(meshes), "finding convex parts of meshes", shown=True) as advance:
+            search_parts(meshes, advance)
 
 
 def announce_seed(seed: int, things: str) -> None:

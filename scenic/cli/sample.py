@@ -47,6 +47,10 @@ def sample(**options: Any) -> int:
         scenario = _loaded(request)
     if request.profile:
         return _profiled(scenario, request, deadline)
+    if request.settle is not None or request.form in ("mjcf", "sdf"):
+        from scenic.cli.running import find_convex_parts
+
+        find_convex_parts(scenario)
     from scenic.cli.sampling import sample_into_sinks
 
     endless = limited(

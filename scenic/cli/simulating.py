@@ -14,7 +14,7 @@ from scenic.batch.summaries import Setting, csv_of, plot, summary
 from scenic.cli.batch_parts import FileSink, places_of, write_files
 from scenic.cli.options import settings_of
 from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
-from scenic.cli.running import NOT_ALL, Advance, announce_seed, batch_run
+from scenic.cli.running import NOT_ALL, Advance, announce_seed, batch_run, find_convex_parts
 from scenic.cli.simulate_options import FORMS, SimulateRequest
 from scenic.cli.sinks import check_page
 from scenic.formats.course_page import course_page
@@ -98,6 +98,8 @@ def _batches(request: SimulateRequest, seed: int) -> list[tuple[Setting, Simulat
             shown=request.view is not None, only_violations=request.keep == "violations",
         )  # fmt: skip
         batches.append((setting, batch))
+        if getattr(batch.simulator, "touches_with_parts", False):
+            find_convex_parts(loaded)
         idle = nothing_happens(loaded, batch.simulator) if len(batches) == 1 else None
         show_diagnostics([] if idle is None else [idle])
     return batches

@@ -74,6 +74,7 @@ class Jointed:
         self._targets: dict[str, float] = {}
         self._speeds: dict[str, float] = {}
         self._torques: dict[str, float] = {}
+        self._known: tuple[Any, dict[str, tuple[int, int, list[int]]]] | None = None
 
     def start(self) -> None:
         """Give the joints the values of the scene."""
@@ -144,37 +145,40 @@ class Jointed:
 
     def drive(self, step: float) -> None:
         """Set the controls for a step of the physics, in seconds."""
-        data, model = self._simulation.data, self._simulation.model
+        data = self._simulation.data
         most = float(getattr(self._thing, "jointSpeed", 1.5)) * step
-        for name, target in self._targets.items():
-            joint = self.description.joints[name]
-            dof = int(model.joint(self._prefix + name).dofadr[0])
-            data.qfrc_applied[dof] = self._torques.get(name, 0.0)
-            for number in self._actuators(name):
-                if name in self._torques:
-                    data.ctrl[number] = float(self._joint(name).qpos[0])
-                    continue
-                present = float(data.ctrl[number]) if step else target
-                if name in self._speeds:
-                    self._targets[name] = target = min(
-                        max(target + self._speeds[name] * step, joint.low), joint.high
-                    )
-                    data.ctrl[number] = target
-                else:
-                    limit = most * (0.2 if joint.slides else 1.0)
-                    data.ctrl[number] = (
-                        present + min(max(target - present, -limit), limit) if step else target
-                    )
+        for name, (dof, slot, actuators) in self._places().items():
+            if name not in self._targets:
+                continue
+            torque = self._torques.get(name)
+            data.qfrc_applied[dof] = torque or 0.0
+            if torque is not None:
+                data.ctrl[actuators] = data.qpos[slot]
+                continue
+            target, joint = self._targets[name], self.description.joints[name]
+            if name in self._speeds:
+                target = min(max(target + self._speeds[name] * step, joint.low), joint.high)
+                self._targets[name] = target
+            elif step:
+                limit = most * (0.2 if joint.slides else 1.0)
+                for number in actuators:
+                    present = float(data.ctrl[number])
+                    data.ctrl[number] = present + min(max(target - present, -limit), limit)
+                continue
+            data.ctrl[actuators] = target
 
-    def _actuators(self, joint: str) -> list[int]:
+    def _places(self) -> dict[str, tuple[int, int, list[int]]]:
+        """Of each joint its numbers in the model: of its speed, of its value, and of the actuators that drive it."""
         model = self._simulation.model
-        number = model.joint(self._prefix + joint).id
-        kind = int(library().mjtTrn.mjTRN_JOINT)
-        return [
-            actuator
-            for actuator in range(model.nu)
-            if model.actuator_trntype[actuator] == kind and model.actuator_trnid[actuator, 0] == number
-        ]
+        if self._known is None or self._known[0] is not model:  # it is another one after objects were added
+            drives = model.actuator_trntype == int(library().mjtTrn.mjTRN_JOINT)
+            places = {}
+            for name in self.description.joints:
+                joint = model.joint(self._prefix + name)
+                actuators = np.flatnonzero(drives & (model.actuator_trnid[:, 0] == joint.id)).tolist()
+                places[name] = (int(joint.dofadr[0]), int(joint.qposadr[0]), actuators)
+            self._known = model, places
+        return self._known[1]
 
     def _joint(self, name: str) -> Any:
         return self._simulation.data.joint(self._prefix + name)

@@ -31,6 +31,8 @@ class MujocoSimulator(Simulator):
     """
 
     deterministic = True
+    touches_with_parts = True
+    """True if objects touch each other with convex parts of their meshes."""
 
     def __init__(
         self,

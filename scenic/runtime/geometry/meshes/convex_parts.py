@@ -8,11 +8,12 @@ import numpy.typing as npt
 
 from scenic.language.extras import installation
 from scenic.runtime.geometry.meshes.exact_parts import exact_parts
-from scenic.runtime.geometry.store import Arrays, kept
+from scenic.runtime.geometry.store import Arrays, is_kept, kept, store_folder
 from scenic.runtime.ground.context import warn
 
-__all__ = ["convex_parts"]
+__all__ = ["convex_parts", "lacks_parts"]
 
+_APPROXIMATE: Final = "convex parts 1"
 _MOST: Final = 96
 """Parts of an exact division, at most."""
 _NEARLY: Final = 0.98
@@ -37,17 +38,33 @@ def convex_parts(mesh: Any) -> tuple[npt.NDArray[np.float64], ...]:
         mesh: a `scenic.runtime.geometry.meshes.mesh.Mesh` in its unit box.
 
     """
-    if not mesh.is_volume or mesh.is_convex or mesh.volume >= _NEARLY * mesh.hull.volume:
+    if _is_whole(mesh):
         return ()
-    parts = kept("exact parts 1", mesh.digest, lambda: _stored(exact_parts(mesh.vertices, mesh.faces, _MOST)))
+    parts = _exact(mesh)
     if not len(parts["ends"]):
         library = _library()
         if library is None:
             return ()
-        parts = kept("convex parts 1", mesh.digest, lambda: _approximate(mesh, library))
+        parts = kept(_APPROXIMATE, mesh.digest, lambda: _approximate(mesh, library))
     # The hulls may reach out of the solid a little, but never below what it stands on.
     vertices = np.clip(parts["vertices"], mesh.vertices.min(axis=0), mesh.vertices.max(axis=0))
     return tuple(part for part in np.split(vertices, parts["ends"][:-1]) if _volume(part) > _FLAT)
+
+
+def lacks_parts(mesh: Any) -> bool:
+    """Return whether parts of a mesh are still to be searched for, which takes seconds, and would be kept on disk."""
+    if store_folder() is None or _is_whole(mesh) or len(_exact(mesh)["ends"]):
+        return False
+    return not is_kept(_APPROXIMATE, mesh.digest)
+
+
+def _is_whole(mesh: Any) -> bool:
+    """Return whether a mesh needs no parts."""
+    return not mesh.is_volume or mesh.is_convex or mesh.volume >= _NEARLY * mesh.hull.volume
+
+
+def _exact(mesh: Any) -> Arrays:
+    return kept("exact parts 1", mesh.digest, lambda: _stored(exact_parts(mesh.vertices, mesh.faces, _MOST)))
 
 
 def _approximate(mesh: Any, library: Any) -> Arrays:
