@@ -71,6 +71,21 @@ ego = new Car at (100, -1.75), facing -90 deg, with speed 15, with behavior Twic
     assert motion.accelerations[1].min() > -3.2
 
 
+def test_a_behavior_goes_on_along_the_way_of_the_one_before(folder: Path) -> None:
+    # All ways begin alike: nothing else tells which one the car has taken.
+    text = """
+start = network.laneAt((-60, -1.75))
+m = [m for m in start.maneuvers if m.type is ManeuverType.LEFT_TURN][0]
+behavior Two():
+    do FollowTrajectoryBehavior(8, [m.startLane, m.connectingLane, m.endLane]) until self.position.x > -14
+    do FollowLaneBehavior(8)
+ego = new Car at (-60, -1.75), facing -90 deg, with speed 8, with behavior Two()
+"""
+    motion = course(simulated(folder, text, "cross", steps=140))
+    assert motion.places[-1, 1] > 15
+    assert motion.jerk[5:].max() < 8
+
+
 def test_paths_do_not_bend_sharply_where_long_lanes_meet(folder: Path) -> None:
     network = Network.fromFile(folder / "cross.xodr")
     lengths = set()

@@ -13,6 +13,7 @@ import pytest
 
 import scenic
 from scenic.language.errors import SimulationCreationError, UnsupportedError
+from scenic.simulators.metadrive.simulator import middle_of
 from tests.maps import cross
 
 NETWORK = '<net><location netOffset="{}" convBoundary="{}" origBoundary="" projParameter=""/></net>'
@@ -232,3 +233,23 @@ def test_what_cannot_be_simulated_says_why(
     (folder / "cross.net.xml").write_text("<net/>")
     with pytest.raises((SimulationCreationError, UnsupportedError)):
         simulated(folder, "ego = new Car")
+
+
+@pytest.mark.parametrize(
+    ("offset", "boundary", "projection"),
+    [
+        # As netconvert 1.2x writes them for a map from (1000, 2000) to (1100, 2000), normalized and not.
+        ("-1000.00,-2000.00", "0.00,0.00,100.00,0.00", "!"),
+        ("0.00,0.00", "1000.00,2000.00,1100.00,2000.00", "!"),
+        ("-692000.00,-5337000.00", "0.00,0.00,100.00,0.00", "+proj=utm +zone=32"),
+        ("-691000.00,-5335000.00", "1000.00,2000.00,1100.00,2000.00", "+proj=utm +zone=32"),
+    ],
+)
+def test_the_middle_of_georeferenced_maps(
+    tmp_path: Path, offset: str, boundary: str, projection: str
+) -> None:
+    file = tmp_path / "map.net.xml"
+    text = NETWORK.format(offset, boundary).replace('projParameter=""', f'projParameter="{projection}"')
+    file.write_text(text)
+    x, y = middle_of(file, SimpleNamespace(offset=(691000.0, 5335000.0, 0.0, 0.0)))
+    assert (1050 + x, 2000 + y) == (0, 0)

@@ -30,6 +30,8 @@ _SETTLING: Final = 1.5
 """Gain (1/s) of the error of speed."""
 _HARD: Final = 1.8
 """Times the comfortable deceleration from which a driver brakes without regard for jolts."""
+_ON: Final = 0.3
+"""Metres from its path within which a car is on it."""
 _LOOKS: Final = 0.3
 """Seconds between two looks for who is ahead."""
 
@@ -82,6 +84,13 @@ class Driver:
         self._accelerations: list[float] = []
         self._time = self._simulation.currentTime
 
+    def lane_now(self) -> Any:
+        """The lane along which the car is driven; ``None`` if it is not on its path, or has been driven by something else."""
+        if not self._path.lanes or self.has_paused:
+            return None
+        index, share, offset = self._path.locate(*self._place(), self._index)
+        return self._path.lane_at(index) if abs(offset) < _ON and 0 <= share <= 1 else None
+
     def follow_only(self, other: object) -> None:
         """Keep the gap to one car alone."""
         self._only = other
@@ -113,6 +122,7 @@ class Driver:
             x, y = self._place()
             self._index, _, _ = path.locate(x, y, path.nearest(x, y, near))
         self._path, self._begin = path, self._index
+        self._simulation.drivers[id(self._agent)] = self
         self._speeds, self._accelerations = speeds_of(
             path,
             self._index,

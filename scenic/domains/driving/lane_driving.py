@@ -19,6 +19,7 @@ from scenic.domains.driving.planning import Plan, join, path_of_lines
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import Route
 from scenic.language.errors import InvalidScenarioError
+from scenic.runtime.program.builtins import running_simulation
 from scenic.runtime.values.describing import wrong_type
 
 Floats = NDArray[np.float64]
@@ -44,6 +45,11 @@ def lane_under(agent: Any) -> Lane:
         RejectionException: there is none.
 
     """
+    before = running_simulation().drivers.get(id(agent))
+    chosen = None if before is None else before.lane_now()
+    if chosen is not None:
+        # A behavior goes on where the one before it was going.
+        return chosen  # type: ignore[no-any-return] # lanes of paths
     intersection = agent.roadNetwork.intersectionAt(agent.position)
     if intersection is not None:
         ways = intersection.maneuversAt(agent.position)

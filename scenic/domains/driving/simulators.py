@@ -50,6 +50,11 @@ class DrivingSimulation(Simulation):
         return RightOfWay()
 
     @cached_property
+    def drivers(self) -> dict[int, Any]:
+        """The drivers that behaviors have made last, by the ``id`` of their cars."""
+        return {}
+
+    @cached_property
     def _law_abiding(self) -> set[int]:
         return set()
 

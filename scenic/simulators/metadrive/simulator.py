@@ -107,7 +107,7 @@ class MetaDriveSimulation(DrivingSimulation):
         self._network = network
         self._shown = shown
         self._real_time = real_time
-        self._middle = _offset(network)
+        self._middle = middle_of(network, getattr(scene.workspace, "network", None))
         self._environment: Any = None
         self._first: Any = None
         self._actors: dict[int, Any] = {}
@@ -242,14 +242,22 @@ def _action(actor: Any, controls: Any) -> list[float]:
     return [-float(controls.steering), float(acceleration)]
 
 
-def _offset(network: Path) -> tuple[float, float]:
-    """Return the offset that MetaDrive adds to the coordinates of the map: SUMO's offset, and the vector from
-    the middle of the network to 0.
+def middle_of(network: Path, roads: Any) -> tuple[float, float]:
+    """Return what MetaDrive adds to the coordinates of the map: SUMO's offset, and the vector from the middle of its network to 0.
+
+    SUMO's offset of a georeferenced network is that from the projection: the offset of the map's header counts in it.
+
+    Args:
+        network: SUMO's network.
+        roads: the network of the map; ``None`` if the scene has none.
+
     """
     for _, element in ElementTree.iterparse(network):
         if element.tag == "location":
             left, bottom, right, top = map(float, element.attrib["convBoundary"].split(","))
             x, y = map(float, element.attrib["netOffset"].split(","))
+            if roads is not None and element.attrib.get("projParameter", "!") not in ("", "!"):
+                x, y = x + roads.offset[0], y + roads.offset[1]
             return x - (left + right) / 2, y - (bottom + top) / 2
     raise SimulationCreationError(
         f"{network} is no network of SUMO: it has no location",
