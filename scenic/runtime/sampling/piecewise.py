@@ -236,10 +236,13 @@ class PiecewiseEngine:
             "lanes": limits.lanes,
             "deadline": limits.deadline,
         }
+        begun = time.thread_time()
         if isinstance(tree, Apart):
             found = pair(self._whole, tree, tasks, **options)
         else:
             found = join(self._whole, tree, tasks, **options)
+        tried, passed = int(found.tried.sum()), int(np.count_nonzero(found.attempts[:, 0]))
+        self._whole.note_round(tried, passed, time.thread_time() - begun)
         block.attempts[rows, tree.first : tree.stop] = found.attempts
         for row, (seed, k), tried, attempts in zip(
             rows, tasks, found.tried.tolist(), found.attempts, strict=True

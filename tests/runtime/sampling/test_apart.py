@@ -123,6 +123,15 @@ def test_limits_of_attempts_and_time() -> None:
     assert [result.reason for result in late] == ["time"] * 3
 
 
+def test_a_profile_counts_what_was_tried() -> None:
+    program = scenario(PROGRAMS["alike"])
+    drawn_apart(program)
+    profile = program.profile(5, seed=1)
+    assert profile.candidates >= 5
+    assert profile.seconds > 0
+    assert profile.rounds >= 1
+
+
 def test_alike_things_are_one_kind() -> None:
     kinds = {name: len(drawn_apart(scenario(text)).kinds) for name, text in PROGRAMS.items()}
     assert kinds == {
