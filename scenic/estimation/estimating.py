@@ -385,9 +385,9 @@ def _estimate_from(
     if rare is not None:
         is_done = rare.is_known and len(rare.logarithms) == REPETITIONS
         reason = "all repetitions are finished" if is_done else reason
-        enough = is_done or is_whole
+        enough = is_done or (rare.is_flat and is_whole)
     if weighted is not None:
-        enough = is_whole
+        enough = is_whole and weighted.is_known
     # Whoever has looked before deciding on more runs has not fixed their number in advance.
     looked = len({(item["method"], item["runs"]) for item in history}) > 1
     return Estimate(

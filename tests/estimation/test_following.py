@@ -49,6 +49,7 @@ def test_a_search_is_followed(tmp_path: Path, text: str) -> None:
 def test_too_few_effective_counterexamples_give_no_estimate(tmp_path: Path) -> None:
     result = followed(TAIL, searched(TAIL, tmp_path / "search"), n=20)
     assert result.interval == (0, 1)
+    assert not result.is_finished
     assert any("there is no estimate" in note for note in notes(result))
 
 
