@@ -252,7 +252,7 @@ def changing(network: Any, road_map: Path, speed: float, step: float) -> tuple[l
     for section, beside in pairs:
         behavior = f"Change(network.elements[{beside.uid!r}], {speed})"
         along = [
-            shapely.LineString(lane.line).project(shapely.Point(section.line[0])) + 1.0
+            shapely.LineString(lane.line).project(shapely.Point(section.line[0])) + 3.0
             for lane in (section.lane, beside.lane)
         ]
         ways = [(item.connectingLane, item.endLane) for item in next_maneuver(beside.lane)] or [()]
