@@ -4,6 +4,7 @@ from typing import Final
 
 from scenic.estimation.estimate import Asked
 from scenic.estimation.requirements import EstimateError
+from scenic.runtime.ground.arguments import whole_number
 from scenic.statistics.sequential_test import BoundTest
 
 __all__ = ["asked_of"]
@@ -30,6 +31,8 @@ def asked_of(
     The intervals and tests of so many estimates hold ``together`` with the confidence: each gets its share of the chance to miss
     (Bonferroni).
     """
+    runs = None if runs is None else whole_number(runs, "n", 1)
+    budget = None if budget is None else whole_number(budget, "budget", 1)
     _check_shares(confidence=confidence, precision=precision, bound=at_most, good=good, power=power)
     ways = {
         "a precision": precision is not None,

@@ -90,6 +90,7 @@ class Runs:
 
     def check(self) -> None:
         """Raise `EstimateError` where there are no such runs."""
+        check_seconds(self.timestep, "timestep")
         if self.is_static and self.held is not None:
             raise EstimateError(
                 "in one scene there is nothing to estimate without simulations", help="leave out --static"
@@ -447,10 +448,8 @@ def estimate(
 ) -> Estimate:
     """Estimate how probable it is that a simulation, or a scene, is a counterexample.
 
-    Without ``precision`` and ``at_most`` the number of runs is fixed, and the interval is that of Clopper and Pearson (1934). With a
-    precision, runs are made until the interval is as narrow; it is one of a confidence sequence, which holds however often one looks.
-    With ``at_most``, Wald's sequential test (1945) decides between ``good`` and that bound. ``rare`` splits runs by how near they come to
-    a failure (Cérou and Guyader 2007), and ``follow`` draws them from where a search has found counterexamples.
+    A fixed number of runs has the interval of Clopper and Pearson (1934), a precision one of a confidence sequence, which holds however often
+    one looks. ``at_most`` is decided by Wald's sequential test (1945). Raises `EstimateError` for values that contradict each other.
 
     Args:
         scenario: the program.
@@ -481,48 +480,49 @@ def estimate(
         folder: folder that stores the runs.
         resume: go on with the runs in the folder.
 
-    Raises:
-        EstimateError: for values that are not allowed or contradict each other, and requirements that there are not.
-        EstimateFolderError: the folder holds other runs.
-        SearchError: ten runs in a row failed.
-
     """
-    check_seconds(timestep, "timestep")
-    names = [requirement] if isinstance(requirement, str) else list(requirement or ())
     asked = asked_of(
-        runs=None if n is None else whole_number(n, "n", 1),
-        budget=None if budget is None else whole_number(budget, "budget", 1),
-        confidence=confidence,
-        precision=precision,
-        at_most=at_most,
-        good=good,
-        power=power,
-        rare=rare,
-        follows=follow is not None,
-    )
-    engine: Engine | None = None
-    if executor is not None:
-        engine = OverExecutor(executor, max(2, processes))
-    elif processes > 1:
-        engine = Processes(processes)
+        runs=n, budget=budget, confidence=confidence, precision=precision, at_most=at_most, good=good, power=power,
+        rare=rare, follows=follow is not None,
+    )  # fmt: skip
     drawn = random.getrandbits(63) if seed is None else whole_number(seed, "seed")
-    results = []
-    for label, program in (("first", scenario), ("second", against)):
-        if program is None:
-            continue
-        held = None if hold is None else held_of(program, hold, drawn)
-        runs = Runs(
-            program, drawn, goals_of(program, names, objective, minimize), threshold, simulator, static, max_steps, timestep,
-            whole_number(first, "first", 0), held, asked.runs if rare else None,
-            None if follow is None else guide_of(Path(follow), program.digest),
+
+    def runs_of(program: "Scenario") -> Runs:
+        return Runs(
+            program, drawn, goals_of(program, requirement or (), objective, minimize), threshold, simulator, static, max_steps, timestep,
+            whole_number(first, "first", 0), None if hold is None else held_of(program, hold, drawn),
+            asked.runs if rare else None, None if follow is None else guide_of(Path(follow), program.digest),
         )  # fmt: skip
+
+    programs = [runs_of(program) for program in (scenario, against) if program is not None]
+    return _estimates(programs, asked, Stop(time_limit), _engine(processes, executor), folder, resume)
+
+
+def _engine(processes: int, executor: "Executor | None") -> Engine | None:
+    """The place where simulations are made; ``None`` is this process."""
+    if executor is not None:
+        return OverExecutor(executor, max(2, processes))
+    return Processes(processes) if processes > 1 else None
+
+
+def _estimates(
+    programs: Sequence[Runs],
+    asked: Asked,
+    stop: Stop,
+    engine: Engine | None,
+    folder: str | Path | None,
+    resume: bool,
+) -> Estimate:
+    """The estimate of one program, or of the first of two that are compared."""
+    results = []
+    for runs, label in zip(programs, ("first", "second"), strict=False):
         runs.check()
         place = None
         if folder is not None:
-            path = Path(folder) if against is None else Path(folder) / label
+            path = Path(folder) if len(programs) == 1 else Path(folder) / label
             place = EstimateFolder(path, runs.settings(), asked.to_data(), resume=resume)
-        results.append(estimate_runs(runs, asked, Stop(time_limit), engine=engine, folder=place))
-    results[0].other = results[1] if against is not None else None
+        results.append(estimate_runs(runs, asked, stop, engine=engine, folder=place))
+    results[0].other = results[1] if len(results) > 1 else None
     return results[0]
 
 

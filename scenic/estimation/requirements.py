@@ -46,7 +46,7 @@ def _named(scenario: "Scenario", names: Sequence[str]) -> tuple[Objective, ...]:
 
 
 def goals_of(
-    scenario: "Scenario", names: Sequence[str], objective: object = None, minimize: str | None = None
+    scenario: "Scenario", names: str | Sequence[str], objective: object = None, minimize: str | None = None
 ) -> tuple[Objective, ...]:
     """The goals that make a run a counterexample: an objective and an expression, or else requirements.
 
@@ -66,7 +66,7 @@ def goals_of(
             "a requirement and an objective contradict each other: each says what is a counterexample",
             help="give one of them",
         )
-    return tuple(goals) or _named(scenario, names)
+    return tuple(goals) or _named(scenario, [names] if isinstance(names, str) else names)
 
 
 def _is_written(label: str, text: str) -> bool:
