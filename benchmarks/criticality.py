@@ -5,7 +5,7 @@ commonroad-crime reads in an environment of its own (``python -m venv ENV; ENV/b
 versions of packages than the extra ``commonroad``). The table shows for headway (as a distance), time to collision and required
 deceleration how many values there are, how many of these are finite, and the greatest difference.
 
-Its measures take the lanelet's direction as an angle from the x axis, so that the road leads along it (but for a millionth: a zero
+Its measures take the lanelet's direction as an angle from the x axis, so that the road leads along it (but for a ten-thousandth: a zero
 counts as missing there); it rounds values to hundredths, which is switched off; and it asks cars that fall behind to brake, so
 that decelerations are compared where a car comes nearer. Pairs count until their boxes meet.
 """
@@ -89,7 +89,7 @@ class Watch:
 def simulations(folder: Path, count: int) -> tuple[list[Path], list[list[list[float]]]]:
     """The files of simulations, and our measures at their steps."""
     road_map = folder / "road.xodr"
-    road_map.write_text(map_text([RoadText("1", 1200, line(0, 0, 1e-6, 1200), two_way(False, False))]))
+    road_map.write_text(map_text([RoadText("1", 1200, line(0, 0, 1e-4, 1200), two_way(False, False))]))
     scenario = scenic.scenarioFromString(
         PROGRAM.format(map=str(road_map)), mode2D=False, params={"use2DMap": True}
     )
