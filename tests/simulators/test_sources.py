@@ -9,6 +9,7 @@ import pytest
 from scipy.stats import kstest, qmc
 
 import scenic
+from scenic.language.errors import ScenicWarning
 from scenic.runtime.dynamics.draws import Draw
 from scenic.simulators.batch import simulate_number
 from scenic.simulators.dummy import DummySimulator
@@ -85,10 +86,11 @@ def test_scenes_by_sobol_are_functions_of_seed_and_number() -> None:
 
 def test_what_rows_do_not_give_is_a_function_of_seed_and_number_too() -> None:
     """The draws of the program's own functions, where candidates before are rejected in some scenes."""
-    program = scenic.scenarioFromString(
-        "import random\ndef some(v): return hash(v) % 3 == 0\ndef noise(v): return v + random.random()\nx = Range(0, 1)\n"
-        "require some(x)\ny = noise(x)\nrequire y > 0.5\nparam y = y\n"
-    )
+    with pytest.warns(ScenicWarning, match="draws once"):
+        program = scenic.scenarioFromString(
+            "import random\ndef some(v): return hash(v) % 3 == 0\ndef noise(v): return v + random.random()\nx = Range(0, 1)\n"
+            "require some(x)\ny = noise(x)\nrequire y > 0.5\nparam y = y\n"
+        )
     for check in program._sampler.engine.plan.checks:
         check.separate = True  # each is made in those lanes alone that the ones before leave
     sobol = scenic.Sobol()
@@ -273,9 +275,10 @@ def test_what_a_row_does_not_give_is_hashed() -> None:
         found = places(loose.sample(3, seed=0, source=scenic.GivenPoints(rows)))
         assert found[:, given:].tolist() == hashed[:, given:].tolist()
         assert found[:, :given].tolist() == [row[:given] for row in np.asarray(rows).tolist()]
-    wide = scenic.scenarioFromString(
-        "import random\nego = new Object at (Range(0, 1), random.random() + Range(0, 1))\n"
-    )
+    with pytest.warns(ScenicWarning, match="draws once"):
+        wide = scenic.scenarioFromString(
+            "import random\nego = new Object at (Range(0, 1), random.random() + Range(0, 1))\n"
+        )
     assert np.isfinite(places(wide.sample(3, seed=0, source=scenic.GivenPoints([[0.5]] * 3)))).all()
 
 
