@@ -67,7 +67,9 @@ class Viewpoint:
     def project(self, points: Array) -> Array:
         """World points ``(n, 3)`` as column, row and depth along the axis, ``(n, 3)``; what is behind has no pixel."""
         offset = points - self.camera.eye
-        right, up, ahead = (offset @ axis for axis in (self.camera.right, self.camera.up, self.camera.ahead))
+        right, up, ahead = (
+            (offset * axis).sum(axis=-1) for axis in (self.camera.right, self.camera.up, self.camera.ahead)
+        )
         with np.errstate(divide="ignore", invalid="ignore"):
             across = self.size[0] * 0.5 * (1 + right / (ahead * self.camera.tangents[0]))
             down = self.size[1] * 0.5 * (1 - up / (ahead * self.camera.tangents[1]))
