@@ -7,11 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from tests.amounts import LONG
+
 HERE = Path(__file__).parent / "pythons"
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("version", ["3.12", "3.13", "3.14"])
+@pytest.mark.parametrize("version", ["3.12", "3.13", "3.14"] if LONG else ["3.12", "3.14"])
 def test_the_front_end_in_later_pythons(version: str) -> None:
     """See `front_end.py` there."""
     node = shutil.which("node")
