@@ -26,7 +26,7 @@ def item(x: float, y: float, heading: float, name: str | None = "ego") -> Any:
 
 
 def seen(camera: Camera, point: tuple[float, float, float]) -> tuple[float, float]:
-    """Where a point is in the picture: -1 to 1 to the right and upwards; it is before the camera."""
+    """The place of a point before the camera in the picture: -1 to 1 to the right and upwards."""
     away = np.array(point) - camera.eye
     depth = away @ camera.ahead
     assert depth > 0

@@ -1,4 +1,4 @@
-"""What pictures show of vehicles and pedestrians in place of their boxes."""
+"""The bodies that pictures show of vehicles and pedestrians in place of their boxes."""
 
 import json
 import struct
