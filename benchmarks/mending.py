@@ -175,14 +175,13 @@ def main() -> None:
     import anyio
     from mcp import Client, StdioServerParameters
 
-    folder = Path(tempfile.mkdtemp(prefix="scenic-mending-"))
+    folder = Path(tempfile.mkdtemp(prefix="scenic-mending-"), "programs")
+    folder.mkdir()
     for source in (ROOT / "examples").rglob("*"):
         if source.suffix in (".xodr", ".obj", ".py") and source.is_file():
             (folder / source.name).write_bytes(source.read_bytes())
     for name in ("meshes", "driving"):
-        (ROOT / "examples" / name).exists()
-        if not (folder.parent / name).exists():
-            (folder.parent / name).symlink_to(ROOT / "examples" / name)
+        (folder.parent / name).symlink_to(ROOT / "examples" / name)
     command = ["-m", "scenic", "mcp", "--run", "--folder", str(folder)]
     mended: Counter[bool] = Counter()
     stopped: Counter[str] = Counter()
