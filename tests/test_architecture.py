@@ -38,7 +38,13 @@ LAYERS = {
     "project": {"language", "compiler", "configuration", "formats"},  # of formats, the reader of maps alone
     "migration": {"compiler", "language", "project", "formats"},  # of formats, the writing of files alone
     "ide": {"compiler", "language", "project", "migration"},
-    "lsp": {"ide", "language", "configuration", "project"},
+    "lsp": {
+        "ide",
+        "language",
+        "configuration",
+        "project",
+        "compiler",
+    },  # of the compiler, the semantic model alone
     "playground": {"ide"},
     "templates": set(),
     "deep": {"analysis", "formats", "runtime", "graph", "language", "compiler"},

@@ -10,15 +10,15 @@ from types import MappingProxyType
 from typing import Final
 
 import scenic
+from scenic.compiler.semantics.meanings import class_of_symbol
+from scenic.compiler.semantics.symbols import SymbolKind, symbol_of_exported
 from scenic.compiler.syntax import Item, ListOf, Optional, Reference, Row, TokenKind, Word
 from scenic.constrained.items import CharacterClass, TextChoice, TextItem, TextMany
 from scenic.constrained.rules import Rules
 from scenic.constrained.terminals import Tokens, tokens
 from scenic.dataclass import dataclass
 from scenic.language.properties import CLASSES
-from scenic.project.classes import class_of_symbol
 from scenic.project.index import Project
-from scenic.project.symbols import SymbolKind, symbol_of_exported
 
 __all__ = ["World", "read_world", "restricted", "restricted_tokens", "worlds"]
 

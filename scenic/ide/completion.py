@@ -13,6 +13,9 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.generated import WORDS
 from scenic.compiler.loader import SUFFIXES
 from scenic.compiler.scopes import Binding, BindingKind, ScopeKind
+from scenic.compiler.semantics.meanings import Class, Member, class_of_symbol, meaning
+from scenic.compiler.semantics.modules import Exported, FoundModule, Module, ModuleKind
+from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_binding, symbol_of_exported
 from scenic.compiler.tokens import FSTRING_END, FSTRING_MIDDLE, FSTRING_START, STRING
 from scenic.compiler.traversal import walk
 from scenic.ide import descriptions, documentation
@@ -28,12 +31,8 @@ from scenic.language.properties import CLASSES
 from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS, Place
-from scenic.project.classes import Class, Member, class_of_symbol, meaning
 from scenic.project.index import Project
-from scenic.project.modules import Module
 from scenic.project.queries import call_signature
-from scenic.project.search import FoundModule, ModuleKind
-from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding, symbol_of_exported
 
 __all__ = ["Completion", "CompletionKind", "completions", "document", "must_follow"]
 
@@ -475,7 +474,7 @@ def _kind_of_binding(project: Project, module: Module, binding: Binding) -> tupl
         if kind in kinds:
             return shown, kind.value
     if BindingKind.IMPORTED in kinds and binding.scope.kind is ScopeKind.MODULE:
-        symbol = symbol_of_exported(project, project.own(module, binding))
+        symbol = symbol_of_exported(project, Exported(binding.name, module, binding))
         return kind_of_symbol(symbol), symbol.kind.value
     return CompletionKind.VARIABLE, "variable"
 
@@ -502,7 +501,7 @@ def _symbol_named(
         if inner is not None and inner.scope.kind is not ScopeKind.MODULE:
             return symbol_of_binding(module, inner)
     if binding is not None:
-        return symbol_of_exported(project, project.own(module, binding))
+        return symbol_of_exported(project, Exported(binding.name, module, binding))
     exported = project.exports(module).names.get(name)
     return None if exported is None else symbol_of_exported(project, exported)
 

@@ -6,11 +6,11 @@ import inspect
 import os
 from typing import Final
 
+from scenic.compiler.semantics.meanings import class_of, class_of_symbol
+from scenic.compiler.semantics.signatures import signature_of
+from scenic.compiler.semantics.symbols import Symbol, SymbolKind
 from scenic.ide import documentation
-from scenic.project.classes import class_of, class_of_symbol
 from scenic.project.index import Project
-from scenic.project.signatures import signature_of
-from scenic.project.symbols import Symbol, SymbolKind
 
 __all__ = ["describe", "header", "of_python"]
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 from scenic.compiler.parser import parse
 from scenic.compiler.scopes import Reference
+from scenic.compiler.semantics.modules import Module
 from scenic.ide.snapshot import Snapshot
 from scenic.project.index import Project
-from scenic.project.modules import Module
 
 __all__ = ["expression", "operand_before"]
 

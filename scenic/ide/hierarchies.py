@@ -5,15 +5,15 @@ from collections.abc import Iterator
 from typing import Any
 
 from scenic.compiler import tree as scenic
+from scenic.compiler.semantics.meanings import class_of_symbol, meaning
+from scenic.compiler.semantics.modules import Module
+from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_binding
 from scenic.compiler.traversal import parts, walk
 from scenic.dataclass import dataclass
 from scenic.ide.inheritance import subclasses
 from scenic.language.spans import Span
-from scenic.project.classes import class_of_symbol, meaning
 from scenic.project.index import Project
-from scenic.project.modules import Module
 from scenic.project.queries import references, symbol_at
-from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding
 
 __all__ = [
     "CallSite",

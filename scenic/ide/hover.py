@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Final
 
 from scenic.compiler import tree as scenic
+from scenic.compiler.semantics.modules import Module
 from scenic.compiler.tokens import NAME
 from scenic.dataclass import dataclass
 from scenic.ide import descriptions, documentation
@@ -16,7 +17,6 @@ from scenic.language.spans import Span
 from scenic.language.specifiers import SPECIFIERS
 from scenic.language.statements import STATEMENTS
 from scenic.project.index import Project
-from scenic.project.modules import Module
 from scenic.project.queries import occurrence_at, occurrences, symbol_of
 
 __all__ = ["Hover", "hover"]

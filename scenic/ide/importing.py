@@ -10,6 +10,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.fixes import apply_fixes
 from scenic.compiler.loader import SUFFIXES
 from scenic.compiler.parser import parse
+from scenic.compiler.semantics.modules import Module
 from scenic.dataclass import dataclass
 from scenic.ide.repairs import difference
 from scenic.ide.snapshot import Snapshot
@@ -17,7 +18,6 @@ from scenic.language.diagnostics import Diagnostic, Edit
 from scenic.language.names import IMPORTABLE
 from scenic.language.spans import Span
 from scenic.project.index import Project
-from scenic.project.modules import Module
 
 __all__ = ["Missing", "can_organize", "missing_imports", "organize_imports"]
 

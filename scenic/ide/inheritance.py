@@ -2,10 +2,10 @@
 
 from typing import Any
 
+from scenic.compiler.semantics.meanings import Class, class_of_symbol
+from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbols_of
 from scenic.dataclass import dataclass
-from scenic.project.classes import Class, class_of_symbol
 from scenic.project.index import Project
-from scenic.project.symbols import Symbol, SymbolKind, symbols_of
 
 __all__ = ["Family", "family", "is_derived", "own_member", "owner_of", "subclasses"]
 

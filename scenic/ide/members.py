@@ -3,7 +3,9 @@
 from collections.abc import Iterator
 
 from scenic.compiler.semantics.kinds import ValueKind
+from scenic.compiler.semantics.meanings import Member, class_of, class_of_symbol, meaning, module_behind
 from scenic.compiler.semantics.model import Model
+from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_exported
 from scenic.ide.expressions import expression, operand_before
 from scenic.ide.parameters import settings
 from scenic.ide.possibilities import Completion, CompletionKind, kind_of_symbol
@@ -11,9 +13,7 @@ from scenic.ide.snapshot import Snapshot
 from scenic.language.members import MEMBERS
 from scenic.language.names import LIFTED_METHODS, NAMES
 from scenic.language.types import INSTANCES
-from scenic.project.classes import Member, class_of, class_of_symbol, meaning, module_behind
 from scenic.project.index import Project
-from scenic.project.symbols import Symbol, SymbolKind, symbol_of_exported
 
 __all__ = ["members"]
 

@@ -6,12 +6,11 @@ from collections.abc import Iterable, Iterator
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.loader import SUFFIXES
+from scenic.compiler.semantics.modules import FoundModule, Module, ModuleKind
+from scenic.compiler.semantics.symbols import symbol_of_module
 from scenic.language.spans import Span
 from scenic.project.index import Project
-from scenic.project.modules import Module
 from scenic.project.queries import Location, occurrences, references
-from scenic.project.search import FoundModule, ModuleKind
-from scenic.project.symbols import symbol_of_module
 
 __all__ = ["imports_after_moves"]
 

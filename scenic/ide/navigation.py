@@ -11,6 +11,9 @@ from unicodedata import normalize
 from scenic.compiler import tree as scenic
 from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.scopes import Binding, Resolution, ScopeKind
+from scenic.compiler.semantics.meanings import class_of, class_of_symbol
+from scenic.compiler.semantics.modules import Module
+from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_binding
 from scenic.dataclass import dataclass
 from scenic.ide.inheritance import family, own_member, owner_of, subclasses
 from scenic.ide.parameters import parameter_at, settings
@@ -19,11 +22,8 @@ from scenic.language import names, operators, properties, specifiers
 from scenic.language.names import RESERVED, TRACKED
 from scenic.language.source import read_source
 from scenic.language.spans import Span
-from scenic.project.classes import class_of, class_of_symbol
 from scenic.project.index import Project
-from scenic.project.modules import Module
 from scenic.project.queries import Location, Occurrence, occurrence_at, occurrences, references, symbol_of
-from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding
 
 __all__ = [
     "Highlight",

@@ -4,12 +4,12 @@ import ast
 from collections.abc import Iterator
 
 from scenic.compiler import tree as scenic
+from scenic.compiler.semantics.modules import Module
 from scenic.compiler.traversal import walk
 from scenic.dataclass import dataclass
 from scenic.ide.snapshot import Snapshot
 from scenic.language.spans import Span
 from scenic.project.index import Project
-from scenic.project.modules import Module
 
 __all__ = ["Setting", "parameter_at", "settings"]
 

@@ -2,9 +2,9 @@
 
 from enum import StrEnum
 
+from scenic.compiler.semantics.symbols import Symbol, SymbolKind
 from scenic.dataclass import dataclass
 from scenic.language.spans import Span
-from scenic.project.symbols import Symbol, SymbolKind
 
 __all__ = ["Completion", "CompletionKind", "Completions", "kind_of_symbol"]
 

@@ -9,13 +9,13 @@ from typing import Final, NamedTuple
 from scenic.compiler import tree as scenic
 from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS
 from scenic.compiler.scopes import BindingKind, Resolution, ScopeKind
+from scenic.compiler.semantics.symbols import SymbolKind, symbol_of_exported
 from scenic.compiler.tokens import FSTRING_END, FSTRING_MIDDLE, FSTRING_START, NAME, NUMBER, STRING
 from scenic.compiler.traversal import walk
 from scenic.ide.places import name_span
 from scenic.ide.snapshot import Snapshot
 from scenic.language.names import NAMES, TRACKED, NameKind
 from scenic.project.index import Project
-from scenic.project.symbols import SymbolKind, symbol_of_exported
 
 __all__ = ["MODIFIERS", "TYPES", "SemanticToken", "semantic_tokens"]
 

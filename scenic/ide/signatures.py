@@ -3,13 +3,13 @@
 import ast
 from typing import Final
 
+from scenic.compiler.semantics.signatures import Signature
 from scenic.compiler.tokens import DEDENT, INDENT, NEWLINE, Tokens
 from scenic.dataclass import dataclass
 from scenic.ide.expressions import expression, operand_before
 from scenic.ide.snapshot import Snapshot
 from scenic.project.index import Project
 from scenic.project.queries import call_signature
-from scenic.project.signatures import Signature
 
 __all__ = ["Help", "signature_help"]
 

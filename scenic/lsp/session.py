@@ -12,6 +12,7 @@ from lsprotocol import types
 from pygls.capabilities import ServerCapabilitiesBuilder, get_capability
 from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 
+from scenic.compiler.semantics.modules import Module
 from scenic.configuration.project import Configurations
 from scenic.ide.remarks import Remarks
 from scenic.ide.snapshot import PythonSnapshot, Snapshot
@@ -25,7 +26,6 @@ from scenic.lsp.garbage import Garbage
 from scenic.lsp.uris import to_path, to_uri
 from scenic.lsp.workers import GoOn, Workers
 from scenic.project.index import Project
-from scenic.project.modules import Module
 
 if TYPE_CHECKING:
     from scenic.lsp.checks import Checks

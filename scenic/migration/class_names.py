@@ -4,6 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import field
 from typing import Final
 
+from scenic.compiler.semantics.meanings import is_of_library
+from scenic.compiler.semantics.modules import FoundModule, ModuleKind
 from scenic.compiler.tokens import NAME
 from scenic.dataclass import dataclass
 from scenic.language.errors import ScenicError
@@ -11,8 +13,7 @@ from scenic.language.properties import CLASSES
 from scenic.language.source import Source, read_source
 from scenic.migration.moved import MOVED_MODULES
 from scenic.migration.texts import Token, tokens_of
-from scenic.project.classes import is_of_library
-from scenic.project.search import Finder, FoundModule, ModuleKind
+from scenic.project.search import Finder
 
 __all__ = ["ClassInfo", "Library", "Names", "definitions"]
 

@@ -7,11 +7,12 @@ from collections.abc import Iterator
 from typing import Final
 
 from scenic.compiler import tree as scenic
+from scenic.compiler.semantics.modules import ModuleKind
 from scenic.migration.maps import SUFFIXES
 from scenic.migration.moved import LOST_CLASSES, MAP_LOADERS, MAP_LOADING, MOVED_MODULES, PARAMETERS
 from scenic.migration.pieces import TextPiece
 from scenic.migration.texts import Edit
-from scenic.project.search import Finder, ModuleKind
+from scenic.project.search import Finder
 
 __all__ = ["rewrite_statements"]
 

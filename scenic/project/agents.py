@@ -10,13 +10,13 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Resolution
+from scenic.compiler.semantics.meanings import LIBRARY, class_of, class_of_symbol, meaning
+from scenic.compiler.semantics.modules import Exported, Module
+from scenic.compiler.semantics.symbols import Symbol, SymbolKind
 from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.source import Source
-from scenic.project.classes import LIBRARY, class_of, class_of_symbol, meaning
-from scenic.project.index import Exported, Project
-from scenic.project.modules import Module
-from scenic.project.symbols import Symbol, SymbolKind
+from scenic.project.index import Project
 
 __all__ = ["agent_findings"]
 

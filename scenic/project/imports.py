@@ -7,8 +7,9 @@ from functools import cached_property
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.places import header_span, word_span
+from scenic.compiler.places import header_span, word_span
 from scenic.compiler.scopes import BindingKind, Resolution
+from scenic.compiler.semantics.modules import Exported, Exports, FoundModule, ModuleKind
 from scenic.compiler.traversal import position
 from scenic.established import MODULES as ESTABLISHED
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
@@ -16,8 +17,7 @@ from scenic.language.libraries import FAMILIES, LIBRARIES, how_to_get
 from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.language.spelling import is_slip, nearest
-from scenic.project.index import Exported, Exports, Project
-from scenic.project.search import FoundModule, ModuleKind
+from scenic.project.index import Project
 
 __all__ = ["Imports"]
 

@@ -8,7 +8,7 @@ import ast
 import importlib
 import os
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import field
 from types import MappingProxyType
 from typing import Any, Final
@@ -16,13 +16,14 @@ from typing import Any, Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.loader import SUFFIXES
 from scenic.compiler.scopes import Binding, Resolution
+from scenic.compiler.semantics.modules import Exported, Exports, FoundModule, Module, ModuleKind, Unseen
 from scenic.dataclass import dataclass
 from scenic.language.errors import ScenicError
 from scenic.language.source import Source, read_source
-from scenic.project.modules import Module, read_module
-from scenic.project.search import Finder, FoundModule, ModuleKind
+from scenic.project.modules import read_module
+from scenic.project.search import Finder
 
-__all__ = ["Exported", "Exports", "Project", "Unseen"]
+__all__ = ["Project"]
 
 _LARGEST: Final = 4_000_000
 """Bytes of the largest file that is looked into."""
@@ -31,45 +32,6 @@ _DEEPEST: Final = 100
 """Modules of so long a chain of imports are looked into."""
 
 _PASSED_OVER: Final = frozenset({"__pycache__", "node_modules", "site-packages"})
-
-
-@dataclass(frozen=True, slots=True)
-class Exported:
-    """A name of a module, and the binding that it comes from, possibly in another module.
-
-    Without a ``binding`` it is a name of a compiled module, or (with a ``module``) that module itself.
-    """
-
-    name: str
-    module: Module | None = None
-    binding: Binding | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Unseen:
-    """The reason why not all names of a module are known: the module with the dotted name ``module`` cannot be read."""
-
-    module: str
-    reason: str
-
-
-@dataclass(frozen=True, slots=True)
-class Exports:
-    """The names that a module has.
-
-    ``names`` are all of them, ``public`` those that ``import *`` and ``model`` bring. If ``unseen`` is not empty, the
-    module may have others. ``sets_ego`` tells whether importing it may set the ego.
-    """
-
-    names: Mapping[str, Exported] = field(repr=False)
-    public: frozenset[str] = field(repr=False)
-    unseen: tuple[Unseen, ...] = ()
-    sets_ego: bool = False
-
-    @property
-    def complete(self) -> bool:
-        """Return whether it has no other names."""
-        return not self.unseen
 
 
 _NOTHING: Final = Exports(MappingProxyType({}), frozenset())
@@ -316,11 +278,6 @@ class Project:
                 other = self.found_module(found)
                 if other is not None:
                     yield other
-
-    @staticmethod
-    def own(module: Module, binding: Binding) -> Exported:
-        """A binding of a module, to be followed."""
-        return Exported(binding.name, module, binding)
 
     def found_by(self, node: ast.ImportFrom | scenic.Model, importer: str) -> FoundModule:
         """The module that ``from m import ...`` or ``model m`` means."""

@@ -1,6 +1,6 @@
 """Attributes that the values of world models do not have: ``network.lane``.
 
-The class of such a value follows from annotations of the library (`scenic.project.classes.class_of`), which the compiler does not see.
+The class of such a value follows from annotations of the library (`scenic.compiler.semantics.meanings.class_of`), which the compiler does not see.
 """
 
 import ast
@@ -12,14 +12,7 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Resolution
-from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
-from scenic.language.members import MEMBERS
-from scenic.language.names import NAMES, NameKind
-from scenic.language.properties import attributes_of, properties_of
-from scenic.language.source import Source
-from scenic.language.spans import Span
-from scenic.language.spelling import distance, nearest, related
-from scenic.project.classes import (
+from scenic.compiler.semantics.meanings import (
     LIBRARY,
     Class,
     class_of,
@@ -28,9 +21,16 @@ from scenic.project.classes import (
     class_of_symbol,
     meaning,
 )
-from scenic.project.index import Exported, Project
-from scenic.project.modules import Module
-from scenic.project.symbols import Symbol, SymbolKind
+from scenic.compiler.semantics.modules import Exported, Module
+from scenic.compiler.semantics.symbols import Symbol, SymbolKind
+from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
+from scenic.language.members import MEMBERS
+from scenic.language.names import NAMES, NameKind
+from scenic.language.properties import attributes_of, properties_of
+from scenic.language.source import Source
+from scenic.language.spans import Span
+from scenic.language.spelling import distance, nearest, related
+from scenic.project.index import Project
 
 __all__ = ["kind_of_exported", "member_findings"]
 

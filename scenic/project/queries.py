@@ -9,16 +9,21 @@ from unicodedata import normalize
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Binding, BindingKind, Scope
+from scenic.compiler.semantics.meanings import class_of_symbol, meaning
+from scenic.compiler.semantics.modules import Exported, FoundModule, Module
 from scenic.compiler.semantics.names import DEFINITIONS
+from scenic.compiler.semantics.signatures import Signature, signature_of
+from scenic.compiler.semantics.symbols import (
+    Symbol,
+    SymbolKind,
+    symbol_of_binding,
+    symbol_of_exported,
+    symbol_of_module,
+)
 from scenic.compiler.traversal import walk
 from scenic.dataclass import dataclass
 from scenic.language.spans import Span
-from scenic.project.classes import class_of_symbol, meaning
-from scenic.project.index import Exported, Project
-from scenic.project.modules import Module
-from scenic.project.search import FoundModule
-from scenic.project.signatures import Signature, signature_of
-from scenic.project.symbols import Symbol, SymbolKind, symbol_of_binding, symbol_of_exported, symbol_of_module
+from scenic.project.index import Project
 
 __all__ = [
     "Location",

@@ -7,7 +7,6 @@ and remembered until `Finder.forget`.
 import os
 import sys
 from collections.abc import Iterator, Sequence
-from enum import StrEnum
 from importlib.machinery import EXTENSION_SUFFIXES
 from importlib.util import find_spec
 from pathlib import Path
@@ -15,50 +14,16 @@ from typing import Final
 
 from scenic import language
 from scenic.compiler.loader import SUFFIXES
-from scenic.dataclass import dataclass
+from scenic.compiler.semantics.modules import FoundModule, ModuleKind
 from scenic.language.spelling import nearest
 
-__all__ = ["Finder", "FoundModule", "ModuleKind"]
+__all__ = ["Finder"]
 
 _INITIAL: Final = (*SUFFIXES, ".py")
 """The endings of ``__init__`` in packages."""
 
 _LIBRARY: Final = str(Path(language.__path__[0]).parent.parent)
 """The folder that holds the package ``scenic`` itself, and with it our own library."""
-
-
-class ModuleKind(StrEnum):
-    """The kinds of modules that are found."""
-
-    SCENIC = "Scenic module"
-    PYTHON = "Python module"
-    COMPILED = "compiled module"
-    NAMESPACE = "folder"
-    MISSING = "missing module"
-
-
-@dataclass(frozen=True, slots=True)
-class FoundModule:
-    """The result of the search for a module.
-
-    ``filename`` is its file; of a folder without ``__init__`` the folder, of a module that is built into Python
-    nothing. Of a missing module, ``searched`` are the folders in which it was looked for (without those of Python's
-    own library and installed packages), ``found`` is the longest beginning of its name that does exist (``within`` tells
-    whether in the project itself), and ``near`` a module with a similar name.
-    """
-
-    name: str
-    kind: ModuleKind
-    filename: str | None = None
-    searched: tuple[str, ...] = ()
-    found: str = ""
-    within: bool = False
-    near: str | None = None
-
-    @property
-    def is_missing(self) -> bool:
-        """Return whether there is no such module."""
-        return self.kind is ModuleKind.MISSING
 
 
 class Finder:

@@ -9,19 +9,19 @@ from typing import Any
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Resolution
 from scenic.compiler.semantics.classes import BUILT_IN, own_property
+from scenic.compiler.semantics.meanings import Class, class_of_symbol
+from scenic.compiler.semantics.modules import Exported, Exports, FoundModule, ModuleKind
 from scenic.compiler.semantics.names import DEFINITIONS
+from scenic.compiler.semantics.symbols import Symbol, symbol_of_exported
 from scenic.compiler.surroundings import Foreign, Property, Surroundings, SurroundingsOf
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.source import Source
 from scenic.project.agents import agent_findings
 from scenic.project.appearances import appearance_findings
-from scenic.project.classes import Class, class_of_symbol
 from scenic.project.imports import Imports
-from scenic.project.index import Exported, Exports, Project
+from scenic.project.index import Project
 from scenic.project.maps import map_findings
 from scenic.project.members import kind_of_exported, member_findings
-from scenic.project.search import FoundModule, ModuleKind
-from scenic.project.symbols import Symbol, symbol_of_exported
 from scenic.project.textures import texture_findings
 
 __all__ = ["surroundings_in"]

@@ -3,7 +3,7 @@
 import ast
 from pathlib import Path
 
-from scenic.project.classes import class_of
+from scenic.compiler.semantics.meanings import class_of
 from tests.project.layouts import project
 from tests.work import calls_while
 

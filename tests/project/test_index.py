@@ -3,11 +3,11 @@ from pathlib import Path
 
 import pytest
 
-from scenic.project.classes import class_of_symbol
+from scenic.compiler.semantics.meanings import class_of_symbol
+from scenic.compiler.semantics.signatures import signature_of
+from scenic.compiler.semantics.symbols import Symbol, SymbolKind
 from scenic.project.index import Project
 from scenic.project.queries import definition, exported, references, symbol_at
-from scenic.project.signatures import signature_of
-from scenic.project.symbols import Symbol, SymbolKind
 from tests.project.layouts import place, project, write
 
 MODEL = '''

@@ -2,7 +2,8 @@ from pathlib import Path
 
 import pytest
 
-from scenic.project.search import Finder, ModuleKind
+from scenic.compiler.semantics.modules import ModuleKind
+from scenic.project.search import Finder
 from tests.project.layouts import write
 
 

@@ -6,8 +6,8 @@ from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import CheckContext, Definition, NodeRule
-from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.provided import PROVIDED_PARAMETERS
+from scenic.compiler.places import word_span
 from scenic.compiler.scopes import Scope, ScopeKind
 from scenic.compiler.surroundings import Foreign
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label

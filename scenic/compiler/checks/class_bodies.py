@@ -6,7 +6,7 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import CheckContext, NodeRule
-from scenic.compiler.checks.places import word_span
+from scenic.compiler.places import word_span
 from scenic.compiler.scopes import Scope
 from scenic.compiler.surroundings import Property
 from scenic.language.diagnostics import Diagnostic, Edit, Fix

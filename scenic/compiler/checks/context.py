@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import Block, blocks
-from scenic.compiler.checks.places import header_span, word_span
+from scenic.compiler.places import header_span, word_span
 from scenic.compiler.scopes import PROVIDED, BindingKind, Resolution, Scope
 from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.names import DEFINITIONS, Definition

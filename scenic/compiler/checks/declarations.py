@@ -6,7 +6,7 @@ from typing import Any
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import CheckContext
-from scenic.compiler.checks.places import word_span
+from scenic.compiler.places import word_span
 from scenic.compiler.scopes import ScopeKind
 from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic, Label

@@ -8,7 +8,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import DYNAMIC, Where
 from scenic.compiler.checks.conditions import truth
 from scenic.compiler.checks.context import CheckContext
-from scenic.compiler.checks.places import word_span
+from scenic.compiler.places import word_span
 from scenic.compiler.scopes import PROVIDED
 from scenic.compiler.traversal import parts
 from scenic.language.diagnostics import Diagnostic

@@ -10,7 +10,6 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.arguments import kind_of
 from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.checks.foreign_names import keyword_meant, known_elsewhere
-from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.unfinished import (
     alone_names,
     begun_names,
@@ -20,6 +19,7 @@ from scenic.compiler.checks.unfinished import (
     text_before,
     unfinished,
 )
+from scenic.compiler.places import word_span
 from scenic.compiler.scopes import PROVIDED, Binding, BindingKind, Reference, ScopeKind
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Fix, Label

@@ -9,8 +9,8 @@ from typing import Any, Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import in_compose
 from scenic.compiler.checks.context import CheckContext
-from scenic.compiler.checks.places import word_span
 from scenic.compiler.checks.unfinished import begun_names
+from scenic.compiler.places import word_span
 from scenic.compiler.scopes import PROVIDED, Scope, ScopeKind
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Label

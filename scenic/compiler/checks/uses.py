@@ -9,7 +9,7 @@ from typing import Any, Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.arguments import kind_of
 from scenic.compiler.checks.context import DEFINITIONS, CheckContext
-from scenic.compiler.checks.places import word_span
+from scenic.compiler.places import word_span
 from scenic.compiler.scopes import Binding, BindingKind, Scope, ScopeKind
 from scenic.compiler.traversal import position, walk
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label

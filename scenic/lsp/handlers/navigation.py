@@ -8,6 +8,7 @@ from typing import Any, Final, TypeAlias, TypeVar
 from lsprotocol import types
 from pygls.exceptions import JsonRpcInvalidParams
 
+from scenic.compiler.semantics.symbols import Symbol, SymbolKind
 from scenic.ide import hierarchies, navigation
 from scenic.ide.navigation import Target
 from scenic.ide.symbols import OutlineKind, flat, matches, symbols
@@ -17,7 +18,6 @@ from scenic.lsp.session import Session
 from scenic.lsp.uris import to_path
 from scenic.lsp.workers import GoOn
 from scenic.project.index import Project
-from scenic.project.symbols import Symbol, SymbolKind
 
 __all__ = ["HANDLERS", "KINDS"]
 

@@ -5,12 +5,11 @@ from dataclasses import field
 from typing import Any
 
 from scenic.compiler import tree as scenic
+from scenic.compiler.semantics.meanings import class_of_symbol
+from scenic.compiler.semantics.modules import Module, Modules
+from scenic.compiler.semantics.symbols import Symbol, SymbolKind
 from scenic.dataclass import dataclass
 from scenic.language.names import NAMES
-from scenic.project.classes import class_of_symbol
-from scenic.project.index import Project
-from scenic.project.modules import Module
-from scenic.project.symbols import Symbol, SymbolKind
 
 __all__ = ["Parameter", "Signature", "signature_of"]
 
@@ -68,7 +67,7 @@ class Signature:
         return text if self.returns is None else f"{text} -> {self.returns}"
 
 
-def signature_of(project: Project, symbol: Symbol) -> Signature | None:
+def signature_of(modules: Modules, symbol: Symbol) -> Signature | None:
     """The signature of a symbol; ``None`` if it cannot be called, or its signature is not known."""
     if symbol.is_builtin:
         declared = NAMES.get(symbol.name)
@@ -93,17 +92,17 @@ def signature_of(project: Project, symbol: Symbol) -> Signature | None:
                 else _signature(module, symbol, node.args)
             )
         case ast.ClassDef():
-            return _of_class(project, symbol, node)
+            return _of_class(modules, symbol, node)
     return None
 
 
-def _of_class(project: Project, symbol: Symbol, node: ast.ClassDef) -> Signature | None:
-    known = class_of_symbol(project, symbol)
+def _of_class(modules: Modules, symbol: Symbol, node: ast.ClassDef) -> Signature | None:
+    known = class_of_symbol(modules, symbol)
     if known is None or known.is_scenic:
         return None
     initial = next((member for member in known.members if member.name == "__init__"), None)
     if initial is not None and initial.symbol is not None:
-        found = signature_of(project, initial.symbol)
+        found = signature_of(modules, initial.symbol)
         return None if found is None else Signature(symbol.name, found.parameters, None, symbol.documentation)
     if not known.complete or node.decorator_list or node.keywords:
         return None

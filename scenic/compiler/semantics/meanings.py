@@ -9,13 +9,8 @@ from typing import Any, Final
 from scenic import language
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Binding, BindingKind, Scope, ScopeKind
-from scenic.compiler.traversal import position, walk
-from scenic.dataclass import dataclass
-from scenic.language.properties import CLASSES, BuiltinProperty, attributes_of, properties_of
-from scenic.project.index import Exported, Project
-from scenic.project.modules import Module
-from scenic.project.search import FoundModule
-from scenic.project.symbols import (
+from scenic.compiler.semantics.modules import Exported, FoundModule, Module, Modules
+from scenic.compiler.semantics.symbols import (
     Symbol,
     SymbolKind,
     builtin_symbol,
@@ -23,6 +18,9 @@ from scenic.project.symbols import (
     symbol_of_exported,
     symbol_of_module,
 )
+from scenic.compiler.traversal import position, walk
+from scenic.dataclass import dataclass
+from scenic.language.properties import CLASSES, BuiltinProperty, attributes_of, properties_of
 
 __all__ = [
     "LIBRARY",
@@ -93,9 +91,9 @@ class Class:
         return tuple(each for each in self.members if each.kind is SymbolKind.PROPERTY)
 
 
-def class_of_symbol(project: Project, symbol: Symbol) -> Class | None:
+def class_of_symbol(modules: Modules, symbol: Symbol) -> Class | None:
     """The class that a symbol is; ``None`` if it is none."""
-    return _class(project, symbol, 0)
+    return _class(modules, symbol, 0)
 
 
 def is_of_library(filename: str | None) -> bool:
@@ -103,14 +101,14 @@ def is_of_library(filename: str | None) -> bool:
     return filename is not None and filename.startswith(LIBRARY)
 
 
-def _class(project: Project, symbol: Symbol, depth: int) -> Class | None:
+def _class(modules: Modules, symbol: Symbol, depth: int) -> Class | None:
     module = symbol.module
     if module is None or not is_of_library(symbol.filename):
-        return _examined(project, symbol, depth)
-    return module.derived(f"class {symbol.name} {symbol.span}", lambda: _examined(project, symbol, depth))
+        return _examined(modules, symbol, depth)
+    return module.derived(f"class {symbol.name} {symbol.span}", lambda: _examined(modules, symbol, depth))
 
 
-def _examined(project: Project, symbol: Symbol, depth: int) -> Class | None:
+def _examined(modules: Modules, symbol: Symbol, depth: int) -> Class | None:
     if symbol.kind is not SymbolKind.CLASS or depth > _DEEPEST:
         return None
     if symbol.is_builtin:
@@ -133,13 +131,13 @@ def _examined(project: Project, symbol: Symbol, depth: int) -> Class | None:
     if not node.bases and module.is_scenic:
         inherited.append(_built_in(Symbol("Object", SymbolKind.CLASS)))
     for base in node.bases:
-        meant = _meaning(project, module, base, depth + 1)
+        meant = _meaning(modules, module, base, depth + 1)
         if meant is not None and meant.node is node:
             # `class Car(Car)` extends the class that a star import or the model brings.
-            meant = _replaced(project, module, symbol.name)
+            meant = _replaced(modules, module, symbol.name)
         if meant is None and isinstance(base, ast.Name) and base.id in ("object", "Exception", "ABC"):
             continue
-        known = None if meant is None else _class(project, meant, depth + 1)
+        known = None if meant is None else _class(modules, meant, depth + 1)
         if known is None:
             complete = False
         else:
@@ -290,67 +288,67 @@ def _set_by_methods(module: Module, symbol: Symbol, node: ast.ClassDef) -> list[
     return found
 
 
-def meaning(project: Project, module: Module, node: ast.expr) -> Symbol | None:
+def meaning(modules: Modules, module: Module, node: ast.expr) -> Symbol | None:
     """The meaning of a name or an attribute of a program; ``None`` if it is unknown."""
-    return _meaning(project, module, node, 0)
+    return _meaning(modules, module, node, 0)
 
 
-def _meaning(project: Project, module: Module, node: ast.expr, depth: int) -> Symbol | None:
+def _meaning(modules: Modules, module: Module, node: ast.expr, depth: int) -> Symbol | None:
     if depth > _DEEPEST:
         return None
     if isinstance(node, ast.Name):
-        return _of_name(project, module, node)
+        return _of_name(modules, module, node)
     if not isinstance(node, ast.Attribute):
         return None
-    home = module_behind(project, module, node.value)
+    home = module_behind(modules, module, node.value)
     if home is not None:
-        target = project.member(home, node.attr, importer=module.filename)
+        target = modules.member(home, node.attr, importer=module.filename)
         if target is None:
             return None
         return (
             symbol_of_module(target)
             if isinstance(target, FoundModule)
-            else symbol_of_exported(project, target)
+            else symbol_of_exported(modules, target)
         )
-    owner: Symbol | None = _meaning(project, module, node.value, depth + 1)
+    owner: Symbol | None = _meaning(modules, module, node.value, depth + 1)
     if owner is None or owner.kind is not SymbolKind.CLASS:
         owner = _single(
-            _of_attribute(project, owner, depth + 1)
+            _of_attribute(modules, owner, depth + 1)
             if isinstance(node.value, ast.Attribute)
-            else _value_of(project, module, node.value, depth + 1)
+            else _value_of(modules, module, node.value, depth + 1)
         )
-    known = None if owner is None else _class(project, owner, depth + 1)
+    known = None if owner is None else _class(modules, owner, depth + 1)
     member = None if known is None else known.member(node.attr)
     if member is None or known is None:
         return None
     return member.symbol or Symbol(member.name, member.kind, container=member.owner)
 
 
-def _of_name(project: Project, module: Module, node: ast.Name) -> Symbol | None:
+def _of_name(modules: Modules, module: Module, node: ast.Name) -> Symbol | None:
     reference = module.resolution.references.get(node)
     binding = None if reference is None else reference.binding
     if binding is not None:
-        exported = project.own(module, binding)
-        return symbol_of_exported(project, exported)
-    brought = project.exports(module).names.get(node.id)
+        exported = Exported(binding.name, module, binding)
+        return symbol_of_exported(modules, exported)
+    brought = modules.exports(module).names.get(node.id)
     if brought is not None and not (brought.module is module and brought.binding is not None):
-        return symbol_of_exported(project, brought)
+        return symbol_of_exported(modules, brought)
     return builtin_symbol(node.id) if module.is_scenic else None
 
 
-def _replaced(project: Project, module: Module, name: str) -> Symbol | None:
+def _replaced(modules: Modules, module: Module, name: str) -> Symbol | None:
     """The meaning of a name before the module itself binds it: the one that its last star import or model brings."""
     for statement in reversed(module.tree.body):
         if isinstance(statement, scenic.Model) or (
             isinstance(statement, ast.ImportFrom) and any(alias.name == "*" for alias in statement.names)
         ):
-            brought = project.exports_of(project.found_by(statement, module.filename)).names.get(name)
+            brought = modules.exports_of(modules.found_by(statement, module.filename)).names.get(name)
             if brought is not None:
-                return symbol_of_exported(project, brought)
+                return symbol_of_exported(modules, brought)
     return None
 
 
-def module_behind(project: Project, module: Module, node: ast.expr) -> FoundModule | None:
+def module_behind(modules: Modules, module: Module, node: ast.expr) -> FoundModule | None:
     """The module that an expression such as ``m`` or ``package.m`` means; ``None`` if it is none."""
     parts: list[str] = []
     while isinstance(node, ast.Attribute):
@@ -361,42 +359,42 @@ def module_behind(project: Project, module: Module, node: ast.expr) -> FoundModu
     reference = module.resolution.references.get(node)
     binding = None if reference is None else reference.binding
     if binding is None:
-        exported = project.exports(module).names.get(node.id)
+        exported = modules.exports(module).names.get(node.id)
     else:
-        exported = project.own(module, binding)
-    found = None if exported is None else project.follow(exported)
+        exported = Exported(binding.name, module, binding)
+    found = None if exported is None else modules.follow(exported)
     if not isinstance(found, FoundModule):
         return None
     for part in parts:
-        target = project.member(found, part, importer=module.filename)
+        target = modules.member(found, part, importer=module.filename)
         if target is not None and not isinstance(target, FoundModule):
-            target = project.follow(target)
+            target = modules.follow(target)
         if not isinstance(target, FoundModule):
             return None
         found = target
     return found
 
 
-def class_of(project: Project, module: Module, node: ast.expr) -> Symbol | None:
+def class_of(modules: Modules, module: Module, node: ast.expr) -> Symbol | None:
     """The class of the value of an expression, if the text shows it.
 
     That is so of ``new C`` and ``C(...)``, of what is annotated, of elements of sequences, and of names of such values.
     """
-    return _single(_value_of(project, module, node, 0))
+    return _single(_value_of(modules, module, node, 0))
 
 
-def class_of_elements(project: Project, module: Module, node: ast.expr) -> Symbol | None:
+def class_of_elements(modules: Modules, module: Module, node: ast.expr) -> Symbol | None:
     """The class of the elements of the sequence that an expression is, if the text shows it."""
-    value = _value_of(project, module, node, 0)
+    value = _value_of(modules, module, node, 0)
     return value.cls if value is not None and value.is_sequence else None
 
 
-def class_of_exported(project: Project, exported: Exported) -> Symbol | None:
+def class_of_exported(modules: Modules, exported: Exported) -> Symbol | None:
     """The class of a value that a module defines; see `class_of`."""
-    target = project.follow(exported)
+    target = modules.follow(exported)
     if isinstance(target, FoundModule) or target.module is None or target.binding is None:
         return None
-    return _single(_value_of_binding(project, target.module, target.binding, 0))
+    return _single(_value_of_binding(modules, target.module, target.binding, 0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -415,21 +413,21 @@ _SAME_SEQUENCE: Final = frozenset({"list", "tuple", "sorted", "reversed", "set"}
 """Functions that give the elements of their first argument again."""
 
 
-def _value_of(project: Project, module: Module, node: ast.expr, depth: int) -> _Value | None:
+def _value_of(modules: Modules, module: Module, node: ast.expr, depth: int) -> _Value | None:
     if depth > _DEEPEST:
         return None
     match node:
         case scenic.New(cls=cls):
-            meant = _meaning(project, module, cls, depth + 1)
+            meant = _meaning(modules, module, cls, depth + 1)
             return _Value(meant) if meant is not None and meant.kind is SymbolKind.CLASS else None
         case ast.Call(func=function):
-            return _value_of_call(project, module, node, function, depth)
+            return _value_of_call(modules, module, node, function, depth)
         case ast.Name():
-            return _value_of_name(project, module, node, depth)
+            return _value_of_name(modules, module, node, depth)
         case ast.Attribute():
-            return _of_attribute(project, _meaning(project, module, node, depth + 1), depth)
+            return _of_attribute(modules, _meaning(modules, module, node, depth + 1), depth)
         case ast.Subscript(value=value, slice=index) if not isinstance(index, ast.Slice):
-            return _element(_value_of(project, module, value, depth + 1))
+            return _element(_value_of(modules, module, value, depth + 1))
     return None
 
 
@@ -448,9 +446,9 @@ def _single(value: _Value | None) -> Symbol | None:
     return None if value is None or value.is_sequence else value.cls
 
 
-def _of_attribute(project: Project, meant: Symbol | None, depth: int) -> _Value | None:
+def _of_attribute(modules: Modules, meant: Symbol | None, depth: int) -> _Value | None:
     """The value of an attribute with this meaning; in long chains of attributes, each meaning is computed once."""
-    return None if meant is None else _annotated_symbol(project, meant, depth, called=False)
+    return None if meant is None else _annotated_symbol(modules, meant, depth, called=False)
 
 
 def _element(value: _Value | None) -> _Value | None:
@@ -458,27 +456,27 @@ def _element(value: _Value | None) -> _Value | None:
 
 
 def _value_of_call(
-    project: Project, module: Module, node: ast.Call, function: ast.expr, depth: int
+    modules: Modules, module: Module, node: ast.Call, function: ast.expr, depth: int
 ) -> _Value | None:
     name = function.id if isinstance(function, ast.Name) else None
     if name == "Uniform":
         return _alike(
-            _element(_value_of(project, module, value.value, depth + 1))
+            _element(_value_of(modules, module, value.value, depth + 1))
             if isinstance(value, ast.Starred)
-            else _value_of(project, module, value, depth + 1)
+            else _value_of(modules, module, value, depth + 1)
             for value in node.args
         )
     if name == "filter" and len(node.args) == 2:
-        return _value_of(project, module, node.args[1], depth + 1)
+        return _value_of(modules, module, node.args[1], depth + 1)
     if name in _SAME_SEQUENCE and len(node.args) == 1:
-        return _value_of(project, module, node.args[0], depth + 1)
-    meant = _meaning(project, module, function, depth + 1)
+        return _value_of(modules, module, node.args[0], depth + 1)
+    meant = _meaning(modules, module, function, depth + 1)
     if meant is None or meant.kind is SymbolKind.CLASS:
         return None if meant is None else _Value(meant)
-    return _annotated_symbol(project, meant, depth, called=True)
+    return _annotated_symbol(modules, meant, depth, called=True)
 
 
-def _annotated_symbol(project: Project, symbol: Symbol, depth: int, *, called: bool) -> _Value | None:
+def _annotated_symbol(modules: Modules, symbol: Symbol, depth: int, *, called: bool) -> _Value | None:
     """The value of what a symbol means, or of a call of it, by its annotation."""
     node, home = symbol.node, symbol.module
     if home is None or node is None:
@@ -488,14 +486,14 @@ def _annotated_symbol(project: Project, symbol: Symbol, depth: int, *, called: b
         annotation = node.returns if is_property != called else None
     else:
         annotation = None if called else home.annotation_of.get(node)
-    return None if annotation is None else _annotated(project, home, annotation, depth + 1)
+    return None if annotation is None else _annotated(modules, home, annotation, depth + 1)
 
 
 def _last_word(node: ast.expr) -> str:
     return node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
 
 
-def _annotated(project: Project, module: Module, annotation: ast.expr, depth: int) -> _Value | None:
+def _annotated(modules: Modules, module: Module, annotation: ast.expr, depth: int) -> _Value | None:
     """The value that an annotation of a module describes; ``None`` beside a class counts for nothing."""
     if depth > _DEEPEST:
         return None
@@ -505,26 +503,26 @@ def _annotated(project: Project, module: Module, annotation: ast.expr, depth: in
                 inner = ast.parse(text, mode="eval").body
             except (SyntaxError, ValueError, RecursionError):
                 return None
-            return _annotated(project, module, inner, depth + 1)
+            return _annotated(modules, module, inner, depth + 1)
         case ast.BinOp(left=left, op=ast.BitOr(), right=right):
             sides = [
-                _annotated(project, module, side, depth + 1)
+                _annotated(modules, module, side, depth + 1)
                 for side in (left, right)
                 if not (isinstance(side, ast.Constant) and side.value is None)
             ]
             return sides[0] if len(sides) == 1 else None
         case ast.Subscript(value=value, slice=inner) if _last_word(value) in _SEQUENCES:
             first = inner.elts[0] if isinstance(inner, ast.Tuple) and inner.elts else inner
-            element = _annotated(project, module, first, depth + 1)
+            element = _annotated(modules, module, first, depth + 1)
             return None if element is None or element.is_sequence else _Value(element.cls, is_sequence=True)
         case ast.Name(id=name):
-            exported = project.exports(module).names.get(name)
-            symbol = None if exported is None else symbol_of_exported(project, exported)
+            exported = modules.exports(module).names.get(name)
+            symbol = None if exported is None else symbol_of_exported(modules, exported)
             return None if symbol is None or symbol.kind is not SymbolKind.CLASS else _Value(symbol)
     return None
 
 
-def _value_of_name(project: Project, module: Module, node: ast.Name, depth: int) -> _Value | None:
+def _value_of_name(modules: Modules, module: Module, node: ast.Name, depth: int) -> _Value | None:
     reference = module.resolution.references.get(node)
     if reference is None:
         return None
@@ -532,38 +530,38 @@ def _value_of_name(project: Project, module: Module, node: ast.Name, depth: int)
     if binding is None:
         values = [value for value in module.egos if node.id == "ego"]
         if values:
-            return _common(project, module, values, depth)
-        brought = project.exports(module).names.get(node.id)
+            return _common(modules, module, values, depth)
+        brought = modules.exports(module).names.get(node.id)
         if brought is None or brought.binding is None or brought.module is None:
             return None
-        target = project.follow(brought)
+        target = modules.follow(brought)
         if isinstance(target, FoundModule) or target.module is None or target.binding is None:
             return None
         module, binding = target.module, target.binding
-    return _value_of_binding(project, module, binding, depth)
+    return _value_of_binding(modules, module, binding, depth)
 
 
-def _value_of_binding(project: Project, module: Module, binding: Binding, depth: int) -> _Value | None:
+def _value_of_binding(modules: Modules, module: Module, binding: Binding, depth: int) -> _Value | None:
     if len(binding.sites) == 1 and (run := module.loop_of.get(binding.sites[0])) is not None:
-        return _element(_value_of(project, module, run, depth + 1))
+        return _element(_value_of(modules, module, run, depth + 1))
     if binding.kinds == {BindingKind.SELF} or binding.kinds == {BindingKind.PARAMETER}:
         own = _class_of_self(module, binding.scope, binding.name)
         return None if own is None else _Value(own)
     if binding.kinds == {BindingKind.IMPORTED}:
-        followed = project.follow(project.own(module, binding))
+        followed = modules.follow(Exported(binding.name, module, binding))
         if isinstance(followed, FoundModule) or followed.module is None or followed.binding is None:
             return None
         module, binding = followed.module, followed.binding
     if len(binding.sites) == 1 and (run := module.loop_of.get(binding.sites[0])) is not None:
-        return _element(_value_of(project, module, run, depth + 1))
+        return _element(_value_of(modules, module, run, depth + 1))
     statements = [module.assignment_of.get(site) for site in binding.sites]
     values = [each.value for each in statements if each is not None and each.value is not None]
-    return _common(project, module, values, depth) if len(values) == len(binding.sites) else None
+    return _common(modules, module, values, depth) if len(values) == len(binding.sites) else None
 
 
-def _common(project: Project, module: Module, values: list[ast.expr], depth: int) -> _Value | None:
+def _common(modules: Modules, module: Module, values: list[ast.expr], depth: int) -> _Value | None:
     """The class that all of the values have."""
-    return _alike(_value_of(project, module, value, depth + 1) for value in values)
+    return _alike(_value_of(modules, module, value, depth + 1) for value in values)
 
 
 def _class_of_self(module: Module, scope: Scope, name: str) -> Symbol | None:

@@ -7,16 +7,14 @@ from enum import StrEnum
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.places import header_span
+from scenic.compiler.places import header_span
 from scenic.compiler.scopes import Binding, BindingKind, ScopeKind
+from scenic.compiler.semantics.modules import Exported, FoundModule, Module, Modules
 from scenic.compiler.traversal import position
 from scenic.dataclass import dataclass
 from scenic.language.names import NAMES, TRACKED, NameKind
 from scenic.language.properties import CLASSES
 from scenic.language.spans import Span
-from scenic.project.index import Exported, Project
-from scenic.project.modules import Module
-from scenic.project.search import FoundModule
 
 __all__ = [
     "Symbol",
@@ -119,9 +117,9 @@ def symbol_of_module(found: FoundModule) -> Symbol:
     )
 
 
-def symbol_of_exported(project: Project, exported: Exported, *, follow: bool = True) -> Symbol:
+def symbol_of_exported(modules: Modules, exported: Exported, *, follow: bool = True) -> Symbol:
     """The symbol of a name that a module has; unless ``follow`` is false, of what is behind imports."""
-    target = project.follow(exported) if follow else exported
+    target = modules.follow(exported) if follow else exported
     if isinstance(target, FoundModule):
         return symbol_of_module(target)
     if target.module is None or target.binding is None:
