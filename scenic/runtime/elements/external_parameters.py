@@ -124,25 +124,25 @@ class VerifaiRange(VerifaiParameter):
             count = None if buckets is None else _count(buckets)
             shares: tuple[float, ...] | None = None if count is None else (1 / count,) * count
         else:
-            fixed = [checked_weight(weight) for weight in weights]
-            if buckets is not None and buckets != len(fixed):
+            numbers = [checked_weight(weight) for weight in weights]
+            if buckets is not None and buckets != len(numbers):
                 raise ScenicValueError(
-                    f"`VerifaiRange` has {buckets} buckets and {len(fixed)} weights",
+                    f"`VerifaiRange` has {buckets} buckets and {len(numbers)} weights",
                     span=here(),
                     help="give one weight for each bucket, or leave `buckets` out",
                 )
-            if not any(fixed):
+            if not any(numbers):
                 raise nothing_to_choose(cls.__name__)
-            shares = tuple(weight / sum(fixed) for weight in fixed)
+            shares = tuple(weight / sum(numbers) for weight in numbers)
         if weights is None:
-            chosen = Choosable("VerifaiRange", first, last, None, shares, is_stratified=is_stratified)
-            return _make("range", (first, last), None, chosen)
+            choosable = Choosable("VerifaiRange", first, last, None, shares, is_stratified=is_stratified)
+            return _make("range", (first, last), None, choosable)
         assert shares is not None
         edges = tuple(first + (last - first) * place / len(shares) for place in range(len(shares) + 1))
-        chosen = _possible(
+        choosable = _possible(
             Choosable("VerifaiRange", first, last, None, shares), tuple(itertools.pairwise(edges))
         )
-        return _make("piecewise", (), ((0.0, *cumulative(shares)), edges), chosen)
+        return _make("piecewise", (), ((0.0, *cumulative(shares)), edges), choosable)
 
 
 class VerifaiDiscreteRange(VerifaiParameter):
@@ -157,18 +157,18 @@ class VerifaiDiscreteRange(VerifaiParameter):
             )
         first, last = int(ends[0]), int(ends[1])
         count = last - first + 1
-        fixed = [1.0] * count if weights is None else [checked_weight(weight) for weight in weights]
-        if len(fixed) != count:
+        numbers = [1.0] * count if weights is None else [checked_weight(weight) for weight in weights]
+        if len(numbers) != count:
             raise ScenicValueError(
-                f"`VerifaiDiscreteRange` from {first} to {last} needs {count} weights, not {len(fixed)}",
+                f"`VerifaiDiscreteRange` from {first} to {last} needs {count} weights, not {len(numbers)}",
                 span=here(),
             )
-        if not any(fixed):
+        if not any(numbers):
             raise nothing_to_choose(cls.__name__)
-        shares = tuple(weight / sum(fixed) for weight in fixed)
+        shares = tuple(weight / sum(numbers) for weight in numbers)
         values = tuple((float(value), float(value)) for value in range(first, last + 1))
-        chosen = _possible(Choosable("VerifaiDiscreteRange", first, last, count, shares), values)
-        return _make("weighted integer", (), (first, cumulative(fixed)), chosen)
+        choosable = _possible(Choosable("VerifaiDiscreteRange", first, last, count, shares), values)
+        return _make("weighted integer", (), (first, cumulative(numbers)), choosable)
 
 
 class VerifaiOptions(VerifaiParameter):
@@ -183,30 +183,30 @@ class VerifaiOptions(VerifaiParameter):
                 span=here(),
             )
         if isinstance(options, Mapping):
-            weighted = [(option, checked_weight(weight)) for option, weight in options.items()]
+            pairs = [(option, checked_weight(weight)) for option, weight in options.items()]
         else:
-            weighted = [(option, 1.0) for option in options]
-        possible = [(option, weight) for option, weight in weighted if weight > 0]
+            pairs = [(option, 1.0) for option in options]
+        possible = [(option, weight) for option, weight in pairs if weight > 0]
         if not possible:
             raise nothing_to_choose(cls.__name__)
         weights = [weight for _, weight in possible]
         shares = tuple(weight / sum(weights) for weight in weights)
-        chosen = Choosable("VerifaiOptions", 0, len(shares) - 1, len(shares), shares)
-        index = _make("choice", (), cumulative(weights), chosen)
+        choosable = Choosable("VerifaiOptions", 0, len(shares) - 1, len(shares), shares)
+        index = _make("choice", (), cumulative(weights), choosable)
         return choose_among([option for option, _ in possible], weights, cls.__name__, index=index)
 
 
 def _possible(chosen: Choosable, cells: tuple[tuple[float, float], ...]) -> Choosable:
     """Return a choice without its cells of weight zero."""
     assert chosen.shares is not None
-    kept = [place for place, share in enumerate(chosen.shares) if share > 0]
-    if len(kept) == len(cells):
+    indices = [place for place, share in enumerate(chosen.shares) if share > 0]
+    if len(indices) == len(cells):
         return chosen
     return replace(
         chosen,
-        count=None if chosen.count is None else len(kept),
-        shares=tuple(chosen.shares[place] for place in kept),
-        cells=tuple(cells[place] for place in kept),
+        count=None if chosen.count is None else len(indices),
+        shares=tuple(chosen.shares[place] for place in indices),
+        cells=tuple(cells[place] for place in indices),
     )
 
 

@@ -78,8 +78,8 @@ def _extreme(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
         if options or isinstance(args[0] if len(args) == 1 else None, Random):
             if not is_later(*args, *options.values()):
                 return function(*args, **options)
-            chosen = None if options else over_options([as_node(item) for item in args], function)
-            return call_later(function, *args, **options) if chosen is None else chosen
+            choice = None if options else over_options([as_node(item) for item in args], function)
+            return call_later(function, *args, **options) if choice is None else choice
         if not any(is_random(item) for item in args):
             return function(*args)
         return operate(name, *(args[0] if len(args) == 1 else args))
@@ -117,16 +117,16 @@ def filter(function: Callable[[Any], Any] | None, values: Any) -> Any:
         return defer(filter, function, values)
     if not is_later(function, values):
         values = list(values)
-        kept = _kept(function, values)
-        if not kept:
-            _note_empty(kept, values, function)
-        return kept
-    chosen = _kept_of_options(function, values)
-    if chosen is None:
+        items = _kept(function, values)
+        if not items:
+            _note_empty(items, values, function)
+        return items
+    choice = _kept_of_options(function, values)
+    if choice is None:
         return call_later(_kept, function, values)
-    if all(option == [] for option in options_of(chosen)):
-        _note_empty(chosen, [item for option in options_of(values) for item in option], function)
-    return chosen
+    if all(option == [] for option in options_of(choice)):
+        _note_empty(choice, [item for option in options_of(values) for item in option], function)
+    return choice
 
 
 def _note_empty(result: object, elements: list[Any], function: object) -> None:
@@ -142,17 +142,19 @@ def _kept_of_options(function: Callable[[Any], Any] | None, values: object) -> A
     Random names that the function reads have to be choices by the same draw.
     """
     scope = getattr(function, "__globals__", {})
-    drawn = {name: scope[name] for name in global_names(function) if isinstance(scope.get(name), Random)}
-    if function is not None and not is_pure(function, drawn):
+    random_globals = {
+        name: scope[name] for name in global_names(function) if isinstance(scope.get(name), Random)
+    }
+    if function is not None and not is_pure(function, random_globals):
         return None
 
     def kept(items: object, *given: Any) -> list[Any]:
         if not given:
             return _kept(function, items)
-        names = {**scope, **dict(zip(drawn, given, strict=True))}
+        names = {**scope, **dict(zip(random_globals, given, strict=True))}
         return _kept(FunctionType(function.__code__, names, argdefs=function.__defaults__), items)  # type: ignore[union-attr] # it reads names
 
-    return over_options([as_node(values), *map(as_node, drawn.values())], kept)
+    return over_options([as_node(values), *map(as_node, random_globals.values())], kept)
 
 
 def _kept(function: Callable[[Any], Any] | None, values: Any) -> list[Any]:

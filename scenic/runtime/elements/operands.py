@@ -230,8 +230,8 @@ def _reading_places(types: Sequence[Type], label: str) -> Read:
             return UNDECIDED
         if not takes_regions:
             return to_vector(value, label)
-        found = type_of(value, types, label)
-        return UNDECIDED if found is None else _READINGS[found].convert(value, label)
+        kind = type_of(value, types, label)
+        return UNDECIDED if kind is None else _READINGS[kind].convert(value, label)
 
     return read
 
@@ -288,12 +288,12 @@ def bound(declared: Operator, function: Callable[..., Any], drawn: Callable[...,
         InvalidScenarioError: when an operand is left out and there is no ego.
 
     """
-    name, made = declared.name, DrawnRegion.made if declared.result == REGION.name else call_later
+    name, application = declared.name, DrawnRegion.made if declared.result == REGION.name else call_later
     reads = [reader(operand.types, declared.label(operand)) for operand in declared.operands]
     egos = [operand.may_be_ego for operand in declared.operands]
 
     def undecided(call: Bound, ego: Ego, given: tuple[Any, ...], operands: tuple[Any, ...]) -> Any:
-        return defer(call, ego, *given) if is_lazy(given) else made(drawn, name, *operands)
+        return defer(call, ego, *given) if is_lazy(given) else application(drawn, name, *operands)
 
     if len(reads) == 1:
         return _unary(reads[0], function, undecided)
@@ -326,20 +326,20 @@ def _binary(
     def call(ego: Ego, first: object, second: object) -> Any:
         if type(first) is Vector and type(second) is Vector and are_places:
             return function(first, second)
-        given = first, second
+        operands = first, second
         try:
             if first is None and first_is_ego:
                 first = ego()
             if second is None and second_is_ego:
                 second = ego()
         except InvalidScenarioError:  # A wrong operand is told before a missing ego.
-            for read, value in zip(reads, given, strict=True):
+            for read, value in zip(reads, operands, strict=True):
                 if value is not None:
                     read(value)
             raise
         one, other = read_first(first), read_second(second)
         if one is UNDECIDED or other is UNDECIDED:
-            return undecided(call, ego, given, (first, second))
+            return undecided(call, ego, operands, (first, second))
         return function(one, other)
 
     return call

@@ -92,33 +92,33 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
     instance = cls._make({})
     values = instance.__dict__
     values.update(resolution.constants)
-    done: set[Step] = set()
+    finished_steps: set[Step] = set()
     is_object = issubclass(cls, Object)
 
     def evaluate(step: Step) -> None:
-        if step in done:
+        if step in finished_steps:
             return
-        done.add(step)
+        finished_steps.add(step)
         if step.builtin is not None:
             (name,) = step.names
             # A lazy value may need this default before its turn.
-            for needed in cls.scenic_properties[name].dependencies:
-                if needed not in values and needed in resolution.providers:
-                    evaluate(resolution.providers[needed])
+            for dependency in cls.scenic_properties[name].dependencies:
+                if dependency not in values and dependency in resolution.providers:
+                    evaluate(resolution.providers[dependency])
             values[name] = normalised(name, step.builtin(instance))
             return
         specifier = step.specifier(specifiers)
         function = specifier.modify if step.modifies and specifier.modify else specifier.evaluate
         try:
-            offered = function(instance)
-            for name in sorted(_reads(offered, step.names)):
+            values_of_step = function(instance)
+            for name in sorted(_reads(values_of_step, step.names)):
                 # A default that is lazy, which shows only when it is evaluated.
                 provider = resolution.provider(name, specifier)
                 demand(provider)
                 if name not in values:
                     raise _circle([specifier, provider.specifier(specifiers)])
             for name in step.names:
-                value = offered[name]
+                value = values_of_step[name]
                 if type(value) not in _PLAIN:
                     value = settle(value, instance)
                 value = normalised(name, value)
@@ -134,7 +134,7 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
 
     def demand(step: Step) -> None:
         """Evaluate a step before its turn, after those that it depends on."""
-        if step in done:
+        if step in finished_steps:
             return
         for name in sorted(step.specifier(specifiers).dependencies):
             if name not in values and name in resolution.providers:
@@ -165,12 +165,12 @@ def resolution_of(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d:
             for item in specifiers
         ]
     )
-    known = cls._resolutions
-    resolution = known.get((mode_2d, kinds))
+    resolutions = cls._resolutions
+    resolution = resolutions.get((mode_2d, kinds))
     if resolution is None:
         resolution = resolve(cls, specifiers, class_defaults(cls, mode_2d=mode_2d))
         if not resolution.is_doubtful:
-            known[mode_2d, kinds] = resolution
+            resolutions[mode_2d, kinds] = resolution
     return resolution
 
 
@@ -189,10 +189,10 @@ def _check(cls: type[Point], specifiers: Sequence[Specifier], properties: Mappin
     """Raise `SpecifierError` for what no specifier may specify; returns whether a property of Python's is doubtful."""
     is_doubtful = False
     for specifier in specifiers:
-        own = specifier.dependencies & specifier.priorities.keys()
-        if own:
+        circular_names = specifier.dependencies & specifier.priorities.keys()
+        if circular_names:
             raise SpecifierError(
-                f"{specifier} specifies {_quoted(own)} and depends on it at the same time",
+                f"{specifier} specifies {_quoted(circular_names)} and depends on it at the same time",
                 span=specifier.span,
             )
         for name in specifier.priorities:
@@ -283,12 +283,12 @@ def _check_property(
             )
     elif _is_taken(cls, name):
         raise _clash(cls, name, specifier.span)
-    elif (meant := nearest_property(name, properties)) is not None:
+    elif (similar_name := nearest_property(name, properties)) is not None:
         warn(
             f"{cls.__name__} has no property {name!r}, which is now created",
             code="SC300",
             span=specifier.span,
-            help=f"did you mean {meant!r}?",
+            help=f"did you mean {similar_name!r}?",
         )
         return True
     return False
@@ -392,11 +392,11 @@ def _topological(
 ) -> tuple[Specifier, ...]:
     """Providers before the specifiers that read them, by depth-first search in program order."""
     order: list[Specifier] = []
-    done: set[Specifier] = set()
+    ordered_specifiers: set[Specifier] = set()
     active: list[Specifier] = []
 
     def visit(specifier: Specifier) -> None:
-        if specifier in done:
+        if specifier in ordered_specifiers:
             return
         if specifier in active:
             raise _circle(active[active.index(specifier) :])
@@ -413,7 +413,7 @@ def _topological(
         for name in sorted(modifies.get(specifier, ())):
             visit(claims[name])
         active.pop()
-        done.add(specifier)
+        ordered_specifiers.add(specifier)
         order.append(specifier)
 
     for specifier in (*owns, *modifies):
@@ -453,13 +453,13 @@ def check_assigned(instance: Any, name: str, *, mode_2d: bool) -> None:
     """
     entry = instance.scenic_properties.get(name)
     values = instance.__dict__
-    derived = isinstance(getattr_static(type(instance), name, None), Yielding)
-    if name not in values or (entry is None and not derived):
+    is_derived = isinstance(getattr_static(type(instance), name, None), Yielding)
+    if name not in values or (entry is None and not is_derived):
         return
     if entry is None or entry.final:
         of = (
             ": width, length and height"
-            if derived
+            if is_derived
             else ": yaw, pitch and roll"
             if name in _DIRECTIONS
             else ""

@@ -162,14 +162,14 @@ def _specifier(
     ``reads`` are the properties that it needs beside the declared ones; ``conditional`` tells whether it gives what is
     declared under a condition.
     """
-    declared = _DECLARED[name]
+    declaration = _DECLARED[name]
     return Specifier(
         name,
-        declared.under_condition if conditional else declared.always,
-        declared.needs.union(reads) if reads else declared.needs,
+        declaration.under_condition if conditional else declaration.always,
+        declaration.needs.union(reads) if reads else declaration.needs,
         evaluate,
-        declared.modifies,
-        kind=None if reads else declared.kinds[conditional],
+        declaration.modifies,
+        kind=None if reads else declaration.kinds[conditional],
         **options,
     )
 
@@ -546,18 +546,18 @@ def _converted(declared: _Declared, ego: Ego, workspace: Space, operands: Sequen
     """Return the arguments that a specifier is built from: the ego or the workspace where it reads them, then
     its converted operands.
     """
-    given = [*operands]
+    arguments = [*operands]
     for index, read in declared.conversions:
-        if given[index] is not None or index not in declared.egos:
-            given[index] = read(given[index])
+        if arguments[index] is not None or index not in declared.egos:
+            arguments[index] = read(arguments[index])
     for index, read in declared.egos.items():
-        if given[index] is None:
-            given[index] = read(ego())
+        if arguments[index] is None:
+            arguments[index] = read(ego())
     if declared.reads_ego:
-        given.insert(0, ego())
+        arguments.insert(0, ego())
     if declared.reads_workspace:
-        given.insert(0, workspace())
-    return given
+        arguments.insert(0, workspace())
+    return arguments
 
 
 def specify(name: str, ego: Ego, workspace: Space, *operands: Any, site: Site | None = None) -> Specifier:
@@ -567,17 +567,17 @@ def specify(name: str, ego: Ego, workspace: Space, *operands: Any, site: Site | 
     the operands that the text leaves out (``None``), as declared. A wrong operand is told before a missing ego. ``site`` is the call
     in generated code, if that is known.
     """
-    declared = _DECLARED[name]
-    if declared.only is not None:
-        given: Sequence[Any] = (declared.only(operands[0]),)
-    elif declared.is_plain:
-        given = operands
+    declaration = _DECLARED[name]
+    if declaration.only is not None:
+        arguments: Sequence[Any] = (declaration.only(operands[0]),)
+    elif declaration.is_plain:
+        arguments = operands
     else:
-        given = _converted(declared, ego, workspace, operands)
-    found = BUILDERS[name](*given)
-    found.site = here() if site is None else site
+        arguments = _converted(declaration, ego, workspace, operands)
+    specifier = BUILDERS[name](*arguments)
+    specifier.site = here() if site is None else site
     reads = reads_of(operands)
-    return replace(found, dependencies=found.dependencies | reads, kind=None) if reads else found
+    return replace(specifier, dependencies=specifier.dependencies | reads, kind=None) if reads else specifier
 
 
 __all__ = [

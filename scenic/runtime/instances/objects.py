@@ -111,14 +111,14 @@ class Point(Instance):
         super().__init_subclass__(**kwargs)
         if cls.__module__ != Point.__module__:
             bind(cls, Point)
-        own: tuple[PropertyDefinition, ...] = cls.__dict__.get("__scenic_properties__", ())
-        if own or "_definitions" not in cls.__dict__:
-            cls._definitions = {definition.name: definition for definition in own}
-            if len(cls._definitions) < len(own):
+        definitions: tuple[PropertyDefinition, ...] = cls.__dict__.get("__scenic_properties__", ())
+        if definitions or "_definitions" not in cls.__dict__:
+            cls._definitions = {definition.name: definition for definition in definitions}
+            if len(cls._definitions) < len(definitions):
                 # Only in 2D mode: the compiler refuses a property that is written twice.
                 raise InvalidScenarioError(
                     "`heading` and `parentOrientation` mean the same in 2D mode",
-                    span=own[-1].span,
+                    span=definitions[-1].span,
                     help="define one of the two",
                 )
         _combine_properties(cls)
@@ -154,22 +154,26 @@ class Point(Instance):
 
     def __getattr__(self, name: str) -> Any:
         # Reached only for what is not stored yet: a property of a sampled instance, or a vector's attribute.
-        stored = self.__dict__
-        source = stored.get("_source")
+        attributes = self.__dict__
+        source = attributes.get("_source")
         if source is not None:
             values = source.__dict__
             if name in values:
-                value = stored[name] = stored["_sample"].value(values[name])
+                value = attributes[name] = attributes["_sample"].value(values[name])
                 return value
-        whole = stored if source is None else source.__dict__
+        whole = attributes if source is None else source.__dict__
         if "_implied" in whole and name not in whole and name in type(self).scenic_properties:
             _fill(self if source is None else source, name)
             if source is None:
-                return stored[name]
+                return attributes[name]
         if source is not None and name in source.__dict__:  # a property that was implied
-            value = stored[name] = stored["_sample"].value(source.__dict__[name])
+            value = attributes[name] = attributes["_sample"].value(source.__dict__[name])
             return value
-        if not name.startswith("_") and (source is not None or "position" in stored) and name != "position":
+        if (
+            not name.startswith("_")
+            and (source is not None or "position" in attributes)
+            and name != "position"
+        ):
             position = self.position
             if hasattr(type(position), name):
                 return getattr(position, name)
@@ -217,9 +221,9 @@ class Point(Instance):
         Rays may miss what shows between them. With ``certain`` they are not used: an object counts as seen if that is
         proved, however little of it shows.
         """
-        stored: Mapping[str, Any] = self.__dict__.get("_source", self).__dict__
+        attributes: Mapping[str, Any] = self.__dict__.get("_source", self).__dict__
         occluders = occluders_of(occludingObjects)
-        if "_planar" in stored and not certain:
+        if "_planar" in attributes and not certain:
             return sees_in_plane(self, other, occluders)
         return sees(self, other, occluders, certain=certain)
 
@@ -385,14 +389,14 @@ class Object(OrientedPoint):
         """Return whether the shape shares a point with another object or region."""
         body = placed_of(self)
         if body is not None:
-            met = None
+            overlap = None
             if isinstance(other, Object):
                 other_body = placed_of(other)
-                met = None if other_body is None else meet(body, other_body)
+                overlap = None if other_body is None else meet(body, other_body)
             elif isinstance(other, Region) and other.at_once is not None:
-                met = other.at_once.meets_body(body)
-            if met is not None:
-                return met
+                overlap = other.at_once.meets_body(body)
+            if overlap is not None:
+                return overlap
         return self.occupiedSpace.intersects(other)
 
     @property

@@ -38,10 +38,10 @@ def stand_in(instance: object) -> Any:
         return instance
     if not isinstance(instance, Point) or "_source" in instance.__dict__:
         return instance
-    known = context.stand_ins.made.get(id(instance))
-    if known is None:
-        known = context.stand_ins.made[id(instance)] = (instance, _made(instance))
-    return known[1]
+    pair = context.stand_ins.made.get(id(instance))
+    if pair is None:
+        pair = context.stand_ins.made[id(instance)] = (instance, _made(instance))
+    return pair[1]
 
 
 def _made(instance: Point) -> Point:

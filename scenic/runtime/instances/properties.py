@@ -281,7 +281,7 @@ def _view_angles(_name: str, value: object) -> Any:
     """A pair of angles, at most all around."""
     if not (isinstance(value, tuple | list | Vector) and len(value) in (2, 3)):
         raise wrong_type(VIEW_ANGLES, value, "property 'viewAngles'")
-    limited = []
+    angles = []
     for angle, limit in zip(list(value)[:2], (2 * math.pi, math.pi), strict=True):
         size = to_scalar(angle, "property 'viewAngles'")
         if is_number(size):
@@ -299,8 +299,8 @@ def _view_angles(_name: str, value: object) -> Any:
                 size = limit
         else:
             size = operate("minimum", size, limit)
-        limited.append(size)
-    return tuple(limited)
+        angles.append(size)
+    return tuple(angles)
 
 
 def _colour(_name: str, value: object) -> Any:
@@ -337,19 +337,19 @@ def update(instance: Any, changes: Mapping[str, object]) -> None:
     values = instance.__dict__
     for name, value in changes.items():
         values[name] = normalised(name, value)
-    derived = {
+    dependents = {
         name: entry for name, entry in instance.scenic_properties.items() if entry.dynamic and entry.final
     }
-    settled: set[str] = set()
+    names_done: set[str] = set()
 
     def settle(name: str) -> None:
-        if name not in settled:
-            settled.add(name)
-            for needed in derived[name].dependencies & derived.keys():
+        if name not in names_done:
+            names_done.add(name)
+            for needed in dependents[name].dependencies & dependents.keys():
                 settle(needed)
-            values[name] = normalised(name, derived[name].default(instance))
+            values[name] = normalised(name, dependents[name].default(instance))
 
-    for name in derived.keys() - changes.keys():
+    for name in dependents.keys() - changes.keys():
         settle(name)
 
 

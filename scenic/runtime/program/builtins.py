@@ -60,11 +60,11 @@ class GlobalParameters:
         if name in self._program.overrides:
             return self._program.overrides[name]
         if name not in parameters:
-            known = ", ".join(sorted(parameters)) or "none"
+            names = ", ".join(sorted(parameters)) or "none"
             raise UnknownParameterError(
                 f"there is no global parameter {name!r}",
                 span=here(),
-                help=f"parameters set so far: {known}; set it with `param {name} = ...`",
+                help=f"parameters set so far: {names}; set it with `param {name} = ...`",
             )
         return parameters[name]
 

@@ -47,20 +47,20 @@ def _counts(context: Context, emptied: Emptied) -> Iterator[tuple[str, int]]:
     body = condition.body
     names = {**function.__globals__, **_closure(function)}
     for part in body.values if isinstance(body, ast.BoolOp) and isinstance(body.op, ast.And) else ():
-        written = ast.unparse(part)
-        code = compile(f"lambda {ast.unparse(condition.args)}: {written}", "<condition>", "eval")
+        text = ast.unparse(part)
+        code = compile(f"lambda {ast.unparse(condition.args)}: {text}", "<condition>", "eval")
         try:
             number = sum(map(bool, map(eval(code, names), emptied.elements)))
         except Exception:  # noqa: BLE001 - a condition may rely on the ones before it
             return
-        yield written if len(written) <= _LONGEST else f"{written[:_LONGEST]}...", number
+        yield text if len(text) <= _LONGEST else f"{text[:_LONGEST]}...", number
 
 
 def _lambda_of(context: Context, place: Span | None) -> ast.Lambda | None:
     """The lambda that the call of a filter has in the program's text; ``None`` if it has operators of the language."""
-    quoted = None if place is None else context.quote(place)
+    quotation = None if place is None else context.quote(place)
     try:
-        tree = ast.parse(f"({quoted[1]})", mode="eval") if quoted else None
+        tree = ast.parse(f"({quotation[1]})", mode="eval") if quotation else None
     except (SyntaxError, ValueError):
         return None
     for node in () if tree is None else ast.walk(tree):

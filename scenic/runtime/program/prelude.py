@@ -146,8 +146,8 @@ class Prelude(Symbolic, Dynamics):
     @ego.setter
     def ego(self, value: object) -> None:
         if not isinstance(value, Object):
-            made = value.__name__ if isinstance(value, type) else "Object"
-            hint = f"write `ego = new {made}`, with specifiers where they are needed"
+            class_name = value.__name__ if isinstance(value, type) else "Object"
+            hint = f"write `ego = new {class_name}`, with specifiers where they are needed"
             raise ScenicTypeError(f"the ego must be an object, not {describe(value)}", span=here(), help=hint)
         run = self._run
         if run is not None:
@@ -208,10 +208,10 @@ class Prelude(Symbolic, Dynamics):
         if property is not None:
             if property == "heading" and self._context.mode_2d:
                 return specify("facing", self._ego, self._space, *operands, site=site)
-            own = self._module.scope.get(property)
-            if isinstance(own, UserSpecifier):
+            user_specifier = self._module.scope.get(property)
+            if isinstance(user_specifier, UserSpecifier):
                 (value,) = operands
-                return own(*value) if type(value) is tuple else own(value)
+                return user_specifier(*value) if type(value) is tuple else user_specifier(value)
             operands = (property, *operands)
         return specify(name, self._ego, self._space, *operands, site=site)
 
@@ -238,8 +238,10 @@ class Prelude(Symbolic, Dynamics):
         if self._run is not None:
             context = self._context
             for sighting in sightings if is_always_present(instance) else ():
-                seen = sees_in_mode(sighting.observer, instance, context.present, mode_2d=context.mode_2d)
-                if bool(seen) != sighting.wanted:
+                is_visible = sees_in_mode(
+                    sighting.observer, instance, context.present, mode_2d=context.mode_2d
+                )
+                if bool(is_visible) != sighting.wanted:
                     raise RejectionException(f"whether the {cls.__name__} is seen")
             self._run.create(instance)
             return instance
@@ -248,11 +250,11 @@ class Prelude(Symbolic, Dynamics):
         if isinstance(instance, Object):
             self._program.objects.append(instance)
         self._program.places[id(instance)] = (here(), self._module.filename)
-        assembled = getattr(cls, "_assembled", None)
-        if assembled is not None:
+        assemble = getattr(cls, "_assembled", None)
+        if assemble is not None:
             # The class makes further objects, which belong to this one.
             try:
-                assembled(instance)
+                assemble(instance)
             except Located as error:
                 error.at(self._program.places[id(instance)])
                 raise
@@ -337,12 +339,12 @@ class Prelude(Symbolic, Dynamics):
             )
         run = self._run
         if targets is not None:
-            chosen = targets
+            instances = targets
         else:
-            chosen = self._program.objects if run is None else run.current.objects
-        mutation.request(chosen, scale)
+            instances = self._program.objects if run is None else run.current.objects
+        mutation.request(instances, scale)
         if run is not None:
-            run.check_mutable(chosen)
+            run.check_mutable(instances)
 
     def simulator(self, make: Callable[[], Any]) -> None:
         """``simulator expr``: stored, and evaluated when a simulator is needed."""
@@ -391,11 +393,11 @@ class Prelude(Symbolic, Dynamics):
 
         One that ``awaits`` reads names that the module sets later.
         """
-        kept = Kept(concrete, captured, margin)
+        closure = Kept(concrete, captured, margin)
         symbolic_context = self._context.is_symbolic
         self._context.record.awaits |= awaits
         build = conditions.leaf(symbolic, concrete, captured, awaits=awaits) if symbolic_context else None
-        return Condition(kept, build)
+        return Condition(closure, build)
 
     def conjunction(self, *parts: Condition) -> Condition:
         """``and``."""
@@ -543,33 +545,33 @@ class Loader:
             for item in (name, *(f"{name}.{part}" for part in others)):
                 note_import(item)
             with beside(folder):
-                found = builtins.__import__(
+                module = builtins.__import__(
                     name, globals, locals, others, 0 if importer.package or not level else level
                 )
             if not parts:
                 if fromlist:
-                    return found
+                    return module
                 for package in accumulate(name.split("."), "{}.{}".format):
                     self._python[package] = sys.modules[package]
                     self._join(package)
-                top = found.__name__
-                return self._present(self._packages[top]) if top in self._packages else found
+                top = module.__name__
+                return self._present(self._packages[top]) if top in self._packages else module
         holder = ModuleType(name)
         if others:
-            vars(holder).update(vars(found))
+            vars(holder).update(vars(module))
         for item, path in parts.items():
             setattr(holder, item, self._load(path, f"{name}.{item}".strip("."), importer))
         return holder
 
     def _load(self, path: Path, name: str, importer: Module, *, is_model: bool = False) -> ModuleType:
         active = current.get()
-        loaded = self._loaded
-        if isinstance(active, RunContext) and path not in loaded:
-            loaded = active.run.modules
+        modules = self._loaded
+        if isinstance(active, RunContext) and path not in modules:
+            modules = active.run.modules
         note_file(path)
-        if path not in loaded:
+        if path not in modules:
             module = ModuleType(name)
-            loaded[path] = module
+            modules[path] = module
             if isinstance(active, RunContext):
                 active.run.copies.adopt(module)
             package = name if path.stem == "__init__" else name.rpartition(".")[0]
@@ -583,17 +585,20 @@ class Loader:
                 importer.ego = state.ego
             if importer.workspace is None:
                 importer.workspace = state.workspace
-        return self._present(loaded[path])
+        return self._present(modules[path])
 
     def use_model(self, name: str, scope: dict[str, Any], importer: Module) -> None:
         """Give a module everything that a model defines."""
-        chosen = self._model or name
-        path = self._modules.find(chosen)
+        model_name = self._model or name
+        path = self._modules.find(model_name)
         if path is None:
             raise InvalidScenarioError(
-                f"there is no world model {chosen!r}", code="SC406", span=here(), help=how_to_get(chosen)
+                f"there is no world model {model_name!r}",
+                code="SC406",
+                span=here(),
+                help=how_to_get(model_name),
             )
-        module = self._load(path, chosen, importer, is_model=True)
+        module = self._load(path, model_name, importer, is_model=True)
         public = getattr(module, "__all__", None)
         scope.update(
             (key, value)

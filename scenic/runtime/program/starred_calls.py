@@ -43,9 +43,9 @@ def spread(function: Callable[..., Any], parts: Parts, keywords: Mapping[str, ob
     if function is Uniform:
         return _one_of(parts)
     if not keywords and is_pure(function):
-        chosen = _for_each_option(parts, function)
-        if chosen is not None:
-            return chosen
+        choice = _for_each_option(parts, function)
+        if choice is not None:
+            return choice
     return call_later(_call, function, parts, **keywords)
 
 

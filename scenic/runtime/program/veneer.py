@@ -73,10 +73,10 @@ def _function(
     made_by: Callable[..., Any], element: Operator | SpecifierDeclaration, declared: Function
 ) -> Callable[..., Any]:
     """The declared function of an operator or a specifier."""
-    kind, required = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.empty
+    kind, no_default = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.empty
     signature = inspect.Signature(
         [
-            inspect.Parameter(name, kind, default=None if optional else required)
+            inspect.Parameter(name, kind, default=None if optional else no_default)
             for name, optional in declared.parameters.items()
         ]
     )

@@ -152,8 +152,8 @@ def intersection(first: object, second: object) -> Region:
     if not (a.is_random or b.is_random):
         for one, two in ((a, b), (b, a)):
             if isinstance(one, PointSetRegion):
-                kept = [point for point in one.points if holds(two, point)]
-                return PointSetRegion(one.name, kept, orientation=_field(a, b)) if kept else nowhere
+                points = [point for point in one.points if holds(two, point)]
+                return PointSetRegion(one.name, points, orientation=_field(a, b)) if points else nowhere
         exact = _exact_intersection(a, b)
         if exact is not None:
             return exact
@@ -239,9 +239,9 @@ def union(first: object, second: object) -> Region:
         solid_a, solid_b = solid_of(a), solid_of(b)
         if solid_a is not None and solid_b is not None:
             return _volume(booleans.union([solid_a, solid_b]))
-    chosen = _by_option(union, a, b)
-    if chosen is not None:
-        return chosen
+    choice = _by_option(union, a, b)
+    if choice is not None:
+        return choice
     members = [
         member
         for region in (a, b)
@@ -262,8 +262,8 @@ def difference(first: object, second: object) -> Region:
         return DifferenceRegion(a, _as_container(b, a))
     if not (a.is_random or b.is_random):
         if isinstance(a, PointSetRegion):
-            kept = [point for point in a.points if not holds(b, point)]
-            return PointSetRegion(a.name, kept, orientation=a.orientation) if kept else nowhere
+            points = [point for point in a.points if not holds(b, point)]
+            return PointSetRegion(a.name, points, orientation=a.orientation) if points else nowhere
         flat_a, flat_b = flat_of(a), flat_of(b)
         if flat_a is not None and flat_b is not None:
             if flat_a[1] is not None and flat_b[1] is not None and flat_a[1] != flat_b[1]:
@@ -291,8 +291,8 @@ def intersects(first: object, second: object) -> Any:
     if isinstance(a, Everywhere) or isinstance(b, Everywhere):
         return True
     for region, space in ((a, b), (b, a)):
-        seen = isinstance(region, ViewRegion)
-        if isinstance(space, OccupiedSpace) and (seen or region.is_random or space.is_random):
+        is_view = isinstance(region, ViewRegion)
+        if isinstance(space, OccupiedSpace) and (is_view or region.is_random or space.is_random):
             return apply(MEETS_BODY, *space.parameters, *region.parameters, payload=region)
     if a.is_random or b.is_random:
         return as_value(later(_MEET, _meet, (a, b)))
@@ -333,16 +333,16 @@ def _shared(one: IntersectionRegion | DifferenceRegion, other: Region) -> Region
     Views count as their meshes.
     """
     first, *rest = (generic.meshed(each) if isinstance(each, ViewRegion) else each for each in one.members)
-    shared = intersection(first, generic.meshed(other) if isinstance(other, ViewRegion) else other)
+    common = intersection(first, generic.meshed(other) if isinstance(other, ViewRegion) else other)
     for member in rest:
         if isinstance(one, IntersectionRegion):
-            shared = intersection(shared, member)
-        elif isinstance(shared, PlanarRegion) and (solid := solid_of(member)) is not None:
-            cut = slice_at(solid, float(shared.height))
-            shared = region_of(shared.polygons.difference(cut), float(shared.height), None)
+            common = intersection(common, member)
+        elif isinstance(common, PlanarRegion) and (solid := solid_of(member)) is not None:
+            cut = slice_at(solid, float(common.height))
+            common = region_of(common.polygons.difference(cut), float(common.height), None)
         else:
-            shared = difference(shared, member)
-    return None if isinstance(shared, Composite) else shared
+            common = difference(common, member)
+    return None if isinstance(common, Composite) else common
 
 
 @generic.meets_bodies.register(Region)

@@ -294,13 +294,13 @@ class Region(metaclass=_RegionType):
 
     def sampled(self, sample: Any) -> "Region":
         """The region of one sample."""
-        own = self.__dict__.get("orientation")
-        orientation = sample.value(own)
-        if not self.is_random and orientation is own:
+        declared_orientation = self.__dict__.get("orientation")
+        orientation = sample.value(declared_orientation)
+        if not self.is_random and orientation is declared_orientation:
             return self
         region = copy(self)
         region.__dict__.pop("_single", None)
-        if orientation is not own:
+        if orientation is not declared_orientation:
             region.orientation = orientation
         region.parameters = tuple(sample.value(value) for value in self.parameters)
         if self.parameter_names:
@@ -357,9 +357,9 @@ class Region(metaclass=_RegionType):
                 return per_option(thing, self.containsObject)
             raise wrong_type(OBJECT, thing, "`containsObject`")
         if (single := self.at_once) is not None and (body := placed_of(thing)) is not None:
-            held = single.holds_body(body)
-            if held is not None:
-                return held
+            is_inside = single.holds_body(body)
+            if is_inside is not None:
+                return is_inside
         operands = body_operands(thing)
         mesh = None if is_random(operands[3]) else operands[3].mesh
         return apply(CONTAINS_BODY, *operands, *self.parameters, payload=Containment(self, mesh))
@@ -376,10 +376,10 @@ class Region(metaclass=_RegionType):
 
         """
         place = np.array([tuple(to_vector(point, "`closestPointTo`"))])
-        found = self.nearest(place, *self.fixed_columns("the nearest point"))
-        if found is None:
+        points = self.nearest(place, *self.fixed_columns("the nearest point"))
+        if points is None:
             raise unsupported(f"the nearest point of a region of the kind {type(self).__name__}")
-        return Vector.of(found[0].tolist())
+        return Vector.of(points[0].tolist())
 
     def intersects(self, other: Any) -> Any:
         """Return whether the region shares a point with another, or with an object."""
@@ -450,8 +450,8 @@ class Region(metaclass=_RegionType):
         for _ in range(_TRIES):
             numbers = np.array([[random.random()] for _ in range(self.draws)]).reshape(self.draws, 1)
             keys = np.array([random.getrandbits(64)], dtype=np.uint64)
-            points, known = self.draw_points(numbers, keys, *columns)
-            if known is None or known.all():
+            points, has_point = self.draw_points(numbers, keys, *columns)
+            if has_point is None or has_point.all():
                 x, y, z = points[0].tolist()
                 return self.orient(vector(x, y, z))
         raise RejectionException(f"no point was found in {self!r}")
@@ -567,9 +567,9 @@ def _draw(call: Call, *columns: Column) -> Column:
         if count
         else np.empty((0, stack.rows))
     )
-    points, known = region.draw_points(uniforms, stack.column(count), *stack.columns(count + 1))
-    if known is not None:
-        call.reject(~stack.restored(known))
+    points, has_point = region.draw_points(uniforms, stack.column(count), *stack.columns(count + 1))
+    if has_point is not None:
+        call.reject(~stack.restored(has_point))
     return stack.restored(points)
 
 

@@ -364,10 +364,10 @@ class SideSurface(Region):
             face = apply(_FACE, uniform(), *self.parameters, payload=self.facing)
             point = apply(_FACE_POINT, face, uniform(), uniform(), *self.parameters)
             orientation = apply(_FACE_ORIENTATION, face, *self.parameters)
-        given = self.__dict__.get("orientation")
-        if given is None or getattr(given, "region", None) is self:
+        field = self.__dict__.get("orientation")
+        if field is None or getattr(field, "region", None) is self:
             return point, orientation
-        return point, given[point]
+        return point, field[point]
 
     def project(self, point: Any, direction: Any) -> tuple[Any, Any]:
         place = to_vector(point)

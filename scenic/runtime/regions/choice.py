@@ -130,13 +130,13 @@ class RegionChoice(VaryingRegion):
 
     def drawn_extent(self, numbers: Sequence[Bounds], *parameters: Bounds | None) -> Bounds | None:
         """As `extent`, but in boxes where the index is known, of the points that these numbers draw from its option."""
-        found = self.extent(*parameters)
+        extent = self.extent(*parameters)
         index = parameters[0]
-        if found is None or index is None:
-            return found
-        lanes = max(len(index.lower), len(found.lower), *(len(part.lower) for part in numbers))
+        if extent is None or index is None:
+            return extent
+        lanes = max(len(index.lower), len(extent.lower), *(len(part.lower) for part in numbers))
         first, last = (np.broadcast_to(end, lanes) for end in (index.lower, index.upper))
-        lower, upper = (np.array(np.broadcast_to(end, (lanes, 3))) for end in (found.lower, found.upper))
+        lower, upper = (np.array(np.broadcast_to(end, (lanes, 3))) for end in (extent.lower, extent.upper))
         if self._lines is not None:
             rows = np.flatnonzero((first == last) & (first >= 0) & (first < len(self.options)))
             parts = drawn_of_lines(self._lines, first[rows].astype(np.intp), _rows(numbers[0], rows))
@@ -145,9 +145,9 @@ class RegionChoice(VaryingRegion):
         for number, (option, mine) in enumerate(self._each(parameters)):
             rows = np.flatnonzero((first == number) & (last == number))
             if len(rows):
-                chosen = [_rows(part, rows) for part in numbers[: option.draws]]
+                numbers_of_option = [_rows(part, rows) for part in numbers[: option.draws]]
                 box = option.drawn_extent(
-                    chosen, *(None if part is None else _rows(part, rows) for part in mine)
+                    numbers_of_option, *(None if part is None else _rows(part, rows) for part in mine)
                 )
                 if box is not None:
                     lower[rows], upper[rows] = box.lower, box.upper
@@ -163,8 +163,8 @@ class RegionChoice(VaryingRegion):
     def _hull(parameters: Sequence[Bounds | None], boxes: Sequence[Bounds | None]) -> Bounds | None:
         """Bounds ``(m | 1, 3)`` of the options that the index may draw, from those of each; ``None`` where one is not known."""
         whole, index = hull_of(boxes), parameters[0]
-        known = [box for box in boxes if box is not None and len(box.lower) == 1]
-        if whole is None or index is None or len(known) < len(boxes):
+        definite_boxes = [box for box in boxes if box is not None and len(box.lower) == 1]
+        if whole is None or index is None or len(definite_boxes) < len(boxes):
             return whole
         last = len(boxes) - 1
         runs = np.stack([np.clip(end, 0, last) for end in (index.lower, index.upper + 1)], axis=1)
@@ -172,8 +172,8 @@ class RegionChoice(VaryingRegion):
         lower, upper = (
             np.concatenate([end, end[-1:]])
             for end in (
-                np.concatenate([box.lower for box in known]),
-                np.concatenate([box.upper for box in known]),
+                np.concatenate([box.lower for box in definite_boxes]),
+                np.concatenate([box.upper for box in definite_boxes]),
             )
         )
         places = runs.astype(np.intp).ravel()
@@ -218,5 +218,5 @@ def as_region(value: object, missing: Region | None = None) -> Region | None:
         return None
     index, *options = (as_value(node) for node in value.node.operands)
     regions = [as_region(option, missing) for option in options]
-    known = [region for region in regions if region is not None]
-    return RegionChoice(index, known) if len(known) == len(regions) else None
+    regions_of_options = [region for region in regions if region is not None]
+    return RegionChoice(index, regions_of_options) if len(regions_of_options) == len(regions) else None

@@ -55,20 +55,20 @@ class IntersectionRegion(Composite):
         return result
 
     def _sources(self, columns: Sequence[Column]) -> tuple[list[int], NDArray[np.float64]]:
-        bounded = [
+        sources = [
             number
             for number, (member, mine) in enumerate(self._parts(columns))
             if member.dimension == self.dimension and np.isfinite(member.box(*mine)[0]).all()
         ]
-        if not bounded:
-            bounded = [
+        if not sources:
+            sources = [
                 number
                 for number, (member, mine) in enumerate(self._parts(columns))
                 if np.isfinite(member.box(*mine)[0]).all()
             ][:1]
-        if not bounded:
+        if not sources:
             raise ScenicTypeError("no point can be drawn from an intersection of unbounded regions")
-        return bounded[:1], np.ones((1, 1))
+        return sources[:1], np.ones((1, 1))
 
     def _boxes_of_draws(
         self, sources: Sequence[int], columns: Sequence[Column]
@@ -130,17 +130,17 @@ class IntersectionRegion(Composite):
         for level in levels[1:]:
             result[np.broadcast_to(level != levels[0], len(points))] = np.inf
         for member, mine in self._parts(columns):
-            found = member.nearest(points, *mine)
-            if found is None:
+            nearest_points = member.nearest(points, *mine)
+            if nearest_points is None:
                 continue
-            found = levelled(self, found, columns)
-            held = [
-                exactly_contains(other, found, theirs)
+            nearest_points = levelled(self, nearest_points, columns)
+            memberships = [
+                exactly_contains(other, nearest_points, theirs)
                 for other, theirs in self._parts(columns)
                 if other is not member
             ]
-            if held:
-                closest = np.isnan(result) & all_of(held)
+            if memberships:
+                closest = np.isnan(result) & all_of(memberships)
                 result[closest] = np.broadcast_to(member.distances(points, *mine), len(points))[closest]
         return result
 
@@ -196,7 +196,7 @@ class UnionRegion(Composite):
         return result
 
     def _sources(self, columns: Sequence[Column]) -> tuple[list[int], NDArray[np.float64]]:
-        chosen, weights = [], []
+        numbers, weights = [], []
         for number, (member, mine) in enumerate(self._parts(columns)):
             if member.dimension == self.dimension:
                 size = member.sizes(*mine)
@@ -204,10 +204,10 @@ class UnionRegion(Composite):
                     raise ScenicTypeError(
                         f"the size of {member!r} is not known: no point of a union with it can be drawn"
                     )
-                chosen.append(number)
+                numbers.append(number)
                 weights.append(size)
         lanes = max(map(len, weights))
-        return chosen, np.stack([np.broadcast_to(weight, lanes) for weight in weights])
+        return numbers, np.stack([np.broadcast_to(weight, lanes) for weight in weights])
 
     def _accept(self, points: Points, inside: Sequence[Mask], chosen: NDArray[np.intp], dice: Column) -> Mask:
         # A point in several members is drawn once for each of them.
@@ -246,18 +246,18 @@ class UnionRegion(Composite):
 
     def _hold_vertices(self, body: Body, lanes: NDArray[np.intp], columns: Sequence[Column]) -> Mask:
         """In which of some lanes the first vertices of the body lie in members."""
-        held = np.ones(len(lanes), dtype=np.bool_)
+        is_inside = np.ones(len(lanes), dtype=np.bool_)
         rows = [column if len(column) == 1 else column[lanes] for column in columns]
         part = body if len(body) == 1 else body.take(lanes)
-        for mesh, chosen in part.by_mesh(len(lanes)):
-            poses = part.poses.take(chosen) if len(part.poses) > 1 else part.poses
-            mine = [row if len(row) == 1 else row[chosen] for row in rows]
+        for mesh, lanes_of_mesh in part.by_mesh(len(lanes)):
+            poses = part.poses.take(lanes_of_mesh) if len(part.poses) > 1 else part.poses
+            mine = [row if len(row) == 1 else row[lanes_of_mesh] for row in rows]
             for vertex in mesh.vertices[:PROBES]:
                 points = np.broadcast_to(
-                    poses.to_world(vertex[np.newaxis, np.newaxis])[:, 0], (len(chosen), 3)
+                    poses.to_world(vertex[np.newaxis, np.newaxis])[:, 0], (len(lanes_of_mesh), 3)
                 )
-                held[chosen] &= self.contains_points(points, *mine)
-        return held
+                is_inside[lanes_of_mesh] &= self.contains_points(points, *mine)
+        return is_inside
 
     def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
         return self.may_meet(body, lanes, columns)
@@ -335,13 +335,13 @@ class DifferenceRegion(Composite):
         with the first member lies outside the second, which must be convex.
         """
         (first, mine), (second, others) = self._parts(columns)
-        own = first.half_spaces(*mine)
-        if own is None or not second.is_surely_convex():
+        faces = first.half_spaces(*mine)
+        if faces is None or not second.is_surely_convex():
             return None
-        found = polytopes.edges(polytopes.joined(own, planes))
-        result = np.zeros(len(found.valid), dtype=np.bool_)
-        for ends in (found.starts, found.ends):
-            lane, edge = np.nonzero(found.valid)
+        segments = polytopes.edges(polytopes.joined(faces, planes))
+        result = np.zeros(len(segments.valid), dtype=np.bool_)
+        for ends in (segments.starts, segments.ends):
+            lane, edge = np.nonzero(segments.valid)
             outside = ~second.contains_points(ends[lane, edge], *rows_of(others, lane))
             np.logical_or.at(result, lane, outside)
         return np.broadcast_to(result, lanes)

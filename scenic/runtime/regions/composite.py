@@ -154,23 +154,23 @@ class Composite(Region):
     def _meets_surely(self, body: Body, lanes: NDArray[np.intp], columns: Sequence[Column]) -> Mask:
         """In which of some lanes, whose columns these are, a known point of the body lies in the region."""
         if not is_flat(self):
-            held: Mask = np.zeros(len(lanes), dtype=np.bool_)
+            is_inside: Mask = np.zeros(len(lanes), dtype=np.bool_)
             for points in _known_points(body, lanes):
-                held |= exactly_contains(self, points, columns)
-            return held
+                is_inside |= exactly_contains(self, points, columns)
+            return is_inside
         level = next((m.heights(*c) for m, c in _leaves(self, columns) if isinstance(m, PlanarRegion)), None)
         height = None if level is None else np.broadcast_to(level, len(lanes))
         every = np.arange(len(lanes))
         boxes, rectangles = upright_boxes(body.take(lanes), every, height)
         places = np.concatenate([rectangles.centre[:, np.newaxis], rectangles.corners()], axis=1)
-        held = np.zeros(len(lanes), dtype=np.bool_)
+        is_inside = np.zeros(len(lanes), dtype=np.bool_)
         for number in range(places.shape[1]):
             points = np.zeros((len(lanes), 3))
             points[:, :2] = places[:, number]
             if height is not None:
                 points[:, 2] = height
-            held |= exactly_contains(self, points, columns)
-        return held & boxes
+            is_inside |= exactly_contains(self, points, columns)
+        return is_inside & boxes
 
     def _meets_solidly(self, body: Body, lanes: NDArray[np.intp], columns: Sequence[Column]) -> Mask:
         """In which of some lanes what is left of solids meets the body.
@@ -179,15 +179,17 @@ class Composite(Region):
         """
         part, mine = body.take(lanes), rows_of(columns, lanes)
         result = np.zeros(len(lanes), dtype=np.bool_)
-        for mesh, chosen in part.by_mesh(len(lanes)):
-            own = rows_of(mine, chosen)
-            poses = part.poses.take(chosen)
+        for mesh, lanes_of_mesh in part.by_mesh(len(lanes)):
+            rows_of_mesh = rows_of(mine, lanes_of_mesh)
+            poses = part.poses.take(lanes_of_mesh)
             planes = polytopes.half_spaces(mesh, poses)
-            met = None if planes is None else self.meets_polytopes(planes, len(chosen), own)
-            if met is None:
+            meeting = (
+                None if planes is None else self.meets_polytopes(planes, len(lanes_of_mesh), rows_of_mesh)
+            )
+            if meeting is None:
                 alone = Body((mesh,), None, poses)
-                met = generic.meets_bodies(self, alone, len(chosen), own)
-            result[chosen] = met
+                meeting = generic.meets_bodies(self, alone, len(lanes_of_mesh), rows_of_mesh)
+            result[lanes_of_mesh] = meeting
         return result
 
     def meets_polytopes(self, planes: Column, lanes: int, columns: Sequence[Column]) -> Mask | None:
@@ -239,57 +241,60 @@ class Composite(Region):
         sources, weights = self._sources(columns)
         sums = np.cumsum(np.broadcast_to(weights, (len(sources), lanes)), axis=0)
         points = np.zeros((lanes, 3))
-        found = np.zeros(lanes, dtype=np.bool_)
+        has_point = np.zeros(lanes, dtype=np.bool_)
         words = np.broadcast_to(np.asarray(keys, dtype=np.uint64), lanes)
         parts = list(self._parts(columns))
         boxes = self._boxes_of_draws(sources, columns)
         empty = np.zeros(lanes, dtype=np.bool_)
         first = 0
-        while first < TRIES and len(missing := np.flatnonzero(~found & ~empty)):
+        while first < TRIES and len(missing := np.flatnonzero(~has_point & ~empty)):
             # The first attempt that is kept counts, so looking at several at once changes nothing. They become more as lanes
             # turn out to find it hard.
             count = min(max(first, 1), TRIES - first, max(_TOGETHER // len(missing), 1))
             lane = np.repeat(missing, count)
             attempts = np.tile(np.arange(first, first + count, dtype=np.uint64), len(missing))
-            own = mix(words[lane] ^ (attempts + np.uint64(1)))
-            choice = uniforms[0, missing] if first == 0 else open_unit(mix(own))
+            seeds = mix(words[lane] ^ (attempts + np.uint64(1)))
+            choice = uniforms[0, missing] if first == 0 else open_unit(mix(seeds))
             total = sums[:, lane]
-            chosen = (choice * total[-1] >= total).sum(axis=0).clip(0, len(sources) - 1)
-            drawn = np.zeros((len(lane), 3))
-            known = np.zeros(len(lane), dtype=np.bool_)
+            source_numbers = (choice * total[-1] >= total).sum(axis=0).clip(0, len(sources) - 1)
+            candidates = np.zeros((len(lane), 3))
+            is_point = np.zeros(len(lane), dtype=np.bool_)
             for number, source in enumerate(sources):
-                mine = np.flatnonzero(chosen == number)
+                mine = np.flatnonzero(source_numbers == number)
                 if not len(mine):
                     continue
                 member, all_columns = parts[source]
                 some = [column if len(column) == 1 else column[lane[mine]] for column in all_columns]
                 fresh = (
                     np.stack(
-                        [open_unit(mix(own[mine] + np.uint64(17 + axis))) for axis in range(member.draws)]
+                        [open_unit(mix(seeds[mine] + np.uint64(17 + axis))) for axis in range(member.draws)]
                     )
                     if member.draws
                     else np.empty((0, len(mine)))
                 )
-                words_of_mine = mix(own[mine] + np.uint64(3))
+                words_of_mine = mix(seeds[mine] + np.uint64(3))
                 if boxes is None:
-                    drawn[mine], present = member.draw_points(fresh, words_of_mine, *some)
+                    candidates[mine], present = member.draw_points(fresh, words_of_mine, *some)
                 else:
                     corners = [corner if len(corner) == 1 else corner[lane[mine]] for corner in boxes]
                     corners = [np.broadcast_to(corner, (len(mine), 3)) for corner in corners]
-                    drawn[mine], present = member.draw_points_in(*corners, fresh, words_of_mine, *some)
+                    candidates[mine], present = member.draw_points_in(*corners, fresh, words_of_mine, *some)
                     if present is not None and len(sources) == 1:
                         empty[lane[mine[~present]]] = True
-                known[mine] = True if present is None else present
+                is_point[mine] = True if present is None else present
             rows = [column if len(column) == 1 else column[lane] for column in columns]
-            kept = known & self._accept(
-                drawn, self.members_that_hold(drawn, rows), chosen, open_unit(mix(own + np.uint64(5)))
+            accepted_lanes = is_point & self._accept(
+                candidates,
+                self.members_that_hold(candidates, rows),
+                source_numbers,
+                open_unit(mix(seeds + np.uint64(5))),
             )
-            kept_by_lane = kept.reshape(len(missing), count)
+            kept_by_lane = accepted_lanes.reshape(len(missing), count)
             lucky = np.flatnonzero(kept_by_lane.any(axis=1))
-            points[missing[lucky]] = drawn[lucky * count + kept_by_lane[lucky].argmax(axis=1)]
-            found[missing[lucky]] = True
+            points[missing[lucky]] = candidates[lucky * count + kept_by_lane[lucky].argmax(axis=1)]
+            has_point[missing[lucky]] = True
             first += count
-        return points, found
+        return points, has_point
 
     def uniform_placement(self) -> tuple[Any, Any]:
         if not any(np.isfinite(member.dimension) and member.dimension >= 0 for member in self.members):
@@ -341,10 +346,10 @@ def exactly_contains(region: Region, points: Points, columns: Sequence[Column]) 
     if isinstance(region, Composite):
         return np.broadcast_to(region.joined(region.members_that_hold(points, columns)), len(points))
     if isinstance(region, RegionChoice):
-        held = np.zeros(len(points), dtype=np.bool_)
-        for option, chosen, mine in region.drawn(len(points), columns):
-            held[chosen] = exactly_contains(option, points[chosen], mine)
-        return held
+        is_inside = np.zeros(len(points), dtype=np.bool_)
+        for option, lanes_of_option, mine in region.drawn(len(points), columns):
+            is_inside[lanes_of_option] = exactly_contains(option, points[lanes_of_option], mine)
+        return is_inside
     inside = region.contains_points(points, *columns)
     if isinstance(region, PlanarRegion):
         inside = inside & (np.abs(points[:, 2] - region.heights_at(points, *columns)) <= LEVEL)
@@ -371,15 +376,17 @@ def is_flat(region: Region) -> bool:
 def _known_points(body: Body, lanes: NDArray[np.intp]) -> Iterator[Points]:
     """Points ``(n, 3)`` that bodies hold for certain, in some lanes: extreme corners, and middles of convex ones."""
     part, count = body.take(lanes), len(lanes)
-    known = []
+    points_of_mesh = []
     for mesh in body.meshes:
         corners = extreme_corners(mesh)
         first = mesh.vertices.mean(axis=0) if mesh.is_convex else corners[0]
-        known.append(np.concatenate([first[np.newaxis], corners]))
-    for number in range(1 + min(PROBES, max(map(len, known)) - 1)):
+        points_of_mesh.append(np.concatenate([first[np.newaxis], corners]))
+    for number in range(1 + min(PROBES, max(map(len, points_of_mesh)) - 1)):
         points = np.empty((count, 3))
-        for mesh, chosen in part.by_mesh(count):
-            mine = known[body.meshes.index(mesh)]
+        for mesh, lanes_of_mesh in part.by_mesh(count):
+            mine = points_of_mesh[body.meshes.index(mesh)]
             place = mine[min(number, len(mine) - 1)]
-            points[chosen] = part.poses.take(chosen).to_world(place[np.newaxis, np.newaxis])[:, 0]
+            points[lanes_of_mesh] = part.poses.take(lanes_of_mesh).to_world(place[np.newaxis, np.newaxis])[
+                :, 0
+            ]
         yield points

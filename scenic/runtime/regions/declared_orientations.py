@@ -22,10 +22,10 @@ def orientedRegion(region: object) -> Region:
         ScenicTypeError: if it is no region.
 
     """
-    known = _region(region, "`orientedRegion`")
-    if isinstance(known, DrawnRegion):
-        return DrawnRegion(call_later(_oriented, known.parameters[0]))
-    return _oriented(known)
+    checked_region = _region(region, "`orientedRegion`")
+    if isinstance(checked_region, DrawnRegion):
+        return DrawnRegion(call_later(_oriented, checked_region.parameters[0]))
+    return _oriented(checked_region)
 
 
 def unorientedRegion(region: object) -> Region:

@@ -77,15 +77,17 @@ class DrawnRegion(VaryingRegion):
         """Draw points; how many numbers they take is known only now: these follow from the keys, and so do further keys."""
         lanes = uniforms.shape[1]
         keys = np.broadcast_to(keys, lanes)
-        points, known = np.zeros((lanes, 3)), np.ones(lanes, dtype=np.bool_)
-        for region, chosen, mine in self.drawn(lanes, columns):
+        points, has_point = np.zeros((lanes, 3)), np.ones(lanes, dtype=np.bool_)
+        for region, lanes_of_region, mine in self.drawn(lanes, columns):
             addresses = np.arange(1, region.draws + 1, dtype=np.uint64)
-            numbers = open_unit(words_of(keys[chosen], addresses))
-            drawn, found = region.draw_points(numbers, mix(keys[chosen]), *mine)
-            points[chosen] = drawn
-            if found is not None:
-                known[chosen] = found
-        return points, known
+            numbers = open_unit(words_of(keys[lanes_of_region], addresses))
+            points_of_region, has_point_of_region = region.draw_points(
+                numbers, mix(keys[lanes_of_region]), *mine
+            )
+            points[lanes_of_region] = points_of_region
+            if has_point_of_region is not None:
+                has_point[lanes_of_region] = has_point_of_region
+        return points, has_point
 
 
 def _wanted(value: object, what: str) -> Region:

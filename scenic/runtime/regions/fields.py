@@ -84,12 +84,12 @@ class VectorField:
 
     def sampled(self, sample: Any) -> "VectorField":
         """The field whose functions read sampled values; itself where they read none."""
-        asked = self._asked()
-        functions = {name: sample.value(function) for name, function in asked.items()}
-        if all(functions[name] is function for name, function in asked.items()):
+        functions_by_name = self._asked()
+        functions = {name: sample.value(function) for name, function in functions_by_name.items()}
+        if all(functions[name] is function for name, function in functions_by_name.items()):
             return self
         field = copy(self)
-        if "value" not in asked:
+        if "value" not in functions_by_name:
             functions["value"] = field._value  # type: ignore[attr-defined] # it is computed by a method of its own
         field.__dict__.update(functions)
         return field
@@ -251,13 +251,14 @@ class PolygonalVectorField(TabulatedField):
             self._boxes = corners[:, :2], corners[:, 2:]
         low, high = self._boxes
         lower, upper = points.lower[:, np.newaxis, :2], points.upper[:, np.newaxis, :2]
-        met = ((lower <= high + _EDGE) & (upper >= low - _EDGE)).all(axis=2)
+        overlaps = ((lower <= high + _EDGE) & (upper >= low - _EDGE)).all(axis=2)
         # The last entry of the table is the heading outside of all cells.
-        outside = np.full((met.shape[0], 1), self.defaultHeading is not None)
-        held: NDArray[np.bool_] = np.concatenate([met, outside], axis=1)
-        held[~held.any(axis=1)] = True  # no candidate has a heading there
+        outside = np.full((overlaps.shape[0], 1), self.defaultHeading is not None)
+        is_possible: NDArray[np.bool_] = np.concatenate([overlaps, outside], axis=1)
+        is_possible[~is_possible.any(axis=1)] = True  # no candidate has a heading there
         return Bounds(
-            np.where(held, self._table, np.inf).min(axis=1), np.where(held, self._table, -np.inf).max(axis=1)
+            np.where(is_possible, self._table, np.inf).min(axis=1),
+            np.where(is_possible, self._table, -np.inf).max(axis=1),
         )
 
     @property
@@ -391,9 +392,9 @@ class FieldChoice(VectorField):
         place, length = to_vector(position, "`follow ... from`"), to_scalar(distance, "`follow ... for`")
         if isinstance(place, Lazy) or isinstance(length, Lazy):
             return defer(self.followFrom, place, length, steps, stepSize)
-        found = self._over_lanes("followFrom", place, length, steps, stepSize)
-        if found is not None:
-            return found
+        place_of_lanes = self._over_lanes("followFrom", place, length, steps, stepSize)
+        if place_of_lanes is not None:
+            return place_of_lanes
         return per_option(
             self._choice, lambda field: field_of(field, "a field").followFrom(place, length, steps, stepSize)
         )
@@ -558,10 +559,10 @@ def _followed_together(lanes: int, calls: Calls, rows: Rows) -> Column:
         values: list[Any] = [_ABSENT] * lanes
         if len(moving):
             calls.each(rows[moving[0]][0], moving.tolist(), points, values)
-        failed = np.zeros(lanes, dtype=np.bool_)
-        turns, error = _turns(values, failed)
+        faulty_lanes = np.zeros(lanes, dtype=np.bool_)
+        turns, error = _turns(values, faulty_lanes)
         if error is not None:
-            for lane in np.flatnonzero(failed).tolist():
+            for lane in np.flatnonzero(faulty_lanes).tolist():
                 calls.mark(lane, error)
         place[moving] += quaternions.rotate(turns[moving], stride[moving])
     return place
@@ -615,15 +616,15 @@ def _follow_table(call: Call, points: Column, distance: Column) -> Column:
     lanes = max(len(points), len(distance))
     place = np.array(np.broadcast_to(points, (lanes, 3)))
     length = np.broadcast_to(distance, lanes)
-    measured = np.abs(length) if field.divides_backward else length
+    path_length = np.abs(length) if field.divides_backward else length
     counts = (
-        np.full(lanes, steps) if steps is not None else np.maximum(max(least, 1), np.ceil(measured / size))
+        np.full(lanes, steps) if steps is not None else np.maximum(max(least, 1), np.ceil(path_length / size))
     )
     missing = np.zeros(lanes, dtype=np.bool_)
     for step in range(int(counts.max(initial=0))):
         moving = np.flatnonzero(step < counts)
-        place[moving], known = field.stepped(place[moving], length[moving] / counts[moving])
-        missing[moving] |= ~known
+        place[moving], has_heading = field.stepped(place[moving], length[moving] / counts[moving])
+        missing[moving] |= ~has_heading
     call.reject(missing)
     return place
 

@@ -164,9 +164,9 @@ def meets_flat(
     boxes, rectangles = upright_boxes(body, left, heights)
     if boxes.any():
         mine = left[boxes]
-        met, is_open = region.meets_rectangles(rectangles.take(boxes), *rows_of(columns, mine))
-        result[mine] = met
-        left = np.concatenate([left[~boxes], mine[np.broadcast_to(is_open & ~met, len(mine))]])
+        overlaps, is_open = region.meets_rectangles(rectangles.take(boxes), *rows_of(columns, mine))
+        result[mine] = overlaps
+        left = np.concatenate([left[~boxes], mine[np.broadcast_to(is_open & ~overlaps, len(mine))]])
     if not len(left):
         return result
     if heights is None:

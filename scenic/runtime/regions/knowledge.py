@@ -102,26 +102,28 @@ def distance_bounds(region: "Region", point: Bounds | None, *parameters: Bounds 
     if point is None:
         return None
     least = np.zeros(1) if extent is None else np.maximum(separation(point, extent), 0.0)
-    found = Bounds(least, np.full_like(least, np.inf))
-    centre, radius, known = _ball(point)
+    bounds = Bounds(least, np.full_like(least, np.inf))
+    centre, radius, is_definite = _ball(point)
     rows, columns = fixed_rows(parameters, len(centre))
     if columns is None:
-        return found
+        return bounds
     # Asked as often as there are places or regions, and only where both are known.
     boxes = max(len(centre), len(rows))
-    known, rows = np.broadcast_to(known, boxes), np.broadcast_to(rows, boxes)
-    asked = np.flatnonzero(known & rows)
-    if not len(asked):
-        return found
+    is_definite, rows = np.broadcast_to(is_definite, boxes), np.broadcast_to(rows, boxes)
+    boxes_to_measure = np.flatnonzero(is_definite & rows)
+    if not len(boxes_to_measure):
+        return bounds
     distances = np.zeros(boxes)
     try:
-        distances[asked] = region.distances(_some(centre, asked), *(_some(part, asked) for part in columns))
+        distances[boxes_to_measure] = region.distances(
+            _some(centre, boxes_to_measure), *(_some(part, boxes_to_measure) for part in columns)
+        )
     except UnsupportedError:
-        return found
-    known = known & rows & np.isfinite(distances)
-    margin = np.where(known, radius + SLACK + 1e-9 * np.abs(distances), np.inf)
-    return found.meet(
-        Bounds(np.where(known, distances, 0.0) - margin, np.where(known, distances, 0.0) + margin)
+        return bounds
+    is_definite = is_definite & rows & np.isfinite(distances)
+    margin = np.where(is_definite, radius + SLACK + 1e-9 * np.abs(distances), np.inf)
+    return bounds.meet(
+        Bounds(np.where(is_definite, distances, 0.0) - margin, np.where(is_definite, distances, 0.0) + margin)
     )
 
 
@@ -156,13 +158,13 @@ def _is_near_the_edge(
         z = np.array([False, False, True])
         position = Bounds(np.where(z, 0.0, position.lower), np.where(z, 0.0, position.upper))
         inradius = np.maximum(inradius, _inradius(payload, operands, upright=True))
-    centre, radius, known = _ball(position)
-    spare = np.where(known, inradius - radius - SLACK, 0.0)
+    centre, radius, is_definite = _ball(position)
+    spare = np.where(is_definite, inradius - radius - SLACK, 0.0)
     near: Mask = spare > 0  # A depth is not negative, and in large boxes that settles the answer.
-    asked = np.flatnonzero(near)
-    if len(asked):
-        centres = np.broadcast_to(centre, (len(near), 3))[asked]
-        near[asked] = payload.region.depths(centres, *columns) < spare[asked]
+    near_bodies = np.flatnonzero(near)
+    if len(near_bodies):
+        centres = np.broadcast_to(centre, (len(near), 3))[near_bodies]
+        near[near_bodies] = payload.region.depths(centres, *columns) < spare[near_bodies]
     return near
 
 
@@ -248,15 +250,15 @@ def fixed(parameters: Sequence[Bounds | None]) -> list[Floats] | None:
 
 def fixed_rows(parameters: Sequence[Bounds | None], boxes: int) -> tuple[Mask, list[Floats] | None]:
     """In which boxes ``(m | 1,)`` the parameters have one value each, and their columns there; no columns if in none of them."""
-    known: Mask = np.ones(1, dtype=np.bool_)
+    is_fixed: Mask = np.ones(1, dtype=np.bool_)
     columns = []
     for bounds in parameters:
         if bounds is None:
             return np.zeros(boxes, dtype=np.bool_), None
         one = bounds.lower == bounds.upper
-        known = known & (one if one.ndim == 1 else one.all(axis=1))
+        is_fixed = is_fixed & (one if one.ndim == 1 else one.all(axis=1))
         columns.append(bounds.lower)
-    return known, columns if known.any() else None
+    return is_fixed, columns if is_fixed.any() else None
 
 
 def _some(column: Floats, boxes: NDArray[np.intp]) -> Floats:

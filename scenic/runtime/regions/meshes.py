@@ -150,9 +150,13 @@ class MeshVolumeRegion(OccupiedSpace):
         name: str | None,
     ) -> None:
         what = f"`{type(self).__name__}`"
-        placed = _Placement(mesh, dimensions, position, rotation, centered, what, flat=False)
-        Region.__init__(self, *placed.operands, name=name)
-        self.dimensions, self.position, self.rotation = placed.dimensions, placed.position, placed.rotation
+        placement = _Placement(mesh, dimensions, position, rotation, centered, what, flat=False)
+        Region.__init__(self, *placement.operands, name=name)
+        self.dimensions, self.position, self.rotation = (
+            placement.dimensions,
+            placement.position,
+            placement.rotation,
+        )
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         """The solid and what is within the tolerance of it."""
@@ -163,8 +167,8 @@ class MeshVolumeRegion(OccupiedSpace):
             inside = np.array(np.broadcast_to(inside, max(len(inside), len(points), len(body))))
             part = body if len(body) == 1 else body.take(near)
             place = points if len(points) == 1 else points[near]
-            found = distance.to_surface(part, place, len(near), within=self.tolerance)
-            inside[near] = found.distance <= self.tolerance
+            nearest = distance.to_surface(part, place, len(near), within=self.tolerance)
+            inside[near] = nearest.distance <= self.tolerance
         return inside
 
     @classmethod
@@ -201,9 +205,13 @@ class MeshSurfaceRegion(SideSurface):
         **_established: Any,
     ) -> None:
         what = f"`{type(self).__name__}`"
-        placed = _Placement(_mesh(mesh, what), dimensions, position, rotation, centerMesh, what, flat=True)
-        self._finish(placed.operands, orientation, name)
-        self.dimensions, self.position, self.rotation = placed.dimensions, placed.position, placed.rotation
+        placement = _Placement(_mesh(mesh, what), dimensions, position, rotation, centerMesh, what, flat=True)
+        self._finish(placement.operands, orientation, name)
+        self.dimensions, self.position, self.rotation = (
+            placement.dimensions,
+            placement.position,
+            placement.rotation,
+        )
         self.tolerance = tolerance
         self.onDirection = onDirection
 

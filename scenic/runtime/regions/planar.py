@@ -112,16 +112,16 @@ class PlanarRegion(Region):
 
         What the regions prefer as orientations it prefers, too, the first that holds a point before the others.
         """
-        given = list(regions)
-        members = [region for region in given if isinstance(region, PlanarRegion)]
-        empty = [region for region in given if isinstance(region, Nowhere)]
-        if len(members) + len(empty) < max(len(given), 1):
+        operands = list(regions)
+        members = [region for region in operands if isinstance(region, PlanarRegion)]
+        empty = [region for region in operands if isinstance(region, Nowhere)]
+        if len(members) + len(empty) < max(len(operands), 1):
             raise ScenicTypeError("`unionAll` takes at least one polygonal region", span=here())
         if not members:
             return empty[0]
-        merged = Polygons.union([Polygons(member.polygons) for member in members], buf)
+        outline = Polygons.union([Polygons(member.polygons) for member in members], buf)
         field = generic.joint_field(members[0], members)
-        return PolygonalRegion(polygon=merged.polygon, z=float(members[0].height), orientation=field)
+        return PolygonalRegion(polygon=outline.polygon, z=float(members[0].height), orientation=field)
 
     @abstractmethod
     def beside(self, points: Points, *columns: Column) -> Column:

@@ -74,15 +74,15 @@ def _sees(
     ends = np.roll(corners, -1, axis=1)
     inside = _holds_origin(corners, ends)
     # Per edge, the part within the view; of the sector's two borders, the edges' crossings with them.
-    seen = _within(corners, heading, angle, distance)
+    in_view = _within(corners, heading, angle, distance)
     nearest = _nearest(corners, ends)
-    seen |= _within(nearest, heading, angle, distance)
+    in_view |= _within(nearest, heading, angle, distance)
     full = angle >= FULL_ANGLE
     for side in (-0.5, 0.5):
         border = heading + side * angle
         direction = np.stack([-np.sin(border), np.cos(border)], axis=-1)
-        seen |= _crosses(corners, ends, direction, distance) & ~full[:, np.newaxis]
-    return np.asarray(inside | seen.any(axis=1))
+        in_view |= _crosses(corners, ends, direction, distance) & ~full[:, np.newaxis]
+    return np.asarray(inside | in_view.any(axis=1))
 
 
 def _corners(position: Column, orientation: Column, size: Column) -> Column:

@@ -39,12 +39,12 @@ class PointSetRegion(Region):
         tolerance: float = 1e-6,
     ) -> None:
         super().__init__(name=name)
-        listed = points.tolist() if isinstance(points, np.ndarray) else list(points)
-        if is_random(listed):
+        rows = points.tolist() if isinstance(points, np.ndarray) else list(points)
+        if is_random(rows):
             raise ScenicTypeError(f"`{type(self).__name__}` needs fixed points", span=here())
-        if not listed:
+        if not rows:
             raise ScenicValueError(f"`{type(self).__name__}` needs at least one point", span=here())
-        self.points = np.array([tuple(to_vector(point, f"`{type(self).__name__}`")) for point in listed])
+        self.points = np.array([tuple(to_vector(point, f"`{type(self).__name__}`")) for point in rows])
         self.orientation = orientation
         self.has_orientation = orientation is not None
         self.tolerance = tolerance
@@ -146,7 +146,7 @@ class GridRegion(PointSetRegion):
         import shapely
 
         rows, cells = np.nonzero(self.grid != 0)
-        blocked = (
+        obstacles = (
             shapely.multipoints(np.column_stack([self.Ax * cells + self.Bx, self.Ay * rows + self.By]))
             if len(rows)
             else None
@@ -154,11 +154,11 @@ class GridRegion(PointSetRegion):
         result = np.zeros(lanes, dtype=np.bool_)
         corners = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
         for lane in range(lanes):
-            chosen = np.array([lane if len(body) > 1 else 0])
-            world = body.poses.take(chosen).to_world(corners[np.newaxis])[0]
+            pose_number = np.array([lane if len(body) > 1 else 0])
+            world = body.poses.take(pose_number).to_world(corners[np.newaxis])[0]
             if self.contains_points(world).all():
                 outline = shapely.MultiPoint(world[:, :2]).convex_hull
-                result[lane] = blocked is None or not outline.intersects(blocked)
+                result[lane] = obstacles is None or not outline.intersects(obstacles)
         return result
 
 

@@ -130,25 +130,25 @@ class SectorRegion(PlanarRegion):
 
         corners, counts = self._arcs(*columns)
         center, radius, _, angle = columns
-        found = ragged_polygons(corners, counts + 1)
-        full = np.flatnonzero(np.broadcast_to(angle >= 2 * math.pi, len(found)))
+        polygons = ragged_polygons(corners, counts + 1)
+        full = np.flatnonzero(np.broadcast_to(angle >= 2 * math.pi, len(polygons)))
         if len(full):
             centres, radii = rows_of((center, radius), full)
             discs = shapely.buffer(shapely.points(centres[:, :2]), radii, quad_segs=self.resolution)
-            found[full] = discs
-        return found
+            polygons[full] = discs
+        return polygons
 
     def _arcs(self, *columns: Column) -> tuple[Column, NDArray[np.intp]]:
         """The centre and the vertices of the arc ``(n, k + 1, 2)``, and how many of the arc are different, ``(n,)``."""
         lanes = max(map(len, columns))
         center, radius, heading, angle = (np.broadcast_to(c, (lanes, *c.shape[1:])) for c in columns)
-        capped = np.minimum(angle, 2 * math.pi)
-        counts = np.maximum(2, np.ceil(capped / (math.pi / 2) * self.resolution).astype(np.intp) + 1)
+        width = np.minimum(angle, 2 * math.pi)
+        counts = np.maximum(2, np.ceil(width / (math.pi / 2) * self.resolution).astype(np.intp) + 1)
         numbers = np.minimum(np.arange(int(counts.max())), counts[:, np.newaxis] - 1)
         # As `numpy.linspace` does: the last is the end itself.
-        steps = (capped / (counts - 1))[:, np.newaxis]
+        steps = (width / (counts - 1))[:, np.newaxis]
         ends = numbers == counts[:, np.newaxis] - 1
-        offsets = np.where(ends, capped[:, np.newaxis] / 2, numbers * steps - capped[:, np.newaxis] / 2)
+        offsets = np.where(ends, width[:, np.newaxis] / 2, numbers * steps - width[:, np.newaxis] / 2)
         ways = heading[:, np.newaxis] + offsets
         corners = np.empty((lanes, numbers.shape[1] + 1, 2))
         corners[:, 0] = center[:, :2]
@@ -158,18 +158,18 @@ class SectorRegion(PlanarRegion):
 
     def nearest(self, points: Points, *columns: Column) -> Points:
         center, radius, heading, angle = columns
-        reach, turned = self._polar(points, center, heading)
+        reach, bearing = self._polar(points, center, heading)
         half = np.minimum(angle / 2, math.pi)
         offset = points[:, :2] - center[:, :2]
         side = np.sin(np.arctan2(-offset[:, 0], offset[:, 1]) - heading)
         edge = heading + np.where(side >= 0, half, -half)
-        along = np.clip(reach * np.cos(np.maximum(turned - half, 0)), 0, radius)
+        along = np.clip(reach * np.cos(np.maximum(bearing - half, 0)), 0, radius)
         share = np.minimum(1.0, radius / np.where(reach > 0, reach, 1.0))
-        beside = turned > half
-        found = np.array(points)
-        found[:, 0] = center[:, 0] + np.where(beside, -along * np.sin(edge), share * offset[:, 0])
-        found[:, 1] = center[:, 1] + np.where(beside, along * np.cos(edge), share * offset[:, 1])
-        return found
+        beside = bearing > half
+        places = np.array(points)
+        places[:, 0] = center[:, 0] + np.where(beside, -along * np.sin(edge), share * offset[:, 0])
+        places[:, 1] = center[:, 1] + np.where(beside, along * np.cos(edge), share * offset[:, 1])
+        return places
 
     def meets_rectangles(self, rectangles: Rectangles, *columns: Column) -> tuple[Mask, Mask]:
         """A rectangle beside the disc does not; one with the centre of the disc, or whose middle is inside, does."""

@@ -68,9 +68,9 @@ def crossings(start: Any, end: Any, solid: Mesh) -> list[float]:
     inverse = 1 / np.where(crosses, determinant, 1.0)
     offset = start - a
     u = (offset * across).sum(axis=1) * inverse
-    turned = np.cross(offset, ab)
-    v = (turned @ along) * inverse
-    part = (ac * turned).sum(axis=1) * inverse
+    cross_products = np.cross(offset, ab)
+    v = (cross_products @ along) * inverse
+    part = (ac * cross_products).sum(axis=1) * inverse
     hit = crosses & (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9) & (part >= 0) & (part <= 1)
     return [float(value) for value in part[hit]]
 

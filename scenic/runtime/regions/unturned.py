@@ -61,16 +61,16 @@ def _seen_from(place: Node, centre: Node, turn: object) -> Any:
             terms.append(term)
     if not is_there and not _is_origin(centre):
         terms.append(as_node(operate("negative", as_value(centre))))
-    back, turned = operate("inverse", turn), as_node(turn)
+    back, rotation = operate("inverse", turn), as_node(turn)
     result: Any = vector(0, 0, 0)
     for term in terms:
-        if term.operation.name == "rotate" and _same(term.operands[0], turned):
-            seen = as_value(term.operands[1])
+        if term.operation.name == "rotate" and _same(term.operands[0], rotation):
+            local_term = as_value(term.operands[1])
         elif term.is_constant and not term.payload.column[0, :2].any():
-            seen = as_value(term)
+            local_term = as_value(term)
         else:
-            seen = operate("rotate", back, as_value(term))
-        result = operate("add", result, seen)
+            local_term = operate("rotate", back, as_value(term))
+        result = operate("add", result, local_term)
     return result
 
 

@@ -58,8 +58,8 @@ class VaryingRegion(Region):
         lanes = _lanes(points, *columns)
         points = np.broadcast_to(points, (lanes, 3))
         result: Column = np.zeros((lanes, *width), dtype=dtype)
-        for option, chosen, mine in self.drawn(lanes, columns):
-            result[chosen] = getattr(option, primitive)(points[chosen], *mine)
+        for option, lanes_of_option, mine in self.drawn(lanes, columns):
+            result[lanes_of_option] = getattr(option, primitive)(points[lanes_of_option], *mine)
         return result
 
     def _of_bodies(self, primitive: str, body: Body, lanes: int, columns: Sequence[Column]) -> Mask:

@@ -282,16 +282,16 @@ class NearView(Region):
         direct = (volume < near_volume(views, radius)) & (self.container.dimension == 3)
 
         def draw(numbers: Column, words: Column, lanes: Column) -> tuple[Points, Mask]:
-            own = _rows(container, lanes)
+            container_rows = _rows(container, lanes)
             points = draw_near(views.take(lanes), radius[lanes], numbers.T)
-            fits = self.container.contains_points(points, *own)
+            fits = self.container.contains_points(points, *container_rows)
             mine = np.flatnonzero(direct[lanes])
             if len(mine):
                 parts = _rows(container, lanes[mine])
-                found, there = self.container.draw_points(
+                points_of_container, there = self.container.draw_points(
                     numbers[: self.container.draws, mine], words[mine], *parts
                 )
-                points[mine] = found
+                points[mine] = points_of_container
                 fits[mine] = True if there is None else there
             return points, fits
 
@@ -304,26 +304,26 @@ _Draw = Callable[[Column, Column, Column], tuple[Points, Mask]]
 def _drawn_until_fit(uniforms: Column, keys: Column, draw: _Draw) -> tuple[Points, Mask]:
     """Points that fit, and where one was found: each lane draws again by numbers that follow from its key."""
     count = uniforms.shape[1]
-    points, found = np.zeros((count, 3)), np.zeros(count, dtype=np.bool_)
+    points, has_point = np.zeros((count, 3)), np.zeros(count, dtype=np.bool_)
     lanes = np.arange(count)
     words = np.broadcast_to(keys, (count,))
     addresses = np.arange(len(uniforms), dtype=np.uint64)
-    begun, together = 0, 1
-    while len(lanes) and begun < _TRIES:
-        attempts = np.arange(begun, min(begun + together, _TRIES), dtype=np.uint64)
+    first_attempt, together = 0, 1
+    while len(lanes) and first_attempt < _TRIES:
+        attempts = np.arange(first_attempt, min(first_attempt + together, _TRIES), dtype=np.uint64)
         mine = mix(words[lanes] ^ mix(attempts)[:, None]).reshape(-1)
-        numbers = uniforms[:, lanes] if begun == 0 else open_unit(words_of(mine, addresses))
-        drawn, fits = draw(numbers, mine, np.tile(lanes, len(attempts)))
+        numbers = uniforms[:, lanes] if first_attempt == 0 else open_unit(words_of(mine, addresses))
+        candidates, fits = draw(numbers, mine, np.tile(lanes, len(attempts)))
         # The first attempt that fits counts, as if one were made after the other.
         fits = fits.reshape(len(attempts), -1)
         fitting = fits.any(axis=0)
         first = np.where(fitting, fits.argmax(axis=0), len(attempts) - 1)
-        points[lanes] = drawn.reshape(len(attempts), -1, 3)[first, np.arange(len(lanes))]
-        found[lanes] = fitting
+        points[lanes] = candidates.reshape(len(attempts), -1, 3)[first, np.arange(len(lanes))]
+        has_point[lanes] = fitting
         lanes = lanes[~fitting]
-        begun += len(attempts)
+        first_attempt += len(attempts)
         together = max(1, min(2 * together, _ROWS // max(len(lanes), 1)))
-    return points, found
+    return points, has_point
 
 
 def _rows(columns: Sequence[Column], lanes: Column) -> list[Column]:

@@ -38,18 +38,18 @@ def sees_bounds(payload: tuple[bool, bool], *operands: Bounds | None) -> Bounds 
     radius = _radius(payload, operands)
     if camera is None or place is None or distance is None or radius is None:
         return None
-    found = only_within(camera, place, distance.upper + radius)
+    bounds = only_within(camera, place, distance.upper + radius)
     orientation = operands[ORIENTATION]
     if orientation is None:
-        return found
+        return bounds
     sign = np.array([-1.0, -1.0, -1.0, 1.0])
     ends = orientation.lower * sign, orientation.upper * sign
     back = Bounds(np.minimum(*ends), np.maximum(*ends))
     local = intervals.widened(
         turned(back, intervals.subtract(place, camera)), (radius + SLACK)[:, np.newaxis]
     )
-    hidden = _beside(local, operands[HORIZONTAL]) | _above_or_below(local, operands[VERTICAL])
-    return found.meet(truth(np.zeros_like(hidden), hidden))
+    is_outside = _beside(local, operands[HORIZONTAL]) | _above_or_below(local, operands[VERTICAL])
+    return bounds.meet(truth(np.zeros_like(is_outside), is_outside))
 
 
 def sees_inverse(

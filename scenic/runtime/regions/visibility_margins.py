@@ -50,23 +50,23 @@ def clearance(observer: object, target: object, occluders: Iterable[Any], *, see
         if thing is not observer and thing is not target and thing.occluding
     ]
     if is_body(target):
-        found = _of_body(views, body_of(*map(_column, body_operands(target))), bodies)
+        margin = _of_body(views, body_of(*map(_column, body_operands(target))), bodies)
     else:
-        found = _of_point(views, np.array([to_vector(target, "`can see`").row]), bodies)
-    return max(_LEAST, found) if seen else min(-_LEAST, found)
+        margin = _of_point(views, np.array([to_vector(target, "`can see`").row]), bodies)
+    return max(_LEAST, margin) if seen else min(-_LEAST, margin)
 
 
 def _of_body(views: Views, body: Any, bodies: list[Occluder]) -> float:
-    placed = place(body, views, np.zeros(1, dtype=np.intp))
+    placement = place(body, views, np.zeros(1, dtype=np.intp))
     middle = views.to_view(body.poses.position)[0]
     away = float(np.linalg.norm(middle))
     reach = 0.5 * float(np.linalg.norm(body.poses.size))
-    left = 1 - float(box_distance(placed.origin, body.poses.size)[0]) / float(views.distance[0])
+    left = 1 - float(box_distance(placement.origin, body.poses.size)[0]) / float(views.distance[0])
     if reach >= away:
         return min(1.0, left)
     width = float(np.arcsin(reach / away))
     near = _directions(middle / away, width)
-    limits = placed.first(np.zeros(len(near), dtype=np.intp), near)
+    limits = placement.first(np.zeros(len(near), dtype=np.intp), near)
     towards = np.isfinite(limits)
     if not towards.any():
         return min(0.0, left)
@@ -103,13 +103,13 @@ def _directions(middle: Floats, width: float) -> Floats:
     up = np.cross(side, middle)
     across, upward = np.meshgrid(*2 * (np.linspace(-width, width, _ACROSS),))
     angle = np.hypot(across, upward).ravel()
-    kept = angle <= width * (1 + 1e-9)
-    angle, across, upward = angle[kept], across.ravel()[kept], upward.ravel()[kept]
+    within = angle <= width * (1 + 1e-9)
+    angle, across, upward = angle[within], across.ravel()[within], upward.ravel()[within]
     scale = np.sinc(angle / np.pi)  # the sine of the angle, by the angle
-    found: Floats = (
+    directions: Floats = (
         np.cos(angle)[:, None] * middle + (scale * across)[:, None] * side + (scale * upward)[:, None] * up
     )
-    return found
+    return directions
 
 
 def _are_clear(views: Views, directions: Floats, limits: Floats, obstacles: Obstacles) -> Booleans:

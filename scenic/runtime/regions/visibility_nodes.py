@@ -78,11 +78,11 @@ def _at_once(observer: Any, target: Any, occluders: Sequence[object]) -> bool | 
     if type(angles) is not tuple or not all(type(angle) is float for angle in angles):
         return None
     view = View(camera.row, axes_of(orientation.q), angles, distance)
-    seen = placed_of(target) if is_body(target) else None
+    placed_body = placed_of(target) if is_body(target) else None
     place = target.position if is_body(target) else to_vector(target, "`can see`")
-    if type(place) is not Vector or (is_body(target) and seen is None):
+    if type(place) is not Vector or (is_body(target) and placed_body is None):
         return None
-    radius = 0.0 if seen is None else seen.radius
+    radius = 0.0 if placed_body is None else placed_body.radius
     hiding = []
     for thing in occluders:
         if thing is observer or thing is target:
@@ -96,7 +96,9 @@ def _at_once(observer: Any, target: Any, occluders: Sequence[object]) -> bool | 
                 hiding.append(body)
         elif hiding_it is not False:
             return None
-    return sees_point(view, place.row, hiding) if seen is None else sees_body(view, seen, hiding)
+    return (
+        sees_point(view, place.row, hiding) if placed_body is None else sees_body(view, placed_body, hiding)
+    )
 
 
 def _in_the_way(thing: Any, start: Triple, end: Triple, radius: float) -> Placed | Literal[False] | None:

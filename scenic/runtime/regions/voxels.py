@@ -43,7 +43,7 @@ class VoxelRegion(Region):
         self, voxelGrid: Any, orientation: object = None, name: str | None = None, **_established: Any
     ) -> None:
         try:
-            filled = np.asarray(voxelGrid.matrix, dtype=np.bool_)
+            cells = np.asarray(voxelGrid.matrix, dtype=np.bool_)
             matrix = np.asarray(voxelGrid.transform, dtype=np.float64)
         except AttributeError:
             raise ScenicTypeError(
@@ -54,7 +54,7 @@ class VoxelRegion(Region):
         pitch = np.diag(matrix)[:3]
         if not np.array_equal(matrix[:3, :3], np.diag(pitch)) or not (pitch > 0).all():
             raise ScenicValueError("`VoxelRegion` needs a grid along the global axes", span=here())
-        self._fill(filled, matrix[:3, 3] - pitch / 2, pitch, orientation, name)
+        self._fill(cells, matrix[:3, 3] - pitch / 2, pitch, orientation, name)
 
     @classmethod
     def of_cells(
@@ -163,8 +163,8 @@ class VoxelRegion(Region):
         """Return a mask ``(n,)`` of the lanes in which the body avoids the inside of every empty cell that its box reaches."""
         free = np.ones(len(first), dtype=np.bool_)
         empty = np.argwhere(~self.filled)
-        reached = ((first.min(axis=0) <= empty) & (empty < last.max(axis=0))).all(axis=1)
-        for cell in empty[reached]:
+        nearby = ((first.min(axis=0) <= empty) & (empty < last.max(axis=0))).all(axis=1)
+        for cell in empty[nearby]:
             lanes = np.flatnonzero(free & (first <= cell).all(axis=1) & (cell < last).all(axis=1))
             if not len(lanes):
                 continue
@@ -178,13 +178,13 @@ class VoxelRegion(Region):
     @property
     def mesh(self) -> MeshVolumeRegion:
         """The cells as a volume bounded by a mesh: the faces between filled cells and empty ones."""
-        padded = np.pad(self.filled, 1)
+        solid_cells = np.pad(self.filled, 1)
         corners: list[NDArray[np.int64]] = []
         for axis in range(3):
             across, along = (axis + 1) % 3, (axis + 2) % 3
             for side in (0, 1):
-                beyond = np.roll(padded, 1 - 2 * side, axis=axis)
-                cells = np.argwhere(padded & ~beyond) - 1
+                beyond = np.roll(solid_cells, 1 - 2 * side, axis=axis)
+                cells = np.argwhere(solid_cells & ~beyond) - 1
                 steps = [(0, 0), (1, 0), (1, 1), (0, 1)][:: 1 if side else -1]
                 quads = np.repeat(cells[:, np.newaxis], 4, axis=1)
                 quads[:, :, axis] += side
@@ -238,14 +238,14 @@ class VoxelRegion(Region):
 
         if iterations == 0:
             return self
-        grown = np.pad(self.filled, max(iterations, 0))
+        margin_cells = np.pad(self.filled, max(iterations, 0))
         change = ndimage.binary_dilation if iterations > 0 else ndimage.binary_erosion
-        filled = change(grown, structure=structure, iterations=abs(iterations))
-        if not filled.any():
+        solid_cells = change(margin_cells, structure=structure, iterations=abs(iterations))
+        if not solid_cells.any():
             return nowhere
         corner = self.corner - max(iterations, 0) * self.pitch
         region = object.__new__(VoxelRegion)
-        region._fill(np.asarray(filled), corner, self.pitch, self.orientation, None)
+        region._fill(np.asarray(solid_cells), corner, self.pitch, self.orientation, None)
         return region
 
 
@@ -270,8 +270,8 @@ def voxelized(region: Region, solid: Mesh, pitch: float) -> VoxelRegion:
         )
     shape = numbers.astype(np.int64)
     corner = (first - 0.5) * pitch
-    filled = np.zeros(shape, dtype=np.bool_)
-    middles = corner + (np.argwhere(~filled) + 0.5) * pitch
+    cells = np.zeros(shape, dtype=np.bool_)
+    middles = corner + (np.argwhere(~cells) + 0.5) * pitch
     inside = region.contains_points(middles, *region.fixed_columns("the cells")).reshape(shape)
     # A cell that the surface meets but whose middle is outside: found by points of the surface, closer than any cell.
     import trimesh
@@ -280,8 +280,8 @@ def voxelized(region: Region, solid: Mesh, pitch: float) -> VoxelRegion:
     vertices, _ = trimesh.remesh.subdivide_to_size(  # type: ignore[no-untyped-call] # trimesh has no types
         surface.vertices, surface.faces, pitch / 2, max_iter=20
     )
-    touched = np.clip(np.floor((vertices - corner) / pitch).astype(np.int64), 0, shape - 1)
-    inside[tuple(touched.T)] = True
+    cells_of_vertices = np.clip(np.floor((vertices - corner) / pitch).astype(np.int64), 0, shape - 1)
+    inside[tuple(cells_of_vertices.T)] = True
     return VoxelRegion.of_cells(inside, np.asarray(corner, dtype=np.float64), pitch, region.orientation)
 
 

@@ -61,12 +61,12 @@ def program_of(
     classes = {type(item).__name__: type(item) for item in objects if type(item) is not Object}
     for name in classes:
         lines += [f"class {name}:", "    pass"]
-    used: set[str] = set()
+    taken_names: set[str] = set()
     for number, item in enumerate(objects):
         name = "ego" if item is ego else names.get(item, "")
-        if not name.isidentifier() or name in used:
+        if not name.isidentifier() or name in taken_names:
             name = f"object_{number}"
-        used.add(name)
+        taken_names.add(name)
         lines += _instance(name, item)
     return "\n".join(lines) + "\n"
 
@@ -79,8 +79,8 @@ def _instance(name: str, item: Any) -> Iterator[str]:
             continue
         try:
             # Properties of the language make vectors of triples themselves.
-            shown = _triple if isinstance(value, Vector) and key in _DECLARED else literal
-            parts.append(f"with {key} {shown(value)}")
+            write = _triple if isinstance(value, Vector) and key in _DECLARED else literal
+            parts.append(f"with {key} {write(value)}")
         except NoLiteralError:
             comments.append(f"    # {key}: {_described(value)}")
     parts += ["with allowCollisions True", "with regionContainedIn everywhere"]

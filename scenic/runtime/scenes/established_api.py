@@ -247,12 +247,12 @@ def polygonUnion(
     members = list(polys)
     if len(members) == 1:
         return members[0]
-    merged = shapely.union_all([poly.buffer(buf) for poly in members] if buf else members)
+    outline = shapely.union_all([poly.buffer(buf) for poly in members] if buf else members)
     if buf:
-        merged = merged.buffer(-buf)
+        outline = outline.buffer(-buf)
     if tolerance:
-        merged = merged.simplify(tolerance)
-    parts = [part for part in getattr(merged, "geoms", [merged]) if part.geom_type == "Polygon"]
+        outline = outline.simplify(tolerance)
+    parts = [part for part in getattr(outline, "geoms", [outline]) if part.geom_type == "Polygon"]
     if tolerance:
         parts = [
             shapely.Polygon(

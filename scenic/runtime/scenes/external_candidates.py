@@ -87,14 +87,14 @@ class ExternalCandidates:
         if next(self._seeds, None) != seed:
             self.forget()
             self._seed, self._seeds = seed, seeds_after(random.getstate())
-        tried = 0
-        while tried < most:
+        attempts = 0
+        while attempts < most:
             if self._next == self._end:
-                self._fill(feedback, most - tried)
+                self._fill(feedback, most - attempts)
             reach = self._waiting[0][0] + 1 if self._waiting else self._end
-            steps = min(most - tried, reach - self._next)
+            steps = min(most - attempts, reach - self._next)
             self._next += steps
-            tried += steps
+            attempts += steps
             self.points.use(steps)
             if self._waiting and self._next == reach:
                 _, result = self._waiting.popleft()
@@ -102,9 +102,9 @@ class ExternalCandidates:
                 if not self.points.answerless:
                     self._waiting.clear()
                     self._end = self._next
-                return result, tried
+                return result, attempts
             feedback = self.points.sampler.rejectionFeedback
-        return None, tried
+        return None, attempts
 
     def forget(self) -> None:
         """Begin another stream with the next scene; points that were not used come first."""

@@ -131,12 +131,12 @@ class Generating(Restoring, ABC):
             self._external_candidates = ExternalCandidates(
                 self._external_points(), self._first_candidates, self._lanes_for
             )
-        result, tried = self._external_candidates.take(random.getrandbits(SEED_BITS), most, feedback)
+        result, attempts = self._external_candidates.take(random.getrandbits(SEED_BITS), most, feedback)
         if result is None:
             raise RejectionException(
                 f"no scene was found within {most} candidates whose external parameters the sampler chose"
             )
-        return self._scene_of(result), tried
+        return self._scene_of(result), attempts
 
     def generateBatch(
         self,
@@ -169,10 +169,10 @@ class Generating(Restoring, ABC):
         _check_workers(numWorkers, maxIterations, feedback)
         most = DEFAULT_ATTEMPTS if maxIterations == math.inf else int(maxIterations)
         scenes = self.sample(numScenes, max_attempts=most, processes=max(1, numWorkers))
-        tried = sum(scene.attempts for scene in scenes)
-        if tried > maxIterations:
+        attempts = sum(scene.attempts for scene in scenes)
+        if attempts > maxIterations:
             raise RejectionException(f"failed to generate {numScenes} scenes in {maxIterations} iterations")
-        return (list(map(self.sceneToBytes, scenes)) if serialized else scenes), tried
+        return (list(map(self.sceneToBytes, scenes)) if serialized else scenes), attempts
 
     def generateStream(
         self,
@@ -238,12 +238,12 @@ class Generating(Restoring, ABC):
         while first < count:
             size = int(min(block, count - first))
             if workers > 0:
-                found: Iterable[Scene | Exhausted] = self._in_processes(
+                results: Iterable[Scene | Exhausted] = self._in_processes(
                     size, seed=seed, first=first, processes=workers
                 )
             else:
-                found = self.stream(size, seed=seed, first=first, max_attempts=limit)
-            for scene in found:
+                results = self.stream(size, seed=seed, first=first, max_attempts=limit)
+            for scene in results:
                 if isinstance(scene, Exhausted):
                     raise RejectionException(scene.message())
                 value = self.sceneToBytes(scene) if serialized else scene

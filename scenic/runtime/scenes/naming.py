@@ -68,11 +68,11 @@ class DrawName:
 def names_of_instances(program: Program) -> dict[int, str]:
     """The names of all instances, by identity: the variable, else the class, with a number if there are several without one."""
     names = dict(program.variables)
-    unnamed: dict[str, list[Point]] = {}
+    items_by_class: dict[str, list[Point]] = {}
     for item in program.instances:
         if id(item) not in names:
-            unnamed.setdefault(type(item).__name__, []).append(item)
-    for kind, items in unnamed.items():
+            items_by_class.setdefault(type(item).__name__, []).append(item)
+    for kind, items in items_by_class.items():
         for number, item in enumerate(items):
             names[id(item)] = kind if len(items) == 1 else f"{kind}[{number}]"
     return names
@@ -119,15 +119,15 @@ class _Naming:
 
     def instance(self, owner: str, item: Point, *, is_plain: bool) -> None:
         """Name what the properties of an instance depend on: those that are values, or the others."""
-        found = {
+        values_by_name = {
             name: value
             for name, value in item.properties.items()
             if name not in _DERIVED and is_plain == isinstance(value, _PLAIN)
         }
-        left = {name: len(self._new(_nodes(value))) for name, value in found.items()}
-        drawn = [name for name, count in left.items() if count]
-        for name in sorted(drawn, key=lambda name: (left[name], name in _FOLLOWING)):
-            self.name(f"{owner}.{name}", found[name], _UNITS.get(name, ""))
+        left = {name: len(self._new(_nodes(value))) for name, value in values_by_name.items()}
+        random_names = [name for name, count in left.items() if count]
+        for name in sorted(random_names, key=lambda name: (left[name], name in _FOLLOWING)):
+            self.name(f"{owner}.{name}", values_by_name[name], _UNITS.get(name, ""))
 
     def name(self, text: str, value: object, unit: str = "", most: int | None = None) -> None:
         """Name the draws that a value depends on, and no value before; none of a value that depends on more than ``most``."""
@@ -195,12 +195,12 @@ class _Naming:
         if not (np.isfinite(bounds.lower).all() and np.isfinite(bounds.upper).all()):
             return "", None
         size = np.maximum(np.abs(bounds.lower), np.abs(bounds.upper)).max(axis=0) * _TOLERANCE + 1e-12
-        moved = np.atleast_1d((bounds.upper - bounds.lower)[0] > size)
+        is_moved = np.atleast_1d((bounds.upper - bounds.lower)[0] > size)
         if node.kind is Kind.SCALAR:
             return "", _ends(bounds, ..., size)
-        if moved.sum() != 1:
+        if is_moved.sum() != 1:
             return "", None
-        component = int(np.argmax(moved))
+        component = int(np.argmax(is_moved))
         return "." + "xyz"[component], _ends(bounds, component, size[component])
 
 

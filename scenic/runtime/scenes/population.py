@@ -64,10 +64,10 @@ class Populations:
         Otherwise they do not, and scenes are freed as soon as nobody holds them: there are no circles.
         """
         if self._linked is None:
-            held = [value for item in self.objects for value in item.__dict__.values()]
-            held += [member for item in self.objects for member in self.names.members(type(item))]
+            values = [value for item in self.objects for value in item.__dict__.values()]
+            values += [member for item in self.objects for member in self.names.members(type(item))]
             self._linked = any(
-                isinstance(value, Point) for value in reachable([*held, *self._others], self.names)
+                isinstance(value, Point) for value in reachable([*values, *self._others], self.names)
             )
         return self._linked
 
@@ -86,9 +86,9 @@ class Population:
 
     def take(self, lane: int) -> Inhabitants:
         """New objects for the scene in a lane."""
-        found = self._kept.pop(lane, None)
-        if found is not None:
-            return found
+        inhabitants = self._kept.pop(lane, None)
+        if inhabitants is not None:
+            return inhabitants
         makers, batch = self._makers, self._batch
         if makers.linked:
             sample = Sample(batch, lane, makers.names, whole=True)
@@ -114,10 +114,10 @@ class Population:
         """An object of the program as it is in neighbouring scenes."""
         cls = type(item)
         copies: list[Any] = [object.__new__(cls) for _ in lanes]
-        fixed, nodes = self._makers.names.placement(item)
+        attributes, nodes = self._makers.names.placement(item)
         if not nodes:
             for copy, sample in zip(copies, samples, strict=True):
-                copy.__dict__.update(fixed, _source=item, _sample=sample)
+                copy.__dict__.update(attributes, _source=item, _sample=sample)
             return copies
         columns = [
             column[lanes.start : lanes.stop] if len(column) > 1 else repeat(column[0], len(lanes))

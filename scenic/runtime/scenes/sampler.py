@@ -101,11 +101,11 @@ class Sampler:
         apart = crowd_of(engine) if self._components is None else None
         if apart is None:
             return False
-        met, passed = rehearsed(engine, apart)
-        if passed > OFTEN * engine.rehearsed_of:
+        pairs, passes = rehearsed(engine, apart)
+        if passes > OFTEN * engine.rehearsed_of:
             return False
-        engine.met.update(met)
-        engine.rehearsed = passed
+        engine.met.update(pairs)
+        engine.rehearsed = passes
         self._components = Components((engine.plan,), apart.owners(), (apart,))
         self._finder = self._finder_of(self._components)
         return True

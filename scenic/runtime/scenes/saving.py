@@ -99,11 +99,11 @@ def draws_of(
     """
     batch = found.again(lane)
     graph = batch.graph
-    drawn = [node for node in (graph.nodes if nodes is None else nodes) if node.is_drawn]
-    batch.need(drawn)
+    drawn_nodes = [node for node in (graph.nodes if nodes is None else nodes) if node.is_drawn]
+    batch.need(drawn_nodes)
     numbers: dict[int, float] = {}
     words: dict[int, int] = {}
-    for node in drawn:
+    for node in drawn_nodes:
         (value,) = batch.column(node).tolist()
         (numbers if node.is_axis else words)[graph.address(node)] = value
     return numbers, words

@@ -365,8 +365,8 @@ class Scenario(Generating):
                 if isinstance(result, Exhausted):
                     yield result
                 else:
-                    found, lane = result
-                    yield self.scene_class(found, lane, family)
+                    accepted_lanes, lane = result
+                    yield self.scene_class(accepted_lanes, lane, family)
         except CandidateError as error:
             failure = error
         self._raise(failure)
@@ -440,16 +440,16 @@ class Scenario(Generating):
             )
         n = whole_number(n, "n", 0)
         processes = whole_number(processes, "processes", 1)
-        chosen = random.getrandbits(SEED_BITS) if seed is None else whole_number(seed, "seed")
+        start = random.getrandbits(SEED_BITS) if seed is None else whole_number(seed, "seed")
         check_limits(max_attempts, time_limit, lanes)
         if approximate is not None and (processes > 1 or executor is not None):
             raise ValueError("approximate scenes are made together, in one process")
         if processes > 1 or executor is not None:
-            return list(self._in_processes(n, seed=chosen, processes=processes, **limits))
+            return list(self._in_processes(n, seed=start, processes=processes, **limits))
         scenes = []
         for result in self.stream(
             n,
-            seed=chosen,
+            seed=start,
             max_attempts=max_attempts,
             time_limit=time_limit,
             lanes=lanes,
@@ -531,8 +531,8 @@ class Scenario(Generating):
             if not np.issubdtype(values.dtype, np.integer) or (values < least).any():
                 raise ValueError(f"`{name}` must be integers of at least {least}, not {values.tolist()}")
         with self._program.undisturbed():
-            accepted = self._sampler.accepted(seed, numbers, attempts, source)
-        return (self.scene_class(found, lane, self._family) for found, lane in accepted)
+            pairs = self._sampler.accepted(seed, numbers, attempts, source)
+        return (self.scene_class(found, lane, self._family) for found, lane in pairs)
 
     def _sampling_error(self, error: CandidateError) -> Exception:
         cause, check = error.__cause__, error.check
@@ -541,7 +541,7 @@ class Scenario(Generating):
             cause.filename = cause.filename or check.filename or self.filename
             return cause
         near = None if cause is None else nearest_attribute(cause)
-        found = SamplingError(
+        wrapper = SamplingError(
             f"{check.label} failed" + ("" if cause is None else f": {type(cause).__name__}: {cause}"),
             span=check.span,
             filename=check.filename or self.filename,
@@ -550,9 +550,9 @@ class Scenario(Generating):
             else "this came up in a sampled candidate; guard against the value, or reject it by a `require`",
         )
         if not isinstance(cause, Exception) or isinstance(cause, Located):
-            return found
+            return wrapper
         # The program's own exception keeps its type; a note tells where it came up.
-        annotate(cause, found.diagnostic(), f"{found} (attempt {error.attempt} at scene {error.k})")
+        annotate(cause, wrapper.diagnostic(), f"{wrapper} (attempt {error.attempt} at scene {error.k})")
         return cause
 
     def validate(self) -> None:
@@ -621,24 +621,24 @@ class Scenario(Generating):
             InvalidScenarioError: if there is no such object or parameter.
 
         """
-        given: Mapping[str, Any] = params if isinstance(params, Mapping) else {}
+        parameters: Mapping[str, Any] = params if isinstance(params, Mapping) else {}
         names: Sequence[str] = () if isinstance(params, Mapping) else params
         if scene is None and (objects or names):
             raise InvalidScenarioError(
                 "`conditionOn` without a scene has no values for objects, or for parameters that are only named",
                 help="pass the scene whose values they are to have, or `params={name: value}`",
             )
-        for name in (*names, *given):
+        for name in (*names, *parameters):
             self._check_parameter(name)
         if scene is not None:
             values = [scene.sources[self._number(item)] for item in objects]
             values += [scene.program.parameters[name] for name in names]
             nodes = Graph(dependencies(values)).nodes
             self._sampler = self._sampler.fixed(*draws_of(scene.found, scene.lane, nodes))
-        elif not given:
+        elif not parameters:
             vars(self).update(self._unconditioned)
-        if given:
-            self._take_parameters(given)
+        if parameters:
+            self._take_parameters(parameters)
         self._choosing = None
         if self._external_candidates is not None:
             self._external_candidates.forget()

@@ -55,10 +55,10 @@ def _pose(call: Call, draw: Column, width: Column, length: Column, height: Colum
             result[:, lanes] = 0.0
             continue
         poses = stable_poses(call.payload, along, upward)
-        chosen = np.minimum(
+        numbers = np.minimum(
             np.searchsorted(poses.shares, draw.ravel()[lanes], side="right"), len(poses.shares) - 1
         )
-        result[:, lanes] = poses.pitches[chosen], poses.rolls[chosen], poses.lifts[chosen]
+        result[:, lanes] = poses.pitches[numbers], poses.rolls[numbers], poses.lifts[numbers]
     result[2] *= width.ravel()
     return quaternions.components_last(result.reshape(3, *draw.shape))
 

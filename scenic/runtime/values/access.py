@@ -94,10 +94,10 @@ def element(value: RandomBase, index: object) -> Any:
     if holds_instances(value.node):
         # Instances as they are in the sample; that they are instances is not known before (section 8.1).
         return call_later(operator.getitem, value, index)
-    found = element_at(value.node, index)
-    if found is None and value.node.operation is TABLE["select"] and is_random(index):
-        found = _element_over_lanes(value.node, index)
-    return operate("getitem", value, index) if found is None else found
+    item = element_at(value.node, index)
+    if item is None and value.node.operation is TABLE["select"] and is_random(index):
+        item = _element_over_lanes(value.node, index)
+    return operate("getitem", value, index) if item is None else item
 
 
 def _element_over_lanes(node: Node, index: object) -> Any:
@@ -164,15 +164,15 @@ def called(value: RandomBase, args: Sequence[object], kwargs: dict[str, Any]) ->
     node = value.node
     if node.operation is TABLE["select"]:
         index, *options = node.operands
-        shared = _shared(index, options, args, kwargs)
-        if shared is None and _is_called_once(options, args, kwargs):
+        common_result = _shared(index, options, args, kwargs)
+        if common_result is None and _is_called_once(options, args, kwargs):
             return call_later(value, *args, **kwargs)
         results = []
         for option in options:
             if option.operation in (MISSING, REJECTED):
                 results.append(option)
-            elif shared is not None:
-                results.append(shared)
+            elif common_result is not None:
+                results.append(common_result)
             elif option.is_constant and _is_of_runtime(option.value) and not _draws(option.value):
                 results.append(_traced(option.value, args, kwargs))
             elif option.is_constant and isinstance(option.value, BuiltinFunctionType):
@@ -283,15 +283,15 @@ def _is_computed(cls: type, name: str) -> bool:
 
 def holds_instances(node: Node) -> bool:
     """Return whether instances of the program are among the constants that a node is made of, or in containers there."""
-    stack, seen = [node], {node}
+    stack, nodes = [node], {node}
     while stack:
         below = stack.pop()
         if below.is_constant:
             if below.kind is Kind.OBJECT or (below.kind.is_boxed and _with_instances(below.value)):
                 return True
         elif not below.is_drawn and below.operation.pure:  # calls on samples give sampled instances
-            new = [operand for operand in below.operands if operand not in seen]
-            seen.update(new)
+            new = [operand for operand in below.operands if operand not in nodes]
+            nodes.update(new)
             stack.extend(new)
     return False
 

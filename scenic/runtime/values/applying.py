@@ -50,9 +50,9 @@ def apply(operation: Operation, *operands: Any, payload: object = None) -> Any:
     if operation.pure and operation.is_python(nodes, Kind.OTHER):
         if any(node.kind.is_boxed for node in nodes) and _is_of_code(operation, operands):
             return call_later(operation.python, *operands)
-        distributed = over_options(nodes, lambda *options: operation.python(*options))  # type: ignore[misc] # it has one
-        if distributed is not None:
-            return distributed
+        choice = over_options(nodes, lambda *options: operation.python(*options))  # type: ignore[misc] # it has one
+        if choice is not None:
+            return choice
     return as_value(construction.make_node(operation, nodes, payload, here()))
 
 

@@ -81,14 +81,14 @@ def _by_number(operands: Sequence[Node], _payload: object) -> Node | None:
             number_of.setdefault(id(option.value), len(number_of))
     numbers = []
     for node, each in zip(operands, options, strict=True):
-        found = [number_of[id(option.value)] for option in each]
+        numbers_of_options = [number_of[id(option.value)] for option in each]
         if node.is_constant:
-            numbers.append(as_node(found[0]))
-        elif found == list(range(len(found))):
+            numbers.append(as_node(numbers_of_options[0]))
+        elif numbers_of_options == list(range(len(numbers_of_options))):
             numbers.append(node.operands[0])
         else:
-            chosen = [as_node(number) for number in found]
-            numbers.append(construction.make_node(TABLE["select"], [node.operands[0], *chosen]))
+            number_nodes = [as_node(number) for number in numbers_of_options]
+            numbers.append(construction.make_node(TABLE["select"], [node.operands[0], *number_nodes]))
     return construction.make_node(TABLE["equal"], numbers)
 
 
@@ -116,7 +116,7 @@ def is_answered_by_code(value: Any, methods: Sequence[str]) -> bool:
     """Return whether methods of the program's classes answer for a value: they have to be asked of the sampled one."""
     if not isinstance(value, RandomBase):
         return _has_own(value, methods)
-    stack, seen = [value.node], {value.node}
+    stack, nodes = [value.node], {value.node}
     while stack:
         node = stack.pop()
         if node.is_constant:
@@ -124,8 +124,8 @@ def is_answered_by_code(value: Any, methods: Sequence[str]) -> bool:
                 return True
         elif node.kind.is_boxed and (not node.operation.strict or node.operation in CONTAINERS_MADE):
             # What these hand on; anything else is computed, and where instances answer for it, of sampled ones.
-            new = [operand for operand in node.operands if operand not in seen]
-            seen.update(new)
+            new = [operand for operand in node.operands if operand not in nodes]
+            nodes.update(new)
             stack.extend(new)
     return False
 

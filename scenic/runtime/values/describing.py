@@ -12,8 +12,8 @@ from scenic.runtime.values.random_base import RandomBase
 def describe(value: object) -> str:
     """A value in words for a message."""
     if isinstance(value, RandomBase):
-        known = value.node.kind
-        return "a random value" if known is Kind.OTHER else f"a random {known.value}"
+        kind_of_value = value.node.kind
+        return "a random value" if kind_of_value is Kind.OTHER else f"a random {kind_of_value.value}"
     if value is None:
         return "None"
     if isinstance(value, type):

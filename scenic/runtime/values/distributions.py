@@ -141,10 +141,10 @@ def DiscreteRange(low: object, high: object, weights: Sequence[float] | None = N
         raise ScenicValueError(
             f"`DiscreteRange` from {low} to {high} needs {count} weights, not {len(weights)}", span=here()
         )
-    fixed = [checked_weight(weight) for weight in weights]
-    if not any(fixed):
+    numbers = [checked_weight(weight) for weight in weights]
+    if not any(numbers):
         raise nothing_to_choose("DiscreteRange")
-    return primitive("weighted integer", payload=(ends[0], cumulative(fixed)))
+    return primitive("weighted integer", payload=(ends[0], cumulative(numbers)))
 
 
 def _end(value: object) -> Any:
@@ -174,8 +174,8 @@ def Discrete(options: Mapping[Any, Any] | Iterable[Any]) -> Any:
             f"`Discrete` takes a dictionary of weights or a fixed collection, not {describe(options)}",
             span=here(),
         )
-    listed = list(options)
-    return choose_among(listed, [1.0] * len(listed), "Options")
+    keys = list(options)
+    return choose_among(keys, [1.0] * len(keys), "Options")
 
 
 Options = Discrete
@@ -189,10 +189,10 @@ def choose_among(options: Sequence[object], weights: Sequence[float], name: str,
         raise nothing_to_choose(name)
     if index is None:
         index = primitive("choice", payload=cumulative([weight for _, weight in possible]))
-    chosen = [option for option, _ in possible]
+    candidates = [option for option, _ in possible]
     if not isinstance(index, Random):
-        return chosen[index]
-    node = make_node(TABLE["select"], [as_node(index), *map(as_node, chosen)], span=here())
+        return candidates[index]
+    node = make_node(TABLE["select"], [as_node(index), *map(as_node, candidates)], span=here())
     # Drawing again keeps the options and draws only which one.
     return as_value(node, lambda: choose_among(options, weights, name))
 

@@ -97,7 +97,7 @@ def over_lanes(
     """
 
     def decorate(method: _Method) -> _Method:
-        declared = _Declared(
+        declaration = _Declared(
             method.__name__,
             kind,
             operands,
@@ -113,21 +113,21 @@ def over_lanes(
         )
 
         if not alone:
-            method.__dict__["over_lanes"] = declared
+            method.__dict__["over_lanes"] = declaration
             return method
 
         @functools.wraps(method)
         def call(owner: Any, *args: Any, **keywords: Any) -> Any:
             if not are_open(args, keywords) or not qualifies(owner):
                 return method(owner, *args, **keywords)
-            node = _node(declared, as_node(0), [owner], args, keywords)
+            node = _node(declaration, as_node(0), [owner], args, keywords)
             if node is None:
                 return call_later(method, owner, *args, **keywords)
             if isinstance(node, Lazy):
                 return defer(functools.partial(call, owner), *args, **keywords)
             return as_value(node)
 
-        call.__dict__["over_lanes"] = declared
+        call.__dict__["over_lanes"] = declaration
         return call  # type: ignore[return-value] # of the same parameters
 
     return decorate
@@ -151,23 +151,23 @@ def node_over_lanes(
     A node of ``functions`` that is not constant counts as absent: whoever chooses has to put it in its place.
     """
     owners: list[Any] = []
-    found: _Declared | None = None
+    common_declaration: _Declared | None = None
     for function in functions:
         if not function.is_constant:
             owners.append(None)
             continue
-        declared = getattr(getattr(function.value, "__func__", None), "over_lanes", None)
-        if declared is None or (found is not None and found is not declared):
+        declaration = getattr(getattr(function.value, "__func__", None), "over_lanes", None)
+        if declaration is None or (common_declaration is not None and common_declaration is not declaration):
             return None
         owner = function.value.__self__
-        if not declared.qualifies(owner):
+        if not declaration.qualifies(owner):
             return None
-        found = declared
+        common_declaration = declaration
         owners.append(owner)
-    if found is None:
+    if common_declaration is None:
         return None
     try:
-        node = _node(found, index, owners, args, keywords)
+        node = _node(common_declaration, index, owners, args, keywords)
     except Exception:  # noqa: BLE001 - whatever the arguments are, each option reports it for itself
         return None
     return node if isinstance(node, Node) else None
@@ -180,10 +180,10 @@ def _node(
     args: Sequence[object],
     keywords: Mapping[str, object],
 ) -> Node | Lazy | None:
-    converted = declared.operands(*args, **keywords)
-    if converted is None:
+    operands = declared.operands(*args, **keywords)
+    if operands is None:
         return None
-    values, setting = converted
+    values, setting = operands
     lazy = next((value for value in values if isinstance(value, Lazy)), None)
     if lazy is not None:
         return lazy
@@ -195,23 +195,23 @@ def _node(
 
 
 def _evaluated(call: Call, index: Column, *columns: Column) -> Column:
-    declared, owners, setting = call.payload
+    declaration, owners, setting = call.payload
     lanes = max(map(len, (index, *columns)))
     spread = [np.broadcast_to(column, (lanes, *column.shape[1:])) for column in columns]
-    result = np.zeros((lanes, *_SHAPES[declared.kind]))
-    failed, error = np.zeros(lanes, dtype=np.bool_), None
+    result = np.zeros((lanes, *_SHAPES[declaration.kind]))
+    faulty_lanes, error = np.zeros(lanes, dtype=np.bool_), None
     for number, mine in _groups(np.broadcast_to(index, lanes)):
         if owners[number] is None:
             continue
         part = Lanes(len(mine))
-        result[mine] = declared.evaluation(
+        result[mine] = declaration.evaluation(
             part, owners[number], setting, *(np.ascontiguousarray(column[mine]) for column in spread)
         )
         if part.error is not None:
-            failed[mine] = part.failed
+            faulty_lanes[mine] = part.failed
             error = error or part.error
     if error is not None:
-        call.fault(failed, error)
+        call.fault(faulty_lanes, error)
     return result
 
 

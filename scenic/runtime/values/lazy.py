@@ -144,15 +144,15 @@ def reads_of(value: Any, within: tuple[int, ...] = ()) -> frozenset[str]:
     if isinstance(value, Lazy):
         return value.reads
     kind = type(value)
-    found = _NOTHING
+    names = _NOTHING
     if (kind is tuple or kind is list or kind is dict) and id(value) not in within:
         inside = (*within, id(value))
         for item in value.values() if kind is dict else value:
             if type(item) not in _NUMBERS and (reads := reads_of(item, inside)):
-                found |= reads
+                names |= reads
     elif kind is slice:
-        found = reads_of((value.start, value.stop, value.step))
-    return found
+        names = reads_of((value.start, value.stop, value.step))
+    return names
 
 
 def is_lazy(value: object) -> bool:

@@ -182,8 +182,8 @@ def as_node(value: Any) -> Node:
         parts = [as_node(item) for item in (*value, *value.values())]
         return construction.make_node(DICTIONARY, parts, places, here())
     if type(value) in (set, frozenset) and is_random(value):
-        made = _SET if type(value) is set else _FROZEN_SET
-        return construction.make_node(made, [as_node(item) for item in value], span=here())
+        operation = _SET if type(value) is set else _FROZEN_SET
+        return construction.make_node(operation, [as_node(item) for item in value], span=here())
     kind = kind_of(value)
     return constant(value, kind, CODEC.encode(kind, value))
 

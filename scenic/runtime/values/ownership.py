@@ -60,14 +60,14 @@ def is_own_function(value: object) -> bool:
 
 def leads_back(function: object) -> bool:
     """Return whether a function, or one that it wraps, is a program's: a library's decorator makes such functions."""
-    seen: set[int] = set()
+    identities: set[int] = set()
     stack: list[Any] = [function]
     while stack:
         value = stack.pop()
-        if isinstance(value, FunctionType) and id(value) not in seen:
+        if isinstance(value, FunctionType) and id(value) not in identities:
             if is_own_function(value):
                 return True
-            seen.add(id(value))
+            identities.add(id(value))
             stack.extend(content(cell) for cell in value.__closure__ or ())
         elif isinstance(value, CACHED):
             stack.append(value.__wrapped__)

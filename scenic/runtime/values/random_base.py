@@ -136,5 +136,5 @@ def is_random(value: object, within: tuple[int, ...] = ()) -> bool:
         parts = (*value, *value.values())
     else:
         return False
-    own = id(value)
-    return own not in within and any(is_random(item, (*within, own)) for item in parts)
+    identity = id(value)
+    return identity not in within and any(is_random(item, (*within, identity)) for item in parts)
