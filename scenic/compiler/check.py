@@ -30,8 +30,8 @@ def check_text(
     # Nearly all that is made of a text is gone when this returns: only then it is time to look for garbage.
     with no_garbage_collection():
         source = Source(text, filename)
-        parsed = parse(source.text, filename=filename)
-        return check_tree(parsed, source, surroundings_of=surroundings_of, typing=typing)
+        result = parse(source.text, filename=filename)
+        return check_tree(result, source, surroundings_of=surroundings_of, typing=typing)
 
 
 def check_tree(
@@ -44,12 +44,12 @@ def check_tree(
     typing: bool = False,
 ) -> tuple[Diagnostic, ...]:
     """The findings of `check_text` in a program that is parsed already; ``resolution`` are its names, if they are bound."""
-    found = check_parsed(
+    diagnostics = check_parsed(
         parsed, source, resolution=resolution, surroundings_of=surroundings_of, go_on=go_on, typing=typing
     )
-    found = in_order(map(_as_shown, found), filename=source.filename)
-    kept = apply_ignores(source.text, found, filename=source.filename)
-    return in_order(kept, filename=source.filename)
+    diagnostics = in_order(map(_as_shown, diagnostics), filename=source.filename)
+    remaining = apply_ignores(source.text, diagnostics, filename=source.filename)
+    return in_order(remaining, filename=source.filename)
 
 
 def _as_shown(diagnostic: Diagnostic) -> Diagnostic:

@@ -42,15 +42,15 @@ class Compiled:
 def lower_text(text: str, *, filename: str) -> Lowered:
     """Parses, checks and lowers a program. Whatever is wrong with it is in the diagnostics."""
     source = Source(text, filename)
-    parsed = parse(source.text, filename=filename)
-    found, resolution = _checked(parsed, source)
+    syntax = parse(source.text, filename=filename)
+    diagnostics, resolution = _checked(syntax, source)
     if resolution is None:
-        return Lowered(None, found)
+        return Lowered(None, diagnostics)
     try:
         with deep_recursion():
-            return Lowered(lower(parsed.tree, resolution), found)
+            return Lowered(lower(syntax.tree, resolution), diagnostics)
     except RecursionError:
-        return Lowered(None, (*found, _too_deep(source)))
+        return Lowered(None, (*diagnostics, _too_deep(source)))
 
 
 def compile_text(text: str, *, filename: str) -> Compiled:
@@ -58,16 +58,16 @@ def compile_text(text: str, *, filename: str) -> Compiled:
 
     Python's own complaints about the program become diagnostics at their place.
     """
-    lowered = lower_text(text, filename=filename)
-    if lowered.module is None:
-        return Compiled(None, lowered.diagnostics)
+    lowering = lower_text(text, filename=filename)
+    if lowering.module is None:
+        return Compiled(None, lowering.diagnostics)
     source = Source(text, filename)
-    code, error, warned = _compiled(lowered.module, source)
-    found = list(lowered.diagnostics)
+    code, error, python_warnings = _compiled(lowering.module, source)
+    diagnostics = list(lowering.diagnostics)
     if error is not None:
-        found.append(error)
-    found += [_python_warning(line, message, source) for line, message in warned]
-    return Compiled(code, tuple(found))
+        diagnostics.append(error)
+    diagnostics += [_python_warning(line, message, source) for line, message in python_warnings]
+    return Compiled(code, tuple(diagnostics))
 
 
 def check_parsed(
@@ -86,16 +86,20 @@ def check_parsed(
     program imports. ``resolution`` are its names, if they are bound already. ``go_on`` is called now and then,
     and may raise to stop. ``typing`` says that somebody is writing the program.
     """
-    found, names = _checked(parsed, source, True, surroundings_of, resolution, go_on, typing)
+    diagnostics, names = _checked(parsed, source, True, surroundings_of, resolution, go_on, typing)
     if names is None:
-        return found
+        return diagnostics
     go_on()
-    suspected = suspects(parsed.tree, names, source, longest_line=parsed.longest_line)
-    if not suspected:
-        return found
-    error, warned = _complaints(suspected, names, source)
+    statements = suspects(parsed.tree, names, source, longest_line=parsed.longest_line)
+    if not statements:
+        return diagnostics
+    error, python_warnings = _complaints(statements, names, source)
     errors = () if error is None else (error,)
-    return (*found, *errors, *(_python_warning(line, message, source) for line, message in warned))
+    return (
+        *diagnostics,
+        *errors,
+        *(_python_warning(line, message, source) for line, message in python_warnings),
+    )
 
 
 def _checked(
@@ -108,15 +112,15 @@ def _checked(
     typing: bool = False,
 ) -> tuple[tuple[Diagnostic, ...], Resolution | None]:
     """Check a parsed program; return its diagnostics, and its names if it has no errors."""
-    found = list(parsed.diagnostics)
+    diagnostics = list(parsed.diagnostics)
     try:
         with deep_recursion():
             resolution, context = resolve_within(parsed.tree, source, surroundings_of, bound, go_on, typing)
             hints = lint(context, go_on) if thorough else ()
     except RecursionError:
-        return (*found, _too_deep(source)), None
-    found = as_old_dialect(list(dict.fromkeys([*found, *resolution.diagnostics, *hints])), source)
-    return tuple(found), None if _has_errors(found) else resolution
+        return (*diagnostics, _too_deep(source)), None
+    diagnostics = as_old_dialect(list(dict.fromkeys([*diagnostics, *resolution.diagnostics, *hints])), source)
+    return tuple(diagnostics), None if _has_errors(diagnostics) else resolution
 
 
 def _complaints(
@@ -138,7 +142,7 @@ def _compiled(
     """The code of a lowered program, the error that Python stopped at, and what it warned of: lines and messages."""
     code: CodeType | None = None
     error: Diagnostic | None = None
-    with warnings.catch_warnings(record=True) as noted:
+    with warnings.catch_warnings(record=True) as caught_warnings:
         warnings.simplefilter("always")
         try:
             with deep_recursion():
@@ -148,7 +152,11 @@ def _compiled(
         except RecursionError:
             error = _too_deep(source)
     # A condition is compiled twice, so it may be warned about twice.
-    return code, error, list(dict.fromkeys((warning.lineno, str(warning.message)) for warning in noted))
+    return (
+        code,
+        error,
+        list(dict.fromkeys((warning.lineno, str(warning.message)) for warning in caught_warnings)),
+    )
 
 
 def _has_errors(diagnostics: list[Diagnostic]) -> bool:

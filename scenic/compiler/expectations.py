@@ -92,22 +92,28 @@ class Expectations:
         ``expected`` holds the kinds of tokens, and the labels of rules, that could have stood there.
         """
         at = Situation(self._tokens, self._trials, start, token, frozenset(expected))
-        known = explain(at)
-        if known is not None:
-            return known
-        found = self.found(token)
-        wanted = _AFTER.get(at.before, "") if at.expected <= {NAME, "a name"} else ""
+        explanation = explain(at)
+        if explanation is not None:
+            return explanation
+        actual = self.found(token)
+        alternatives = _AFTER.get(at.before, "") if at.expected <= {NAME, "a name"} else ""
         if at.before == "." and at.word(at.first) in ("model", "import", "from"):
-            wanted = "the name of a module"
-        if not wanted:
-            wanted = self.wanted(at.expected, after_word=self._kinds[token - 1] > NAME if token else False)
-        if not wanted:
-            return Problem("SC110", at.here(), f"{found} cannot stand here")
+            alternatives = "the name of a module"
+        if not alternatives:
+            alternatives = self.wanted(
+                at.expected, after_word=self._kinds[token - 1] > NAME if token else False
+            )
+        if not alternatives:
+            return Problem("SC110", at.here(), f"{actual} cannot stand here")
         # After the end of a line it is not plain where the expected would have stood.
         # Where something is missing, it is what is before it that misses it.
-        missing = at.before and (at.at_end() or found in _SEPARATORS) and not wanted.startswith("an operator")
+        missing = (
+            at.before
+            and (at.at_end() or actual in _SEPARATORS)
+            and not alternatives.startswith("an operator")
+        )
         where = f" after `{at.before}`" if missing else ""
-        return Problem("SC110", at.here(), f"expected {wanted}{where}, but found {found}")
+        return Problem("SC110", at.here(), f"expected {alternatives}{where}, but found {actual}")
 
     def failed(self, start: int, failure: Problem) -> Problem:
         """The mistake of a statement from ``start`` on whose parts are right, but for ``failure``."""
@@ -117,9 +123,9 @@ class Expectations:
         texts = self._tokens.texts
         signs = [index for index in range(first + 1, end) if texts[index] == "="]
         for sign in signs:
-            known = instead_of_failure(Situation(self._tokens, self._trials, start, sign, frozenset()))
-            if known is not None:
-                return known
+            explanation = instead_of_failure(Situation(self._tokens, self._trials, start, sign, frozenset()))
+            if explanation is not None:
+                return explanation
         return failure
 
     def unfinished_header(self, first: int) -> Problem | None:
@@ -192,12 +198,12 @@ class Expectations:
             kinds -= _DOTS
         words = {_SHOWN.get(word, word) for word in words}
         names = {_KINDS[kind] if kind in _KINDS else f"`{_WORDS[kind]}`" for kind in kinds}
-        ordered = sorted(words | names, key=lambda name: (name.startswith("`"), name))
-        if len(ordered) > _MANY:
-            ordered = [*ordered[: _MANY - 1], "something else"]
-        if len(ordered) > 1:
-            return ", ".join(ordered[:-1]) + " or " + ordered[-1]
-        return "".join(ordered)
+        alternatives = sorted(words | names, key=lambda name: (name.startswith("`"), name))
+        if len(alternatives) > _MANY:
+            alternatives = [*alternatives[: _MANY - 1], "something else"]
+        if len(alternatives) > 1:
+            return ", ".join(alternatives[:-1]) + " or " + alternatives[-1]
+        return "".join(alternatives)
 
 
 __all__ = ["Expectations"]

@@ -46,21 +46,23 @@ def repair(
         return check_text(text, filename=filename, surroundings_of=surroundings_of)
 
     count = 0
-    found = check(text)
-    seen = {text}
+    diagnostics = check(text)
+    texts = {text}
     for _ in range(_MOST_ROUNDS):
         fixes = list(
-            dict.fromkeys(item.fix for item in shown(found) if item.fix is not None and item.fix.certain)
+            dict.fromkeys(
+                item.fix for item in shown(diagnostics) if item.fix is not None and item.fix.certain
+            )
         )
         if not fixes:
             break
-        better = _attempt(text, fixes, found, check) or _one_by_one(text, fixes, found, check)
-        if better is None or better[0] in seen:
+        better = _attempt(text, fixes, diagnostics, check) or _one_by_one(text, fixes, diagnostics, check)
+        if better is None or better[0] in texts:
             break
-        text, made, found = better
-        seen.add(text)
-        count += made
-    return Repaired(text, count, tuple(shown(found)))
+        text, repairs, diagnostics = better
+        texts.add(text)
+        count += repairs
+    return Repaired(text, count, tuple(shown(diagnostics)))
 
 
 _Attempt = tuple[str, int, tuple[Diagnostic, ...]]
@@ -93,8 +95,11 @@ def _errors(diagnostics: Iterable[Diagnostic]) -> int:
 
 def apply_fixes(text: str, fixes: Iterable[Fix]) -> tuple[str, int]:
     """Make all repairs that do not overlap, earlier ones first; return the text and the number of repairs."""
-    starts = [len(text) - len(text.lstrip("\ufeff")), *(found.end() for found in _LINE_END.finditer(text))]
-    line_end = found[0] if (found := _LINE_END.search(text)) is not None else "\n"
+    starts = [
+        len(text) - len(text.lstrip("\ufeff")),
+        *(line_match.end() for line_match in _LINE_END.finditer(text)),
+    ]
+    line_end = line_match[0] if (line_match := _LINE_END.search(text)) is not None else "\n"
 
     def offset(line: int, column: int) -> int:
         if line > len(starts):
@@ -108,15 +113,15 @@ def apply_fixes(text: str, fixes: Iterable[Fix]) -> tuple[str, int]:
         replacement = edit.text.replace("\n", line_end)
         return offset(span.line, span.column), offset(span.end_line, span.end_column), replacement
 
-    taken: list[tuple[int, int, str]] = []
-    made = 0
+    applied_edits: list[tuple[int, int, str]] = []
+    count = 0
     for edits in sorted(sorted(map(place, fix.edits)) for fix in fixes if fix.edits):
-        if not any(_clash(edit, taken) for edit in edits):
-            taken = sorted(taken + edits)
-            made += 1
-    for start, end, replacement in reversed(taken):
+        if not any(_clash(edit, applied_edits) for edit in edits):
+            applied_edits = sorted(applied_edits + edits)
+            count += 1
+    for start, end, replacement in reversed(applied_edits):
         text = text[:start] + replacement + text[end:]
-    return text, made
+    return text, count
 
 
 def _clash(edit: tuple[int, int, str], taken: Sequence[tuple[int, int, str]]) -> bool:

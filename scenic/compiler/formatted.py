@@ -35,10 +35,10 @@ def joined(actions: Reader, tokens: Tokens, pieces: Sequence[Any], place: Place)
     values = {index: actions.string_value(index) for index in plain}
     has_bytes = any(isinstance(value, bytes) for value in values.values())
     if has_bytes:
-        mixed = [piece for piece in pieces if not isinstance(values.get(_first(piece)), bytes)]
-        if mixed:
+        text_pieces = [piece for piece in pieces if not isinstance(values.get(_first(piece)), bytes)]
+        if text_pieces:
             actions.fail(
-                actions.place_of_token(_first(mixed[0])),
+                actions.place_of_token(_first(text_pieces[0])),
                 "bytes and text cannot be joined",
                 help="use one prefix",
             )
@@ -49,17 +49,17 @@ def joined(actions: Reader, tokens: Tokens, pieces: Sequence[Any], place: Place)
             value=b"".join(parts) if has_bytes else "".join(parts), kind=actions.string_kind(plain[0])
         )
     else:
-        found: list[ast.expr] = []
+        values_found: list[ast.expr] = []
         for piece in pieces:
             if isinstance(piece, tuple):
                 start, inner, _ = piece
                 raw = "r" in tokens.texts[start].lower().split(tokens.texts[start][-1])[0]
-                found += _parts(actions, tokens, inner, raw=raw)
+                values_found += _parts(actions, tokens, inner, raw=raw)
             else:
-                found.append(
+                values_found.append(
                     _constant(values[piece], actions.place_of_token(piece), actions.string_kind(piece))
                 )
-        values_of_node = _merged(found)
+        values_of_node = _merged(values_found)
         if sys.version_info < (3, 12):
             # Here the prefix of the first string is that of all.
             kind = None if isinstance(pieces[0], tuple) else actions.string_kind(pieces[0])
@@ -86,10 +86,10 @@ def _constant(value: Any, place: Place, kind: str | None = None) -> ast.Constant
 
 
 def _parts(actions: Reader, tokens: Tokens, parts: Iterable[Any], *, raw: bool) -> list[ast.expr]:
-    found: list[ast.expr] = []
+    nodes: list[ast.expr] = []
     for part in parts:
         if isinstance(part, list):
-            found += part
+            nodes += part
             continue
         text = tokens.texts[part]
         if "\\" in text and not raw:
@@ -97,8 +97,8 @@ def _parts(actions: Reader, tokens: Tokens, parts: Iterable[Any], *, raw: bool) 
                 text = literals.decoded(text)
             except literals.LiteralError as problem:
                 actions.literal_problem(part, str(problem))
-        found.append(_constant(text, actions.place_of_token(part)))
-    return found
+        nodes.append(_constant(text, actions.place_of_token(part)))
+    return nodes
 
 
 def _merged(nodes: Iterable[ast.expr]) -> list[ast.expr]:

@@ -138,9 +138,9 @@ class Lexer(LineReader):
         add_column, add_end_column = columns.append, end_columns.append
         kind_of, name_kind, tolerant = words.get, NAME, self.tolerant
         line_start = self.line_start
-        for found in lexemes.TOKEN.finditer(text, pos):
-            group = found.lastindex or 0
-            start, end = found.span(group)
+        for match in lexemes.TOKEN.finditer(text, pos):
+            group = match.lastindex or 0
+            start, end = match.span(group)
             if group == 1:  # WORD
                 word = text[start:end]
                 add_kind(kind_of(word, name_kind))
@@ -257,9 +257,11 @@ class Lexer(LineReader):
         # The last token may be a string of several lines.
         several = self.multiline and self.multiline[-1][0] == index
         last = (self.multiline[-1][1] if several else tokens.lines[index], tokens.end_columns[index])
-        noticed = Span(*last, *last)
+        end_of_statement = Span(*last, *last)
         self.report(
-            lexical_errors.never_closed(opener.opener, opener.span, is_field=is_field, noticed=noticed)
+            lexical_errors.never_closed(
+                opener.opener, opener.span, is_field=is_field, noticed=end_of_statement
+            )
         )
         # The tokens stand at the line end, and the present line may be a later one.
         line, line_start = self.line, self.line_start
@@ -333,8 +335,8 @@ class Lexer(LineReader):
         text, quote = self.text, string.quote
         while True:
             pattern = lexemes.literal(quote, specification=in_specification, raw=string.raw)
-            found = pattern.match(text, pos)
-            start, pos = found.span() if found else (pos, pos)
+            match = pattern.match(text, pos)
+            start, pos = match.span() if match else (pos, pos)
             if pos == len(text) and text.endswith("\n", start, pos):
                 # It is never closed, and the last line end may not be in the source.
                 pos -= 1
@@ -353,9 +355,9 @@ class Lexer(LineReader):
             if text.startswith("}", pos):
                 if in_specification:
                     self.add(self.words["}"], pos, pos + 1)
-                    ended = self.fields.pop()
-                    self.brackets = ended.outer_brackets
-                    in_specification = ended.in_specification
+                    field = self.fields.pop()
+                    self.brackets = field.outer_brackets
+                    in_specification = field.in_specification
                 else:
                     self.report(lexical_errors.single_brace(self.here(pos, pos + 1)))
                     self.add(ERROR, pos, pos + 1)
@@ -469,20 +471,20 @@ class Lexer(LineReader):
         """A character that starts no token."""
         text = self.text
         if text[start] != "\\":
-            found = lexemes.STRAY_RUN.match(text, start)
-            end = start + 1 if found is None else found.end()
+            match = lexemes.STRAY_RUN.match(text, start)
+            end = start + 1 if match is None else match.end()
             self.invalid_character(start)
             self.add(ERROR, start, end)
             return end
-        found = lexemes.BACKSLASHES.match(text, start)
-        start_of_rest, end_of_rest = found.span(1) if found else (-1, -1)
+        match = lexemes.BACKSLASHES.match(text, start)
+        start_of_rest, end_of_rest = match.span(1) if match else (-1, -1)
         if start_of_rest >= 0:
             # Only blanks between a backslash and the line end: what was meant is clear.
             self.report(lexical_errors.after_continuation(self.here(start, end_of_rest - 1), blank=True))
             self.add(ERROR, start, start_of_rest)
             self.next_line(end_of_rest)
             return end_of_rest
-        end = start + 1 if found is None else found.end()
+        end = start + 1 if match is None else match.end()
         self.report(lexical_errors.after_continuation(self.here(start, end), blank=False))
         self.add(ERROR, start, end)
         return end

@@ -151,10 +151,10 @@ _WORDS_AFTER: Final = {
 
 def _with_unit(whole: str, message: str, span: Span) -> Diagnostic | None:
     """``90°``, ``5s``, ``3m``: a number with a unit."""
-    found = _NUMBER.fullmatch(whole)
-    if found is None:
+    match = _NUMBER.fullmatch(whole)
+    if match is None:
         return None
-    number, unit = found.groups()
+    number, unit = match.groups()
     word = _WORDS_AFTER.get(unit.lower())
     if word is not None:
         fix = Fix(f"Write `{number} {word}`", (Edit(span, f"{number} {word}"),), certain=word == "deg")
@@ -214,15 +214,15 @@ def unreadable(text: str) -> Iterator[Diagnostic]:
     """Null characters and lone surrogates wherever they are, in strings and comments too."""
     if "\0" not in text and (text.isascii() or lexemes.UNREADABLE.search(text) is None):
         return
-    line, line_start, seen = 1, 0, 0
-    for found in lexemes.UNREADABLE.finditer(text):
-        start, end = found.span()
-        count = text.count("\n", seen, start)
+    line, line_start, counted_to = 1, 0, 0
+    for match in lexemes.UNREADABLE.finditer(text):
+        start, end = match.span()
+        count = text.count("\n", counted_to, start)
         if count:
             line += count
-            line_start = text.rfind("\n", seen, start) + 1
-        seen = end
-        if found[1]:
+            line_start = text.rfind("\n", counted_to, start) + 1
+        counted_to = end
+        if match[1]:
             message = "null character in the source"
         else:
             message = f"half of a character (lone surrogate U+{ord(text[start]):04X}) in the source"

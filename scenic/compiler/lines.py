@@ -105,8 +105,8 @@ class LineReader:
     def start_line(self, pos: int) -> int:
         """Go from the start of a line over empty lines and comments to the next token; indent and dedent."""
         text = self.text
-        found = lexemes.LINE_START.match(text, pos)
-        start, end = found.span(1) if found else (pos, pos)
+        match = lexemes.LINE_START.match(text, pos)
+        start, end = match.span(1) if match else (pos, pos)
         if start != pos:
             self.comment_lines(pos, start, self.line)
             self.line += text.count("\n", pos, start)
@@ -138,7 +138,7 @@ class LineReader:
         self.white = white
         top, strict_top = indents[-1]
         if column > top:
-            mixed = strict_column <= strict_top
+            is_ambiguous = strict_column <= strict_top
             if len(indents) == MOST_INDENTS:
                 raise NestedTooDeeplyError(end)
             indents.append((column, strict_column))
@@ -151,8 +151,8 @@ class LineReader:
                     indents[-1] = (column, strict_column)
                     return
                 self.close_level(end)
-            mixed = strict_column != indents[-1][1]
-        if mixed:
+            is_ambiguous = strict_column != indents[-1][1]
+        if is_ambiguous:
             self.report(lexical_errors.mixed_indentation(self.here(self.line_start, end)))
 
     def close_level(self, end: int) -> None:

@@ -94,14 +94,14 @@ class ScenicLoader(SourceFileLoader):
         """The code of the module, cached."""
         source = read_source(self.path)
         key = _key(source)
-        kept = cache_file(source.filename)
-        if kept is not None:
-            code = _read(kept, key)
+        cache_path = cache_file(source.filename)
+        if cache_path is not None:
+            code = _read(cache_path, key)
             if code is not None:
                 return code
         code = _compiled(source)
-        if kept is not None and not sys.dont_write_bytecode:
-            _write(kept, key, code)
+        if cache_path is not None and not sys.dont_write_bytecode:
+            _write(cache_path, key, code)
         return code
 
 
@@ -109,13 +109,13 @@ def _compiled(source: Source, *, errors_only: bool = False) -> CodeType:
     """The code of a program; raises an error that holds its diagnostics, errors first, if it has any."""
     from scenic.compiler.compile import compile_text  # takes long to import, and kept code needs none of it
 
-    compiled = compile_text(source.text, filename=source.filename)
-    if compiled.code is None:
-        found = sorted(compiled.diagnostics, key=lambda item: item.severity is not Severity.ERROR)
+    compilation = compile_text(source.text, filename=source.filename)
+    if compilation.code is None:
+        diagnostics = sorted(compilation.diagnostics, key=lambda item: item.severity is not Severity.ERROR)
         if errors_only:
-            found = [item for item in found if item.severity is Severity.ERROR]
-        raise compile_error(found, filename=source.filename)
-    return compiled.code
+            diagnostics = [item for item in diagnostics if item.severity is Severity.ERROR]
+        raise compile_error(diagnostics, filename=source.filename)
+    return compilation.code
 
 
 def program_code(source: Source, folder: Path | None) -> CodeType:
@@ -160,8 +160,8 @@ def cache_file(filename: str) -> Path | None:
     folder = source.parent / "__pycache__"
     if sys.pycache_prefix is not None:
         folder = Path(sys.pycache_prefix, *source.absolute().parent.parts[1:])
-    optimised = f".opt-{sys.flags.optimize}" if sys.flags.optimize else ""
-    return folder / f"{source.name}.{tag}-{fingerprint}{optimised}.pyc"
+    suffix = f".opt-{sys.flags.optimize}" if sys.flags.optimize else ""
+    return folder / f"{source.name}.{tag}-{fingerprint}{suffix}.pyc"
 
 
 @cache

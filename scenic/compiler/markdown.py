@@ -32,12 +32,17 @@ def program_blocks(text: str) -> Iterator[Block]:
     fence, first, is_program = "", 0, False
     lines = text.split("\n")
     for number, line in enumerate(lines):
-        found = _FENCE.match(line.rstrip())
-        if not fence and found is not None:
-            language = found["info"].split()
-            fence, first = found["fence"], number + 1
-            is_program = language[:1] == ["scenic"] and not found["indent"]
-        elif fence and found is not None and not found["info"].strip() and found["fence"].startswith(fence):
+        fence_match = _FENCE.match(line.rstrip())
+        if not fence and fence_match is not None:
+            language = fence_match["info"].split()
+            fence, first = fence_match["fence"], number + 1
+            is_program = language[:1] == ["scenic"] and not fence_match["indent"]
+        elif (
+            fence
+            and fence_match is not None
+            and not fence_match["info"].strip()
+            and fence_match["fence"].startswith(fence)
+        ):
             if is_program and number > first:
                 yield Block(first, "\n".join(lines[first:number]) + "\n")
             fence = ""
@@ -81,6 +86,6 @@ def repair_blocks(
         count += repaired.count
         return repaired.text
 
-    changed = with_blocks(text, change)
-    found = check_blocks(changed, filename=filename, surroundings_of=surroundings_of)
-    return Repaired(changed, count, tuple(shown(found)))
+    new_text = with_blocks(text, change)
+    diagnostics = check_blocks(new_text, filename=filename, surroundings_of=surroundings_of)
+    return Repaired(new_text, count, tuple(shown(diagnostics)))

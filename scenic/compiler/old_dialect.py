@@ -37,10 +37,10 @@ def as_old_dialect(diagnostics: Sequence[Diagnostic], source: Source) -> list[Di
     if (not places and "ego" not in source.text) or _NEW.search(source.text):
         return list(diagnostics)
     text = _STRING.sub(lambda found: "\n" * found[0].count("\n"), source.text)
-    made = list(_MADE.finditer(text))
-    if not places and not any(found["ego"].startswith("ego") for found in made):
+    constructions = list(_MADE.finditer(text))
+    if not places and not any(found["ego"].startswith("ego") for found in constructions):
         return list(diagnostics)
-    for found in made:
+    for found in constructions:
         line = text.count("\n", 0, found.start("cls")) + 1
         column = found.start("cls") - (text.rfind("\n", 0, found.start("cls")) + 1)
         places.setdefault(line, Span(line, column, line, column + len(found["cls"])))

@@ -69,18 +69,18 @@ def parse(text: str, *, filename: str = "<string>") -> ParseResult:
 def parse_lexed(tokens: Tokens, *, filename: str) -> ParseResult:
     """Parse the tokens of a text, as the plain lexer gives them."""
     if any(each.code == "SC112" for each in tokens.diagnostics):
-        found = (replace(each, filename=filename) for each in tokens.diagnostics)
-        return ParseResult(ast.Module(body=[], type_ignores=[]), tuple(found))
+        diagnostics_of_tokens = (replace(each, filename=filename) for each in tokens.diagnostics)
+        return ParseResult(ast.Module(body=[], type_ignores=[]), tuple(diagnostics_of_tokens))
     with no_garbage_collection():
-        parsed = _parse_tokens(tokens)
-    problems = parsed.problems
-    tokens = parsed.tokens
+        result = _parse_tokens(tokens)
+    problems = result.problems
+    tokens = result.tokens
     if not problems and not tokens.diagnostics:
-        return ParseResult(parsed.tree, (), _tokens_of_longest_line(tokens.kinds))
+        return ParseResult(result.tree, (), _tokens_of_longest_line(tokens.kinds))
     source = Source(tokens.text, filename)
     diagnostics = {replace(each, filename=filename) for each in tokens.diagnostics}
     diagnostics.update(_diagnostic(each, source) for each in problems)
-    return ParseResult(parsed.tree, tuple(sorted(diagnostics, key=_order)))
+    return ParseResult(result.tree, tuple(sorted(diagnostics, key=_order)))
 
 
 def bare_text(text: str) -> str:
@@ -108,9 +108,9 @@ def _tokens_of_longest_line(kinds: list[int]) -> int:
 
 def _parse_tokens(tokens: Tokens) -> Parsed:
     text = tokens.text
-    parsed = _fast(tokens)
-    if parsed is not None:
-        return parsed
+    result = _fast(tokens)
+    if result is not None:
+        return result
     # A text without mistakes does not wait for all that reads another one.
     from scenic.compiler.shared_words import closed_operands, in_parentheses
     from scenic.compiler.tolerant_lexer import lex_tolerantly
@@ -118,24 +118,24 @@ def _parse_tokens(tokens: Tokens) -> Parsed:
     # Statements that are wrong because an operator took a closing word from another are read once more without that.
     operands = None if tokens.diagnostics else closed_operands(tokens)
     if operands:
-        parsed = _fast(in_parentheses(tokens, operands))
-        if parsed is not None:
-            return parsed
+        result = _fast(in_parentheses(tokens, operands))
+        if result is not None:
+            return result
     # Now the text is known to be wrong.
     tokens = lex_tolerantly(text, WORDS)
     operands = [] if operands == [] else closed_operands(tokens)
     for _ in range(2):
         if not operands:
             break
-        parsed = _recovered(in_parentheses(tokens, operands))
-        wrong = [problem.place[:2] for problem in parsed.problems]
+        result = _recovered(in_parentheses(tokens, operands))
+        wrong = [problem.place[:2] for problem in result.problems]
         wrong += [(each.span.line, each.span.column) for each in tokens.diagnostics if each.span is not None]
         wrong.sort()
         right = [
             each for each in operands if bisect_left(wrong, each.start) == bisect_right(wrong, each.stop)
         ]
         if len(right) == len(operands):
-            return parsed
+            return result
         operands = right
     return _recovered(tokens)
 

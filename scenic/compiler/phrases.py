@@ -61,7 +61,7 @@ BEFORE_CONNECTORS: Final = frozenset(
 
 
 def _closing_words() -> Mapping[tuple[str, str], str]:
-    found: dict[tuple[str, str], str] = {}
+    closers: dict[tuple[str, str], str] = {}
     for form in FORMS:
         match form.parts:
             case (*start, Slot(), Written(text=closer), Slot()) if (
@@ -69,8 +69,8 @@ def _closing_words() -> Mapping[tuple[str, str], str]:
             ):
                 words = [part.text for part in start if isinstance(part, Written)]
                 if len(words) == len(start):
-                    found[words[-2], words[-1]] = closer
-    return MappingProxyType(found)
+                    closers[words[-2], words[-1]] = closer
+    return MappingProxyType(closers)
 
 
 CLOSING_WORDS: Final = _closing_words()

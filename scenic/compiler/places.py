@@ -24,9 +24,9 @@ def word_span(source: Source, node: ast.AST, word: str) -> Span:
         text = lines[line - 1]
         start = whole.column if line == whole.line else 0
         end = whole.end_column if line == whole.end_line else len(text)
-        found = _whole_word(text, word, start, end)
-        if found >= 0:
-            return Span(line, found, line, found + len(word))
+        column = _whole_word(text, word, start, end)
+        if column >= 0:
+            return Span(line, column, line, column + len(word))
         if not text.isascii():
             for each in _WORD.finditer(text, start, end):
                 if normalize("NFKC", each[0]) == word:

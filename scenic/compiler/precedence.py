@@ -263,9 +263,9 @@ def form_of(node: ast.AST, ladder: Ladder = Ladder.ORDINARY) -> Form | None:
     if not forms and name == "SpecifierPhrase":
         forms = forms_of(name, fields.specifier, Ladder.SPECIFIER)
     if isinstance(node, ast.Call):
-        given = bool(node.args or node.keywords)
+        has_arguments = bool(node.args or node.keywords)
         forms = tuple(
-            form for form in forms if given == any(isinstance(part, Content) for part in form.parts)
+            form for form in forms if has_arguments == any(isinstance(part, Content) for part in form.parts)
         )
     absent = tuple(index for index, each in enumerate(getattr(node, "operands", ())) if each is None)
     return next((form for form in forms if form.absent == absent), None)

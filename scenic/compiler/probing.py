@@ -76,35 +76,35 @@ def wanted_at(text: str, line: int, column: int) -> Wanted | None:
         mark = next((index for index, kind in enumerate(tokens.kinds) if kind == ERROR), -1)
         if mark < 0 or tokens.texts[mark] != _MARK:
             return None
-        expected = {each for rule in rules for each in _expected(tokens, mark, rule)}
-        if expected:
-            return _wanted(tokens, mark, expected)
+        continuations = {each for rule in rules for each in _expected(tokens, mark, rule)}
+        if continuations:
+            return _wanted(tokens, mark, continuations)
     return None
 
 
 def _around(lines: list[str], here: str) -> list[str]:
     """The relevant lines before a place: headers of the blocks around it, and statements that they may continue."""
     level = _indentation(here)
-    kept = [here]
+    relevant = [here]
     is_whole = not _goes_on(here)
     is_near = True
     for text in reversed(lines):
-        stripped = text.lstrip()
-        if not stripped or stripped[0] == "#":
+        content = text.lstrip()
+        if not content or content[0] == "#":
             continue
         column = _indentation(text)
         if column > level:
             if is_near:
-                kept.append(text)
+                relevant.append(text)
         elif column < level or is_near:
-            kept.append(text)
+            relevant.append(text)
             is_whole = not _goes_on(text)
             # The statement before the line itself is kept, and further out only what a clause belongs to.
             is_near = not is_whole
             level = column
             if not level and is_whole:
                 break
-    return kept[::-1]
+    return relevant[::-1]
 
 
 def _indentation(text: str) -> int:
@@ -154,11 +154,11 @@ class _Probe:
     def __call__(self, rule: str, position: int) -> tuple[list[Any], int]:
         body: list[Any] = []
         while True:
-            node, end, farthest, expected = self.run(rule, position)
+            node, end, farthest, alternatives = self.run(rule, position)
             if farthest > self.farthest:
                 self.farthest, self.expected = farthest, set()
             if farthest == self.farthest:
-                self.expected |= expected
+                self.expected |= alternatives
             if node is None:
                 return body, position
             body.append(node)

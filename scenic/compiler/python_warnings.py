@@ -73,11 +73,11 @@ def suspects(
     ]
     nodes += [scope.node for scope in resolution.scopes.values() if _repeats_parameters(scope)]
     lines.update(node.lineno for node in nodes if hasattr(node, "lineno"))
-    ordered = sorted(lines)
+    line_numbers = sorted(lines)
 
     def is_suspect(statement: ast.stmt) -> bool:
-        index = bisect_left(ordered, first_position(statement)[0])
-        return (index < len(ordered) and ordered[index] <= (statement.end_lineno or 0)) or _is_deep(
+        index = bisect_left(line_numbers, first_position(statement)[0])
+        return (index < len(line_numbers) and line_numbers[index] <= (statement.end_lineno or 0)) or _is_deep(
             [statement]
         )
 

@@ -129,15 +129,19 @@ class Recovery:
             start = position
             if kinds[start] in (_SETUP, _COMPOSE) and rule in _OF_STATEMENTS and self._is_clause(start):
                 parts.append(start)
-                found, position, _ = self._clause(start)
-                node = self._error(start, position, found)
+                nodes, position, _ = self._clause(start)
+                node = self._error(start, position, nodes)
             elif rule in _OF_STATEMENTS and self._is_clause(start):
-                unfinished = self._unfinished_clause(start, previous)
-                node, position = self._stray_clause(start, previous, unfinished=unfinished is not None)
-                if unfinished is not None and unfinished == previous and isinstance(body[-1], ast.Expr):
+                open_statement = self._unfinished_clause(start, previous)
+                node, position = self._stray_clause(start, previous, unfinished=open_statement is not None)
+                if (
+                    open_statement is not None
+                    and open_statement == previous
+                    and isinstance(body[-1], ast.Expr)
+                ):
                     body[-1] = self._error(previous, start, [])
-                if unfinished is not None and self._reported.isdisjoint(range(unfinished, start)):
-                    self._add(self.expectations.unfinished_clause(unfinished), unfinished)
+                if open_statement is not None and self._reported.isdisjoint(range(open_statement, start)):
+                    self._add(self.expectations.unfinished_clause(open_statement), open_statement)
             else:
                 node, position = self._statement(rule, start)
             if isinstance(node, list) and rule != "specifier_line":
@@ -184,8 +188,8 @@ class Recovery:
         ):
             self._spoilt.append((self.tokens.lines[first], self.tokens.lines[end]))
         else:
-            _, _, farthest, expected = self._recording("statement", part)
-            self._explain(part, farthest, expected, None)
+            _, _, farthest, alternatives = self._recording("statement", part)
+            self._explain(part, farthest, alternatives, None)
 
     def _statement(self, rule: str, start: int) -> tuple[Any, int]:
         """Parse one statement with the fast parser, or else with the recording one, or else skip it."""
@@ -201,13 +205,13 @@ class Recovery:
                 if node is not None and not cut_short:
                     return node, end
             actions.failure = None
-            node, end, farthest, expected = self._recording(rule, start)
+            node, end, farthest, alternatives = self._recording(rule, start)
             if node is not None:
                 return node, end
             failure = actions.failure
-            node, end, explained = self._skip(rule, start, farthest)
-            if not explained:
-                self._explain(start, farthest, expected, failure)
+            node, end, is_explained = self._skip(rule, start, farthest)
+            if not is_explained:
+                self._explain(start, farthest, alternatives, failure)
             return node, end
         except RecursionError:
             place = actions.place_of_token(start)
@@ -272,14 +276,14 @@ class Recovery:
             actions = self.actions
             outer_failure = actions.failure
             actions.failure = None
-            _, _, farthest, expected = self._recording("statement", start)
+            _, _, farthest, alternatives = self._recording("statement", start)
             if previous is not None and self._kinds[previous] in _CLAUSED:
                 # The clause belongs to the statement before: what was wrong with it there?
-                _, _, reached, wanted = self._recording("statement", previous)
-                if reached == start:
-                    farthest, expected = reached, wanted
+                _, _, stop, alternatives_before = self._recording("statement", previous)
+                if stop == start:
+                    farthest, alternatives = stop, alternatives_before
             actions.failure = outer_failure
-            self._explain(start, farthest, expected, None)
+            self._explain(start, farthest, alternatives, None)
         body, end = self._clauses(end, body)
         return self._error(start, end, body), end
 
@@ -340,7 +344,7 @@ class Recovery:
         outer_failure = actions.failure
         actions.failure = None
         try:
-            node, end, farthest, expected = self._recording(rule, position)
+            node, end, farthest, alternatives = self._recording(rule, position)
             failure = actions.failure
         finally:
             kinds[position] = original
@@ -348,7 +352,7 @@ class Recovery:
         if node is not None:
             return list(node.body) if rule == "case_block" else [node], end, True
         body, end = self._skip_lines("statement", start, farthest)
-        self._explain(start, farthest, expected, failure)
+        self._explain(start, farthest, alternatives, failure)
         return body, end, False
 
     def _forget_closer(self, start: int, previous: int) -> None:
@@ -406,23 +410,27 @@ class Recovery:
         """
         kinds = self._kinds
         body, first_end = self._skip_lines(rule, start, min(farthest, self._line_end(start)))
-        position, explained = first_end, False
+        position, is_explained = first_end, False
         if rule != "case_block" and (kinds[start] in _CLAUSED or kinds[first_end - 1] == DEDENT):
             while self._is_clause(position):
-                found, position, right = self._clause(position)
-                body += found
-                explained = explained or not right
-            explained = explained and farthest >= first_end
+                nodes, position, right = self._clause(position)
+                body += nodes
+                is_explained = is_explained or not right
+            is_explained = is_explained and farthest >= first_end
         while position < farthest and kinds[position] not in (DEDENT, ENDMARKER):
-            position, found = self._skip_line(position)
-            body += found
+            position, nodes = self._skip_line(position)
+            body += nodes
         if rule == "specifier_line":
             return [], position, False
         node = self._error(start, position, body)
         if rule == "case_block":
             pattern = make(ast.MatchAs, place_of(node), pattern=None, name=None)
-            return make(ast.match_case, None, pattern=pattern, guard=None, body=[node]), position, explained
-        return node, position, explained
+            return (
+                make(ast.match_case, None, pattern=pattern, guard=None, body=[node]),
+                position,
+                is_explained,
+            )
+        return node, position, is_explained
 
     def _error(self, start: int, end: int, body: list[Any]) -> ast.AST:
         """Make the node for the tokens from ``start`` up to ``end`` that form no statement; ``body`` contains

@@ -144,10 +144,10 @@ class _Collector:
         """Visit all nodes, and return what has been collected."""
         self._walk()
         bound = {(event.scope, event.name) for event in self._events}
-        reserved: list[tuple[str, ast.AST]] = []
+        reserved_names: list[tuple[str, ast.AST]] = []
         for event in self._events:
             if event.name in RESERVED:
-                reserved.append((event.name, event.site))
+                reserved_names.append((event.name, event.site))
             else:
                 self._bind(event, bound)
         references: dict[ast.AST, Reference] = {}
@@ -164,7 +164,7 @@ class _Collector:
             self._nonlocals,
             self._nodes,
             self._tolerated,
-            reserved,
+            reserved_names,
             self._wildcard,
         )
         resolution.wildcard = self._wildcard or resolution.rebinding

@@ -125,23 +125,23 @@ def closed_operands(tokens: Tokens) -> list[Operand]:
     """The operands in ``tokens`` that have to end before a closing word, although one within them could use it."""
     kinds, lines, columns = tokens.kinds, tokens.lines, tokens.columns
     scan = _Scan(kinds)
-    found: list[Operand] = []
+    operands: list[Operand] = []
     start = 0
-    done = -1
+    statement_end = -1
     # What can be wrong here takes an operator that must have its words, or a condition with an instance.
     for index in sorted(place for kind in _SUSPECT for place in _places(kinds, kind)):
-        if index < done:
+        if index < statement_end:
             continue
         start = index
         while start > 0 and kinds[start - 1] not in _STATEMENT_ENDS:
             start -= 1
-        done = index
-        while done < len(kinds) and kinds[done] not in _STATEMENT_ENDS:
-            done += 1
-        if done < len(kinds):
-            places = (lines[start], columns[start]), (lines[done], columns[done])
-            found += (Operand(*each, *places) for each in scan.statement(start, done))
-    return found
+        statement_end = index
+        while statement_end < len(kinds) and kinds[statement_end] not in _STATEMENT_ENDS:
+            statement_end += 1
+        if statement_end < len(kinds):
+            places = (lines[start], columns[start]), (lines[statement_end], columns[statement_end])
+            operands += (Operand(*each, *places) for each in scan.statement(start, statement_end))
+    return operands
 
 
 def _places(kinds: list[int], kind: int) -> Iterator[int]:
@@ -154,24 +154,24 @@ def _places(kinds: list[int], kind: int) -> Iterator[int]:
 
 def in_parentheses(tokens: Tokens, operands: Iterable[Operand]) -> Tokens:
     """``tokens`` with parentheses of no width around ``operands``."""
-    opened: dict[int, int] = {}
-    closed: dict[int, int] = {}
+    openings: dict[int, int] = {}
+    closings: dict[int, int] = {}
     for operand in operands:
-        opened[operand.first] = opened.get(operand.first, 0) + 1
-        closed[operand.end] = closed.get(operand.end, 0) + 1
+        openings[operand.first] = openings.get(operand.first, 0) + 1
+        closings[operand.end] = closings.get(operand.end, 0) + 1
     result = replace(tokens, kinds=[], texts=[], lines=[], columns=[], end_lines=[], end_columns=[])
     lists = (result.lines, result.columns, result.end_lines, result.end_columns)
     before = 0
-    for index in sorted(opened.keys() | closed.keys()):
+    for index in sorted(openings.keys() | closings.keys()):
         _extend(result, tokens, before, index)
         before = index
-        count = closed.get(index, 0)
+        count = closings.get(index, 0)
         result.kinds += [OPERATORS[")"]] * count
         result.texts += [")"] * count
         end = tokens.end_lines[index - 1], tokens.end_columns[index - 1]
         for each, value in zip(lists, end * 2, strict=True):
             each += [value] * count
-        count = opened.get(index, 0)
+        count = openings.get(index, 0)
         result.kinds += [OPERATORS["("]] * count
         result.texts += ["("] * count
         start = tokens.lines[index], tokens.columns[index]
@@ -295,7 +295,7 @@ class _Scan:
         """Share out the closing words among operators, each word to the innermost one that may have it."""
         words = dict.fromkeys(_NOT_CLOSING, 0)
         """For each closing word, the number left, less the number that later operators need."""
-        needed = dict.fromkeys(_NOT_CLOSING, 0)
+        needs = dict.fromkeys(_NOT_CLOSING, 0)
         """For each closing word, the number that the open operators need."""
         for event in events:
             if isinstance(event, _Close):
@@ -306,20 +306,20 @@ class _Scan:
         for event in events:
             if isinstance(event, _Open):
                 stack.append(event)
-                needed[event.wants] += event.must
+                needs[event.wants] += event.must
                 words[event.wants] += event.must
             elif event == "if":
                 stack.append(None)
             elif event == "else":
                 while stack:
-                    dropped = stack.pop()
-                    if dropped is None:
+                    operator = stack.pop()
+                    if operator is None:
                         break
-                    needed[dropped.wants] -= dropped.must
+                    needs[operator.wants] -= operator.must
             else:
                 assert isinstance(event, _Close)
                 words[event.kind] -= 1
-                self._close(event, stack, needed, enough=words[event.kind] >= needed[event.kind])
+                self._close(event, stack, needs, enough=words[event.kind] >= needs[event.kind])
 
     def _close(
         self, word: _Close, stack: list[_Open | None], needed: dict[int, int], *, enough: bool

@@ -57,18 +57,22 @@ def apply_ignores(
     if not comments:
         return tuple(diagnostics)
     has_errors = any(item.severity is Severity.ERROR for item in diagnostics)
-    silenced = _Silencer(comments, _statements(tokens))
-    kept = [item for item in diagnostics if not silenced(item)]
+    is_silenced = _Silencer(comments, _statements(tokens))
+    remaining = [item for item in diagnostics if not is_silenced(item)]
     if complain:
-        own = [found for comment in comments for found in _bad(comment, source)]
+        about_comments = [diagnostic for comment in comments for diagnostic in _bad(comment, source)]
         if not has_errors:
-            own += [
-                found for each in comments for found in _unused(each, source, lambda code: code not in _OWN)
+            about_comments += [
+                diagnostic
+                for each in comments
+                for diagnostic in _unused(each, source, lambda code: code not in _OWN)
             ]
-        kept += [item for item in own if not silenced(item)]
+        remaining += [item for item in about_comments if not is_silenced(item)]
         if not has_errors:
-            kept += [found for each in comments for found in _unused(each, source, _OWN.__contains__)]
-    return tuple(kept)
+            remaining += [
+                diagnostic for each in comments for diagnostic in _unused(each, source, _OWN.__contains__)
+            ]
+    return tuple(remaining)
 
 
 @dataclass(slots=True)
@@ -124,12 +128,12 @@ class _Silencer:
         for comment in comments:
             if not comment.whole_file:
                 self._of_line.setdefault(comment.span.line, []).append(comment)
-        own = {line: tuple(there) for line, there in self._of_line.items()}
+        comments_of_line = {line: tuple(there) for line, there in self._of_line.items()}
         for first, last in statements:
             for edge in (first, last):
-                for line in range(first, last + 1) if edge in own else ():
+                for line in range(first, last + 1) if edge in comments_of_line else ():
                     if line != edge:
-                        self._of_line.setdefault(line, []).extend(own[edge])
+                        self._of_line.setdefault(line, []).extend(comments_of_line[edge])
 
     def __call__(self, diagnostic: Diagnostic) -> bool:
         if is_lasting(diagnostic):
@@ -143,22 +147,22 @@ def _statements(tokens: Tokens) -> list[tuple[int, int]]:
 
     Specifiers that go on after a comma in an indented block belong to the line that they begin on.
     """
-    found: list[tuple[int, int]] = []
+    ranges: list[tuple[int, int]] = []
     first: int | None = None
-    continued = False
+    is_continued = False
     kinds = tokens.kinds
     for index, (kind, line) in enumerate(zip(kinds, tokens.lines, strict=True)):
         if kind == NEWLINE:
             if index and tokens.texts[index - 1] == "," and kinds[index + 1] != DEDENT:
-                continued = continued or kinds[index + 1] == INDENT
-                if continued:
+                is_continued = is_continued or kinds[index + 1] == INDENT
+                if is_continued:
                     continue
             if first is not None and line > first:
-                found.append((first, line))
-            first, continued = None, False
+                ranges.append((first, line))
+            first, is_continued = None, False
         elif first is None and kind not in (INDENT, DEDENT, ENDMARKER):
             first = line
-    return found
+    return ranges
 
 
 def _comments(tokens: Tokens, source: Source) -> Iterator[_Comment]:
@@ -209,11 +213,11 @@ class _Written:
 def _comment(written: _Written, *, before_program: bool) -> _Comment | None:
     match, word = written.match, written.match["word"]
     if word not in _WORDS:
-        meant = nearest(word, _WORDS) or (word.lower() if word.lower() in _WORDS else None)
-        if meant is None:
+        keyword = nearest(word, _WORDS) or (word.lower() if word.lower() in _WORDS else None)
+        if keyword is None:
             return None
-        edit = Edit(written.span(match.start("word"), match.end("word")), meant)
-        problem = written.bad(f"`{word}` silences nothing", f"did you mean `{meant}`?", edit)
+        edit = Edit(written.span(match.start("word"), match.end("word")), keyword)
+        problem = written.bad(f"`{word}` silences nothing", f"did you mean `{keyword}`?", edit)
         return _Comment(written.whole, False, problem=problem)
     comment = _Comment(written.whole, word == "ignore-file")
     if match["codes"] is None:
@@ -262,10 +266,16 @@ def _bad(comment: _Comment, source: Source) -> Iterator[Diagnostic]:
         yield comment.problem
     for code in comment.codes:
         if not is_selector(code.text):
-            meant = similar_selector(code.text)
-            advice = "`scenic explain` lists all codes" if meant is None else f"did you mean `{meant}`?"
-            certain = meant is not None and meant.endswith(code.text.upper())
-            fix = None if meant is None or not certain else Fix(f"Write `{meant}`", (Edit(code.span, meant),))
+            suggestion = similar_selector(code.text)
+            advice = (
+                "`scenic explain` lists all codes" if suggestion is None else f"did you mean `{suggestion}`?"
+            )
+            certain = suggestion is not None and suggestion.endswith(code.text.upper())
+            fix = (
+                None
+                if suggestion is None or not certain
+                else Fix(f"Write `{suggestion}`", (Edit(code.span, suggestion),))
+            )
             yield Diagnostic(
                 BAD,
                 f"there is no code `{code.text}`",
@@ -304,8 +314,8 @@ def _unused(comment: _Comment, source: Source, concerns: Callable[[str], bool]) 
             _removal(comment, source),
         )
         return
-    kept = ", ".join(code.text for code in comment.codes if code not in useless)
-    fix = Fix(f"Remove {names}", (Edit(comment.brackets, kept),))
+    useful_codes = ", ".join(code.text for code in comment.codes if code not in useless)
+    fix = Fix(f"Remove {names}", (Edit(comment.brackets, useful_codes),))
     yield _in_vain(
         f"this comment ignores {names}, but there is nothing to ignore", useless[0].span, source, fix
     )

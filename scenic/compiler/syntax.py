@@ -206,15 +206,15 @@ def _within(row: Row) -> Iterator[Item]:
 
 def reached_from(*rules: str) -> frozenset[str]:
     """The rules that these need, themselves included; those that do not exist are left out."""
-    found: set[str] = set()
+    reached_rules: set[str] = set()
     stack = [rule for rule in rules if rule in RULES]
     while stack:
         rule = stack.pop()
-        if rule not in found:
-            found.add(rule)
+        if rule not in reached_rules:
+            reached_rules.add(rule)
             for alternative in RULES[rule].alternatives:
                 stack += [item.rule for item in _within(alternative.row) if isinstance(item, Reference)]
-    return frozenset(found)
+    return frozenset(reached_rules)
 
 
 def words_in(rules: Iterable[str]) -> frozenset[str]:
@@ -234,16 +234,16 @@ def words_of(row: Row) -> Iterator[str]:
 
 def first_words(row: Row) -> frozenset[str]:
     """The keywords and operators that a row can begin with, as such and not as names."""
-    found: set[str] = set()
-    seen: set[str] = set()
+    words: set[str] = set()
+    rules: set[str] = set()
     stack = [row]
     while stack:
         for item in stack.pop():
             match item:
                 case Word():
-                    found.add(item.text)
-                case Reference() if item.rule not in seen:
-                    seen.add(item.rule)
+                    words.add(item.text)
+                case Reference() if item.rule not in rules:
+                    rules.add(item.rule)
                     stack += [each.row for each in RULES[item.rule].alternatives]
                 case Optional() | Many() | ListOf():
                     stack.append(item.row)
@@ -253,7 +253,7 @@ def first_words(row: Row) -> frozenset[str]:
                     pass
             if not isinstance(item, Optional):
                 break
-    return frozenset(found)
+    return frozenset(words)
 
 
 _OPERANDS: Final = ("expression", "specifier", "temporal_expression", "case_pattern", "targets", "parameters")

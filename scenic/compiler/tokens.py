@@ -59,12 +59,12 @@ class Tokens:
             if content.isascii():
                 continue
             for lines, columns in ((self.lines, self.columns), (self.end_lines, self.end_columns)):
-                seen = count = 0
+                last_column = count = 0
                 for index in range(bisect_left(lines, number), bisect_right(lines, number)):
                     column = columns[index]
                     # The line end is one more than the characters of the line.
-                    count += len(content[seen:column].encode("utf-8", "surrogatepass"))
-                    seen = column
+                    count += len(content[last_column:column].encode("utf-8", "surrogatepass"))
+                    last_column = column
                     columns[index] = count + max(0, column - len(content))
 
 

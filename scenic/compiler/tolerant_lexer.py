@@ -168,8 +168,8 @@ class _TolerantLexer(Lexer):
     def start_line(self, pos: int) -> int:
         text = self.text
         while True:
-            found = lexemes.LINE_START.match(text, pos)
-            start = found.start(1) if found else pos
+            match = lexemes.LINE_START.match(text, pos)
+            start = match.start(1) if match else pos
             marker = _CONFLICT.match(text, start)
             if marker is None:
                 return super().start_line(pos)
@@ -209,7 +209,7 @@ class _TolerantLexer(Lexer):
                 self.shifted = None
                 indents[-1] = (column, strict_column)
                 return
-            mixed = strict_column <= strict_top
+            is_ambiguous = strict_column <= strict_top
             indents.append((column, strict_column))
             if self.block_begins(end):
                 if self.tokens.kinds[-2] == _COMMA:
@@ -217,7 +217,7 @@ class _TolerantLexer(Lexer):
                 self.add(INDENT, self.line_start, end)
             else:
                 self.phantoms.add(len(indents))
-                if not mixed:
+                if not is_ambiguous:
                     self.report(lexical_errors.unexpected_indent(self.here(self.line_start, end)))
         else:
             while column < indents[-1][0]:
@@ -237,9 +237,9 @@ class _TolerantLexer(Lexer):
                 if column > indents[-1][0]:
                     self.shifted = None
                     indents[-1] = (column, strict_column)
-            mixed = strict_column != indents[-1][1]
+            is_ambiguous = strict_column != indents[-1][1]
             indents[-1] = (column, strict_column)
-        if mixed:
+        if is_ambiguous:
             self.report(lexical_errors.mixed_indentation(self.here(self.line_start, end)))
 
     def close_level(self, end: int) -> None:
@@ -360,20 +360,20 @@ class _TolerantLexer(Lexer):
         self.report(lexical_errors.wrong_closer(closer, span, innermost.opener, innermost.span))
         # It may stand for the closer that is wanted, close a bracket further out, or be one too many. The brackets that
         # come on the same line tell.
-        wanted = self.wanted_closers()
-        choices = [wanted[1:], wanted]
-        if closer in wanted:
-            choices.insert(0, wanted[wanted.index(closer) + 1 :])
+        missing_closers = self.wanted_closers()
+        choices = [missing_closers[1:], missing_closers]
+        if closer in missing_closers:
+            choices.insert(0, missing_closers[missing_closers.index(closer) + 1 :])
         rest = self.closers(start + 1)
         likely = [rest]
         if self.text[self.line_start : start].strip():
             # At the end of the line, what was open at its beginning should be open.
             opened_here = sum(bracket.line == self.line for bracket in brackets[-_MOST_BRACKETS_COMPARED:])
-            likely.insert(0, rest + wanted[opened_here:])
+            likely.insert(0, rest + missing_closers[opened_here:])
         matching = [each for left in likely for each in choices if each == left]
         matching += [each for each in choices if each.startswith(rest)]
         best = (matching or choices)[0]
-        del brackets[len(brackets) - (len(wanted) - len(best)) :]
+        del brackets[len(brackets) - (len(missing_closers) - len(best)) :]
         return start + 1
 
     def wanted_closers(self) -> str:
@@ -387,17 +387,17 @@ class _TolerantLexer(Lexer):
         end = text.find("\n", pos, farthest)
         if end < 0:
             end = farthest
-        opened: list[str] = []
+        open_brackets: list[str] = []
         closing = []
-        for found in _MARKS.finditer(text, pos, end):
-            marks = [found[1]] if found[1] else [each for each in found[0] if in_text and each in "()[]{}"]
-            if found[0] == "#":
+        for match in _MARKS.finditer(text, pos, end):
+            marks = [match[1]] if match[1] else [each for each in match[0] if in_text and each in "()[]{}"]
+            if match[0] == "#":
                 break
             for mark in marks:
                 if mark in lexical_errors.CLOSER_OF:
-                    opened.append(mark)
-                elif opened:
-                    opened.pop()
+                    open_brackets.append(mark)
+                elif open_brackets:
+                    open_brackets.pop()
                 else:
                     closing.append(mark)
         return "".join(closing)
@@ -451,8 +451,8 @@ class _TolerantLexer(Lexer):
         column = self.indents[-1][0]
         line_end = text.index("\n", end)
         while line_end + 1 < len(text):
-            found = lexemes.LINE_START.match(text, line_end + 1)
-            first = found.end() if found else line_end + 1
+            match = lexemes.LINE_START.match(text, line_end + 1)
+            first = match.end() if match else line_end + 1
             line_start = text.rfind("\n", line_end, first) + 1
             if first < len(text):
                 if measure(text[line_start:first])[0] <= column and self.is_code_again(line_start, first):

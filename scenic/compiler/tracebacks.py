@@ -51,14 +51,14 @@ class Locator:
 
     def place(self, where: TracebackType | FrameType, instruction: int | None = None) -> TracedPlace | None:
         """Locate a frame of generated code, as `locate` does, at an earlier ``instruction``."""
-        found = (
+        frame_place = (
             _innermost(where)
             if instruction is None or not isinstance(where, FrameType)
             else (where, instruction)
         )
-        if found is None:
+        if frame_place is None:
             return None
-        frame, instruction = found
+        frame, instruction = frame_place
         key = (id(frame.f_code), instruction)
         if key not in self._places:
             place = self._places[key] = _place(frame, self._position(frame.f_code, instruction))
@@ -84,10 +84,10 @@ class Locator:
 
         The text of the line without its comment, and the column in it.
         """
-        found = _innermost(where)
-        if found is None:
+        frame_place = _innermost(where)
+        if frame_place is None:
             return None
-        frame, instruction = found
+        frame, instruction = frame_place
         key = (id(frame.f_code), instruction)
         name = self._names.get(key)
         if name is None:
@@ -120,10 +120,10 @@ def locate(where: TracebackType | FrameType) -> TracedPlace | None:
     It is that of the innermost frame of generated code: of the callers of a frame, it itself included; of the frames
     of a traceback. ``None`` if there is no such frame, or Python was told to keep no positions.
     """
-    found = _innermost(where)
-    if found is None:
+    frame_place = _innermost(where)
+    if frame_place is None:
         return None
-    frame, instruction = found
+    frame, instruction = frame_place
     position = next(islice(frame.f_code.co_positions(), max(0, instruction // 2), None), None)
     return _place(frame, position)
 
@@ -136,13 +136,13 @@ def _innermost(where: TracebackType | FrameType) -> tuple[FrameType, int] | None
                 return frame, frame.f_lasti
             frame = frame.f_back
         return None
-    found = None
+    frame_place = None
     step: TracebackType | None = where
     while step is not None:
         if PRELUDE in step.tb_frame.f_globals:
-            found = step.tb_frame, step.tb_lasti
+            frame_place = step.tb_frame, step.tb_lasti
         step = step.tb_next
-    return found
+    return frame_place
 
 
 def _place(frame: FrameType, position: _Positions | None) -> TracedPlace | None:
@@ -202,15 +202,15 @@ def _user_frames(step: TracebackType | None) -> Iterator[traceback.FrameSummary]
             position = next(islice(frame.f_code.co_positions(), max(0, step.tb_lasti // 2), None), None)
             line, end_line, column, end_column = position or (step.tb_lineno, None, None, None)
             first = step.tb_lineno if line is None else line
-            shown = _lines(frame, first, first if end_line is None else end_line)
-            if shown is None:
+            quotation = _lines(frame, first, first if end_line is None else end_line)
+            if quotation is None:
                 end_line = end_column = None
             yield traceback.FrameSummary(
                 frame.f_code.co_filename,
                 first,
                 frame.f_code.co_name,
                 lookup_line=False,
-                line=_line(frame, first).rstrip() if shown is None else shown,
+                line=_line(frame, first).rstrip() if quotation is None else quotation,
                 end_lineno=end_line,
                 colno=column,
                 end_colno=end_column,

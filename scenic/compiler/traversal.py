@@ -49,15 +49,15 @@ FIELDS: Final[dict[object, tuple[str, ...]]] = {
 
 def parts(node: ast.AST) -> list[ast.AST]:
     """The nodes directly in a node, in order; no contexts and no operators of Python's."""
-    found: list[ast.AST] = []
+    nodes: list[ast.AST] = []
     values = node.__dict__
     for field in FIELDS[node.__class__]:
         value = values.get(field)
         if value.__class__ is list:
-            found.extend([part for part in value if isinstance(part, ast.AST)])
+            nodes.extend([part for part in value if isinstance(part, ast.AST)])
         elif isinstance(value, ast.AST):
-            found.append(value)
-    return found
+            nodes.append(value)
+    return nodes
 
 
 def walk(node: ast.AST) -> Iterator[ast.AST]:

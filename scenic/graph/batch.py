@@ -108,14 +108,14 @@ class Batch:
 
     def keep(self, lanes: NDArray[Any]) -> None:
         """Go on with these lanes only: a mask ``(n,)`` or ascending indices."""
-        chosen = np.flatnonzero(lanes) if lanes.dtype == np.bool_ else lanes
-        if len(chosen) == len(self.rows):
+        indices = np.flatnonzero(lanes) if lanes.dtype == np.bool_ else lanes
+        if len(indices) == len(self.rows):
             return
-        self.rows = self.rows[chosen]
-        self._source = self._source.take(chosen)
+        self.rows = self.rows[indices]
+        self._source = self._source.take(indices)
         if self._boxes is not None:
-            self._boxes = self._boxes[:, chosen]
-        self._kept.append(chosen)
+            self._boxes = self._boxes[:, indices]
+        self._kept.append(indices)
         self._generation += 1
         self._values.clear()
         self._tuples.clear()
@@ -135,15 +135,15 @@ class Batch:
 
     def need(self, nodes: Iterable[Node]) -> None:
         """Evaluate ``nodes`` together; what is there already is not evaluated again."""
-        wanted = tuple(nodes)
+        roots = tuple(nodes)
         if self._schedule.unused or self._is_settled:
             # Columns may be gone. What a chain does not foresee is evaluated from the start: nobody asks for it in every batch.
-            if all(node.is_constant or self._is_there(node) for node in wanted):
+            if all(node.is_constant or self._is_there(node) for node in roots):
                 return
             self._groups.clear()
             self._schedule = self._scheduler.start
             self._is_settled = False
-        self._do(self._scheduler.after(self._schedule, wanted))
+        self._do(self._scheduler.after(self._schedule, roots))
 
     def follow(self, schedule: Schedule, nodes: Sequence[Node]) -> None:
         """Evaluate ``nodes`` by the next schedule of a chain (`Scheduler.chain`), which frees what nobody needs any more."""
@@ -155,13 +155,13 @@ class Batch:
     def _do(self, schedule: Schedule) -> None:
         self._schedule = schedule
         groups = self._groups
-        unused = iter(schedule.unused)
-        for slot in next(unused, ()):
+        drops = iter(schedule.unused)
+        for slot in next(drops, ()):
             del groups[slot]
         if schedule.steps:
             with np.errstate(all="ignore"):
                 for step in schedule.steps:
-                    begun = 0.0 if self._meter is None else time.thread_time()
+                    start_time = 0.0 if self._meter is None else time.thread_time()
                     if isinstance(step, Draw):
                         group = self._draw(step)
                     elif isinstance(step, ChosenDraw):
@@ -170,8 +170,8 @@ class Batch:
                         group = self._evaluate(step)
                     groups[step.slot] = group
                     if self._meter is not None:
-                        self._meter(step, len(self.rows), time.thread_time() - begun)
-                    for slot in next(unused, ()):
+                        self._meter(step, len(self.rows), time.thread_time() - start_time)
+                    for slot in next(drops, ()):
                         del groups[slot]
 
     def _is_there(self, node: Node) -> bool:
@@ -222,8 +222,8 @@ class Batch:
 
     def tuples(self, nodes: tuple[Node, ...]) -> list[tuple[Any, ...]]:
         """The values of several nodes lane by lane, the objects that `read` gives; one row where all lanes agree."""
-        known = self._tuples.get(id(nodes))
-        if known is None:
+        entry = self._tuples.get(id(nodes))
+        if entry is None:
             columns = self.lists(nodes)
             count = max(map(len, columns))
             rows = list(
@@ -232,8 +232,8 @@ class Batch:
                     strict=True,
                 )
             )
-            known = self._tuples[id(nodes)] = (nodes, rows)
-        return known[1]
+            entry = self._tuples[id(nodes)] = (nodes, rows)
+        return entry[1]
 
     def lists(self, nodes: Sequence[Node]) -> list[list[Any]]:
         """The values of several nodes, lane by lane, the objects that `read` gives; one where all lanes agree."""
@@ -368,11 +368,11 @@ class Batch:
             result[member] = column
         if all(status is None for status in statuses):
             return result, None
-        combined = np.zeros((len(columns), len(self.rows)), dtype=np.int8)
+        status_rows = np.zeros((len(columns), len(self.rows)), dtype=np.int8)
         for member, status in enumerate(statuses):
             if status is not None:
-                combined[member] = status
-        return result, combined
+                status_rows[member] = status
+        return result, status_rows
 
     def _error(self, step: Step, call: Call) -> Exception | None:
         """Return the error of a step in a batch of one lane: the first faulty operand's, as Python evaluates from the left."""
@@ -393,16 +393,16 @@ class Batch:
         lanes = 1 if bad is None and all(len(column) == 1 for column in columns) else call.lanes
         decode, encode = self._codec.decode, self._codec.encode
         rows: list[Any] = []
-        failed = np.zeros(lanes, dtype=np.bool_)
-        rejected = np.zeros(lanes, dtype=np.bool_)
+        faulty_lanes = np.zeros(lanes, dtype=np.bool_)
+        rejections = np.zeros(lanes, dtype=np.bool_)
         error: Exception | None = None
         blank = _blank(step.kind)
         plain = [decode(kind, column) for kind, column in zip(call.kinds, columns, strict=True)]
         if bad is None and step.kind.is_boxed and step.operation.together is not None:
             spread = (items if len(items) == lanes else items * lanes for items in plain)
-            found = step.operation.together(*spread)
-            if found is not None:
-                return boxed(found)
+            outputs = step.operation.together(*spread)
+            if outputs is not None:
+                return boxed(outputs)
         for lane in range(lanes):
             if bad is not None and bad[lane] != OK:
                 rows.append(blank)
@@ -412,14 +412,14 @@ class Batch:
                 rows.append(encode(step.kind, function(*values)))
             except self._rejections:
                 rows.append(blank)
-                rejected[lane] = True
+                rejections[lane] = True
             except Exception as problem:  # noqa: BLE001 - whatever the program's own values raise is that lane's fault
                 rows.append(blank)
-                failed[lane] = True
+                faulty_lanes[lane] = True
                 error = problem if error is None else error
         if error is not None:
-            call.fault(failed, error)
-        call.reject(rejected)
+            call.fault(faulty_lanes, error)
+        call.reject(rejections)
         if step.kind.is_boxed:
             return boxed(rows)
         return np.asarray(rows, dtype=step.kind.dtype).reshape(lanes, *step.kind.trailing)

@@ -77,33 +77,34 @@ def overall(node: Node) -> Bounds | None:
     Visits a bounded number of nodes below, and none below those whose bounds are known already. They are kept with the node.
     """
     if node.bounds is not UNREAD:
-        found: Bounds | None = node.bounds
-        return found
-    known: dict[Node, Bounds | None] = {}
+        bounds: Bounds | None = node.bounds
+        return bounds
+    bounds_of: dict[Node, Bounds | None] = {}
     visits = 0
     stack = [node]
     while stack:
         current = stack[-1]
-        if current in known:
+        if current in bounds_of:
             stack.pop()
             continue
         leaf = _leaf(current) if current.bounds is UNREAD else current.bounds
         if leaf is not None:
-            known[current] = leaf
+            bounds_of[current] = leaf
             stack.pop()
             continue
-        missing = [operand for operand in current.operands if operand not in known]
+        missing = [operand for operand in current.operands if operand not in bounds_of]
         if missing and visits < _VISITS:
             visits += len(missing)
             stack.extend(missing)
             continue
         operands = [
-            known[operand] if operand in known else of_kind(operand.kind) for operand in current.operands
+            bounds_of[operand] if operand in bounds_of else of_kind(operand.kind)
+            for operand in current.operands
         ]
-        known[current] = forward(current, operands)
+        bounds_of[current] = forward(current, operands)
         stack.pop()
-    node.keep_bounds(known[node])
-    return known[node]
+    node.keep_bounds(bounds_of[node])
+    return bounds_of[node]
 
 
 def over(

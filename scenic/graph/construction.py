@@ -22,17 +22,17 @@ def make_node(
         if simpler is not None:
             return simpler  # type: ignore[no-any-return] # rules cannot name the type of nodes
     kind = operation.kind(operands, payload)
-    known, key = _equal_nodes(operation, operands, payload, kind)
-    if known is not None:
-        node = known.get(key)
+    equal_nodes, key = _equal_nodes(operation, operands, payload, kind)
+    if equal_nodes is not None:
+        node = equal_nodes.get(key)
         if node is not None:
             return node
     limits = None
     if kind is Kind.INTEGER:
         limits = limits_of(read(operation, kind, payload, [overall(operand) for operand in operands]))
     node = Node(operation, tuple(operands), kind, payload, span, limits)
-    if known is not None:
-        known[key] = node
+    if equal_nodes is not None:
+        equal_nodes[key] = node
     return node
 
 

@@ -46,13 +46,13 @@ class Domain:
             raise ValueError(f"not boxes: corners of shapes {self.lower.shape} and {self.upper.shape}")
         if not ((self.lower >= 0) & (self.lower < self.upper) & (self.upper <= 1)).all():
             raise ValueError("a box of the cube must have volume and lie within it")
-        narrowed = np.stack([((part.lower > 0) | (part.upper < 1)).any(axis=0) for part in self.parts])
-        times = narrowed.sum(axis=0)
+        narrow_axes = np.stack([((part.lower > 0) | (part.upper < 1)).any(axis=0) for part in self.parts])
+        times = narrow_axes.sum(axis=0)
         for one in self.finite:
             times[one.axes] += 1
         if (times > 1).any():
             raise ValueError("two factors narrow one axis")
-        object.__setattr__(self, "_narrowed", narrowed)
+        object.__setattr__(self, "_narrowed", narrow_axes)
         cells: dict[int, tuple[int, Floats, Floats]] = {}
         for one in self.finite:
             for axis, lower, upper in zip(one.axes.tolist(), one.lower, one.upper, strict=True):
@@ -138,8 +138,8 @@ class Domain:
             return lower, upper
 
         first, *others = (part(one) for one in self.parts)
-        kept = tuple(one for one in self.finite if not axes[one.axes].any())
-        return Domain(*first, tuple(Domain(*corners) for corners in others), kept)
+        finite_parts = tuple(one for one in self.finite if not axes[one.axes].any())
+        return Domain(*first, tuple(Domain(*corners) for corners in others), finite_parts)
 
     def narrowing(self) -> list[list[int]]:
         """Of each axis the numbers of the parts that narrow it; finite parts are numbered after all others."""
@@ -158,21 +158,21 @@ class Domain:
             That domain, and for the addresses by which it chooses boxes those by which this one does.
 
         """
-        chosen = np.zeros(self.dimension, dtype=np.bool_)
-        chosen[axes] = True
+        is_wanted = np.zeros(self.dimension, dtype=np.bool_)
+        is_wanted[axes] = True
         places, corners = [], []
         for number, part in enumerate(self.parts):
-            if (self._narrowed[number] & chosen).any():
+            if (self._narrowed[number] & is_wanted).any():
                 places.append(number)
-                corners.append((np.where(chosen, part.lower, 0.0), np.where(chosen, part.upper, 1.0)))
-        finite = tuple(one for one in self.finite if chosen[one.axes].any())
+                corners.append((np.where(is_wanted, part.lower, 0.0), np.where(is_wanted, part.upper, 1.0)))
+        finite = tuple(one for one in self.finite if is_wanted[one.axes].any())
         first, *others = corners or [(np.zeros((1, self.dimension)), np.ones((1, self.dimension)))]
         result = Domain(*first, tuple(Domain(*each) for each in others), finite)
-        own = box_addresses(len(self.parts)).tolist()
-        renamed = dict(
-            zip(box_addresses(len(places)).tolist(), (own[place] for place in places), strict=False)
+        addresses = box_addresses(len(self.parts)).tolist()
+        new_addresses = dict(
+            zip(box_addresses(len(places)).tolist(), (addresses[place] for place in places), strict=False)
         )
-        return result, renamed
+        return result, new_addresses
 
     def with_finite(self, finite: tuple[Finite, ...]) -> "Domain":
         """The domain in which the axes of finite parts are chosen by these."""
@@ -193,12 +193,12 @@ class Domain:
 
         """
         count = len(self.parts)
-        chosen = np.stack(
+        boxes = np.stack(
             [part._choose(numbers) for part, numbers in zip(self.parts, draws[:count], strict=True)]
         )
         if not self.finite:
-            return chosen
-        rows, start = [chosen], count
+            return boxes
+        rows, start = [boxes], count
         for one in self.finite:
             rows.append(one.law.choose(draws[start : start + len(one.addresses)]))
             start += len(one.addresses)
@@ -219,8 +219,8 @@ class Domain:
             points = self._place(numbers, axes, chosen[0])
         else:
             points = numbers.copy()
-            for part, narrowed, boxes in zip(self.parts, self._narrowed, chosen, strict=False):
-                mine = np.flatnonzero(narrowed[axes])
+            for part, narrow_axes, boxes in zip(self.parts, self._narrowed, chosen, strict=False):
+                mine = np.flatnonzero(narrow_axes[axes])
                 if len(mine):
                     points[mine] = part._place(numbers[mine], axes[mine], boxes)
         if self._cells:

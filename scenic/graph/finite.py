@@ -123,20 +123,20 @@ class Distinct:
         return len(self.labels)
 
     def choose(self, draws: Floats) -> Cells:
-        used = np.zeros(draws.shape[1], dtype=np.int64)
+        used_labels = np.zeros(draws.shape[1], dtype=np.int64)
         result = np.empty((len(self.labels), draws.shape[1]), dtype=np.intp)
         for place, (labels, weights, numbers) in enumerate(
             zip(self.labels, self.weights, draws, strict=True)
         ):
             bits = np.int64(1) << labels.astype(np.int64)
-            free = (used[:, np.newaxis] & bits) == 0
-            after = self.completions[used[:, np.newaxis] | bits]
+            free = (used_labels[:, np.newaxis] & bits) == 0
+            after = self.completions[used_labels[:, np.newaxis] | bits]
             cumulative = np.cumsum(np.where(free, weights * after, 0.0), axis=1)
             limit = numbers * cumulative[:, -1]
             # The first value whose sum exceeds the limit: never one of weight zero.
-            found = np.minimum((cumulative <= limit[:, np.newaxis]).sum(axis=1), len(labels) - 1)
-            result[place] = found
-            used |= bits[found]
+            label = np.minimum((cumulative <= limit[:, np.newaxis]).sum(axis=1), len(labels) - 1)
+            result[place] = label
+            used_labels |= bits[label]
         return result
 
     def arrays(self) -> Sequence[NDArray[np.generic]]:
@@ -203,12 +203,12 @@ class BoundedDistinct:
             common = (after - before).sum(axis=0) + spare * (nobody - _log_bound(left))
             shares = np.where(waiting, entries[:, label, np.newaxis] * np.exp(common - after), 0.0)
             cumulative = np.cumsum(np.vstack([shares, spare * np.exp(common - nobody)]), axis=0)
-            chosen = (cumulative <= draws[label]).sum(axis=0)
-            going &= chosen < len(cumulative)
-            taken = np.flatnonzero(going & (chosen < len(entries)))
-            waiting[chosen[taken], taken] = False
-            spare -= going & (chosen == len(entries))
-            self._place(result, label, chosen, taken, draws[label], cumulative)
+            entry_numbers = (cumulative <= draws[label]).sum(axis=0)
+            going &= entry_numbers < len(cumulative)
+            lanes = np.flatnonzero(going & (entry_numbers < len(entries)))
+            waiting[entry_numbers[lanes], lanes] = False
+            spare -= going & (entry_numbers == len(entries))
+            self._place(result, label, entry_numbers, lanes, draws[label], cumulative)
             sums = rest
         result[:, ~going] = self.clash[:, np.newaxis]
         return result
@@ -247,8 +247,8 @@ def _search(cumulative: Floats, row: Cells, numbers: Floats) -> Cells:
     if count == 1:
         return np.zeros(len(row), dtype=np.intp)
     if len(cumulative) == 1:
-        found = np.searchsorted(cumulative[0], numbers, side="right")
-        return np.asarray(np.minimum(found, count - 1))
+        places = np.searchsorted(cumulative[0], numbers, side="right")
+        return np.asarray(np.minimum(places, count - 1))
     low, high = np.zeros(len(row), dtype=np.intp), np.full(len(row), count - 1, dtype=np.intp)
     while (low < high).any():
         middle = (low + high) // 2

@@ -179,9 +179,11 @@ def power(a: Bounds, b: Bounds) -> Bounds:
     lower = np.where(even & straddles & (b.lower > 0), np.minimum(lower, 0.0), lower)
     # The C library's power is accurate to about one unit in the last place.
     result = outward(lower - 4 * EPSILON * np.abs(lower), upper + 4 * EPSILON * np.abs(upper))
-    known = np.where(whole, ~(straddles & (b.lower < 0)), (a.lower > 0) | ((a.lower >= 0) & (b.lower > 0)))
+    is_bounded = np.where(
+        whole, ~(straddles & (b.lower < 0)), (a.lower > 0) | ((a.lower >= 0) & (b.lower > 0))
+    )
     return doubtful(
-        Bounds(np.where(known, result.lower, -np.inf), np.where(known, result.upper, np.inf)), a, b
+        Bounds(np.where(is_bounded, result.lower, -np.inf), np.where(is_bounded, result.upper, np.inf)), a, b
     )
 
 

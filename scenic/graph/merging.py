@@ -40,14 +40,14 @@ class Merger:
         """A node of the same value that takes less to evaluate; ``node`` itself where there is none."""
         if node.operation is not SELECT or node.kind.is_boxed or len(node.operands) <= _LEAST:
             return node
-        found = self._merged.get(node)
-        if found is None:
+        replacement = self._merged.get(node)
+        if replacement is None:
             index, *options = node.operands
-            merged = _Choice(index).among(options, _DEEPEST)
-            found = self._merged[node] = (
-                merged if merged.kind is node.kind and not merged.is_constant else node
+            choice = _Choice(index).among(options, _DEEPEST)
+            replacement = self._merged[node] = (
+                choice if choice.kind is node.kind and not choice.is_constant else node
             )
-        return found
+        return replacement
 
 
 class _Choice:
@@ -77,8 +77,8 @@ class _Choice:
                 return self._plain(options)
             rows = zip(*(option.operands for option in options), strict=True)
             operands = [self.among(row, depth - 1) for row in rows]
-            made = make_node(first.operation, operands, first.payload)
-            return made if made.kind is first.kind else self._plain(options)
+            node = make_node(first.operation, operands, first.payload)
+            return node if node.kind is first.kind else self._plain(options)
         if len(classes) * _LEAST > len(options):
             return self._plain(options)
         number, position = np.zeros((2, len(options)), dtype=np.int64)

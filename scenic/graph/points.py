@@ -84,8 +84,8 @@ class Sobol:
 
     def _numbers(self, dimensions: NDArray[np.intp], lanes: Lanes) -> Floats:
         """The numbers of dimensions ``(m, n)``."""
-        known = dimensions < _DIMENSIONS
-        dimensions = np.where(known, dimensions, 0)
+        has_directions = dimensions < _DIMENSIONS
+        dimensions = np.where(has_directions, dimensions, 0)
         rows = lanes.scenes.astype(np.uint64)
         places = rows & np.uint64((1 << _BITS) - 1)
         gray = places ^ (places >> np.uint64(1))
@@ -93,10 +93,10 @@ class Sobol:
         directions = self._directions_of(int(dimensions.max(initial=0)) + 1, bits)
         points = np.zeros(dimensions.shape, dtype=np.uint64)
         for bit in range(bits):
-            used = (gray >> np.uint64(bit)) & np.uint64(1)
-            points ^= directions[bit][dimensions] * used
+            bit_mask = (gray >> np.uint64(bit)) & np.uint64(1)
+            points ^= directions[bit][dimensions] * bit_mask
         keys = mix(mix(lanes.seeds ^ (rows >> np.uint64(_BITS))) + mix(dimensions.astype(np.uint64)))
-        return np.where(known, open_unit(_scrambled(points, keys)), np.nan)
+        return np.where(has_directions, open_unit(_scrambled(points, keys)), np.nan)
 
     def _directions_of(self, dimensions: int, bits: int) -> Words:
         """Direction numbers ``(bits, dimensions)``: what row 2**bit - 1 and row 2**bit differ by."""
@@ -112,10 +112,10 @@ def _directions(dimensions: int, bits: int) -> Words:
 
     sequence: Any = qmc.Sobol(dimensions, scramble=False, bits=_BITS)
     result = np.zeros((bits, dimensions), dtype=np.uint64)
-    made = 0
+    count = 0
     for bit in range(bits):
-        sequence.fast_forward((1 << bit) - made)
-        made = (1 << bit) + 1
+        sequence.fast_forward((1 << bit) - count)
+        count = (1 << bit) + 1
         # Rows are in the order of Gray's code: row 2**bit - 1 is the direction before, row 2**bit that and the next.
         row = (sequence.random(1)[0] * (1 << _BITS)).astype(np.uint64)
         result[bit] = row ^ (result[bit - 1] if bit else np.uint64(0))
@@ -129,9 +129,9 @@ def _scrambled(points: Words, keys: Words) -> Words:
     for some in np.array_split(levels, max(1, min(_BITS, points.size * _BITS // _CHUNK))):
         level = some[:, np.newaxis, np.newaxis]
         before = (points >> (np.uint64(_BITS) - level)) | (one << level)
-        turned = mix(keys ^ mix(before)) >> np.uint64(63)
+        flips = mix(keys ^ mix(before)) >> np.uint64(63)
         digit = (points >> (np.uint64(_BITS - 1) - level)) & one
-        word |= np.bitwise_or.reduce((digit ^ turned) << (np.uint64(63) - level), axis=0)
+        word |= np.bitwise_or.reduce((digit ^ flips) << (np.uint64(63) - level), axis=0)
     # Below the last bit all is random.
     rest: Words = mix(keys ^ mix(points | np.uint64(1 << _BITS))) >> np.uint64(_BITS)
     return word | rest

@@ -181,12 +181,12 @@ def normal_angle(angle: float) -> float:
     if not math.isfinite(angle):
         return math.nan
     turns = math.ceil((angle - np.pi) / TAU) if angle > 0 else math.floor((angle + np.pi) / TAU)
-    moved = angle - TAU * turns
-    if moved > np.pi:
-        moved -= TAU
-    elif moved < -np.pi:
-        moved += TAU
-    return min(max(moved, -np.pi), np.pi)
+    remainder = angle - TAU * turns
+    if remainder > np.pi:
+        remainder -= TAU
+    elif remainder < -np.pi:
+        remainder += TAU
+    return min(max(remainder, -np.pi), np.pi)
 
 
 def to_matrix(q: npt.ArrayLike) -> Array:
@@ -231,8 +231,8 @@ def from_axes(x: npt.ArrayLike, y: npt.ArrayLike, z: npt.ArrayLike) -> Array:
         result[..., component] = np.choose(largest, [products[row][component] for row in range(4)])
     i, j, k, w = result[..., 0], result[..., 1], result[..., 2], result[..., 3]
     norm = np.sqrt(i * i + j * j + k * k + w * w)
-    normalised: Array = result / norm[..., np.newaxis]
-    return normalised
+    units: Array = result / norm[..., np.newaxis]
+    return units
 
 
 def normalize_angle(a: npt.ArrayLike) -> Array:
@@ -243,10 +243,12 @@ def normalize_angle(a: npt.ArrayLike) -> Array:
     angle = _rows(a)
     with np.errstate(invalid="ignore"):
         turns = np.where(angle > 0, np.ceil((angle - np.pi) / TAU), np.floor((angle + np.pi) / TAU))
-        moved = angle - TAU * turns
+        remainder = angle - TAU * turns
     # Rounding in the number of turns can leave the result just outside; one more turn corrects it.
-    moved = np.where(moved > np.pi, moved - TAU, np.where(moved < -np.pi, moved + TAU, moved))
-    result: Array = np.where(np.abs(angle) <= np.pi, angle, np.clip(moved, -np.pi, np.pi))
+    remainder = np.where(
+        remainder > np.pi, remainder - TAU, np.where(remainder < -np.pi, remainder + TAU, remainder)
+    )
+    result: Array = np.where(np.abs(angle) <= np.pi, angle, np.clip(remainder, -np.pi, np.pi))
     return result
 
 

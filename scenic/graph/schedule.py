@@ -173,13 +173,13 @@ class Scheduler:
             last |= dict.fromkeys(
                 (places[node].slot for node in roots if not node.is_constant), (stage + 1, 0)
             )
-        unused: list[list[list[Slot]]] = [[[] for _ in range(len(mine) + 1)] for mine in steps]
+        drops_of_stage: list[list[list[Slot]]] = [[[] for _ in range(len(mine) + 1)] for mine in steps]
         for slot, (stage, number) in last.items():
             if stage < len(stages):
-                unused[stage][number].append(slot)
+                drops_of_stage[stage][number].append(slot)
         return tuple(
             Schedule(tuple(mine), places, tuple(map(tuple, drops)))
-            for mine, drops in zip(steps, unused, strict=True)
+            for mine, drops in zip(steps, drops_of_stage, strict=True)
         )
 
     def below(self, roots: Iterable[Node]) -> frozenset[Node]:
@@ -212,17 +212,17 @@ class Scheduler:
         levels: dict[Node, int] = {}
         groups: dict[tuple[int, Hashable], list[Node]] = {}
         for node in missing:
-            level = 1 + max((levels.get(needed, 0) for needed in self._needed(node)), default=-1)
+            level = 1 + max((levels.get(operand, 0) for operand in self._needed(node)), default=-1)
             levels[node] = level
             groups.setdefault((level, self._signature(node)), []).append(node)
         for (_, signature), members in sorted(groups.items(), key=lambda item: item[0][0]):
-            merged = self._merged(members[0])
+            replacement = self._merged(members[0])
             if signature in ("axis", "key"):
                 steps.append(self._draw(members, places, axes=signature == "axis"))
-            elif merged is not members[0]:
-                places[members[0]] = places[merged]
-            elif self._grouped and is_choice_of_draws(merged):
-                steps.append(self._chosen_draw(merged, places))
+            elif replacement is not members[0]:
+                places[members[0]] = places[replacement]
+            elif self._grouped and is_choice_of_draws(replacement):
+                steps.append(self._chosen_draw(replacement, places))
             else:
                 steps.append(self._step(members, places))
         return steps
@@ -249,10 +249,10 @@ class Scheduler:
             stack: list[tuple[Node, int]] = [(root, 0)]
             while stack:
                 node, position = stack.pop()
-                needed = self._needed(node)
-                if position < len(needed):
+                operands = self._needed(node)
+                if position < len(operands):
                     stack.append((node, position + 1))
-                    operand = needed[position]
+                    operand = operands[position]
                     if not operand.is_constant and operand not in there and operand not in result:
                         stack.append((operand, 0))
                 elif node not in result:
@@ -343,11 +343,11 @@ def _gather(operands: Sequence[Node], places: Mapping[Node, ColumnPlace]) -> Gat
             return Fixed(columns[0][np.newaxis])
         return Fixed(np.stack(columns))
     if not any(operand.is_constant for operand in operands):
-        found = [places[operand] for operand in operands]
-        run = _run(found)
+        operand_places = [places[operand] for operand in operands]
+        run = _run(operand_places)
         if run is not None:
             return run
-        return Gathered(tuple(found))
+        return Gathered(tuple(operand_places))
     return Gathered(
         tuple(operand.payload.column if operand.is_constant else places[operand] for operand in operands)
     )

@@ -58,8 +58,8 @@ class DefinitionActions(TargetActions):
             place = self.place_of_token(value) if isinstance(value, int) else place_of(value or key)
             if isinstance(key, ast.arg):
                 place = place_of(key)
-            starred = bare is not None or result.vararg is not None
-            disorder = _disorder(result, key, value, starred=starred)
+            has_star = bare is not None or result.vararg is not None
+            disorder = _disorder(result, key, value, starred=has_star)
             if disorder is not None:
                 self._misordered(place, *disorder)
                 return None
@@ -72,7 +72,7 @@ class DefinitionActions(TargetActions):
                     result.vararg = value
             elif key == "**":
                 result.kwarg = value
-            elif starred:
+            elif has_star:
                 result.kwonlyargs.append(key)
                 result.kw_defaults.append(value)
             else:

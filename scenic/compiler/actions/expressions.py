@@ -47,12 +47,12 @@ class ExpressionActions(CommonActions):
             return ([items[0][0]], [], items[0][0])
         positional: list[Any] = []
         keywords: list[Any] = []
-        unpacked = False
+        has_unpacking = False
         for item in items:
             kind = type(item)
             if kind is ast.keyword:
                 keywords.append(item)
-                unpacked = unpacked or item.arg is None
+                has_unpacking = has_unpacking or item.arg is None
             elif kind is tuple:
                 self.fail(
                     place_of(item[0]),
@@ -61,7 +61,7 @@ class ExpressionActions(CommonActions):
                     code="SC125",
                 )
                 return None
-            elif unpacked and kind is ast.Starred:
+            elif has_unpacking and kind is ast.Starred:
                 self.fail(
                     place_of(item),
                     "an argument with `*` cannot follow one with `**`",
@@ -70,7 +70,7 @@ class ExpressionActions(CommonActions):
                 )
                 return None
             elif keywords and kind is not ast.Starred:
-                after = "an argument with `**`" if unpacked else "a keyword argument"
+                after = "an argument with `**`" if has_unpacking else "a keyword argument"
                 self.fail(
                     place_of(item),
                     f"a positional argument cannot follow {after}",

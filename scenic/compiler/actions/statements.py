@@ -30,12 +30,12 @@ class StatementActions(DefinitionActions, ExpressionActions):
                 continue
             if beginning and statement.value is None and "stand before" in message:
                 # What stands before it is a guard that is being typed.
-                for half, begun in before:
-                    meant = next((guard for guard in tree.GUARDS if guard.startswith(begun)), word)
+                for half, prefix in before:
+                    guard_name = next((guard for guard in tree.GUARDS if guard.startswith(prefix)), word)
                     self._report(
                         place_of(half),
-                        f"`{begun}` is no guard without a condition, and only guards stand before `{word}`",
-                        help=f"write `{meant}: condition`",
+                        f"`{prefix}` is no guard without a condition, and only guards stand before `{word}`",
+                        help=f"write `{guard_name}: condition`",
                         code="SC132",
                     )
                 before = []
@@ -59,10 +59,8 @@ class StatementActions(DefinitionActions, ExpressionActions):
                 pass
             case tree.ErrorStatement():
                 line = self._tokens.text.split("\n")[statement.lineno - 1]
-                written = line.encode("utf-8", "surrogatepass")[statement.col_offset :].decode(
-                    errors="ignore"
-                )
-                word = written.partition(":")[0].strip()
+                text = line.encode("utf-8", "surrogatepass")[statement.col_offset :].decode(errors="ignore")
+                word = text.partition(":")[0].strip()
             case _:
                 return False
         return any(guard.startswith(word) for guard in tree.GUARDS)
@@ -131,9 +129,9 @@ class StatementActions(DefinitionActions, ExpressionActions):
 
     def distinct(self, items: Sequence[tree.ParamItem]) -> bool:
         """Report parameters that are set twice in one statement."""
-        seen: dict[str, tree.ParamItem] = {}
+        items_by_name: dict[str, tree.ParamItem] = {}
         for item in items:
-            first = seen.setdefault(item.name, item)
+            first = items_by_name.setdefault(item.name, item)
             if first is not item:
                 self._report(
                     place_of(item),

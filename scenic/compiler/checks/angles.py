@@ -64,21 +64,21 @@ def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diag
     if isinstance(function, ast.Name):
         if function.id not in NAMES or context.provided(function) is None:
             return
-        declared = NAMES[function.id]
-        if not declared.angles:
+        declaration = NAMES[function.id]
+        if not declaration.angles:
             return
-        angles, parameters = declared.angles, declared.parameters
+        angles, parameters = declaration.angles, declaration.parameters
     elif isinstance(function, ast.Attribute) and function.attr in ANGLE_METHODS:
         angles = parameters = ANGLE_METHODS[function.attr]
     else:
         return
     if any(isinstance(argument, ast.Starred) for argument in node.args):
         return
-    given = dict(zip(parameters, node.args, strict=False))
-    given.update((keyword.arg, keyword.value) for keyword in node.keywords if keyword.arg is not None)
+    arguments = dict(zip(parameters, node.args, strict=False))
+    arguments.update((keyword.arg, keyword.value) for keyword in node.keywords if keyword.arg is not None)
     for name in angles:
-        if name in given:
-            value = given[name]
+        if name in arguments:
+            value = arguments[name]
             yield from _found(
                 context,
                 value.body if isinstance(value, ast.Lambda) else value,
@@ -109,14 +109,14 @@ def _found(context: CheckContext, value: ast.expr | None, what: str) -> Iterator
     """Yield the warnings about a value that is used as an angle; ``what`` names the angle."""
     places = list(_degrees(value, context))
     if places:
-        written = context.text(places[0])
+        text = context.text(places[0])
         literal = context.constant(places[0]) if isinstance(places[0], ast.Name) else None
         yield context.warning(
             "SC302",
             f"{what} an angle in radians, and {_number(literal or places[0], context):g} is more than a full turn",
             places[0],
-            f"write `{written} deg` if degrees are meant"
-            if written
+            f"write `{text} deg` if degrees are meant"
+            if text
             else "write `deg` after it if degrees are meant",
             fix=context.insertion("Add `deg`", *((place, _deg_after(place, context)) for place in places)),
         )
@@ -170,7 +170,7 @@ def _number(value: ast.expr, context: CheckContext) -> float:
 
 
 def _largest(values: list[ast.expr]) -> float:
-    found = 0.0
+    size = 0.0
     for value in values:
         literal: Any = value.operand if isinstance(value, ast.UnaryOp) else value
         if (
@@ -178,8 +178,8 @@ def _largest(values: list[ast.expr]) -> float:
             and isinstance(literal.value, int | float)
             and not isinstance(literal.value, bool)
         ):
-            found = max(found, _size(literal.value))
-    return found
+            size = max(size, _size(literal.value))
+    return size
 
 
 def _size(value: float) -> float:

@@ -65,8 +65,8 @@ def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diag
             args = foreign.parameters or _parameters(foreign.definition)
             if args is not None:
                 title = f"the {kind_of(foreign.definition)} `{foreign.name}`"
-                found = _Callee(foreign.name, title, args, foreign.definition, foreign)
-                yield from _arguments(node, found, context)
+                foreign_callee = _Callee(foreign.name, title, args, foreign.definition, foreign)
+                yield from _arguments(node, foreign_callee, context)
         return
     callee = _known(node, context)
     if context.provided(node.func) in _CHOICES and not node.args:
@@ -105,12 +105,12 @@ class _Callee(NamedTuple):
 
 def _known(node: ast.Call, context: CheckContext) -> _Callee | None:
     """Return the callee of a call, if it is certain and defined by the program or by the language."""
-    provided = context.provided(node.func)
-    if provided is not None:
-        args = PROVIDED_PARAMETERS.get(provided)
+    builtin_name = context.provided(node.func)
+    if builtin_name is not None:
+        args = PROVIDED_PARAMETERS.get(builtin_name)
         if args is None:
             return None
-        return _Callee(provided, f"the {NAMES[provided].kind} `{provided}`", args)
+        return _Callee(builtin_name, f"the {NAMES[builtin_name].kind} `{builtin_name}`", args)
     definition: Any = context.definition(node.func)
     skip = 0
     if definition is None:
@@ -127,12 +127,12 @@ def _too_many(
     node: ast.Call, positional: Sequence[ast.arg], callee: _Callee, context: CheckContext
 ) -> Diagnostic:
     """More positional arguments than there are parameters."""
-    count, given = len(positional), len(node.args)
-    if count == 1 and positional[0].arg in _VECTORS and given in (2, 3) and not node.keywords:
+    count, given_count = len(positional), len(node.args)
+    if count == 1 and positional[0].arg in _VECTORS and given_count in (2, 3) and not node.keywords:
         return _one_vector(node, callee.title, positional[0].arg, callee, context)
     return context.error(
         "SC211",
-        f"{callee.title} takes {_count(count)}, and {given} {'is' if given == 1 else 'are'} given",
+        f"{callee.title} takes {_count(count)}, and {given_count} {'is' if given_count == 1 else 'are'} given",
         node.args[count],
         "leave out the rest, or give it by name" if callee.args.kwonlyargs else "leave out the rest",
         labels=callee.labels(context),
@@ -179,8 +179,8 @@ def _arguments(node: ast.Call, callee: _Callee, context: CheckContext) -> Iterat
     if not spread and args.vararg is None and len(node.args) > len(positional):
         yield _too_many(node, positional, callee, context)
         return
-    filled = {arg.arg for arg in positional[: 0 if spread else len(node.args)]}
-    problems = list(_keywords(node, by_name, filled, callee, context))
+    filled_names = {arg.arg for arg in positional[: 0 if spread else len(node.args)]}
+    problems = list(_keywords(node, by_name, filled_names, callee, context))
     yield from problems
     if isinstance(callee.definition, scenic.BehaviorDef) and not spread:
         yield from _apart(node, positional, callee, context)
@@ -188,7 +188,7 @@ def _arguments(node: ast.Call, callee: _Callee, context: CheckContext) -> Iterat
         yield from _no_numbers(node, callee, context)
     if problems or spread or spread_names:
         return
-    given_names = filled | {keyword.arg for keyword in node.keywords if keyword.arg in by_name}
+    given_names = filled_names | {keyword.arg for keyword in node.keywords if keyword.arg in by_name}
     missing = [name for name in callee.required if name not in given_names]
     if missing:
         yield context.error(
@@ -257,19 +257,19 @@ def _no_numbers(node: ast.Call, callee: _Callee, context: CheckContext) -> Itera
             strict=True,
         )
     )
-    given = dict(zip([each.arg for each in positional], node.args, strict=False))
-    given.update((each.arg, each.value) for each in node.keywords if each.arg is not None)
-    annotated = {
+    arguments = dict(zip([each.arg for each in positional], node.args, strict=False))
+    arguments.update((each.arg, each.value) for each in node.keywords if each.arg is not None)
+    numeric_names = {
         each.arg
         for each in positional
         if isinstance(each.annotation, ast.Name) and each.annotation.id in ("float", "int")
     }
-    for name, value in given.items():
+    for name, value in arguments.items():
         default = defaults.get(name)
         number = default.value if isinstance(default, ast.Constant) else None
         is_default = isinstance(number, int | float) and not isinstance(number, bool)
         is_default = is_default and isinstance(callee.definition, scenic.BehaviorDef)
-        if not is_default and (default is not None or name not in annotated):
+        if not is_default and (default is not None or name not in numeric_names):
             continue
         kind = context.kind_of(value)
         if (
@@ -312,16 +312,16 @@ def _own_method(function: ast.expr, context: CheckContext) -> Any:
         return None
     name = function.attr
     # Other classes of the program may replace the method.
-    own = None if binding.scope.parent is None else binding.scope.parent.bindings.get(name)
-    if own is None or context.owners.get(name) != 1 or name in context.stored_attributes:
+    method_binding = None if binding.scope.parent is None else binding.scope.parent.bindings.get(name)
+    if method_binding is None or context.owners.get(name) != 1 or name in context.stored_attributes:
         return None
-    sites = own.sites
+    sites = method_binding.sites
     if len(sites) != 1 or not isinstance(sites[0], ast.FunctionDef) or sites[0].decorator_list:
         return None
-    found = sites[0]
+    definition = sites[0]
     # A method that does nothing but raise an error is there to be replaced.
-    abstract = isinstance(found.body[-1], ast.Raise | ast.Pass)
-    return found if found.args.args and not found.args.posonlyargs and not abstract else None
+    abstract = isinstance(definition.body[-1], ast.Raise | ast.Pass)
+    return definition if definition.args.args and not definition.args.posonlyargs and not abstract else None
 
 
 def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
@@ -339,22 +339,22 @@ def _property(node: scenic.PropertyDef, _scope: Scope, context: CheckContext) ->
 def _do(node: Any, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``do f``, ``do f()``: only behaviors, monitors and scenarios can be run."""
     for target in node.targets:
-        called = isinstance(target, ast.Call)
+        is_call = isinstance(target, ast.Call)
         function = target.func if isinstance(target, ast.Call) else target
         foreign = context.foreign(function)
         definition: Any = context.definition(function) if foreign is None else foreign.definition
         plain = isinstance(definition, ast.FunctionDef)
-        if plain and (not called or (foreign is None and not _returns(definition, context))):
+        if plain and (not is_call or (foreign is None and not _returns(definition, context))):
             name = definition.name
             yield context.error(
                 "SC211",
                 f"`do` runs behaviors and scenarios, and `{name}` is a plain function"
-                + (" that returns nothing" if called else ""),
+                + (" that returns nothing" if is_call else ""),
                 target,
                 f"call it without `do`, or define it with `behavior {name}(...):`",
                 labels=context.defined(name, definition, foreign),
             )
-        elif not called:
+        elif not is_call:
             yield from _uncalled(target, context)
 
 

@@ -18,11 +18,11 @@ _POSITIVE: Final = frozenset(name for name, entry in properties_of("Object").ite
 
 
 def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    inherited = context.classes.inherited(node)
-    if inherited is None or context.classes.of(node) is None:
+    properties = context.classes.inherited(node)
+    if properties is None or context.classes.of(node) is None:
         return
     base = context.classes.base(node.bases[0]) if node.bases else "Object"
-    taken = attributes_of(base) if base is not None else {}
+    base_attributes = attributes_of(base) if base is not None else {}
     for item in node.body:
         match item:
             case scenic.PropertyDef(name=name, attributes=attributes, value=value):
@@ -35,7 +35,7 @@ def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator
                         "keep one of the two words",
                     )
                 # Programs of the plane define the heading.
-                if name in inherited and inherited[name].final and name != "heading":
+                if name in properties and properties[name].final and name != "heading":
                     yield context.error(
                         "SC401",
                         f"the property `{name}` is final and cannot be defined again",
@@ -44,8 +44,8 @@ def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator
                         if name == "orientation"
                         else "use another name",
                     )
-                if name in taken and not taken[name].yields:
-                    what = "a method" if taken[name].is_method else "an attribute"
+                if name in base_attributes and not base_attributes[name].yields:
+                    what = "a method" if base_attributes[name].is_method else "an attribute"
                     yield context.error(
                         "SC402",
                         f"`{name}` is {what} of `{base}` and cannot be a property",

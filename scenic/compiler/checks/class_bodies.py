@@ -17,17 +17,17 @@ __all__ = ["RULES"]
 
 
 def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    known = context.classes.of(node)
-    if known is None:
+    properties = context.classes.of(node)
+    if properties is None:
         return
-    own = {item.name for item in node.body if isinstance(item, scenic.PropertyDef)}
-    inherited = context.classes.inherited(node) or {}
+    own_names = {item.name for item in node.body if isinstance(item, scenic.PropertyDef)}
+    base_properties = context.classes.inherited(node) or {}
     for item in node.body:
         match item:
-            case ast.Assign(targets=[ast.Name(id=name) as target]) if name in known:
-                yield _attribute(context, node, target, item.value, known=name in own)
-            case scenic.PropertyDef(name=name) if name not in inherited:
-                yield from _misspelt(context, node, item, inherited, own)
+            case ast.Assign(targets=[ast.Name(id=name) as target]) if name in properties:
+                yield _attribute(context, node, target, item.value, known=name in own_names)
+            case scenic.PropertyDef(name=name) if name not in base_properties:
+                yield from _misspelt(context, node, item, base_properties, own_names)
 
 
 def _attribute(
@@ -60,15 +60,15 @@ def _misspelt(
     name = item.name
     if name in context.attributes or name in context.given:
         return
-    for meant in sorted(inherited):
-        if meant not in own and _is_slip(name, meant):
+    for candidate in sorted(inherited):
+        if candidate not in own and _is_slip(name, candidate):
             place = word_span(context.source, item, name)
             yield context.warning(
                 "SC300",
                 f"`{node.name}` has no property `{name}` to give a default, so this line defines one",
                 place,
-                f"did you mean `{meant}`?",
-                fix=context.renaming(place, name, meant),
+                f"did you mean `{candidate}`?",
+                fix=context.renaming(place, name, candidate),
             )
             return
 

@@ -56,10 +56,10 @@ def _truth(condition: ast.expr) -> bool | None:
         case ast.BoolOp():
             # Operands that are no literals may be of any truth, so only one that decides alone tells.
             deciding = isinstance(condition.op, ast.Or)
-            found = [_simple_truth(value) for value in condition.values]
-            if deciding in found:
+            truths = [_simple_truth(value) for value in condition.values]
+            if deciding in truths:
                 return deciding
-            return None if None in found else not deciding
+            return None if None in truths else not deciding
         case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in _COMPARISONS:
             first, second = literal_number(left), literal_number(right)
             if first is None or second is None:
@@ -87,9 +87,9 @@ def _require(node: scenic.Require, _scope: Scope, context: CheckContext) -> Iter
     condition = node.condition
     while isinstance(condition, scenic.Temporal) and len(condition.operands) == 1:
         (condition,) = condition.operands
-    found = list(_constant(condition, context, "requirement", literals=True))
-    yield from found
-    if not found and node.probability in (0, 1):
+    diagnostics = list(_constant(condition, context, "requirement", literals=True))
+    yield from diagnostics
+    if not diagnostics and node.probability in (0, 1):
         yield from _needless_probability(node, context)
 
 
@@ -136,23 +136,23 @@ def _constant(
     condition: ast.expr, context: CheckContext, what: str, *, literals: bool
 ) -> Iterator[Diagnostic]:
     """SC306 for a condition that is known beforehand."""
-    known = truth(condition)
-    if known is not None:
+    truth_value = truth(condition)
+    if truth_value is not None:
         if not literals:
             return
         if isinstance(condition, ast.Tuple) and condition.elts:
             message = f"this {what} is a tuple, which is always true"
             help_ = "join the conditions with `and`"
         else:
-            message = f"this {what} {'always' if known else 'never'} holds"
+            message = f"this {what} {'always' if truth_value else 'never'} holds"
             help_ = "remove it, or write what it depends on"
         yield context.warning("SC306", message, condition, help_)
         return
-    provided = context.provided(condition)
-    kind = context.kind_of(condition) if provided is not None else None
+    function_name = context.provided(condition)
+    kind = context.kind_of(condition) if function_name is not None else None
     if kind is not None and kind.name in ("function", "class"):
-        message = f"this {what} is `{provided}` itself, which is always true"
-        yield context.warning("SC306", message, condition, f"call it: `{provided}(...)`")
+        message = f"this {what} is `{function_name}` itself, which is always true"
+        yield context.warning("SC306", message, condition, f"call it: `{function_name}(...)`")
         return
     always = context.kind_of(condition) if literals else None
     if always is not None and always.name in _ALWAYS_TRUE and not _TRUTH & context.owners.keys():

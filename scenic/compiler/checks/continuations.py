@@ -20,7 +20,7 @@ def continuation_after(source: Source, line: int) -> int | None:
     while number <= len(source.lines):
         text = source.line(number)
         if text.strip() and not text.lstrip().startswith("#"):
-            own = text[: len(text) - len(text.lstrip())]
-            return number if own == indentation and _SPECIFIER.match(text.lstrip()) else None
+            indentation_here = text[: len(text) - len(text.lstrip())]
+            return number if indentation_here == indentation and _SPECIFIER.match(text.lstrip()) else None
         number += 1
     return None

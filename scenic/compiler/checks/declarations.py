@@ -40,14 +40,14 @@ def check_declarations(context: CheckContext) -> Iterator[Diagnostic]:
 
 def _self(context: CheckContext, node: Any) -> Iterator[Diagnostic]:
     """SC200: ``behavior Come(self, speed)``."""
-    given = [] if node.args is None else [*node.args.posonlyargs, *node.args.args]
-    if given and given[0].arg == "self":
+    parameters = [] if node.args is None else [*node.args.posonlyargs, *node.args.args]
+    if parameters and parameters[0].arg == "self":
         kind = "behavior" if isinstance(node, scenic.BehaviorDef) else "monitor"
-        rest = ", ".join(arg.arg for arg in given[1:])
+        rest = ", ".join(arg.arg for arg in parameters[1:])
         yield context.error(
             "SC200",
             f"a {kind} has `self` without a parameter for it",
-            given[0],
+            parameters[0],
             f"remove it: `{kind} {node.name}({rest})`"
             + (", in which `self` is the agent" if kind == "behavior" else ""),
         )
@@ -77,8 +77,8 @@ def _property(context: CheckContext, node: scenic.PropertyDef) -> Iterator[Diagn
                 "use `additive`, `dynamic` or `final`",
             )
     scope = context.resolution.scopes.get(node)
-    own = None if scope is None else scope.bindings.get("self")
-    if own is None or own not in context.resolution.read:
+    self_binding = None if scope is None else scope.bindings.get("self")
+    if self_binding is None or self_binding not in context.resolution.read:
         return
     read = {id(part.value) for part in walk(node.value) if isinstance(part, ast.Attribute)}
     for part in walk(node.value):
@@ -96,14 +96,14 @@ def _property(context: CheckContext, node: scenic.PropertyDef) -> Iterator[Diagn
 def _misspelt(context: CheckContext, node: Any) -> Iterator[Diagnostic]:
     if not any(specifier.property for specifier in node.specifiers):
         return
-    known = context.classes.properties(node.cls)
-    if known is None:
+    properties = context.classes.properties(node.cls)
+    if properties is None:
         return
     for specifier in node.specifiers:
         name = specifier.property
-        if name is None or name in known:
+        if name is None or name in properties:
             continue
-        suggestion = nearest_property(name, known)
+        suggestion = nearest_property(name, properties)
         if suggestion is not None:
             place = word_span(context.source, specifier, name)
             yield context.warning(

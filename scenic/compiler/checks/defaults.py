@@ -37,7 +37,7 @@ _KEPT: Final = re.compile(r"^_|cache|memo", re.IGNORECASE)
 
 def check_defaults(context: CheckContext) -> Iterator[Diagnostic]:
     """SC309: a list, dictionary or set that is the default of a parameter and changed in the body."""
-    changed: dict[ast.AST, ast.AST] | None = None
+    changes: dict[ast.AST, ast.AST] | None = None
     for cls in (
         ast.FunctionDef,
         ast.AsyncFunctionDef,
@@ -57,15 +57,15 @@ def check_defaults(context: CheckContext) -> Iterator[Diagnostic]:
             for arg, default in pairs:
                 if not _mutable(default, context):
                     continue
-                changed = _changed(context) if changed is None else changed
-                if arg not in changed or _KEPT.search(arg.arg):
+                changes = _changed(context) if changes is None else changes
+                if arg not in changes or _KEPT.search(arg.arg):
                     continue
                 yield context.warning(
                     "SC309",
                     f"the default of `{arg.arg}` is made once, and changed by every call that uses it",
                     default,
                     f"use `None` as the default, and make the value in the body when `{arg.arg}` is `None`",
-                    labels=(context.label(changed[arg], "changed here"),),
+                    labels=(context.label(changes[arg], "changed here"),),
                 )
 
 
@@ -77,12 +77,12 @@ def _mutable(default: ast.expr | None, context: CheckContext) -> bool:
 
 def _changed(context: CheckContext) -> dict[ast.AST, ast.AST]:
     """The parameters, bound just once, whose values are changed, and where."""
-    found: dict[ast.AST, ast.AST] = {}
+    places: dict[ast.AST, ast.AST] = {}
 
     def note(target: object, place: ast.AST) -> None:
         binding = context.binding(target) if isinstance(target, ast.Name) else None
         if binding is not None and len(binding.sites) == 1:
-            found.setdefault(binding.sites[0], place)
+            places.setdefault(binding.sites[0], place)
 
     for node, _ in context.nodes(ast.Call):
         if isinstance(node.func, ast.Attribute) and node.func.attr in _MUTATING:
@@ -90,4 +90,4 @@ def _changed(context: CheckContext) -> dict[ast.AST, ast.AST]:
     for node, _ in context.nodes(ast.Subscript):
         if not isinstance(node.ctx, ast.Load):
             note(node.value, node)
-    return found
+    return places

@@ -83,20 +83,20 @@ def _without_weights(node: ast.Call, context: CheckContext) -> Diagnostic:
 
 def _weights(node: ast.Call, context: CheckContext) -> Iterator[Diagnostic]:
     """SC405: ``DiscreteRange(1, 3, [1, 2])``."""
-    given = dict(zip(("low", "high", "weights"), node.args, strict=False))
-    given.update((each.arg, each.value) for each in node.keywords if each.arg is not None)
-    low, high = literal_number(given.get("low")), literal_number(given.get("high"))
-    weights = given.get("weights")
+    arguments = dict(zip(("low", "high", "weights"), node.args, strict=False))
+    arguments.update((each.arg, each.value) for each in node.keywords if each.arg is not None)
+    low, high = literal_number(arguments.get("low")), literal_number(arguments.get("high"))
+    weights = arguments.get("weights")
     if low is None or high is None or not isinstance(weights, ast.List | ast.Tuple):
         return
     spread = any(isinstance(each, ast.Starred) for each in weights.elts)
     if spread or not all(isinstance(end, int) or end.is_integer() for end in (low, high)):
         return
-    needed = int(high) - int(low) + 1
-    if 0 < needed != len(weights.elts):
+    count = int(high) - int(low) + 1
+    if 0 < count != len(weights.elts):
         yield context.error(
             "SC405",
-            f"`DiscreteRange` from {int(low)} to {int(high)} needs {needed} weights, not {len(weights.elts)}",
+            f"`DiscreteRange` from {int(low)} to {int(high)} needs {count} weights, not {len(weights.elts)}",
             weights,
             "give one weight for each integer; both ends are included",
         )

@@ -121,16 +121,16 @@ def _breaks(loop: ast.While) -> bool:
     """Return whether a ``break`` in a loop may leave this loop, or something in it ends differently than it looks."""
     stack: list[tuple[Any, bool]] = [(statement, True) for statement in loop.body]
     while stack:
-        node, own = stack.pop()
-        if isinstance(node, scenic.ErrorStatement) or (own and isinstance(node, ast.Break)):
+        node, is_of_loop = stack.pop()
+        if isinstance(node, scenic.ErrorStatement) or (is_of_loop and isinstance(node, ast.Break)):
             return True
         if isinstance(node, (*_OWN_BODIES, ast.expr)):
             continue
         if isinstance(node, ast.For | ast.AsyncFor | ast.While):
             stack.extend((part, False) for part in node.body)
-            stack.extend((part, own) for part in node.orelse)
+            stack.extend((part, is_of_loop) for part in node.orelse)
         else:
-            stack.extend((part, own) for part in parts(node))
+            stack.extend((part, is_of_loop) for part in parts(node))
     return False
 
 

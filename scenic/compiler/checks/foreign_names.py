@@ -144,10 +144,10 @@ def _choice(node: ast.Name, call: ast.Call, context: CheckContext) -> Meant:
             return _replaced(node, "Range", context)
         case [ast.List() | ast.Tuple() as options] if not call.keywords:
             text = context.text(options) or "[options]"
-            shown = f"Uniform({text[1:-1].strip().rstrip(',')})"
+            replacement = f"Uniform({text[1:-1].strip().rstrip(',')})"
             return Meant(
-                f"write `{shown if len(shown) < 60 else 'Uniform(*options)'}`",
-                context.replacement(f"Write `{shown}`", call, shown),
+                f"write `{replacement if len(replacement) < 60 else 'Uniform(*options)'}`",
+                context.replacement(f"Write `{replacement}`", call, replacement),
             )
     return Meant(
         "write `Uniform(a, b)` for a choice among options, `Range(low, high)` for a number between two"
@@ -167,9 +167,9 @@ def keyword_meant(node: ast.Name, context: CheckContext) -> str | None:
         text = (line[: span.column] + keyword + line[span.end_column :]).strip()
         if text.endswith(":"):
             text += " pass"
-        parsed = parse(text + "\n")
-        if not parsed.diagnostics and not any(
-            isinstance(each, ast.Name) and each.id == keyword for each in ast.walk(parsed.tree)
+        result = parse(text + "\n")
+        if not result.diagnostics and not any(
+            isinstance(each, ast.Name) and each.id == keyword for each in ast.walk(result.tree)
         ):
             return keyword
     return None

@@ -38,15 +38,15 @@ def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diag
         return
     name = node.func.id
     example = f"new {name}"
-    given = [keyword for keyword in node.keywords if keyword.arg is not None]
-    if given:
-        value = context.text(given[0].value) or "value"
-        example += f" with {given[0].arg} {value if len(value) < 40 else 'value'}"
+    keywords = [keyword for keyword in node.keywords if keyword.arg is not None]
+    if keywords:
+        value = context.text(keywords[0].value) or "value"
+        example += f" with {keywords[0].arg} {value if len(value) < 40 else 'value'}"
     yield context.error(
         "SC135",
         f"`{name}` is a class of objects, which are made with `new` and specifiers, not by a call",
         node,
-        f"write `{example}{', ...' if len(given) > 1 else ''}`",
+        f"write `{example}{', ...' if len(keywords) > 1 else ''}`",
     )
 
 
@@ -65,16 +65,16 @@ def _assign(node: ast.Assign, _scope: Scope, context: CheckContext) -> Iterator[
     ego = isinstance(target, ast.Name) and target.id == "ego"
     say = context.error if ego else context.warning
     operand = _last_operand(first)
-    shown = None
+    coordinates = None
     if operand is not None and not isinstance(operand, ast.Tuple):
         texts = [context.text(each) for each in (operand, *rest)]
-        shown = ", ".join(text for text in texts if text) if all(texts) else None
+        coordinates = ", ".join(text for text in texts if text) if all(texts) else None
     yield say(
         "SC311",
         "this comma makes a tuple of the object and what follows",
         Span(context.span(rest[0]).line, context.span(rest[0]).column, *_end(context, rest[0])),
-        f"put the coordinates in parentheses: `({shown})`"
-        if shown
+        f"put the coordinates in parentheses: `({coordinates})`"
+        if coordinates
         else "put parentheses around what belongs together, or write a specifier after the comma",
     )
 
@@ -83,9 +83,9 @@ def _bound_simulator(node: ast.Assign, context: CheckContext) -> Iterator[Diagno
     """SC307: ``simulator = NewtonianSimulator()``."""
     match node:
         case ast.Assign(
-            targets=[ast.Name(id="simulator") as name], value=ast.Call(func=ast.Name(id=made))
-        ) if made.endswith("Simulator") and len(context.mentions("simulator")) == 1:
-            text = context.text(node.value) or f"{made}(...)"
+            targets=[ast.Name(id="simulator") as name], value=ast.Call(func=ast.Name(id=simulator_name))
+        ) if simulator_name.endswith("Simulator") and len(context.mentions("simulator")) == 1:
+            text = context.text(node.value) or f"{simulator_name}(...)"
             yield context.warning(
                 "SC307",
                 "this binds a name, and chooses no simulator",
@@ -110,11 +110,11 @@ def _last_operand(node: scenic.New) -> ast.expr | None:
 def _statement(node: ast.Expr, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC312: a behavior, monitor or scenario that is called without `do` or `require monitor`."""
     value = node.value
-    called = value.func if isinstance(value, ast.Call) else value
-    if not isinstance(called, ast.Name | ast.Attribute):
+    callee = value.func if isinstance(value, ast.Call) else value
+    if not isinstance(callee, ast.Name | ast.Attribute):
         return
-    foreign = context.foreign(called)
-    definition: Any = context.definition(called) if foreign is None else foreign.definition
+    foreign = context.foreign(callee)
+    definition: Any = context.definition(callee) if foreign is None else foreign.definition
     kind = _RUN.get(type(definition))
     if kind is None:
         return
@@ -206,18 +206,18 @@ def _wrong(
     value: ast.expr, kinds: tuple[str, ...], words: str, context: CheckContext, *, classes: bool = False
 ) -> Iterator[Diagnostic]:
     """Yield the errors about a value that is run as one of ``kinds``; ``classes`` if the definition itself is allowed."""
-    called = isinstance(value, ast.Call)
+    is_call = isinstance(value, ast.Call)
     name = value.func if isinstance(value, ast.Call) else value
     nameable = isinstance(name, ast.Name | ast.Attribute)
     foreign = context.foreign(name) if nameable else None
     definition: Any = context.definition(name) if foreign is None else foreign.definition
     kind = _RUN.get(type(definition))
     if kind is None:
-        given = None if classes else context.kind_of(value)
-        if given is not None and given.name not in _MAY_RUN:
+        value_kind = None if classes else context.kind_of(value)
+        if value_kind is not None and value_kind.name not in _MAY_RUN:
             yield context.error(
                 "SC314",
-                f"`{words}` takes a {kinds[0]}, not {given.phrase}",
+                f"`{words}` takes a {kinds[0]}, not {value_kind.phrase}",
                 value,
                 f"define one: `{kinds[0]} Name():`",
             )
@@ -229,7 +229,7 @@ def _wrong(
             value,
             _PLACES_OF[kind].format(definition.name),
         )
-    elif not called and not classes:
+    elif not is_call and not classes:
         yield context.error(
             "SC314",
             f"this names the {kind} `{definition.name}`, and makes none",
@@ -253,11 +253,11 @@ def _new(node: scenic.New, scope: Scope, context: CheckContext) -> Iterator[Diag
 def _take(node: scenic.Take, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC314: ``take SetBrakeAction``."""
     for action in node.actions:
-        called = action.func if isinstance(action, ast.Call) else action
-        definition = context.definition(called)
-        foreign = context.foreign(called)
+        callee = action.func if isinstance(action, ast.Call) else action
+        definition = context.definition(callee)
+        foreign = context.foreign(callee)
         if isinstance(definition if foreign is None else foreign.definition, scenic.BehaviorDef):
-            text = context.text(called) or "Name"
+            text = context.text(callee) or "Name"
             run = text if isinstance(action, ast.Call) else f"{text}()"
             yield context.warning(
                 "SC314",

@@ -142,9 +142,9 @@ class _MissingNames:
         name = node.id
         suggestion = self._suggestion(reference)
         if suggestion is None or suggestion in PROVIDED:
-            known = _known_elsewhere(context, node)
-            if known is not None:
-                return known
+            diagnostic = _known_elsewhere(context, node)
+            if diagnostic is not None:
+                return diagnostic
         if self._half_typed and suggestion is None and node not in self._alone:
             # No slip of another name: what is being typed may bind it.
             return None
@@ -159,9 +159,9 @@ class _MissingNames:
         if suggestion is not None and any(
             node in each.decorator_list for each in context.nodes_around(node, ast.FunctionDef)
         ):
-            known = _known_elsewhere(context, node)
-            if known is not None:
-                return known
+            diagnostic = _known_elsewhere(context, node)
+            if diagnostic is not None:
+                return diagnostic
         # What the program does not define may be any of the many names that are always there.
         certain = suggestion not in PROVIDED
         fix = context.renaming(node, name, suggestion, certain=certain) if suggestion else None
@@ -203,16 +203,21 @@ def _imported_model(context: CheckContext) -> Diagnostic | None:
 def _similar(name: str, own: Collection[str], provided: Collection[str]) -> str | None:
     """The name that is probably meant: the nearest, or the one with the same words if none is very near."""
     pool = {*own, *provided}
-    found = nearest(name, pool)
-    if found is not None and found in _BUILTINS and name[:1].isupper() and name.lower() != found.lower():
-        found = nearest(name, {each for each in pool if each[:1].isupper()})
-    if found is not None and distance(name.lower(), found.lower(), limit=1) <= 1:
-        return found
+    candidate = nearest(name, pool)
+    if (
+        candidate is not None
+        and candidate in _BUILTINS
+        and name[:1].isupper()
+        and name.lower() != candidate.lower()
+    ):
+        candidate = nearest(name, {each for each in pool if each[:1].isupper()})
+    if candidate is not None and distance(name.lower(), candidate.lower(), limit=1) <= 1:
+        return candidate
     same_words = related(name, pool) if len(name) >= _SHORTEST_OF_WORDS else None
-    if found is not None and same_words is not None and len(same_words) < len(name) < len(found) + 3:
+    if candidate is not None and same_words is not None and len(same_words) < len(name) < len(candidate) + 3:
         # `RectangleRegion` is a `RectangularRegion` rather than a `Region`.
-        return found
-    return same_words or found
+        return candidate
+    return same_words or candidate
 
 
 _SHORTEST_OF_WORDS: Final = 6
@@ -230,10 +235,12 @@ def _known_elsewhere(context: CheckContext, node: ast.Name) -> Diagnostic | None
             f"did you mean `{keyword}`?",
             fix=context.renaming(node, node.id, keyword),
         )
-    meant = known_elsewhere(node, context)
-    if meant is None:
+    suggestion = known_elsewhere(node, context)
+    if suggestion is None:
         return None
-    return context.error("SC202", f"the name `{node.id}` is not defined", node, meant.help, fix=meant.fix)
+    return context.error(
+        "SC202", f"the name `{node.id}` is not defined", node, suggestion.help, fix=suggestion.fix
+    )
 
 
 def _only_one(candidates: Iterable[str]) -> str | None:
@@ -353,21 +360,23 @@ def check_classes(context: CheckContext) -> Iterator[Diagnostic]:
 
 def _no_class(context: CheckContext, name: ast.Name) -> Iterator[Diagnostic]:
     """A name after ``new`` that certainly means something else than a class."""
-    provided = context.provided(name)
-    if provided is not None and provided in NAMES and NAMES[provided].kind in _NOT_SCENIC:
-        what = f"`{provided}` is a {NAMES[provided].kind} of the language, not a class of objects"
-        yield context.error("SC203", what, name, f"leave out `new`: write `{NAMES[provided].signature}`")
+    builtin_name = context.provided(name)
+    if builtin_name is not None and builtin_name in NAMES and NAMES[builtin_name].kind in _NOT_SCENIC:
+        what = f"`{builtin_name}` is a {NAMES[builtin_name].kind} of the language, not a class of objects"
+        yield context.error("SC203", what, name, f"leave out `new`: write `{NAMES[builtin_name].signature}`")
         return
-    if provided is not None and provided in _BUILTINS and provided not in NAMES:
+    if builtin_name is not None and builtin_name in _BUILTINS and builtin_name not in NAMES:
         reference = context.resolution.references.get(name)
-        meant = None if reference is None else nearest(provided, _classes_in_reach(reference, context))
+        similar_class = (
+            None if reference is None else nearest(builtin_name, _classes_in_reach(reference, context))
+        )
         # A warning: running the program raises the `TypeError` that scripts may expect.
         yield context.warning(
             "SC203",
-            f"`{provided}` is a name of Python, not a class of objects",
+            f"`{builtin_name}` is a name of Python, not a class of objects",
             name,
-            f"did you mean `{meant}`?" if meant else "name a class, for example `Object`",
-            fix=context.renaming(name, provided, meant) if meant else None,
+            f"did you mean `{similar_class}`?" if similar_class else "name a class, for example `Object`",
+            fix=context.renaming(name, builtin_name, similar_class) if similar_class else None,
         )
         return
     foreign = context.foreign(name)
@@ -393,8 +402,8 @@ def _no_class(context: CheckContext, name: ast.Name) -> Iterator[Diagnostic]:
 
 
 def _classes_in_reach(reference: Reference, context: CheckContext) -> set[str]:
-    brought = {name for name in context.brought if name[:1].isupper()}
-    return brought.union(
+    imported_classes = {name for name in context.brought if name[:1].isupper()}
+    return imported_classes.union(
         CLASSES,
         context.class_names,
         (

@@ -28,27 +28,27 @@ def _call(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagn
     if method is not None:
         yield from _method(node, method, context)
         return
-    declared = NAMES[name or ""]
-    given = dict(zip(declared.parameters, _before_stars(node.args), strict=False))
-    given.update((each.arg, each.value) for each in node.keywords if each.arg is not None)
-    for parameter, types in declared.accepted.items():
-        if parameter in given:
-            yield from wrong_kinds(f"`{declared.name}` {parameter}", types, given[parameter], context)
+    declaration = NAMES[name or ""]
+    arguments = dict(zip(declaration.parameters, _before_stars(node.args), strict=False))
+    arguments.update((each.arg, each.value) for each in node.keywords if each.arg is not None)
+    for parameter, types in declaration.accepted.items():
+        if parameter in arguments:
+            yield from wrong_kinds(f"`{declaration.name}` {parameter}", types, arguments[parameter], context)
 
 
 def _method(node: ast.Call, method: Member, context: CheckContext) -> Iterator[Diagnostic]:
-    given = list(_before_stars(node.args))
-    for types, value in zip(method.takes, given, strict=False):
+    arguments = list(_before_stars(node.args))
+    for types, value in zip(method.takes, arguments, strict=False):
         if types:
             yield from wrong_kinds(f"`{method.name}`", types, value, context)
-    needed = next((number for number, types in enumerate(method.takes) if not types), len(method.takes))
-    if len(given) == len(node.args) < needed and not node.keywords:
-        count = f"{needed} argument{'s' if needed > 1 else ''}"
+    needed_count = next((number for number, types in enumerate(method.takes) if not types), len(method.takes))
+    if len(arguments) == len(node.args) < needed_count and not node.keywords:
+        count = f"{needed_count} argument{'s' if needed_count > 1 else ''}"
         yield context.error(
             "SC211",
-            f"the method `{method.name}` needs {count}, and {len(given)} {'is' if len(given) == 1 else 'are'} given",
+            f"the method `{method.name}` needs {count}, and {len(arguments)} {'is' if len(arguments) == 1 else 'are'} given",
             node,
-            "give " + ", ".join(types[0].noun for types in method.takes[:needed]),
+            "give " + ", ".join(types[0].noun for types in method.takes[:needed_count]),
         )
 
 
@@ -62,10 +62,12 @@ def _before_stars(args: Sequence[ast.expr]) -> Iterator[ast.expr]:
 
 def _statement(node: Any, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``mutate ego by "2"``, ``terminate after "10" seconds``."""
-    declared = STATEMENTS[type(node).__name__]
-    for field, types in declared.takes.items():
+    declaration = STATEMENTS[type(node).__name__]
+    for field, types in declaration.takes.items():
         value = getattr(node, field)
-        title = f"`{declared.title}`" if len(declared.takes) == 1 else f"`{declared.title} ... {field}`"
+        title = (
+            f"`{declaration.title}`" if len(declaration.takes) == 1 else f"`{declaration.title} ... {field}`"
+        )
         operand = value.value if isinstance(value, scenic.Duration) else value
         if operand is None or may_be_meant(node, scope, context):
             continue

@@ -63,11 +63,11 @@ def _names(context: CheckContext, starts: list[tuple[int, int]]) -> Iterator[Dia
         first[name] = _statement(starts, resolution.names[name].first_site)
         last_line = getattr(body[first[name]], "end_lineno", None) or 0
         early += [node for node in reads if isinstance(node.ctx, ast.Load) and node.lineno <= last_line]
-    reported: set[str] = set()
+    reported_names: set[str] = set()
     half_typed = min(map(position, begun_names(context)), default=None)
     for node in sorted(early, key=position):
         name = node.id
-        if name in reported or node in resolution.tolerated:
+        if name in reported_names or node in resolution.tolerated:
             continue
         if half_typed is not None and half_typed < position(node):
             # Names that stand alone are about to be targets, and this may be one that comes after them.
@@ -87,7 +87,7 @@ def _names(context: CheckContext, starts: list[tuple[int, int]]) -> Iterator[Dia
                 continue
         if context.binding(node) is not binding:
             continue
-        reported.add(name)
+        reported_names.add(name)
         site = binding.first_site
         yield context.error(
             "SC204",
@@ -116,11 +116,11 @@ def _ego(context: CheckContext, starts: list[tuple[int, int]]) -> Iterator[Diagn
         if not _is_python(statement) and brings(statement):
             # A Scenic module brings its ego along.
             end = min(end, _statement(starts, statement) - 1)
-    own = [item for item in assignments if not _in_scenario(item[1])]
+    assignments_outside = [item for item in assignments if not _in_scenario(item[1])]
     uses = list(_uses(context))
-    yield from _ego_of(context, module, context.tree.body, own, uses, end)
+    yield from _ego_of(context, module, context.tree.body, assignments_outside, uses, end)
     scenarios = context.nodes(scenic.ScenarioDef)
-    if own or end < len(context.tree.body):
+    if assignments_outside or end < len(context.tree.body):
         return
     for scenario, outer in scenarios:
         # A scenario that another one runs has the ego of that one from the beginning.
@@ -206,8 +206,8 @@ def _uses(context: CheckContext) -> Iterator[tuple[ast.AST, Scope]]:
             yield node, scope
     for node, scope in context.nodes(scenic.SpecifierPhrase):
         if node.specifier in _SPECIFIERS:
-            declared = SPECIFIERS[node.specifier]
-            if declared.reads_ego or _implied(node, declared.operands):
+            declaration = SPECIFIERS[node.specifier]
+            if declaration.reads_ego or _implied(node, declaration.operands):
                 yield node, scope
 
 

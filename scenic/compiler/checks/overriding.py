@@ -22,27 +22,27 @@ def _override(node: scenic.Override, _scope: Scope, context: CheckContext) -> It
         name = specifier.property
         if name is None:
             continue
-        declared = _PROPERTIES.get(name)
+        declaration = _PROPERTIES.get(name)
         place = word_span(context.source, specifier, name)
         if name == "heading":
             continue  # Two-dimensional programs give it.
-        if declared is not None and (declared.dynamic or declared.final):
+        if declaration is not None and (declaration.dynamic or declaration.final):
             reason = "dynamic and cannot be overridden: the simulator decides it"
             yield context.error(
                 "SC402",
-                f"the property `{name}` is {'final and cannot be overridden' if declared.final else reason}",
+                f"the property `{name}` is {'final and cannot be overridden' if declaration.final else reason}",
                 place,
                 "let a behavior change it by actions",
             )
-        elif declared is None and not _is_defined(name, context):
-            meant = nearest(name, _PROPERTIES.keys())
-            if meant is not None:
+        elif declaration is None and not _is_defined(name, context):
+            similar_name = nearest(name, _PROPERTIES.keys())
+            if similar_name is not None:
                 yield context.error(
                     "SC300",
                     f"there is no property `{name}` to override",
                     place,
-                    f"did you mean `{meant}`?",
-                    fix=context.renaming(place, name, meant),
+                    f"did you mean `{similar_name}`?",
+                    fix=context.renaming(place, name, similar_name),
                 )
 
 
@@ -57,9 +57,9 @@ def _is_defined(name: str, context: CheckContext) -> bool:
     ):
         return True
     surroundings = context.surroundings
-    brought = () if surroundings is None else map(surroundings.brought, surroundings.names)
+    classes = () if surroundings is None else map(surroundings.brought, surroundings.names)
     return any(
-        each is not None and each.properties is not None and name in each.properties for each in brought
+        each is not None and each.properties is not None and name in each.properties for each in classes
     )
 
 

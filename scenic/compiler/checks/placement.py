@@ -42,9 +42,9 @@ def check_placement(context: CheckContext) -> Iterator[tuple[ast.AST, Diagnostic
                     continue
                 for message, help_ in _problems(statement, where):
                     yield statement, context.error("SC201", message, statement, help_)
-    found = list(_misplaced_expressions(context))
-    if found and not context.broken:
-        yield from found
+    misplacements = list(_misplaced_expressions(context))
+    if misplacements and not context.broken:
+        yield from misplacements
 
 
 def _misplaced_expressions(context: CheckContext) -> Iterator[tuple[ast.AST, Diagnostic]]:
@@ -77,13 +77,13 @@ def _evaluated_later(context: CheckContext) -> set[ast.AST]:
 def _declared_problem(statement: Statement, where: Where) -> tuple[str, str] | None:
     """The message and the help for a statement that is not at one of its declared places."""
     if where.place not in statement.places:
-        allowed = " or ".join(sorted(str(place) for place in statement.places))
+        places = " or ".join(sorted(str(place) for place in statement.places))
         if where.function is not None and where.place is Place.TOP:
             return (
                 f"`{statement.title}` cannot be used in a function",
-                f"it can stand {allowed}; a function cannot act for an agent",
+                f"it can stand {places}; a function cannot act for an agent",
             )
-        return f"`{statement.title}` cannot be used {where.place}", f"it can stand {allowed}"
+        return f"`{statement.title}` cannot be used {where.place}", f"it can stand {places}"
     if where.function is not None and where.place in DYNAMIC and statement.suspends:
         return (
             f"`{statement.title}` cannot be used in a function {where.place}",

@@ -114,16 +114,16 @@ def _call(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagn
 
 
 def _draw(node: ast.Call, name: str, context: CheckContext) -> Diagnostic:
-    meant = _DRAWS[name]
+    pattern = _DRAWS[name]
     texts = [context.text(each) for each in node.args]
-    fits = len(texts) == _PARAMETERS.get(meant, 2) and not node.keywords and all(texts)
-    shown = meant.format(", ".join(text for text in texts if text) if fits else "...")
+    fits = len(texts) == _PARAMETERS.get(pattern, 2) and not node.keywords and all(texts)
+    replacement = pattern.format(", ".join(text for text in texts if text) if fits else "...")
     return context.warning(
         "SC407",
         f"`{context.text(node.func) or name}` draws once, while the program is loaded: all scenes get the same value",
         node,
-        f"write `{shown}`",
-        fix=context.replacement(f"Write `{shown}`", node, shown, certain=False) if fits else None,
+        f"write `{replacement}`",
+        fix=context.replacement(f"Write `{replacement}`", node, replacement, certain=False) if fits else None,
     )
 
 
@@ -179,12 +179,12 @@ def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator
         if not isinstance(item, ast.FunctionDef) or item.name != "__init__":
             continue
         parameters = [each.arg for each in item.args.args[1:]]
-        named = parameters[0] if parameters else "name"
+        property_name = parameters[0] if parameters else "name"
         yield context.warning(
             "SC307",
             f"`new {node.name}` gives properties, and passes no arguments to `__init__`",
             item,
-            f"declare properties in the class: `{named}: value`, which `new {node.name} with {named} 3` sets",
+            f"declare properties in the class: `{property_name}: value`, which `new {node.name} with {property_name} 3` sets",
         )
 
 

@@ -59,12 +59,12 @@ def _is_placed_at_random(owner: ast.expr, context: CheckContext, depth: int) -> 
     if isinstance(owner, ast.Attribute) and owner.attr == "position":
         owner = owner.value
     if context.provided(owner) == "ego":
-        made = context.ego_value
+        value = context.ego_value
     else:
-        made = _assigned(owner, context) if isinstance(owner, ast.Name) else None
-    if not isinstance(made, scenic.New):
+        value = _assigned(owner, context) if isinstance(owner, ast.Name) else None
+    if not isinstance(value, scenic.New):
         return False
-    for specifier in made.specifiers:
+    for specifier in value.specifiers:
         operand = specifier.operands[0] if specifier.operands else None
         if specifier.specifier == "at" and operand is not None:
             parts = operand.elts[:2] if isinstance(operand, ast.Tuple | ast.List) else [operand]
@@ -158,17 +158,17 @@ def _is_passed(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[
     if not isinstance(function, ast.FunctionDef) or any(isinstance(each, ast.Starred) for each in node.args):
         return
     parameters = [*function.args.posonlyargs, *function.args.args]
-    given = dict(zip([each.arg for each in parameters], node.args, strict=False))
-    given.update((each.arg, each.value) for each in node.keywords if each.arg is not None)
-    random = {name for name, value in given.items() if is_random(value, context)}
+    arguments = dict(zip([each.arg for each in parameters], node.args, strict=False))
+    arguments.update((each.arg, each.value) for each in node.keywords if each.arg is not None)
+    random = {name for name, value in arguments.items() if is_random(value, context)}
     if not random or not _is_asked_now(node, scope, context):
         return
-    stored = [
+    assigned_names = [
         part for part in walk(function) if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
     ]
     for part in walk(function):
         if isinstance(part, ast.If | ast.While | ast.IfExp):
-            random.difference_update(each.id for each in stored if each.lineno < part.lineno)
+            random.difference_update(each.id for each in assigned_names if each.lineno < part.lineno)
         if not isinstance(part, ast.If | ast.While | ast.IfExp) or not isinstance(part.test, ast.Compare):
             continue
         sides = [part.test.left, *part.test.comparators]
@@ -180,7 +180,7 @@ def _is_passed(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[
         yield context.error(
             "SC403",
             f"`{function.name}` compares its parameter `{name}`, whose value is random here",
-            given[name],
+            arguments[name],
             "its value is known only in a sampled scene: put `@distributionFunction` before the definition (from "
             "`scenic.core.distributions`), which calls the function on each sample",
             labels=(context.label(part.test, "it is compared here"),),
@@ -191,10 +191,10 @@ def _is_passed(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[
 def _truth(node: ast.BoolOp | ast.UnaryOp, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC403: ``x and y``, ``not x`` with a random ``x``."""
     if isinstance(node, ast.UnaryOp):
-        asked = [node.operand] if isinstance(node.op, ast.Not) else []
+        operands = [node.operand] if isinstance(node.op, ast.Not) else []
     else:
-        asked = node.values[:-1]
-    wrong = next((each for each in asked if is_random(each, context)), None)
+        operands = node.values[:-1]
+    wrong = next((each for each in operands if is_random(each, context)), None)
     if wrong is None or not _is_asked_now(node, scope, context):
         return
     yield context.error(

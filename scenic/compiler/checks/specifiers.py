@@ -64,8 +64,8 @@ def _new(node: scenic.New, _scope: Scope, context: CheckContext) -> Iterator[Dia
 def _regions(specifiers: list[scenic.SpecifierPhrase], context: CheckContext) -> Iterator[Diagnostic]:
     """SC404: a point where a region is wanted: ``in front of x``."""
     for specifier in specifiers:
-        declared = SPECIFIERS.get(specifier.specifier)
-        pairs = () if declared is None else zip(declared.operands, specifier.operands, strict=False)
+        declaration = SPECIFIERS.get(specifier.specifier)
+        pairs = () if declaration is None else zip(declaration.operands, specifier.operands, strict=False)
         for operand, value in pairs:
             if operand.types != (REGION,) or not isinstance(value, scenic.Operation):
                 continue
@@ -89,7 +89,7 @@ def _conflicts(specifiers: list[scenic.SpecifierPhrase], context: CheckContext) 
         for item in _specified(specifier):
             if item.when is None:
                 strongest[item.property] = min(item.priority, strongest.get(item.property, item.priority))
-    given: dict[str, scenic.SpecifierPhrase] = {}
+    specifiers_by_property: dict[str, scenic.SpecifierPhrase] = {}
     kinds: dict[str, scenic.SpecifierPhrase] = {}
     for specifier in specifiers:
         title = _title(specifier)
@@ -113,7 +113,7 @@ def _conflicts(specifiers: list[scenic.SpecifierPhrase], context: CheckContext) 
             and item.priority == strongest[item.property]
         ]
         for item in claims:
-            first = given.get(item.property)
+            first = specifiers_by_property.get(item.property)
             if first is not None:
                 yield context.error(
                     "SC301",
@@ -124,7 +124,7 @@ def _conflicts(specifiers: list[scenic.SpecifierPhrase], context: CheckContext) 
                 )
                 break
         for item in claims:
-            given.setdefault(item.property, specifier)
+            specifiers_by_property.setdefault(item.property, specifier)
 
 
 def _finals(
@@ -186,10 +186,10 @@ def _cycle(
     strength: dict[str, int] = {}
     modifier: scenic.SpecifierPhrase | None = None
     for specifier in node.specifiers:
-        declared = SPECIFIERS.get(specifier.specifier)
-        if declared is None:
+        declaration = SPECIFIERS.get(specifier.specifier)
+        if declaration is None:
             return
-        if declared.modifies:
+        if declaration.modifies:
             modifier = specifier
             continue
         for item in _specified(specifier):
@@ -213,8 +213,10 @@ def _cycle(
 
     # Where the defaults need one another in no circle, there can only be one through what the specifiers give. Those of
     # other modules are checked there.
-    own = properties if context.foreign(node.cls) is None and context.classes.is_circular(properties) else ()
-    cycle = find_cycle([*(name for name in providers if needed(name)), *own], needed)
+    circular_properties = (
+        properties if context.foreign(node.cls) is None and context.classes.is_circular(properties) else ()
+    )
+    cycle = find_cycle([*(name for name in providers if needed(name)), *circular_properties], needed)
     if cycle is not None:
         yield _needs_itself(node, cycle, providers, context)
 

@@ -55,10 +55,10 @@ def check_support(context: CheckContext, misplaced: Container[ast.AST]) -> Itera
             continue
         for node, scope in context.nodes(cls):
             if cls is scenic.Operation:
-                forgotten = _class_without_new(node, context)
-                if forgotten is not None:
+                class_name = _class_without_new(node, context)
+                if class_name is not None:
                     if not _carried(node, scope):
-                        yield missing_new(forgotten, context, f"new {forgotten.id} at ...")
+                        yield missing_new(class_name, context, f"new {class_name.id} at ...")
                     continue
             feature = _refused(node)
             if (

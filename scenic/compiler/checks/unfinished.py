@@ -58,21 +58,21 @@ _BINDING: Final = (
 @cache
 def _following() -> Mapping[tuple[str, str], str]:
     """For two words that follow each other in a form of the language, the form."""
-    found: dict[tuple[str, str], str] = {}
-    for declared in declared_forms():
-        words = zip(declared.words, declared.is_word, strict=True)
+    forms: dict[tuple[str, str], str] = {}
+    for declaration in declared_forms():
+        words = zip(declaration.words, declaration.is_word, strict=True)
         for (first, is_first), (second, is_second) in pairwise(words):
             if is_first and is_second and second in SOFT_KEYWORDS:
-                found.setdefault((first, second), declared.text)
+                forms.setdefault((first, second), declaration.text)
     for form in (form for statement in STATEMENTS.values() for form in statement.forms):
         for first, second in pairwise(form.split()):
             if second in SOFT_KEYWORDS:
-                found.setdefault((first, second), form)
+                forms.setdefault((first, second), form)
     for temporal in TEMPORAL_OPERATORS.values():
         for form in temporal.forms:
             if form.split()[0] in SOFT_KEYWORDS:
-                found.setdefault(("require", form.split()[0]), f"require {form}")
-    return MappingProxyType(found)
+                forms.setdefault(("require", form.split()[0]), f"require {form}")
+    return MappingProxyType(forms)
 
 
 @cache

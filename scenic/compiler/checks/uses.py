@@ -59,8 +59,8 @@ def check_uses(context: CheckContext) -> Iterator[Diagnostic]:
     if resolution.reflective or context.broken:
         return
     imports = (node for cls in (ast.Import, ast.ImportFrom) for node, _ in context.nodes(cls))
-    imported = (resolution.sites.get(alias) for node in imports for alias in node.names)
-    for binding in dict.fromkeys(each for each in imported if each is not None):
+    import_bindings = (resolution.sites.get(alias) for node in imports for alias in node.names)
+    for binding in dict.fromkeys(each for each in import_bindings if each is not None):
         if _is_imported(binding) and binding not in resolution.read and _is_of_concern(binding, context):
             yield from _unused_import(binding, binding.scope, context)
     for block in context.blocks:
@@ -86,13 +86,13 @@ def _monitors(context: CheckContext) -> Iterator[Diagnostic]:
 
 def _hidden(binding: Binding, context: CheckContext) -> Iterator[Diagnostic]:
     """SC207."""
-    declared = NAMES[binding.name]
-    if declared.kind in _HIDEABLE or not binding.kinds <= _HIDING or binding.scope.kind is ScopeKind.CLASS:
+    declaration = NAMES[binding.name]
+    if declaration.kind in _HIDEABLE or not binding.kinds <= _HIDING or binding.scope.kind is ScopeKind.CLASS:
         return
     first = binding.first_site
     yield context.warning(
         "SC207",
-        f"`{binding.name}` hides the {declared.kind} of the language with that name",
+        f"`{binding.name}` hides the {declaration.kind} of the language with that name",
         word_span(context.source, first, binding.name),
         "use another name",
     )
@@ -141,11 +141,11 @@ def _unused_import(binding: Binding, scope: Scope, context: CheckContext) -> Ite
     if len(binding.sites) != 1 or scope.kind is ScopeKind.CLASS or binding.name in _exported(context):
         return
     [site] = binding.sites
-    found = context.imports.get(site)
-    if not isinstance(site, ast.alias) or found is None or site.asname == site.name:
+    entry = context.imports.get(site)
+    if not isinstance(site, ast.alias) or entry is None or site.asname == site.name:
         return
-    statement, guarded, _ = found
-    if guarded or not _has_no_effects(statement, site, context):
+    statement, is_guarded, _ = entry
+    if is_guarded or not _has_no_effects(statement, site, context):
         return
     if scope is context.resolution.module and _is_library(context):
         return  # Others may import it from here.

@@ -50,10 +50,10 @@ def _specifiers(
         return
     for specifier in node.specifiers:
         if specifier.property is not None:
-            declared = _PROPERTIES.get(specifier.property)
-            if declared is not None and specifier.operands:
+            declaration = _PROPERTIES.get(specifier.property)
+            if declaration is not None and specifier.operands:
                 title = f"`with {specifier.property}`"
-                yield from wrong_kinds(title, declared.types, specifier.operands[0], context)
+                yield from wrong_kinds(title, declaration.types, specifier.operands[0], context)
         elif specifier.specifier in SPECIFIERS:
             element = SPECIFIERS[specifier.specifier]
             for operand, value in zip(element.operands, specifier.operands, strict=False):
@@ -441,16 +441,16 @@ def _attribute(node: ast.Attribute, scope: Scope, context: CheckContext) -> Iter
         )
         return
     if kind.name in INSTANCES:
-        known = kind.members
-        if known is None or name in known or name in context.given or name in context.stored_attributes:
+        members = kind.members
+        if members is None or name in members or name in context.given or name in context.stored_attributes:
             return
         if name in MEMBERS["vector"]:
             return  # Points have the attributes of their positions.
     else:
-        known = frozenset(members_of(kind.name))
-        if not known or name in known:
+        members = frozenset(members_of(kind.name))
+        if not members or name in members:
             return
-    yield from _unknown_attribute(node, kind, known, context)
+    yield from _unknown_attribute(node, kind, members, context)
 
 
 def _unknown_attribute(
@@ -458,22 +458,24 @@ def _unknown_attribute(
 ) -> Iterator[Diagnostic]:
     """An attribute that is none of the known ones."""
     name = node.attr
-    meant = nearest(name, known)
-    if meant is None and kind.name in INSTANCES:
-        meant = _ELSEWHERE.get(name) or related(name, {each for each in known if not each.startswith("_")})
+    similar_name = nearest(name, known)
+    if similar_name is None and kind.name in INSTANCES:
+        similar_name = _ELSEWHERE.get(name) or related(
+            name, {each for each in known if not each.startswith("_")}
+        )
     place = _end(node, context)
-    if meant is None and kind.name not in _COMPLETE:
+    if similar_name is None and kind.name not in _COMPLETE:
         # Python code may give it to some of them.
         # Some regions have more, but nothing of the language is written with underscores.
         is_open = kind.name not in INSTANCES and not (kind.name == "region" and "_" in name)
         if not is_open and name not in _MEMBERS_OF_OBJECTS and not _has_python(context):
-            own = (each for each in known if each in _PROPERTIES or kind.name == "region")
+            declared_names = (each for each in known if each in _PROPERTIES or kind.name == "region")
             ways = f"a class declares more (`{name}: value`), or `with {name} value`"
             yield context.warning(
                 "SC214",
                 f"{kind.phrase} has no attribute `{name}`, and nothing in this program gives it one",
                 place,
-                f"its attributes are {', '.join(sorted(own)[:6])}, ..."
+                f"its attributes are {', '.join(sorted(declared_names)[:6])}, ..."
                 + ("" if kind.name == "region" else f"; {ways}"),
             )
         return
@@ -481,8 +483,10 @@ def _unknown_attribute(
         "SC214",
         f"{kind.phrase} has no attribute `{name}`",
         place,
-        f"did you mean `{meant}`?" if meant else f"its attributes are {', '.join(sorted(known)[:6])}, ...",
-        fix=context.renaming(place, name, meant) if meant else None,
+        f"did you mean `{similar_name}`?"
+        if similar_name
+        else f"its attributes are {', '.join(sorted(known)[:6])}, ...",
+        fix=context.renaming(place, name, similar_name) if similar_name else None,
     )
 
 
@@ -503,36 +507,38 @@ def _of_agent(node: ast.Attribute, context: CheckContext) -> Iterator[Diagnostic
     if binding is None or binding.scope.kind not in (ScopeKind.BEHAVIOR, ScopeKind.MONITOR):
         return
     name = node.attr
-    known = context.given | context.stored_attributes | context.owners.keys() | _MEMBERS_OF_OBJECTS
-    meant = None if name in known else nearest(name, _MEMBERS_OF_OBJECTS)
-    if meant is None or any(name == item.name for item, _ in context.nodes(scenic.PropertyDef)):
+    names = context.given | context.stored_attributes | context.owners.keys() | _MEMBERS_OF_OBJECTS
+    similar_name = None if name in names else nearest(name, _MEMBERS_OF_OBJECTS)
+    if similar_name is None or any(name == item.name for item, _ in context.nodes(scenic.PropertyDef)):
         return
     surroundings = context.surroundings
-    brought = () if surroundings is None else map(surroundings.brought, surroundings.names)
-    if any(each is not None and each.properties is not None and name in each.properties for each in brought):
+    classes = () if surroundings is None else map(surroundings.brought, surroundings.names)
+    if any(each is not None and each.properties is not None and name in each.properties for each in classes):
         return
     place = _end(node, context)
     yield context.warning(
         "SC214",
         f"no class of this program has a property `{name}`",
         place,
-        f"did you mean `{meant}`?",
-        fix=context.renaming(place, name, meant),
+        f"did you mean `{similar_name}`?",
+        fix=context.renaming(place, name, similar_name),
     )
 
 
 def _parameter(name: str, place: Span, context: CheckContext) -> Iterator[Diagnostic]:
     """SC214: ``globalParameters.sped``, ``globalParameters['sped']``."""
-    known = context.parameters
-    meant = nearest(name, known)
-    if name in known or meant is None:
+    names = context.parameters
+    similar_name = nearest(name, names)
+    if name in names or similar_name is None:
         return
     yield context.warning(
         "SC214",
         f"this program sets no parameter `{name}`",
         place,
-        f"did you mean `{meant}`?",
-        fix=context.renaming(place, name, meant) if place.end_column - place.column == len(name) else None,
+        f"did you mean `{similar_name}`?",
+        fix=context.renaming(place, name, similar_name)
+        if place.end_column - place.column == len(name)
+        else None,
     )
 
 
@@ -546,8 +552,8 @@ def _end(node: ast.Attribute, context: CheckContext) -> Span:
 def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC214: ``size: self.lenth * 2``, in the defaults of a class."""
     defaults = [item.value for item in node.body if isinstance(item, scenic.PropertyDef)]
-    known = context.classes.members_of(node) if defaults else None
-    if known is None:
+    members = context.classes.members_of(node) if defaults else None
+    if members is None:
         return
     for default in defaults:
         for part in walk(default):
@@ -555,25 +561,25 @@ def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator
                 isinstance(part, ast.Attribute)
                 and isinstance(part.value, ast.Name)
                 and part.value.id == "self"
-                and part.attr not in known
+                and part.attr not in members
                 and part.attr not in context.given
             ):
-                yield from _of_self(part, node.name, known, context)
+                yield from _of_self(part, node.name, members, context)
 
 
 def _of_self(
     node: ast.Attribute, name: str, known: frozenset[str], context: CheckContext
 ) -> Iterator[Diagnostic]:
-    meant = nearest(node.attr, known)
-    if meant is None or node.attr in context.stored_attributes:
+    similar_name = nearest(node.attr, known)
+    if similar_name is None or node.attr in context.stored_attributes:
         return  # A class that derives from it may have the property.
     place = _end(node, context)
     yield context.error(
         "SC214",
         f"`{name}` has no property `{node.attr}`",
         place,
-        f"did you mean `{meant}`?",
-        fix=context.renaming(place, node.attr, meant),
+        f"did you mean `{similar_name}`?",
+        fix=context.renaming(place, node.attr, similar_name),
     )
 
 

@@ -39,14 +39,14 @@ def wrong_kinds(
     else:
         message = f"{title}: expected {noun}, not {kind.phrase}"
     ranges = [each for each in (value, *getattr(value, "elts", ())) if isinstance(each, ast.Call)]
-    counted = next((each for each in ranges if context.provided(each.func) == "range"), None)
-    if counted is not None and (text := context.text(counted)) is not None:
+    range_call = next((each for each in ranges if context.provided(each.func) == "range"), None)
+    if range_call is not None and (text := context.text(range_call)) is not None:
         yield context.error(
             "SC404",
             message,
-            counted,
+            range_call,
             f"a random number between two bounds is `Range{text[len('range') :]}`; `range` counts",
-            fix=context.renaming(counted.func, "range", "Range"),
+            fix=context.renaming(range_call.func, "range", "Range"),
         )
         return
     yield context.error("SC404", message, value, advice or f"give it {noun}")
@@ -76,17 +76,17 @@ _HEXADECIMAL: Final = re.compile(r"#([0-9a-fA-F]{2})([0-9a-fA-F]{2})([0-9a-fA-F]
 def _colour_name(title: str, value: ast.expr, name: str, context: CheckContext) -> Diagnostic:
     """SC404: ``with color "red"``, ``with color "#ff0000"``."""
     parts = _HEXADECIMAL.fullmatch(name)
-    meant = _COLOURS.get(name.lower()) if parts is None else None
+    replacement = _COLOURS.get(name.lower()) if parts is None else None
     if parts is not None:
-        meant = f"({', '.join(f'{int(part, 16) / _MOST:.3g}' for part in parts.groups())})"
+        replacement = f"({', '.join(f'{int(part, 16) / _MOST:.3g}' for part in parts.groups())})"
     return context.error(
         "SC404",
         f"{title}: expected a colour, 3 or 4 numbers from 0 to 1, not text",
         value,
-        f"write `{meant}`"
-        if meant
+        f"write `{replacement}`"
+        if replacement
         else "write red, green, blue and maybe opacity as numbers from 0 to 1, in parentheses",
-        fix=context.replacement(f"Write `{meant}`", value, meant) if meant else None,
+        fix=context.replacement(f"Write `{replacement}`", value, replacement) if replacement else None,
     )
 
 
@@ -108,20 +108,22 @@ def _too_bright(title: str, value: ast.Tuple | ast.List, context: CheckContext) 
     if wrong is None or len(parts) not in COLOR.lengths:
         return
     # The opacity goes up to 1 in most programs.
-    divided = [
+    shares = [
         _divided(part, context) if number in numbers and at < len("rgb") else context.text(part) or ""
         for at, (part, number) in enumerate(zip(value.elts, parts, strict=True))
     ]
-    shown = f"({', '.join(divided)})"
-    fits = max(numbers) <= _MOST and all(divided)
+    replacement = f"({', '.join(shares)})"
+    fits = max(numbers) <= _MOST and all(shares)
     yield context.error(
         "SC404",
         f"{title}: a colour is made of numbers from 0 to 1, not {context.text(wrong)}",
         wrong,
-        f"divide parts that go up to {_MOST}: `{shown}`"
+        f"divide parts that go up to {_MOST}: `{replacement}`"
         if fits
         else "write red, green, blue and maybe opacity as numbers from 0 to 1",
-        fix=context.replacement(f"Write `{shown}`", value, shown, certain=False) if fits else None,
+        fix=context.replacement(f"Write `{replacement}`", value, replacement, certain=False)
+        if fits
+        else None,
     )
 
 

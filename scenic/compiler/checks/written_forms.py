@@ -20,14 +20,14 @@ def check_written_forms(context: CheckContext) -> Iterator[Diagnostic]:
             if position(node) < position(first):
                 uses[name] = node
     for name, node in uses.items():
-        declared = NAMES.get(name)
-        if declared is None or declared.syntax is None:
+        declaration = NAMES.get(name)
+        if declaration is None or declaration.syntax is None:
             continue
         yield Diagnostic(
             "SC315",
-            f"the language writes `{declared.name}` in words",
+            f"the language writes `{declaration.name}` in words",
             context.span(node),
             Severity.INFORMATION,
             context.source.filename,
-            f"write {declared.syntax}",
+            f"write {declaration.syntax}",
         )

@@ -105,16 +105,16 @@ class Conditions:
         parameters = self._parameters(node)
         try:
             # What is nested in a leaf finds the names as parameters of the leaf.
-            nested = Conditions(self._resolution, self._captured, self._captured)
-            symbolic = _Symbolic(self._resolution, nested._split)
-            traced: ast.expr = lambda_(
+            inner = Conditions(self._resolution, self._captured, self._captured)
+            symbolic = _Symbolic(self._resolution, inner._split)
+            builder: ast.expr = lambda_(
                 [(part.id, part) for part in parameters], symbolic.expression(node), node
             )
         except _OpaqueError:
-            traced = start_of(ast.Constant(None), node)
+            builder = start_of(ast.Constant(None), node)
         options = {"awaits": True} if any(map(self._is_awaited, _in_order(node))) else {}
         return prelude_call(
-            "condition", [traced, *self.kept(node), *self._margin(node)], node, options=options
+            "condition", [builder, *self.kept(node), *self._margin(node)], node, options=options
         )
 
     def _margin(self, node: ast.expr) -> list[ast.expr]:
@@ -123,18 +123,18 @@ class Conditions:
             case ast.Compare(left=left, ops=ops, comparators=others):
                 if not all(type(item) in _MEASURED for item in ops):
                     return []
-                symbols, compared = [_MEASURED[type(item)] for item in ops], [left, *others]
+                symbols, operands_of_comparison = [_MEASURED[type(item)] for item in ops], [left, *others]
             case scenic.Operation(
                 operator=(
                     "intersects" | "can see" | "is ahead of" | "is behind" | "is left of" | "is right of"
                 ) as symbol,
                 operands=[ast.expr() as left, ast.expr() as right],
             ):
-                symbols, compared = [symbol], [left, right]
+                symbols, operands_of_comparison = [symbol], [left, right]
             case _:
                 return []
         words = tuple_([constant(symbol, node) for symbol in symbols], node)
-        operands = tuple_([self._captured(part) for part in compared], node)
+        operands = tuple_([self._captured(part) for part in operands_of_comparison], node)
         value = prelude_call("margin", [words, operands], node)
         return [lambda_([(part.id, part) for part in self._parameters(node)], value, node)]
 
@@ -158,10 +158,10 @@ class Conditions:
     def _free_names(self, node: ast.expr) -> Iterator[ast.Name]:
         """The first occurrence of every name that a leaf takes from outside, other than provided ones."""
         inner = {self._resolution.scopes[part] for part in walk(node) if part in self._resolution.scopes}
-        seen: set[str] = set()
+        names: set[str] = set()
         for part in _in_order(node):
             binding = self._resolution.binding(part)
-            if part.id in seen or (binding is not None and binding.scope in inner):
+            if part.id in names or (binding is not None and binding.scope in inner):
                 continue
             if part.id in self._changing and binding is not None and binding.scope.kind is ScopeKind.MODULE:
                 continue
@@ -169,9 +169,9 @@ class Conditions:
                 continue
             if isinstance(part.ctx, ast.Store):
                 # The leaf assigns the name before it reads it.
-                seen.add(part.id)
+                names.add(part.id)
             elif binding is not None or part.id in TRACKED or self._may_be_bound(part.id):
-                seen.add(part.id)
+                names.add(part.id)
                 yield part
 
     def _is_awaited(self, part: ast.Name) -> bool:
@@ -283,8 +283,8 @@ class _Symbolic:
                 options = [lambda_([], self.expression(option), option) for option in (body, orelse)]
                 return prelude_call("choose", [self._condition(test), *options], node)
             case ast.Subscript(value=value, slice=index):
-                lowered = rebuilt(node, value=self.expression(value), slice=self._index(index))
-                return rebuilt(lowered, value=sliceable(lowered))
+                subscript = rebuilt(node, value=self.expression(value), slice=self._index(index))
+                return rebuilt(subscript, value=sliceable(subscript))
             case ast.Tuple(elts=elements) | ast.List(elts=elements):
                 return rebuilt(node, elts=self._all(elements))
             case ast.Call():
@@ -410,12 +410,12 @@ class _Symbolic:
             callee, elements = over
             if self._resolution.binding(callee) is not None:
                 raise _OpaqueError  # The program's own function of this name.
-            found = (
+            argument = (
                 self._unrolled(elements)
                 if isinstance(elements, ast.GeneratorExp)
                 else self.expression(elements)
             )
-            return prelude_call("over", [constant(callee.id, callee), callee, found], node)
+            return prelude_call("over", [constant(callee.id, callee), callee, argument], node)
         match node.func:
             case ast.Name(id=function) if function in CONVERSIONS:
                 return prelude_call("convert", [constant(function, node.func), *self._all(node.args)], node)
@@ -466,13 +466,13 @@ def _number_of_distinct(node: ast.Compare) -> tuple[ast.Name, ast.Name, ast.expr
         case ast.Compare(
             left=ast.Call(
                 func=ast.Name(id="len") as length,
-                args=[ast.Call(func=ast.Name(id="set") as made, args=[values], keywords=[])],
+                args=[ast.Call(func=ast.Name(id="set") as set_name, args=[values], keywords=[])],
                 keywords=[],
             ),
             ops=[ast.Eq()],
             comparators=[count],
         ) if not isinstance(values, ast.Starred):
-            return length, made, values, count
+            return length, set_name, values, count
     return None
 
 

@@ -180,8 +180,8 @@ def _instance(lowerer: Lowerer, node: ast.AST) -> ast.expr:
 
 def plain(lowerer: Lowerer, node: scenic.ScenicStatement) -> ast.stmt:
     """A statement without a rule of its own: the call of a method, as `scenic.language.statements` declares it."""
-    declared = STATEMENTS[type(node).__name__]
-    args = [_instance(lowerer, node)] if declared.suspends else []
+    declaration = STATEMENTS[type(node).__name__]
+    args = [_instance(lowerer, node)] if declaration.suspends else []
     options: dict[str, object] = {}
     for field in node._fields:
         value = getattr(node, field)
@@ -191,8 +191,8 @@ def plain(lowerer: Lowerer, node: scenic.ScenicStatement) -> ast.stmt:
             case ast.expr() if field == "name":
                 options[field] = lowerer.label(value)
             case ast.expr():
-                lowered = lowerer.expression(value)
-                args.append(lambda_([], lowered, value) if field in declared.later else lowered)
+                expression = lowerer.expression(value)
+                args.append(lambda_([], expression, value) if field in declaration.later else expression)
             case list():
                 args += [
                     lowerer.specifier(item)
@@ -202,9 +202,9 @@ def plain(lowerer: Lowerer, node: scenic.ScenicStatement) -> ast.stmt:
                 ]
             case _:
                 options[field] = value
-    call: ast.expr = prelude_call(declared.function, args, node, options=options)
-    if declared.effect is not Effect.CALL:
-        call = at((ast.Yield if declared.effect is Effect.YIELD else ast.YieldFrom)(call), node)
+    call: ast.expr = prelude_call(declaration.function, args, node, options=options)
+    if declaration.effect is not Effect.CALL:
+        call = at((ast.Yield if declaration.effect is Effect.YIELD else ast.YieldFrom)(call), node)
     return statement(call, node)
 
 
@@ -238,9 +238,9 @@ def _terminate_when(lowerer: Lowerer, node: scenic.TerminateWhen) -> ast.stmt:
 
 
 def _record(lowerer: Lowerer, node: scenic.Record) -> ast.stmt:
-    kept = lowerer.conditions().kept(node.value)
+    closures = lowerer.conditions().kept(node.value)
     call = prelude_call(
-        "record", kept, node, options={"moment": node.moment, "name": lowerer.label(node.name)}
+        "record", closures, node, options={"moment": node.moment, "name": lowerer.label(node.name)}
     )
     for option, duration in (("every", node.every), ("after", node.after)):
         if duration is not None:
@@ -282,8 +282,8 @@ def _try_interrupt(lowerer: Lowerer, node: scenic.TryInterrupt) -> list[ast.stmt
             # What the block returned comes with the outcome.
             test = prelude_call("returned", [name(outcome, node)], node)
         else:
-            known = start_of(prelude(way.upper(), node), node)
-            test = at(ast.Compare(name(outcome, node), [ast.Is()], [known]), node)
+            way_name = start_of(prelude(way.upper(), node), node)
+            test = at(ast.Compare(name(outcome, node), [ast.Is()], [way_name]), node)
         run.append(at(ast.If(test, [_go(way, outcome, lowerer, node)], []), node))
     if not node.handlers:
         # Python has no `else` without `except`.

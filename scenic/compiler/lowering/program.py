@@ -98,27 +98,27 @@ class _Program:
                 continue
             value = getattr(node, field, None)
             if isinstance(value, ast.AST):
-                lowered: Any = self._lower(value)
+                new_value: Any = self._lower(value)
             elif isinstance(value, list) and value:
-                lowered = self._list(value)
+                new_value = self._list(value)
             else:
                 continue
-            if lowered is not value:
-                changes[field] = lowered
+            if new_value is not value:
+                changes[field] = new_value
         return rebuilt(node, **changes) if changes else node
 
     def _list(self, values: list[Any]) -> list[Any]:
         """Lower each node of a list; return the list itself if nothing in it changes."""
-        lowered: list[Any] = []
+        new_values: list[Any] = []
         same = True
         for value in values:
             result = self._lower(value) if isinstance(value, ast.AST) else value
             if isinstance(result, list):
-                lowered.extend(result)
+                new_values.extend(result)
             else:
-                lowered.append(result)
+                new_values.append(result)
             same = same and result is value
-        return values if same else lowered
+        return values if same else new_values
 
     # Names
 
@@ -138,17 +138,17 @@ class _Program:
     def walrus(self, node: ast.NamedExpr) -> ast.expr:
         instance = None if self._captured else self._instance(node.target)
         if instance is None:
-            lowered: ast.expr = self.copy(node)
-            return lowered
+            assignment: ast.expr = self.copy(node)
+            return assignment
         # `(__value__ := e, __instance__.__setattr__("x", __value__))[0]`: only names can be assigned in expressions.
         value = at(
             ast.NamedExpr(at(ast.Name(_VALUE, ast.Store()), node.target), self.expression(node.value)), node
         )
         setter = start_of(instance_attribute(instance, "__setattr__", node.target), node.target)
-        stored = at(
+        storing = at(
             ast.Call(setter, [constant(node.target.id, node.target), name(_VALUE, node.target)], []), node
         )
-        pair = tuple_([value, stored], node)
+        pair = tuple_([value, storing], node)
         return at(ast.Subscript(pair, constant(0, node), ast.Load()), node)
 
     def subscript(self, node: ast.Subscript) -> ast.expr:
@@ -345,18 +345,18 @@ class _Program:
         body: list[ast.stmt] = []
         if node.docstring is not None:
             body.append(start_of(ast.Expr(start_of(ast.Constant(node.docstring), node)), node))
-        own = instance_name(self._resolution.scopes[node])
-        with self.blocks.running(own):
+        instance = instance_name(self._resolution.scopes[node])
+        with self.blocks.running(instance):
             guards = dynamics.guards(self, node, [])
             body.extend(self.block(node.setup or ()))
             functions, compose = dynamics.compose(self, node)
         sets_up = constant(node.setup is not None, node)
-        signature = self._with_instance(args, node, own)
+        signature = self._with_instance(args, node, instance)
         definition = dynamics.definition(
             node, decorator="scenario", parts=[*guards, compose, sets_up], arguments=signature, body=body
         )
-        lowered = self._kept(node, definition)
-        return [*functions, *lowered] if isinstance(lowered, list) else [*functions, lowered]
+        statements = self._kept(node, definition)
+        return [*functions, *statements] if isinstance(statements, list) else [*functions, statements]
 
     def _with_instance(self, args: ast.arguments, node: Any, *own: str) -> ast.arguments:
         """The parameters of a definition, after those for the running instance and its agent."""
@@ -393,7 +393,7 @@ class _Program:
 
     def assignment(self, node: ast.Assign | ast.AugAssign) -> Any:
         """An assignment, and after it the checks of what may be properties of objects."""
-        lowered: ast.stmt = self.copy(node)
+        statement: ast.stmt = self.copy(node)
         targets = node.targets if isinstance(node, ast.Assign) else [node.target]
         checks = [
             at(
@@ -402,7 +402,7 @@ class _Program:
             )
             for owner, attribute in _assigned_attributes(targets)
         ]
-        return [lowered, *checks] if checks else lowered
+        return [statement, *checks] if checks else statement
 
     def annotated(self, node: ast.AnnAssign) -> ast.stmt:
         lowered: ast.AnnAssign = self.copy(node)
@@ -422,18 +422,18 @@ class _Program:
         return rebuilt(lowered, body=[self._store(node), *lowered.body])
 
     def match_case(self, node: ast.match_case) -> ast.match_case:
-        lowered: ast.match_case = self.copy(node)
+        case: ast.match_case = self.copy(node)
         captures = [part for part in ast.walk(node.pattern) if part in self._bound_by]
         if not captures:
-            return lowered
-        guard = lowered.guard
+            return case
+        guard = case.guard
         if guard is not None:
             # The guard reads the names already: `(__instance__.__setattr__("x", x), guard)[-1]`.
             parts: list[ast.expr] = [self._store_now(part) for part in captures]
             last = at(ast.UnaryOp(ast.USub(), constant(1, guard)), guard)
             guard = at(ast.Subscript(tuple_([*parts, guard], guard), last, ast.Load()), guard)
-        body = [*(self._store(part) for part in captures), *lowered.body]
-        return rebuilt(lowered, body=body, guard=guard)
+        body = [*(self._store(part) for part in captures), *case.body]
+        return rebuilt(case, body=body, guard=guard)
 
     def _store_now(self, site: ast.AST) -> ast.expr:
         """Return an expression that stores a name on its instance, as the statement of `_store` does."""

@@ -112,13 +112,13 @@ def unfinished_header(at: Situation) -> Problem | None:
         return at.problem(
             "SC110", at.gap(at.end), f"the name of the {word} is missing", f"write `{word} Name():`"
         )
-    meant = next((each for each in _HEADERS if len(word) >= _LEAST and each.startswith(word)), None)
-    if meant is None:
-        meant = nearest(word, _HEADERS)
-    if meant is None:
+    header = next((each for each in _HEADERS if len(word) >= _LEAST and each.startswith(word)), None)
+    if header is None:
+        header = nearest(word, _HEADERS)
+    if header is None:
         return None
-    shown = f"{meant} Name():" if meant in _NAMED else f"{meant} ...:"
-    return at.problem("SC118", at.place(at.first), f"`{word}` begins no block", f"did you mean `{shown}`?")
+    example = f"{header} Name():" if header in _NAMED else f"{header} ...:"
+    return at.problem("SC118", at.place(at.first), f"`{word}` begins no block", f"did you mean `{example}`?")
 
 
 def missing_block(at: Situation) -> Problem | None:

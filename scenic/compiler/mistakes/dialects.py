@@ -73,7 +73,7 @@ def setting_of_property(at: Situation) -> Problem | None:
     change = Change(first, end, ("with", name) if specifier is None else (specifier,))
     if not at.repairs(change):
         return None
-    meant = f"with {name} ..." if specifier is None else f"{specifier} ..."
+    replacement = f"with {name} ..." if specifier is None else f"{specifier} ..."
     reason = f"a property is set by `with`: `{name}` is no specifier"
     if specifier is not None:
         reason = f"there is no specifier `{name}`"
@@ -82,7 +82,7 @@ def setting_of_property(at: Situation) -> Problem | None:
         specifier is not None or name in properties_of("Object") or (name, ":") in pairwise(at.tokens.texts)
     )
     fix = (title, [change]) if is_known else None
-    return at.problem("SC114", at.place(first), reason, f"write `{meant}`", fix=fix)
+    return at.problem("SC114", at.place(first), reason, f"write `{replacement}`", fix=fix)
 
 
 _SIDES: Final = {"front": ("ahead", "of"), "back": ("behind",), "rear": ("behind",)}
@@ -97,13 +97,13 @@ def side_of_object(at: Situation) -> Problem | None:
         change = Change(first - 1, first + 2, side)
         if not at.repairs(change):
             return None
-        written, meant = at.words(first - 1, first + 2), " ".join(side)
+        phrase, replacement = at.words(first - 1, first + 2), " ".join(side)
         return at.problem(
             "SC114",
             at.place(first - 1, first + 2),
-            f"there is no specifier `{written}` with a distance",
-            f"write `{meant}`",
-            fix=(f"replace it by `{meant}`", [change]),
+            f"there is no specifier `{phrase}` with a distance",
+            f"write `{replacement}`",
+            fix=(f"replace it by `{replacement}`", [change]),
         )
     return None
 
@@ -119,13 +119,13 @@ def number_between(at: Situation) -> Problem | None:
     low_text, high_text = at.word(low), at.word(joint + 1)
     change = Change(first, joint + 2, ("Range", "(", low_text, ",", high_text, ")"))
     place = at.place(first, joint + 2)
-    meant = f"Range({low_text}, {high_text})"
+    replacement = f"Range({low_text}, {high_text})"
     return Problem(
         "SC129",
         place,
         "a random number between two bounds is a distribution, with parentheses",
-        f"write `{meant}`",
-        fix=(f"Write `{meant}`", ((place, meant),)) if at.repairs(change) else None,
+        f"write `{replacement}`",
+        fix=(f"Write `{replacement}`", ((place, replacement),)) if at.repairs(change) else None,
     )
 
 

@@ -78,19 +78,19 @@ def else_if(at: Situation) -> Problem | None:
 def operator(at: Situation) -> Problem | None:
     """``a && b``, ``a => b``, ``a === b``."""
     for first in (at.token - 1, at.token):
-        meant = _PAIRS.get((at.word(first), at.word(first + 1)))
-        if meant is None or not at.adjacent(first):
+        replacement = _PAIRS.get((at.word(first), at.word(first + 1)))
+        if replacement is None or not at.adjacent(first):
             continue
-        change = Change(first, first + 2, (meant,))
+        change = Change(first, first + 2, (replacement,))
         if not at.helps(change):
             continue
-        written = at.word(first) + at.word(first + 1)
+        symbol = at.word(first) + at.word(first + 1)
         return at.problem(
             "SC129",
             at.place(first, first + 2),
-            f"there is no operator `{written}`",
-            f"write `{meant}`",
-            fix=(f"replace `{written}` by `{meant}`", [change]),
+            f"there is no operator `{symbol}`",
+            f"write `{replacement}`",
+            fix=(f"replace `{symbol}` by `{replacement}`", [change]),
         )
     return None
 
@@ -109,13 +109,13 @@ def unit(at: Situation) -> Problem | None:
     if at.token == 0 or at.tokens.kinds[at.token - 1] != NUMBER or not at.is_plain_name(at.token):
         return None
     rate = f"{at.found}/{at.word(at.token + 2)}" if at.word(at.token + 1) == "/" else ""
-    said = _UNITS.get(rate) or _UNITS.get(at.found)
-    if said is None:
+    advice = _UNITS.get(rate) or _UNITS.get(at.found)
+    if advice is None:
         return None
     return at.problem(
         "SC129",
         at.here(),
-        f"numbers have no units: {said}",
+        f"numbers have no units: {advice}",
         f"convert the number, and leave `{rate or at.found}` out",
     )
 
@@ -148,7 +148,7 @@ def block_comment(at: Situation) -> Problem | None:
     )
     if first is None or (first > at.first and not at.repairs(Change(first, at.end, ()))):
         return None
-    closed = at.word(at.end - 1) == "/" and at.word(at.end - 2) in ("*", "**")
+    is_closed = at.word(at.end - 1) == "/" and at.word(at.end - 2) in ("*", "**")
     opening = (*at.place(first)[:2], *at.place(first + 1)[2:])
     closing = (*at.gap(at.end - 2)[:2], *at.place(at.end - 1)[2:])
     return Problem(
@@ -156,7 +156,7 @@ def block_comment(at: Situation) -> Problem | None:
         opening,
         "a comment begins with `#` and ends with its line; `/*` begins none",
         "write `#`, and leave `*/` out",
-        fix=("Write `#`", ((opening, "#"), (closing, ""))) if closed else None,
+        fix=("Write `#`", ((opening, "#"), (closing, ""))) if is_closed else None,
     )
 
 
@@ -179,20 +179,20 @@ def increment(at: Situation) -> Problem | None:
 def first_word(at: Situation) -> Problem | None:
     """``function f():``, ``switch x:``, ``throw E()``."""
     word = at.word(at.first)
-    meant = _FIRST_WORDS.get(word.lower())
-    if meant is None or at.token > at.first + 2:
+    keywords = _FIRST_WORDS.get(word.lower())
+    if keywords is None or at.token > at.first + 2:
         return None
-    choices: Sequence[tuple[str, ...]] = [meant] if word == "unless" else [(each,) for each in meant]
+    choices: Sequence[tuple[str, ...]] = [keywords] if word == "unless" else [(each,) for each in keywords]
     for words in choices:
         change = Change(at.first, at.first + 1, words)
         if at.repairs(change) or (at.word(at.end - 1) == ":" and at.repairs(change, context="block")):
-            shown = " ".join(words)
+            replacement = " ".join(words)
             return at.problem(
                 "SC129",
                 at.place(at.first),
                 f"there is no statement `{word}`",
-                f"write `{shown}`",
-                fix=(f"replace it by `{shown}`", [change]),
+                f"write `{replacement}`",
+                fix=(f"replace it by `{replacement}`", [change]),
             )
     return None
 

@@ -52,20 +52,20 @@ def _classes(at: Situation) -> list[int]:
 
 def missing_new(at: Situation) -> Problem | None:
     """``Object facing x``, ``ego = Car with width 2``."""
-    tried = 0
+    attempts = 0
     for index in range(min(at.token, at.end - 1), at.first - 1, -1):
         if not at.is_class_name(index) or at.word(index - 1) in ("new", "class"):
             continue
         if at.word(index - 1) == ".":
-            dotted = _dotted_without_new(at, index)
-            if dotted is not None:
-                return dotted
+            problem = _dotted_without_new(at, index)
+            if problem is not None:
+                return problem
             continue
         follower = at.tokens.kinds[index + 1]
         if follower not in SPECIFIER_KINDS and at.word(index + 1) != ",":
             continue
-        tried += 1
-        if tried > _MOST_CLASSES:
+        attempts += 1
+        if attempts > _MOST_CLASSES:
             break
         name = at.word(index)
         changes = [insertion(index, "new")]
@@ -231,8 +231,8 @@ def call_of_class(at: Situation) -> Problem | None:
     if at.found != "(" or at.word(at.token - 2) != "new":
         return None
     name = at.before
-    declared = NAMES.get(name)
-    if declared is not None and declared.kind is NameKind.DISTRIBUTION:
+    declaration = NAMES.get(name)
+    if declaration is not None and declaration.kind is NameKind.DISTRIBUTION:
         return at.problem(
             "SC135",
             at.here(),
@@ -329,23 +329,23 @@ def another_place(at: Situation) -> Problem | None:
             break
     else:
         return None
-    meant = _PLACES[words]
-    change = Change(first, first + len(words), meant)
+    replacement = _PLACES[words]
+    change = Change(first, first + len(words), replacement)
     if not at.helps(change):
         return None
-    shown, right = " ".join(words), " ".join(meant)
+    phrase, right = " ".join(words), " ".join(replacement)
     place = at.place(first, first + len(words))
     if words[0] in _VAGUE:
         return at.problem(
             "SC114",
             place,
-            f"there is no specifier `{shown}`, which does not say on which side",
+            f"there is no specifier `{phrase}`, which does not say on which side",
             "write `left of`, `right of`, `ahead of` or `behind`, with `by` for the distance",
         )
     return at.problem(
         "SC114",
         place,
-        f"there is no specifier `{shown}`",
+        f"there is no specifier `{phrase}`",
         f"write `{right}`",
         fix=(f"replace it by `{right}`", [change]),
     )
@@ -366,11 +366,11 @@ def unbracketed_coordinates(at: Situation) -> Problem | None:
         return None
     commas = [insertion(index, ",") for index in numbers[1:]]
     changes = [insertion(at.token - 1, "("), *commas, insertion(last + 1, ")")]
-    shown = ", ".join(at.word(index) for index in numbers)
+    coordinates = ", ".join(at.word(index) for index in numbers)
     return at.problem(
         "SC113",
         at.here(),
         "the coordinates of a vector need parentheses and commas",
-        f"write `({shown})`",
+        f"write `({coordinates})`",
         fix=("write them as a vector", changes),
     )

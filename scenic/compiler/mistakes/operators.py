@@ -82,12 +82,12 @@ def loose_prefix_operator(at: Situation) -> Problem | None:
     if operator not in _TIGHT_OPERATORS:
         return None
     changes = [insertion(first, "("), insertion(_end_of_operand(at), ")")]
-    shown = f"{at.before} {at.found}" if at.before not in ("follow", "visible") else at.before
+    phrase = f"{at.before} {at.found}" if at.before not in ("follow", "visible") else at.before
     return at.problem(
         "SC125",
-        at.place(first, at.token + 1) if shown != at.before else at.place(first),
-        f"`{shown}` is looser than the `{operator}` before it",
-        f"put parentheses around `{shown} ...`",
+        at.place(first, at.token + 1) if phrase != at.before else at.place(first),
+        f"`{phrase}` is looser than the `{operator}` before it",
+        f"put parentheses around `{phrase} ...`",
         fix=("add parentheses", changes),
     )
 

@@ -304,8 +304,8 @@ def keyword_as_name(at: Situation) -> Problem | None:
     )
     argument = at.expects("an argument") and at.word(at.token + 1) == "="
     target = at.expects("a target") and at.word(at.first) == "for" and at.found != "in"
-    assigned = at.token == at.first == at.start and at.word(at.token + 1) == "="
-    if not (names or argument or target or assigned) or (at.found == "import" and at.before == "from"):
+    is_target = at.token == at.first == at.start and at.word(at.token + 1) == "="
+    if not (names or argument or target or is_target) or (at.found == "import" and at.before == "from"):
         return None
     opener = at.opener(at.token)
     if argument and opener is not None and at.is_class_name(opener - 1) and at.found in _SPECIFYING:

@@ -56,20 +56,20 @@ def clauses_out_of_order(at: Situation) -> Problem | None:
         if at.found not in order:
             return None
         later = order[order.index(at.found) + 1 :]
-        seen = [i for i in range(index + 1, at.token) if at.word(i) in later]
+        positions = [i for i in range(index + 1, at.token) if at.word(i) in later]
         if at.found in [at.word(i) for i in range(index + 1, at.token)]:
             message = f"`{at.found}` stands twice after `{word}`"
             return at.problem("SC116", at.here(), message, f"the form is `{form}`")
-        if not seen:
+        if not positions:
             return None
         if word == "record" and at.word(at.first + 1) in ("initial", "final"):
             return None
         return at.problem(
             "SC116",
             at.here(),
-            f"`{at.found}` has to stand before `{at.word(seen[0])}`",
+            f"`{at.found}` has to stand before `{at.word(positions[0])}`",
             f"the order is `{form}`",
-            labels=((at.place(seen[0]), f"`{at.word(seen[0])}` stands here"),),
+            labels=((at.place(positions[0]), f"`{at.word(positions[0])}` stands here"),),
         )
     return None
 
@@ -172,8 +172,8 @@ def missing_unit(at: Situation) -> Problem | None:
         )
     if at.is_name(at.token):
         unit = at.found
-        known = unit in ("minutes", "minute", "min", "hours", "hour", "h", "ms", "milliseconds")
-        if known or at.token == at.end - 1:
+        is_unit = unit in ("minutes", "minute", "min", "hours", "hour", "h", "ms", "milliseconds")
+        if is_unit or at.token == at.end - 1:
             return at.problem(
                 "SC128",
                 at.here(),

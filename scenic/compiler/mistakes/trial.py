@@ -97,11 +97,11 @@ class Trials:
         if end - start > LONGEST or self._left <= 0 or ERROR in self._tokens.kinds[start:end]:
             return _FAILED
         key = (start, context, tuple(changes))
-        known = self._known.get(key)
-        if known is None:
+        outcome = self._known.get(key)
+        if outcome is None:
             self._left -= 1
-            known = self._known[key] = self._run(start, end, changes, context)
-        return known
+            outcome = self._known[key] = self._run(start, end, changes, context)
+        return outcome
 
     def _run(self, start: int, end: int, changes: Sequence[Change], context: str) -> TrialOutcome:
         line = _Line(self._tokens)
@@ -135,12 +135,12 @@ class Trials:
         blocks = _Blocks()
         try:
             blocks.run = build_recording_parser(*tokens.lists(), Actions(tokens), blocks)
-            node, reached, farthest, _ = blocks.run(rule, 0)
+            node, stop, farthest, _ = blocks.run(rule, 0)
         except RecursionError:
             return _FAILED
-        if node is not None and reached >= size:
+        if node is not None and stop >= size:
             return TrialOutcome(True, end)
-        farthest = max(farthest, reached, blocks.reached)
+        farthest = max(farthest, stop, blocks.reached)
         return TrialOutcome(False, start if farthest <= offset else result.origins[farthest])
 
 

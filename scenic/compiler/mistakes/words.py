@@ -53,12 +53,12 @@ def _near(word: str) -> Iterator[str]:
     if word.lower() in OTHER_WORDS:
         return iter(())
     reach = max(1, len(word) // 3) if len(word) > 1 else 0
-    found = []
+    candidates = []
     for keyword in _KEYWORDS:
         edits = distance(word.lower(), keyword.lower(), limit=reach)
         if edits <= reach and keyword != word and (len(word) > 2 or sorted(word.lower()) == sorted(keyword)):
-            found.append((edits, keyword))
-    return (keyword for _, keyword in sorted(found))
+            candidates.append((edits, keyword))
+    return (keyword for _, keyword in sorted(candidates))
 
 
 def _synonyms(word: str) -> Iterator[str]:
@@ -105,9 +105,9 @@ def misspelt(at: Situation) -> Problem | None:
             continue
         if at.tokens.kinds[index] != NAME and at.word(index) not in SYNONYMS:
             continue
-        parted = _parted(at.word(index))
-        if parted and at.repairs(Change(index, index + 1, parted)):
-            return _misspelt(at, index, *parted)
+        words = _parted(at.word(index))
+        if words and at.repairs(Change(index, index + 1, words)):
+            return _misspelt(at, index, *words)
         for keyword in (*_synonyms(at.word(index)), *_near(at.word(index))):
             change = Change(index, index + 1, (keyword,))
             context = "block" if at.word(at.end - 1) == ":" else None
@@ -168,17 +168,17 @@ _OTHER_WORDS: Final = {
 def other_word(at: Situation) -> Problem | None:
     """``terminate if c``, ``interrupt if c:``, ``facing at x``."""
     for index in range(at.first + 1, min(at.token, at.end - 1) + 1):
-        meant = _OTHER_WORDS.get((at.word(index - 1), at.word(index)))
-        if meant is None or (at.word(index - 1) != "facing" and index > at.first + 2):
+        replacement = _OTHER_WORDS.get((at.word(index - 1), at.word(index)))
+        if replacement is None or (at.word(index - 1) != "facing" and index > at.first + 2):
             continue
-        change = Change(index, index + 1, (meant,))
+        change = Change(index, index + 1, (replacement,))
         if at.repairs(change) or at.word(index - 1) == "interrupt":
             return at.problem(
                 "SC114",
                 at.place(index),
-                f"`{at.word(index - 1)}` is followed by `{meant}`, not by `{at.word(index)}`",
-                f"write `{at.word(index - 1)} {meant} ...`",
-                fix=(f"replace `{at.word(index)}` by `{meant}`", [change]),
+                f"`{at.word(index - 1)}` is followed by `{replacement}`, not by `{at.word(index)}`",
+                f"write `{at.word(index - 1)} {replacement} ...`",
+                fix=(f"replace `{at.word(index)}` by `{replacement}`", [change]),
             )
     return None
 
@@ -264,7 +264,7 @@ def _fits(at: Situation, word: str) -> bool:
 
 def _phrase(at: Situation) -> int | None:
     """The first token of the form that continues at the mistake."""
-    depth, found = 0, None
+    depth, position = 0, None
     for index in range(at.token - 1, at.first - 1, -1):
         word = at.word(index)
         if word in (")", "]", "}"):
@@ -274,11 +274,11 @@ def _phrase(at: Situation) -> int | None:
         elif word in (",", "=", "(", "[", "{"):
             break
         elif word in _PHRASES:
-            found = index
+            position = index
             # A word in the middle of a form is not its beginning.
             if word not in ("from", "for", "to", "along") and at.word(index - 1) not in _PHRASES:
                 break
-    return found
+    return position
 
 
 def wrong_word(at: Situation) -> Problem | None:
@@ -357,11 +357,11 @@ def kind_of_heading(at: Situation) -> Problem | None:
         good = [kind for kind in kinds if at.helps(insertion(at.token - 1, kind))]
         if not good:
             return None
-        named = _either(good)
+        alternatives = _either(good)
         return at.problem(
             "SC114",
             at.place(at.token - 1),
-            f"{named} is missing before `{at.before} of`",
+            f"{alternatives} is missing before `{at.before} of`",
             f"write `{good[0]} {at.before} of ...`, or `{at.word(at.token + 1)}.{at.before}`",
         )
     if at.before not in ("relative", "apparent") or not at.starts_operand(at.token):
@@ -370,13 +370,13 @@ def kind_of_heading(at: Situation) -> Problem | None:
     good = [kind for kind in kinds if at.helps(insertion(at.token, kind, "of"))]
     if not good:
         return None
-    named = _either([f"{kind} of" for kind in good])
+    alternatives = _either([f"{kind} of" for kind in good])
     return at.problem(
         "SC114",
         at.here(),
-        f"{named} is missing after `{at.before}`",
+        f"{alternatives} is missing after `{at.before}`",
         f"write `{at.before} {good[0]} of {at.found}`",
-        fix=None if len(good) > 1 else (f"insert {named[1:-1]}", [insertion(at.token, good[0], "of")]),
+        fix=None if len(good) > 1 else (f"insert {alternatives[1:-1]}", [insertion(at.token, good[0], "of")]),
     )
 
 
@@ -398,30 +398,30 @@ def operator_without_left_side(at: Situation) -> Problem | None:
 
 def missing_operand(at: Situation) -> Problem | None:
     """``beyond x from y``, ``follow f for 3``: a whole clause is missing before a word."""
-    for opening, needed, clause in (
+    for opening, keyword, clause in (
         ("beyond", "by", "by distance"),
         ("follow", "from", "from position"),
         ("follow", "for", "for distance"),
         ("following", "for", "for distance"),
         ("along", "by", "by offset"),
     ):
-        if not at.expects(needed) or at.word(at.token) == needed:
+        if not at.expects(keyword) or at.word(at.token) == keyword:
             continue
         for index in range(at.token - 2, at.first - 1, -1):
             word = at.word(index)
-            if word in (",", "=") or word == needed:
+            if word in (",", "=") or word == keyword:
                 break
             if word == opening:
-                shown = "offset along" if word == "along" else word
+                phrase = "offset along" if word == "along" else word
                 where = f"before `{at.found}`" if not at.at_end() else "at the end"
-                changes = [insertion(at.token, needed, "1")]
+                changes = [insertion(at.token, keyword, "1")]
                 if not at.helps(*changes) and not at.at_end():
                     break
                 return at.problem(
                     "SC114",
                     at.here(),
-                    f"`{shown}` needs `{clause}` {where}",
-                    f"write `{at.words(index, at.token)} {needed} ...`",
+                    f"`{phrase}` needs `{clause}` {where}",
+                    f"write `{at.words(index, at.token)} {keyword} ...`",
                 )
     return None
 
@@ -437,34 +437,34 @@ def order_of_corners(at: Situation) -> Problem | None:
     words = [at.word(index) for index in range(first, last)]
     if at.word(last) != "of" or len(words) < 2:
         return None
-    written = " ".join(words)
+    phrase = " ".join(words)
     place = at.place(first, last)
-    ordered = sorted(words, key=lambda word: _CORNER_STEP[word])
-    steps = [_CORNER_STEP[word] for word in ordered]
-    if ordered == words and steps in ([1, 2], [0, 1, 2]):
+    words_in_order = sorted(words, key=lambda word: _CORNER_STEP[word])
+    steps = [_CORNER_STEP[word] for word in words_in_order]
+    if words_in_order == words and steps in ([1, 2], [0, 1, 2]):
         return None
     if steps in ([1, 2], [0, 1, 2]):
         return at.problem(
             "SC116",
             place,
-            f"there is no operator `{written} of`",
-            f"write `{' '.join(ordered)} of`",
-            fix=("put the words in order", [Change(first, last, tuple(ordered))]),
+            f"there is no operator `{phrase} of`",
+            f"write `{' '.join(words_in_order)} of`",
+            fix=("put the words in order", [Change(first, last, tuple(words_in_order))]),
         )
     if steps == [0, 2]:
-        high, side = ordered
+        high, side = words_in_order
         return at.problem(
             "SC114",
             place,
-            f"there is no operator `{written} of`: it does not say whether front or back",
+            f"there is no operator `{phrase} of`: it does not say whether front or back",
             f"write `{high} front {side} of` or `{high} back {side} of`",
         )
     if steps == [0, 1]:
-        high, side = ordered
+        high, side = words_in_order
         return at.problem(
             "SC114",
             place,
-            f"there is no operator `{written} of`: it does not say whether left or right",
+            f"there is no operator `{phrase} of`: it does not say whether left or right",
             f"write `{high} {side} left of` or `{high} {side} right of`",
         )
-    return at.problem("SC110", place, f"there is no operator `{written} of`", "name each direction once")
+    return at.problem("SC110", place, f"there is no operator `{phrase} of`", "name each direction once")

@@ -223,7 +223,7 @@ def _minimum_inverse(_payload: object, result: Bounds, *operands: Bounds) -> Seq
     """No operand lies below the minimum; where only one reaches down to it, that one is the minimum."""
     if _fold(intervals.minimum, operands) is None:
         return [None] * len(operands)
-    narrowed = []
+    bounds = []
     for place, operand in enumerate(operands):
         others = [other for position, other in enumerate(operands) if position != place]
         alone = np.ones(1, dtype=np.bool_)
@@ -232,8 +232,8 @@ def _minimum_inverse(_payload: object, result: Bounds, *operands: Bounds) -> Seq
             alone = alone & (other.lower > result.upper)
             numeric = numeric & ~intervals.infinite(other)
         lower = np.where(numeric, result.lower, -np.inf)
-        narrowed.append(Bounds(lower, np.where(numeric & alone, result.upper, np.inf)))
-    return narrowed
+        bounds.append(Bounds(lower, np.where(numeric & alone, result.upper, np.inf)))
+    return bounds
 
 
 def _maximum_inverse(_payload: object, result: Bounds, *operands: Bounds) -> Sequence[Bounds | None]:

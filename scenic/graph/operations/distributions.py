@@ -59,14 +59,14 @@ def _normal(_call: Call, axis: Column, mean: Column, deviation: Column) -> Colum
 def _truncated_normal(call: Call, axis: Column, mean: Column, deviation: Column) -> Column:
     low, high = call.payload
     mean, deviation = mean.astype(np.float64), np.abs(deviation.astype(np.float64))
-    fixed = deviation == 0
-    if fixed.any():
-        impossible = fixed & ((mean < low) | (mean > high))
+    is_constant = deviation == 0
+    if is_constant.any():
+        impossible = is_constant & ((mean < low) | (mean > high))
         if impossible.any():
             call.fault(impossible, ValueError("a normal without deviation lies outside its window"))
-    scale = np.where(fixed, 1.0, deviation)
+    scale = np.where(is_constant, 1.0, deviation)
     z = conditioned_quantile((low - mean) / scale, (high - mean) / scale, axis)
-    return np.asarray(np.clip(np.where(fixed, mean, mean + scale * z), low, high))
+    return np.asarray(np.clip(np.where(is_constant, mean, mean + scale * z), low, high))
 
 
 def _discrete_range(call: Call, axis: Column, low: Column, high: Column) -> Column:
@@ -315,13 +315,13 @@ def _range_inverse(
     rising = high.lower >= low.upper
     falling = low.lower >= high.upper
     # Between ordered ends the place falls as either end grows, so that its extremes are at theirs.
-    known = rising & (exact.upper <= high.lower)
-    last = np.where(known, (exact.upper - low.lower) / (high.lower - low.lower), np.inf)
-    known = rising & (exact.lower >= low.upper)
-    first = np.where(known, (exact.lower - low.upper) / (high.upper - low.upper), -np.inf)
-    ordered = Bounds(np.where(np.isnan(first), -np.inf, first), np.where(np.isnan(last), np.inf, last))
+    is_certain = rising & (exact.upper <= high.lower)
+    last = np.where(is_certain, (exact.upper - low.lower) / (high.lower - low.lower), np.inf)
+    is_certain = rising & (exact.lower >= low.upper)
+    first = np.where(is_certain, (exact.lower - low.upper) / (high.upper - low.upper), -np.inf)
+    shares = Bounds(np.where(np.isnan(first), -np.inf, first), np.where(np.isnan(last), np.inf, last))
     # At the very ends the clipped value hides where on the axis it came from by no more than rounding.
-    place = intervals.widened(intervals.relaxed(place.meet(ordered), 1e-15), 1e-15)
+    place = intervals.widened(intervals.relaxed(place.meet(shares), 1e-15), 1e-15)
     new_low = Bounds(np.where(falling, exact.lower, -np.inf), np.where(rising, exact.upper, np.inf))
     new_high = Bounds(np.where(rising, exact.lower, -np.inf), np.where(falling, exact.upper, np.inf))
     return [place, new_low, new_high]
@@ -355,11 +355,15 @@ def _normal_inverse(
     # Far in the tail a probability is a few units in the last place, or rounded to nothing.
     place = outward(ndtr(z.lower) * (1 - 1e-11), ndtr(z.upper) * (1 + 1e-11), ulps=4)
     inside = _opened(axis)
-    drawn = intervals.widened(
+    standard_normal = intervals.widened(
         intervals.relaxed(Bounds(ndtri(inside.lower), ndtri(inside.upper)), 1e-12), 1e-12
     )
-    product = intervals.multiply(deviation, drawn)
-    return [place, intervals.subtract(before_rounding(result), product), intervals.divide(shift, drawn)]
+    product = intervals.multiply(deviation, standard_normal)
+    return [
+        place,
+        intervals.subtract(before_rounding(result), product),
+        intervals.divide(shift, standard_normal),
+    ]
 
 
 def _normal_solver(terms: Terms, _payload: object, _axis: object, _mean: object, _deviation: object) -> Any:
@@ -390,7 +394,7 @@ def _truncated_inverse(
     payload: _Window, result: Bounds, _axis: Bounds, mean: Bounds, deviation: Bounds
 ) -> list[Bounds | None]:
     low, high = payload
-    a, b, scale, fixed = _standardised(payload, mean, deviation)
+    a, b, scale, is_constant = _standardised(payload, mean, deviation)
     shift = intervals.subtract(before_rounding(result), mean)
     z = intervals.widened(intervals.relaxed(Bounds(shift.lower / scale, shift.upper / scale), 1e-11), 1e-11)
     below, above = (conditioned_cumulative(a, b, np.clip(end, a, b)) for end in (z.lower, z.upper))
@@ -400,7 +404,7 @@ def _truncated_inverse(
         np.where(result.lower <= low, 0.0, place.lower), np.where(result.upper >= high, 1.0, place.upper)
     )
     nothing = intervals.unbounded(place)
-    return [_if_fixed(fixed, place, nothing), None, None]
+    return [_if_fixed(is_constant, place, nothing), None, None]
 
 
 def _truncated_solver(
@@ -429,8 +433,8 @@ def _discrete_inverse(
     _payload: object, result: Bounds, _axis: Bounds, low: Bounds, high: Bounds
 ) -> list[Bounds | None]:
     first, last = np.ceil(low.lower), np.floor(high.upper)
-    fixed = _fixed(low, high)
-    count = np.where(fixed, last - first + 1, 1.0)
+    has_fixed_ends = _fixed(low, high)
+    count = np.where(has_fixed_ends, last - first + 1, 1.0)
     start = (np.ceil(result.lower) - first) / count
     end = (np.floor(result.upper) - first + 1) / count
     place = intervals.relaxed(Bounds(start, end), 1e-15)
@@ -438,7 +442,7 @@ def _discrete_inverse(
     nothing = intervals.unbounded(place)
     below = Bounds(np.full_like(result.lower, -np.inf), result.upper)
     above = Bounds(result.lower, np.full_like(result.upper, np.inf))
-    return [_if_fixed(fixed & (count > 0), place, nothing), below, above]
+    return [_if_fixed(has_fixed_ends & (count > 0), place, nothing), below, above]
 
 
 def _discrete_solver(terms: Terms, _payload: object, _axis: object, low: Any, high: Any) -> Any:
@@ -579,11 +583,11 @@ def _select_inverse(
     for place, mask in enumerate(possible):
         first = np.where(mask, np.minimum(first, place), first)
         last = np.where(mask, float(place), last)
-    narrowed: list[Bounds | None] = [Bounds(first, last)]
+    bounds: list[Bounds | None] = [Bounds(first, last)]
     for place, option in enumerate(options):
         fits = option is not None and option.lower.shape[1:] == result.lower.shape[1:]
-        narrowed.append(where((first == place) & (last == place), result) if fits else None)
-    return narrowed
+        bounds.append(where((first == place) & (last == place), result) if fits else None)
+    return bounds
 
 
 def _select_solver(terms: Terms, _payload: object, index: Any, *options: Any) -> Any:

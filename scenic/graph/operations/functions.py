@@ -130,14 +130,14 @@ def _normalize_inverse(_payload: object, result: Bounds, angle: Bounds) -> list[
     low, high = result.lower - margin, result.upper + margin
     first = np.ceil((angle.lower - high) / math.tau)
     last = np.floor((angle.upper - low) / math.tau)
-    turned = Bounds(low + math.tau * first - margin, high + math.tau * last + margin)
+    shifted_range = Bounds(low + math.tau * first - margin, high + math.tau * last + margin)
     inside = (angle.lower >= -math.pi) & (angle.upper <= math.pi)
-    known = np.isfinite(margin) & (margin < 1e-3)
+    is_precise = np.isfinite(margin) & (margin < 1e-3)
     # What is at the seam may count as either end.
     return [
         Bounds(
-            np.where(inside, result.lower, np.where(known, turned.lower, -np.inf)),
-            np.where(inside, result.upper, np.where(known, turned.upper, np.inf)),
+            np.where(inside, result.lower, np.where(is_precise, shifted_range.lower, -np.inf)),
+            np.where(inside, result.upper, np.where(is_precise, shifted_range.upper, np.inf)),
         )
     ]
 

@@ -129,19 +129,22 @@ def _power_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
 
 def _power_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds | None]:
     """The root, where the exponent is one positive number."""
-    fixed = (b.lower == b.upper) & (b.lower > 0)
-    exponent = np.where(fixed, b.lower, 1.0)
+    has_one_exponent = (b.lower == b.upper) & (b.lower > 0)
+    exponent = np.where(has_one_exponent, b.lower, 1.0)
     odd = np.mod(exponent, 2) == 1
     even = np.mod(exponent, 2) == 0
     # With a small exponent very different bases have the same rounded power; the root's own error grows with the
     # logarithm of the base.
     exact = before_rounding(result, 4)
-    signed = intervals.relaxed(Bounds(_root(exact.lower, exponent), _root(exact.upper, exponent)), 1e-12)
-    low, high = np.maximum(signed.lower, 0.0), np.maximum(signed.upper, 0.0)
+    roots = intervals.relaxed(Bounds(_root(exact.lower, exponent), _root(exact.upper, exponent)), 1e-12)
+    low, high = np.maximum(roots.lower, 0.0), np.maximum(roots.upper, 0.0)
     # An even power hides the sign of its base; a broken one admits no negative base.
-    lower = np.where(odd, signed.lower, np.where(even & (a.lower < 0), -high, low))
-    upper = np.where(odd, signed.upper, np.where(even & (a.upper <= 0), -low, high))
-    return [Bounds(np.where(fixed, lower, -np.inf), np.where(fixed, upper, np.inf)), None]
+    lower = np.where(odd, roots.lower, np.where(even & (a.lower < 0), -high, low))
+    upper = np.where(odd, roots.upper, np.where(even & (a.upper <= 0), -low, high))
+    return [
+        Bounds(np.where(has_one_exponent, lower, -np.inf), np.where(has_one_exponent, upper, np.inf)),
+        None,
+    ]
 
 
 def _root(value: Column, exponent: Column) -> Column:

@@ -91,15 +91,15 @@ def _and_inverse(_payload: object, result: Bounds, *operands: Bounds) -> list[Bo
     An operand is reached when all before it hold.
     """
     true, false = certain(result)
-    narrowed: list[Bounds | None] = []
+    bounds: list[Bounds | None] = []
     earlier = np.ones(1, dtype=np.bool_)
     for place, operand in enumerate(operands):
         alone = false & earlier
         for other in operands[place + 1 :]:
             alone = alone & (other.lower > 0)
-        narrowed.append(where(true | earlier, truth(true, alone)))
+        bounds.append(where(true | earlier, truth(true, alone)))
         earlier = earlier & (operand.lower > 0)
-    return narrowed
+    return bounds
 
 
 def _or_inverse(_payload: object, result: Bounds, *operands: Bounds) -> list[Bounds | None]:

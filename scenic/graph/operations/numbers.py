@@ -76,7 +76,7 @@ def lane_by_lane(call: Call, function: Callable[..., Any], dtype: type[Any], *co
     """
     arrays = np.broadcast_arrays(*columns)
     result = np.zeros(arrays[0].shape, dtype=dtype)
-    failed = np.zeros(arrays[0].shape, dtype=np.bool_)
+    faulty_lanes = np.zeros(arrays[0].shape, dtype=np.bool_)
     error: Exception | None = None
     values_of_lanes = zip(*(array.ravel().tolist() for array in arrays), strict=True)
     for lane, values in enumerate(values_of_lanes):
@@ -86,8 +86,8 @@ def lane_by_lane(call: Call, function: Callable[..., Any], dtype: type[Any], *co
                 raise TypeError("the result of a negative number to a broken power is not a real number")
             result.flat[lane] = value
         except (ArithmeticError, ValueError, TypeError) as problem:
-            failed.flat[lane] = True
+            faulty_lanes.flat[lane] = True
             error = problem if error is None else error
     if error is not None:
-        call.fault(failed, error)
+        call.fault(faulty_lanes, error)
     return result

@@ -156,11 +156,11 @@ def matrix(orientation: Bounds) -> Bounds:
         intervals.stacked([yy, xy, xz, xy, xx, yz, xz, yz, xx]),
         intervals.stacked([zz, minus(zw), yw, zw, zz, minus(xw), minus(yw), xw, yy]),
     )
-    doubled = Bounds(2 * sums.lower, 2 * sums.upper)
-    diagonal = intervals.subtract(Bounds.exactly(1.0), doubled)
+    double_sums = Bounds(2 * sums.lower, 2 * sums.upper)
+    diagonal = intervals.subtract(Bounds.exactly(1.0), double_sums)
     limit = 1 + 1e-8
-    lower = np.where(_DIAGONAL, diagonal.lower, doubled.lower).reshape(-1, 3, 3)
-    upper = np.where(_DIAGONAL, diagonal.upper, doubled.upper).reshape(-1, 3, 3)
+    lower = np.where(_DIAGONAL, diagonal.lower, double_sums.lower).reshape(-1, 3, 3)
+    upper = np.where(_DIAGONAL, diagonal.upper, double_sums.upper).reshape(-1, 3, 3)
     return Bounds(np.clip(lower, -limit, limit), np.clip(upper, -limit, limit))
 
 
