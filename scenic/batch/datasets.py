@@ -94,24 +94,24 @@ def make_dataset(
     """
     run = run or Run()
     with WrittenFolder(folder, DATASET) as place:
-        kept = _continued(place, manifest, resume).beside(folder, scenario.filename)
-        for part in kept.parts:
+        current = _continued(place, manifest, resume).beside(folder, scenario.filename)
+        for part in current.parts:
             run.advance(part.last - part.first, 0)
-        place.save(asdict(kept))
-        superseded = [part for part in kept.parts if kept.is_cut_short(part)]
-        _remove_strangers(folder, kept)
+        place.save(asdict(current))
+        short_parts = [part for part in current.parts if current.is_cut_short(part)]
+        _remove_strangers(folder, current)
         missing: list[Exhausted] = []
         try:
-            for further in _progress(scenario, folder, kept, run, missing):
-                kept = further
-                place.save(asdict(kept))
-                for part in superseded:
-                    if part not in kept.parts:
+            for further in _progress(scenario, folder, current, run, missing):
+                current = further
+                place.save(asdict(current))
+                for part in short_parts:
+                    if part not in current.parts:
                         (folder / part.file).unlink(missing_ok=True)
         finally:
             if manifest.form == "images":
-                join_indices(folder, kept)
-        return Finished(kept, tuple(missing))
+                join_indices(folder, current)
+        return Finished(current, tuple(missing))
 
 
 def _progress(
@@ -119,7 +119,7 @@ def _progress(
 ) -> Iterator[Manifest]:
     """Make the parts that are not there; yields the manifest after each, and adds to ``missing`` what is not found."""
     for numbers in kept.ranges():
-        begun = time.monotonic()
+        start_time = time.monotonic()
         with contextlib.closing(PartInProgress(scenario, folder, kept, numbers)) as progress:
             for attempts in progress.recalled():
                 run.advance(1, attempts)
@@ -131,13 +131,13 @@ def _progress(
                 run.deadline,
                 **method_of(kept.points),
             )
-            for made in _made(scenario, progress.encoder, job, run.engine):
-                progress.add(made)
-                missing.extend(made.missing)
-                run.advance(made.job.last - made.job.first, made.attempts)
+            for block_of_scenes in _made(scenario, progress.encoder, job, run.engine):
+                progress.add(block_of_scenes)
+                missing.extend(block_of_scenes.missing)
+                run.advance(block_of_scenes.job.last - block_of_scenes.job.first, block_of_scenes.attempts)
             if any(item.reason == "time" for item in missing):
                 return
-            kept = kept.with_part(progress.finish(), time.monotonic() - begun)
+            kept = kept.with_part(progress.finish(), time.monotonic() - start_time)
             if scenario.approximation is not None:
                 kept = replace(kept, approximation=str(scenario.approximation))
         yield kept
@@ -163,11 +163,11 @@ def write_table(
         **method_of(manifest.points),
     )
     with lock_beside(path), contextlib.closing(TableFile(path, scenario, manifest)) as table:
-        for made in _made(scenario, encoder, job, run.engine):
-            for block in blocks_of(made.encoded):
+        for result in _made(scenario, encoder, job, run.engine):
+            for block in blocks_of(result.encoded):
                 table.add(block.rows)
-            missing.extend(made.missing)
-            run.advance(made.job.last - made.job.first, made.attempts)
+            missing.extend(result.missing)
+            run.advance(result.job.last - result.job.first, result.attempts)
         table.finish()
     return Finished(manifest, tuple(missing))
 
@@ -203,7 +203,7 @@ def _continued(place: WrittenFolder, manifest: Manifest, resume: bool | Resuming
         )
     _check_same(folder, manifest, earlier)
     changes = check_files(folder, DatasetError, earlier.files, manifest.files, accepted=how.accept_changes)
-    wanted = replace(earlier, count=manifest.count, files=manifest.files, fingerprint=manifest.fingerprint)
+    target = replace(earlier, count=manifest.count, files=manifest.files, fingerprint=manifest.fingerprint)
     whole = []
     for part in earlier.parts:
         damage = damage_of(folder, part, earlier, read=how.verify)
@@ -211,7 +211,7 @@ def _continued(place: WrittenFolder, manifest: Manifest, resume: bool | Resuming
             whole.append(part)
         else:
             warn(f"'{folder / damage.file}': {damage.what}; its scenes are made again", code="SC612")
-    kept = replace(wanted, parts=tuple(whole))
+    kept = replace(target, parts=tuple(whole))
     if changes:
         # What was found by other files is looked for again.
         for path in folder.glob(f"part-*{JOURNAL}"):

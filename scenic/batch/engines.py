@@ -104,19 +104,19 @@ class OverExecutor:
         remote = Portable(function)
         upcoming = Upcoming(arguments, spread)
         busy: dict[Future[bytes], int] = {}
-        done: SimpleQueue[Future[bytes]] = SimpleQueue()
+        results: SimpleQueue[Future[bytes]] = SimpleQueue()
 
         def give() -> None:
             while len(busy) < _AHEAD * self.jobs and (taken := upcoming.take()) is not None:
                 index, argument = taken
                 future = self._executor.submit(remote, argument)
                 busy[future] = index
-                future.add_done_callback(done.put)
+                future.add_done_callback(results.put)
 
         try:
             give()
             while busy:
-                future = done.get()
+                future = results.get()
                 index = busy.pop(future)
                 try:
                     result = pickle.loads(future.result())
@@ -193,24 +193,24 @@ class DaskCluster:
         remote = Portable(function)
         upcoming = Upcoming(arguments, spread)
         busy: dict[Any, tuple[int, _Argument]] = {}
-        done = self._distributed.as_completed(loop=self._client.loop)
+        completions = self._distributed.as_completed(loop=self._client.loop)
         token = os.urandom(6).hex()  # other commands may use the same cluster
 
         def give() -> None:
-            while len(busy) < _AHEAD * self.jobs and (taken := upcoming.take()) is not None:
-                key = f"{self._label}-{token}-{taken[0]}"
-                future = self._client.submit(remote, taken[1], key=key, pure=False)
-                busy[future] = taken
-                done.add(future)
+            while len(busy) < _AHEAD * self.jobs and (tasks := upcoming.take()) is not None:
+                key = f"{self._label}-{token}-{tasks[0]}"
+                future = self._client.submit(remote, tasks[1], key=key, pure=False)
+                busy[future] = tasks
+                completions.add(future)
 
         try:
             give()
             while busy:
-                ended = [next(done), *done.next_batch(block=False)]
-                taken = [busy.pop(future) for future in ended]
+                futures = [next(completions), *completions.next_batch(block=False)]
+                tasks = [busy.pop(future) for future in futures]
                 give()  # the workers go on while results are fetched
-                for (index, argument), fetched in zip(taken, self._fetched(ended), strict=True):
-                    result = lost(argument, -9) if fetched is None else pickle.loads(fetched)
+                for (index, argument), data in zip(tasks, self._fetched(futures), strict=True):
+                    result = lost(argument, -9) if data is None else pickle.loads(data)
                     upcoming.finish(index)
                     give()
                     yield index, result
@@ -231,18 +231,18 @@ class DaskCluster:
             present = [future for future, error in zip(ended, errors, strict=True) if error is None]
 
             async def gather(futures: list[Any] = present) -> list[bytes]:
-                found: list[bytes] = await self._client.gather(futures, asynchronous=True)
-                return found
+                results: list[bytes] = await self._client.gather(futures, asynchronous=True)
+                return results
 
             try:
-                found = iter(self._client.sync(gather, callback_timeout=_PATIENCE))
+                results = iter(self._client.sync(gather, callback_timeout=_PATIENCE))
             except TimeoutError:
                 if self._client.status != "running":
                     raise
             except self._distributed.KilledWorker:
                 pass  # which of them, their states tell
             else:
-                return [None if error is not None else next(found) for error in errors]
+                return [None if error is not None else next(results) for error in errors]
 
     def _error_of(self, future: Any) -> Exception | None:
         """The loss of the worker of a task that has ended; raises any other error of it."""

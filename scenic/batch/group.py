@@ -106,14 +106,14 @@ class SimulatorGroup:
 
         """
         job = _Job(scenario, self._make, dict(simulateParams or {}), self._wanted, self._mute)
-        given: Iterator[tuple[int, Any]] = (
+        tasks: Iterator[tuple[int, Any]] = (
             (k, scene if isinstance(scene, bytes) else scenario.sceneToBytes(scene))
             for k, scene in enumerate(scenes)
         )
         if self.numWorkers < 1:
-            yield from map(job, given)
+            yield from map(job, tasks)
             return
-        results = workers.run(job.told, given, jobs=self.numWorkers, lost=_lost)
+        results = workers.run(job.told, tasks, jobs=self.numWorkers, lost=_lost)
         if not deterministic:
             yield from (_checked(result) for _, result in results)
             return
@@ -171,10 +171,10 @@ class _Job:
                 kind, options = self._make
                 self._simulator = kind(**options)
             scene = self._scenario.sceneFromBytes(data)
-            done = self._simulator.simulate(scene, name=str(number), **self._options)
-        if done is None or done.result is None:
+            simulation = self._simulator.simulate(scene, name=str(number), **self._options)
+        if simulation is None or simulation.result is None:
             return GroupResult(str(number), None, "every simulation was rejected", {})
-        result = done.result
+        result = simulation.result
         return GroupResult(
             str(number),
             result.terminationType,
@@ -182,5 +182,5 @@ class _Job:
             result.records,
             result.finalState if final else None,
             result.trajectory if course else None,
-            self._scenario.simulationToBytes(done) if whole else None,
+            self._scenario.simulationToBytes(simulation) if whole else None,
         )

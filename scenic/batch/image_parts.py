@@ -175,7 +175,7 @@ def image_rows(source: Path | bytes, form: str) -> Iterator[dict[str, Any]]:
         return
     index = _index(source.with_suffix(".json"))
     archive = dict(members(source.read_bytes())) if form == "tar" else {}
-    found = {
+    annotations_of_image = {
         number: list(items) for number, items in groupby(index["annotations"], lambda item: item["image_id"])
     }
     for _, group in groupby(index["images"], lambda image: image["k"]):
@@ -183,7 +183,7 @@ def image_rows(source: Path | bytes, form: str) -> Iterator[dict[str, Any]]:
         for name in chain.from_iterable(image["files"] for image in images):
             data = archive.get(name) if form == "tar" else _read(source.parent / name)
             content += b"" if data is None else member(name, data)
-        annotations = chain.from_iterable(found.get(image["id"], []) for image in images)
+        annotations = chain.from_iterable(annotations_of_image.get(image["id"], []) for image in images)
         yield _plain(images, list(annotations), content)
 
 

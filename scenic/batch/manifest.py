@@ -238,10 +238,10 @@ def _check(content: object, fields: "Mapping[str, _FieldRule]", path: Path, wher
             if is_needed:
                 raise DatasetError(f"the manifest '{path}' is damaged: it has no `{where}{name}`", help=_MEND)
         elif not is_right(content[name]):
-            shown = json.dumps(content[name])
-            shown = shown if len(shown) <= _SHOWN else f"{shown[:_SHOWN]}..."
+            text = json.dumps(content[name])
+            text = text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
             raise DatasetError(
-                f"the manifest '{path}' is damaged: `{where}{name}` is {shown}, not {words}", help=_MEND
+                f"the manifest '{path}' is damaged: `{where}{name}` is {text}, not {words}", help=_MEND
             )
 
 

@@ -47,8 +47,8 @@ def search_parts(meshes: list[Mesh], advance: Callable[[int, int], object]) -> N
         return
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         pending = [pool.submit(_search, np.asarray(mesh.vertices), np.asarray(mesh.faces)) for mesh in meshes]
-        for done in as_completed(pending):
-            done.result()
+        for future in as_completed(pending):
+            future.result()
             advance(1, 0)
 
 

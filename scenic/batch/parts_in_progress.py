@@ -60,11 +60,11 @@ class PartInProgress:
         most = min(_BLOCK, self.encoder.most)
         for start in range(0, len(entries), most):
             block = entries[start : start + most]
-            found = block[block[:, 1] > 0]
-            if len(found):
+            rows = block[block[:, 1] > 0]
+            if len(rows):
                 source = method_of(self._manifest.points).get("source")
                 scenes = list(
-                    self._scenario.found(self._manifest.seed, found[:, 0], found[:, 1], source=source)
+                    self._scenario.found(self._manifest.seed, rows[:, 0], rows[:, 1], source=source)
                 )
                 self._put(self.encoder(self._scenario, scenes))
             self._note(block)
@@ -77,10 +77,10 @@ class PartInProgress:
         except OSError:
             data = b""
         entries = np.frombuffer(data[: len(data) - len(data) % ENTRY], dtype=np.int64).reshape(-1, 2)
-        wanted = self._first + np.arange(len(entries))
+        numbers = self._first + np.arange(len(entries))
         entries = entries[: self._last - self._first]
-        wanted = wanted[: len(entries)]
-        good = np.cumprod(entries[:, 0] == wanted, dtype=np.int64).sum() if len(entries) else 0
+        numbers = numbers[: len(entries)]
+        good = np.cumprod(entries[:, 0] == numbers, dtype=np.int64).sum() if len(entries) else 0
         return entries[:good]
 
     def add(self, made: Made) -> None:

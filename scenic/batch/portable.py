@@ -89,11 +89,11 @@ def _same(
             f"a worker cannot load '{name}': {error}",
             help="modules, maps, meshes and textures must lie at the same place on all machines",
         ) from None
-    found = _marks(scenario)
+    own_marks = _marks(scenario)
     for mark in wanted:
-        mine, theirs = found.get(mark, "missing"), wanted[mark]
+        mine, theirs = own_marks.get(mark, "missing"), wanted[mark]
         # Processes need not have loaded the same modules: their own scripts may lie beside the program.
-        if mine != theirs and (mark in found or not mark.startswith("module")):
+        if mine != theirs and (mark in own_marks or not mark.startswith("module")):
             raise ClusterError(
                 f"a worker makes another program of '{name}': its {mark} is {mine[:12]}, in this process {theirs[:12]}",
                 help="give all machines the same files (modules, meshes and textures of the program, the package itself), and start "

@@ -52,14 +52,14 @@ class SceneFileRows:
 
     def _row(self, scene: Scene) -> bytes:
         files = scene_files(scene, self._form, f"{self._stem}-{scene.k:06d}")
-        own = {name: content for name, content in files.items() if "/" not in name}
+        own_files = {name: content for name, content in files.items() if "/" not in name}
         content = b"".join(member(name, data) for name, data in files.items() if name not in self._sent)
-        self._sent |= files.keys() - own.keys()
+        self._sent |= files.keys() - own_files.keys()
         entry = {
             "seed": scene.seed,
             "k": scene.k,
-            "files": {name: _digest(data) for name, data in own.items()},
-            "shared": {name: _digest(data) for name, data in files.items() if name not in own},
+            "files": {name: _digest(data) for name, data in own_files.items()},
+            "shared": {name: _digest(data) for name, data in files.items() if name not in own_files},
         }
         record = json.dumps(entry).encode()
         return np.array([len(content), len(record)], dtype=np.int64).tobytes() + content + record
@@ -123,12 +123,12 @@ def scene_file_names(index: Path) -> list[str]:
 
 def damaged_scene_files(folder: Path, part: Part) -> Iterator[tuple[str, str]]:
     """Files of a part that are missing or changed, and what is wrong with them."""
-    looked: set[str] = set()
+    names: set[str] = set()
     for entry in scene_file_rows(folder / part.file):
         for name, digest in {**entry["files"], **entry["shared"]}.items():
-            if name in looked:
+            if name in names:
                 continue
-            looked.add(name)
+            names.add(name)
             path = folder / name
             if not path.is_file():
                 yield name, "the file is missing"

@@ -147,7 +147,7 @@ def _make(scenario: Scenario, encode: Encode, job: Job) -> Made:
     text, attempts = bytearray(), 0
     missing: list[Exhausted] = []
     block: list[Scene] = []
-    begun = time.monotonic()
+    start_time = time.monotonic()
     try:
         for result in results_of(scenario, job):
             attempts += result.attempts
@@ -162,7 +162,7 @@ def _make(scenario: Scenario, encode: Encode, job: Job) -> Made:
             text += encode(scenario, block)
     except Exception:  # noqa: BLE001 - the parent makes the job again, and shows the error with its place
         return Made(job, b"", (), failed=True)
-    return Made(job, PickleBuffer(text), tuple(missing), attempts, time.monotonic() - begun)
+    return Made(job, PickleBuffer(text), tuple(missing), attempts, time.monotonic() - start_time)
 
 
 def sampled_in_processes(
@@ -189,11 +189,11 @@ def sampled_in_processes(
     deadline = None if time_limit is None else time.monotonic() + time_limit
     job = Job(seed, first, first + n, max_attempts, deadline, source)
     engine = Processes(processes) if executor is None else OverExecutor(executor, max(2, processes))
-    for made in in_processes(scenario, _accepted_attempts, job, engine):
-        if made.missing:
-            raise RejectionException(made.missing[0].message())
-        numbers = np.arange(made.job.first, made.job.last, dtype=np.int64)
-        attempts = np.frombuffer(bytes(made.encoded), dtype=np.int64).reshape(len(numbers), -1)
+    for block in in_processes(scenario, _accepted_attempts, job, engine):
+        if block.missing:
+            raise RejectionException(block.missing[0].message())
+        numbers = np.arange(block.job.first, block.job.last, dtype=np.int64)
+        attempts = np.frombuffer(bytes(block.encoded), dtype=np.int64).reshape(len(numbers), -1)
         attempts = attempts[:, 0] if attempts.shape[1] == 1 else attempts
         yield from scenario.found(seed, numbers, attempts, source=source)
 
@@ -237,10 +237,10 @@ class _Pieces:
 def _ordered(scenario: Scenario, encode: Encode, pieces: _Pieces, engine: Engine) -> Iterator[Made]:
     waiting: dict[int, Made] = {}
     upcoming = 0
-    for index, made in _made(scenario, encode, pieces, engine):
-        if made.seconds:
-            pieces.learn(made)
-        waiting[index] = made
+    for index, block in _made(scenario, encode, pieces, engine):
+        if block.seconds:
+            pieces.learn(block)
+        waiting[index] = block
         while upcoming in waiting:
             ready = waiting.pop(upcoming)
             upcoming += 1

@@ -89,8 +89,12 @@ class SimulationFolder(WrittenFolder):
         earlier = self.document()
         settings = earlier.get("settings")
         files = (earlier.get("origin") or {}).get("files", {})
-        accepted = earlier.get("accepted", [])
-        if not isinstance(settings, dict) or not isinstance(files, dict) or not isinstance(accepted, list):
+        changes_before = earlier.get("accepted", [])
+        if (
+            not isinstance(settings, dict)
+            or not isinstance(files, dict)
+            or not isinstance(changes_before, list)
+        ):
             raise SimulationFolderError(
                 f"the manifest of '{self.path}' is damaged", help="name another folder"
             )
@@ -115,5 +119,9 @@ class SimulationFolder(WrittenFolder):
             self._origin.get("files", {}),
             accepted=self._accept_changes,
         )
-        made = sum(1 for _ in self.path.glob("simulation-*"))
-        return [*accepted, {"simulations": made, "changes": changes}] if changes else accepted
+        simulation_count = sum(1 for _ in self.path.glob("simulation-*"))
+        return (
+            [*changes_before, {"simulations": simulation_count, "changes": changes}]
+            if changes
+            else changes_before
+        )

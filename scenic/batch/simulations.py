@@ -236,14 +236,14 @@ class Simulations:
         if path is None or self._shown:
             return None
         try:
-            found = about_file(path, self._form)
-            if not isinstance(found, dict) or found.get("settings") != self._settings():
+            document = about_file(path, self._form)
+            if not isinstance(document, dict) or document.get("settings") != self._settings():
                 return None
-            if self._form == "jsonl" and not is_whole(path, found["steps"]):
+            if self._form == "jsonl" and not is_whole(path, document["steps"]):
                 return None
         except (OSError, ValueError, KeyError):
             return None
-        return SimulationRow(k, about=found)
+        return SimulationRow(k, about=document)
 
     def _file(self, k: int) -> Path | None:
         return None if self._folder is None else self._folder / f"simulation-{k:04d}.{self._form}"
@@ -272,23 +272,23 @@ class Simulations:
         from scenic.formats.trajectories import course_document
 
         keeping = Kept(self._file(k), self._form, shown=self._shown, watcher=self._watcher)
-        with closing(keeping) as kept:
-            numbered = self._simulated(k, kept)
-            done = numbered.simulation
-            if done is None:
+        with closing(keeping) as keeper:
+            result = self._simulated(k, keeper)
+            simulation = result.simulation
+            if simulation is None:
                 return SimulationRow(
                     k,
-                    missing=_why_missing(numbered),
-                    rejections=numbered.rejections,
-                    exhausted=numbered.exhausted,
+                    missing=_why_missing(result),
+                    rejections=result.rejections,
+                    exhausted=result.exhausted,
                 )
             about = {
-                **course_document(done, k=k, tries=numbered.tries),
+                **course_document(simulation, k=k, tries=result.tries),
                 "settings": self._settings(),
                 "origin": self.origin,
             }
-            wanted = not self._only_violations or is_violated(about)
-            return SimulationRow(k, about=about, page=kept.finish(done, about) if wanted else None)
+            is_kept = not self._only_violations or is_violated(about)
+            return SimulationRow(k, about=about, page=keeper.finish(simulation, about) if is_kept else None)
 
     def _simulated(self, k: int, kept: Kept) -> "Numbered":
         """Simulation ``k``, with its whole course in memory if the program's text looks back at it.
@@ -313,13 +313,13 @@ class Simulations:
         if self._looks_back():
             return simulate(keep_course=True)
         try:
-            numbered = simulate(keep_course=False)
+            result = simulate(keep_course=False)
         except Exception as error:
             if not (kept.looked_back() or NotKeptError.behind(error)):
                 raise
         else:
             if not kept.looked_back():
-                return numbered
+                return result
         return simulate(keep_course=True)
 
     def _looks_back(self) -> bool:
@@ -424,13 +424,13 @@ def simulated(
     elif processes > 1:
         engine = Processes(processes)
     with batch.opened(resume=resume):
-        found = {row.k: row for row in _known(batch, numbers)}
-        with closing(batch.rows([k for k in numbers if k not in found], engine)) as rows:
+        row_of = {row.k: row for row in _known(batch, numbers)}
+        with closing(batch.rows([k for k in numbers if k not in row_of], engine)) as rows:
             for row in rows:
                 if row.error is not None:
                     raise SimulationError(row)
-                found[row.k] = row
-    return [found[k] for k in numbers]
+                row_of[row.k] = row
+    return [row_of[k] for k in numbers]
 
 
 def _known(batch: Simulations, numbers: Sequence[int]) -> Iterator[SimulationRow]:
@@ -441,13 +441,13 @@ def _failure(error: Exception) -> Diagnostic:
     from scenic.failures import diagnose
     from scenic.formats.files import OutputError
 
-    found = diagnose(error)
-    if found is None:
+    diagnostic = diagnose(error)
+    if diagnostic is None:
         message = f"{type(error).__name__}: {error}"
-        found = Diagnostic("SC503", message, help="the simulator raised this")
+        diagnostic = Diagnostic("SC503", message, help="the simulator raised this")
     if isinstance(error, OutputError) or (isinstance(error, OSError) and error.filename is not None):
-        found = replace(found, help=_NOTHING_KEPT)
-    return found
+        diagnostic = replace(diagnostic, help=_NOTHING_KEPT)
+    return diagnostic
 
 
 def _why_missing(numbered: "Numbered") -> str:

@@ -71,12 +71,12 @@ def texts_of(value: object) -> list[str]:
 
 def _constants(value: object) -> Iterator[Any]:
     """The constants that a value is computed from."""
-    found, left = set(), [as_node(value)]
+    nodes, left = set(), [as_node(value)]
     while left:
         node = left.pop()
-        if node in found:
+        if node in nodes:
             continue
-        found.add(node)
+        nodes.add(node)
         left += reversed(node.operands)
         if node.is_constant:
             yield node.value

@@ -159,8 +159,10 @@ def _column(
         x = middle + 0.5 * width * ((place + 0.5) / len(values) - 0.5)
         colour = "#c0392b" if value < 0 else "#2e86c1"
         yield f"<circle cx='{x:.1f}' cy='{height(value):.1f}' r='3' fill='{colour}' fill-opacity='.55'/>"
-    violated = sum(verdict_of(row) == "violated" for row in setting.simulations)
-    for line, text in enumerate((setting.label or "all", f"{violated} of {len(setting.rows)}", "violated")):
+    violation_count = sum(verdict_of(row) == "violated" for row in setting.simulations)
+    for line, text in enumerate(
+        (setting.label or "all", f"{violation_count} of {len(setting.rows)}", "violated")
+    ):
         y = _HEIGHT - _BOTTOM + 22 + 17 * line
         yield f"<text x='{middle:.1f}' y='{y}' text-anchor='middle'>{html.escape(text)}</text>"
 

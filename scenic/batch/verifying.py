@@ -73,27 +73,27 @@ def _compared(
     share: float,
     advance: Callable[[int], None],
 ) -> Iterator[Damage]:
-    chosen = random.Random(part.sha256).sample(
+    sample_numbers = random.Random(part.sha256).sample(
         range(part.first, part.last), min(part.last - part.first, math.ceil(share * (part.last - part.first)))
     )
-    kept = {row["k"]: row for row in part_rows(path, manifest.form)}
+    kept_rows = {row["k"]: row for row in part_rows(path, manifest.form)}
     encoder = Encoder.of(manifest)
     method = method_of(manifest.points)
-    for k in sorted(chosen):
+    for k in sorted(sample_numbers):
         job = Job(manifest.seed, k, k + 1, manifest.max_attempts, None, **method)
         (result,) = results_of(scenario, job)
         advance(1)
         if isinstance(result, Exhausted):
-            if k in kept:
+            if k in kept_rows:
                 yield Damage(part.file, f"scene {k} is there, and the program does not find it")
             continue
         again = next(iter(encoded_rows(encoder.rows(scenario, [result]), manifest.form)), None)
         # Scenes in which no camera takes part have no row.
-        if (again is None) != (k not in kept):
+        if (again is None) != (k not in kept_rows):
             yield Damage(
                 part.file, f"scene {k} is {'there, without a camera' if again is None else 'missing'}"
             )
-        elif again is not None and not is_same(kept[k], again):
+        elif again is not None and not is_same(kept_rows[k], again):
             yield Damage(part.file, f"scene {k} differs from that of the program")
 
 
@@ -119,7 +119,7 @@ def merge(folders: Sequence[Path], target: Path) -> Manifest:
         OutputError: if files cannot be written.
 
     """
-    pieces, merged = _joined(folders)
+    pieces, manifest = _joined(folders)
     if target.exists() and (not target.is_dir() or any(target.iterdir())):
         raise DatasetError(
             f"'{target}' is there already: data sets are joined in a new folder",
@@ -127,34 +127,34 @@ def merge(folders: Sequence[Path], target: Path) -> Manifest:
         )
     home = target.absolute().parent
     make_folder(home)
-    unfinished = home / f".{target.absolute().name[:100]}.{secrets.token_hex(6)}.part"
+    temporary = home / f".{target.absolute().name[:100]}.{secrets.token_hex(6)}.part"
     try:
-        with WrittenFolder(unfinished, DATASET) as place:
+        with WrittenFolder(temporary, DATASET) as place:
             for path, part in pieces:
-                _copy_part(path, part, merged, unfinished / part.file)
-            merged = merged.beside(target, str((folders[0] / merged.source).resolve()))
-            place.save(asdict(merged))
-            if merged.form == "images":
-                join_indices(unfinished, merged)
+                _copy_part(path, part, manifest, temporary / part.file)
+            manifest = manifest.beside(target, str((folders[0] / manifest.source).resolve()))
+            place.save(asdict(manifest))
+            if manifest.form == "images":
+                join_indices(temporary, manifest)
         try:
-            os.replace(unfinished, target)
+            os.replace(temporary, target)
         except OSError as error:
             reason = (error.strerror or str(error)).lower()
             raise OutputError(f"cannot make the folder '{target}': {reason}") from error
     finally:
-        shutil.rmtree(unfinished, ignore_errors=True)
-    lost = gaps(merged.numbers, [part.numbers for part in merged.parts])
-    if lost:
-        shown = ", ".join(f"{first} to {last - 1}" for first, last in lost[:_SHOWN])
-        more = f", and {len(lost) - _SHOWN} more ranges" if len(lost) > _SHOWN else ""
+        shutil.rmtree(temporary, ignore_errors=True)
+    missing_ranges = gaps(manifest.numbers, [part.numbers for part in manifest.parts])
+    if missing_ranges:
+        ranges = ", ".join(f"{first} to {last - 1}" for first, last in missing_ranges[:_SHOWN])
+        more = f", and {len(missing_ranges) - _SHOWN} more ranges" if len(missing_ranges) > _SHOWN else ""
         warn(
-            f"'{target}' lacks the scenes {shown}{more}",
+            f"'{target}' lacks the scenes {ranges}{more}",
             code="SC612",
-            help=f"make them: scenic sample {merged.program} -n {merged.count}"
-            + (f" --first {merged.first}" if merged.first else "")
+            help=f"make them: scenic sample {manifest.program} -n {manifest.count}"
+            + (f" --first {manifest.first}" if manifest.first else "")
             + f" -o {target} --resume",
         )
-    return merged
+    return manifest
 
 
 _SHOWN: Final = 3
@@ -179,10 +179,12 @@ def _joined(folders: Sequence[Path]) -> tuple[list[tuple[Path, Part]], Manifest]
     first = min(manifest.first for _, manifest in manifests)
     last = max(manifest.numbers[1] for _, manifest in manifests)
     parts = tuple(replace(part, file=head.file_of(part.numbers)) for _, part in pieces)
-    accepted = tuple(change for _, manifest in manifests for change in manifest.accepted)
+    changes = tuple(change for _, manifest in manifests for change in manifest.accepted)
     seconds = sum(manifest.seconds for _, manifest in manifests)
-    merged = replace(head, first=first, count=last - first, parts=parts, seconds=seconds, accepted=accepted)
-    return [(path, part) for (path, _), part in zip(pieces, parts, strict=True)], merged
+    joint_manifest = replace(
+        head, first=first, count=last - first, parts=parts, seconds=seconds, accepted=changes
+    )
+    return [(path, part) for (path, _), part in zip(pieces, parts, strict=True)], joint_manifest
 
 
 def _copy_part(path: Path, part: Part, manifest: Manifest, target: Path) -> None:

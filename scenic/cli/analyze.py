@@ -56,16 +56,16 @@ def analyze(
     if png is not None:
         require_pillow()
         check_writable(png)
-    found = analysed(
+    report = analysed(
         file, params=parameters, scenario=scenario, model=model, mode2D=mode_2d, candidates=candidates
     )
     if png is not None:
-        found.png(png)
+        report.png(png)
     if as_json:
-        click.echo(found.to_json())
+        click.echo(report.to_json())
     else:
-        _show(found)
-    return FINDINGS if found.impossible else CLEAN
+        _show(report)
+    return FINDINGS if report.impossible else CLEAN
 
 
 def _show(found: "Assessment") -> None:

@@ -143,12 +143,12 @@ def check(
         watch(paths, lambda: context.invoke(context.command, **{**context.params, "watching": False}))
     fixed_configuration = PLAIN if no_config else None if config is None else read_configuration(config)
     configurations = Configurations(fixed_configuration)
-    found = discover(paths, configurations)
+    discovery = discover(paths, configurations)
     fixing = Fixing.MAKE if fix else Fixing.SHOW if diff else Fixing.NONE
     sources = Sources()
-    problems = list(found.problems)
+    problems = list(discovery.problems)
     tasks: list[Task] = []
-    for file in found.files:
+    for file in discovery.files:
         name, text = file, None
         if file == STANDARD_INPUT:
             name = stdin_filename or "<stdin>"
@@ -162,15 +162,15 @@ def check(
         rules, root = project.rules_for(name, select, ignore), project.folder or None
         tasks.append(Task(name, rules, root, project.python_path, verbose, deep, fixing, text, strict))
     problems = [*configurations.problems, *problems]
-    if not found.files and not problems:
+    if not discovery.files and not problems:
         click.echo("warning: there are no Scenic files under the given paths", err=True)
     outcomes = _outcomes(tasks, jobs)
     for outcome in outcomes:
         sys.stderr.write(outcome.trace)
     diagnostics = [*problems, *(item for outcome in outcomes for item in outcome.diagnostics)]
-    fixed = sum(outcome.fixed for outcome in outcomes)
+    repair_count = sum(outcome.fixed for outcome in outcomes)
     if diff:
-        return _show_diff(outcomes, diagnostics, fixed)
+        return _show_diff(outcomes, diagnostics, repair_count)
     for task, outcome in zip(tasks, outcomes, strict=True):
         if outcome.text is not None:
             # Standard output is for the repaired text; what is left to say goes beside it.
@@ -185,7 +185,7 @@ def check(
         return code
     colours = output_file is None and has_colours(sys.stdout)
     names = [task.filename for task in tasks]
-    report = Report(diagnostics, sources, len(tasks), fixed, code, colours, names)
+    report = Report(diagnostics, sources, len(tasks), repair_count, code, colours, names)
     _write_report(report, "statistics" if statistics else output_format, output_file)
     return code
 

@@ -122,10 +122,12 @@ def _check(task: Task, surroundings_of: SurroundingsOf) -> tuple[Diagnostic, ...
     if task.filename.lower().endswith(SUFFIXES):
         blocks = check_blocks(source.text, filename=task.filename, surroundings_of=surroundings_of)
         return task.rules.apply(blocks)
-    found = check_text(source.text, filename=task.filename, surroundings_of=surroundings_of)
-    if task.deep and not any(item.severity is Severity.ERROR or item.code == UNSUPPORTED for item in found):
-        found = in_order((*found, *_deep(task, source)), filename=task.filename)
-    return task.rules.apply(found)
+    diagnostics = check_text(source.text, filename=task.filename, surroundings_of=surroundings_of)
+    if task.deep and not any(
+        item.severity is Severity.ERROR or item.code == UNSUPPORTED for item in diagnostics
+    ):
+        diagnostics = in_order((*diagnostics, *_deep(task, source)), filename=task.filename)
+    return task.rules.apply(diagnostics)
 
 
 def _check_map(task: Task) -> tuple[Diagnostic, ...]:
@@ -140,8 +142,8 @@ def _check_map(task: Task) -> tuple[Diagnostic, ...]:
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         return (Diagnostic("SC600", f"the map cannot be read: {reason}", filename=task.filename),)
-    found = network_of(content, task.filename, MapOptions()).problems
-    return tuple(replace(item, severity=Severity.ERROR) for item in found) if task.strict else found
+    problems = network_of(content, task.filename, MapOptions()).problems
+    return tuple(replace(item, severity=Severity.ERROR) for item in problems) if task.strict else problems
 
 
 def _deep(task: Task, source: Source) -> tuple[Diagnostic, ...]:
@@ -160,20 +162,24 @@ def _repair(task: Task, surroundings_of: SurroundingsOf) -> Outcome:
     else:
         before = task.text
     make = repair_blocks if task.filename.lower().endswith(SUFFIXES) else repair
-    repaired = make(before, filename=task.filename, shown=task.rules.apply, surroundings_of=surroundings_of)
-    changed = repaired.text != before
+    repair_result = make(
+        before, filename=task.filename, shown=task.rules.apply, surroundings_of=surroundings_of
+    )
+    has_changes = repair_result.text != before
     if task.fixing is Fixing.SHOW:
-        diff = _diff(before, repaired.text, task.filename) if changed else ""
-        return Outcome((), repaired.count, diff)
+        diff = _diff(before, repair_result.text, task.filename) if has_changes else ""
+        return Outcome((), repair_result.count, diff)
     if task.text is not None:
-        return Outcome(repaired.diagnostics, repaired.count, text=repaired.text)
-    if changed:
+        return Outcome(repair_result.diagnostics, repair_result.count, text=repair_result.text)
+    if has_changes:
         from scenic.formats.files import write
 
-        write(Path(task.filename), repaired.text.encode("utf-8"))
+        write(Path(task.filename), repair_result.text.encode("utf-8"))
     return Outcome(
-        _check(replace(task, fixing=Fixing.NONE), surroundings_of) if task.deep else repaired.diagnostics,
-        repaired.count,
+        _check(replace(task, fixing=Fixing.NONE), surroundings_of)
+        if task.deep
+        else repair_result.diagnostics,
+        repair_result.count,
     )
 
 

@@ -23,7 +23,7 @@ def completion(context: click.Context, shell: str) -> int:
 
     For fish: scenic completion fish > ~/.config/fish/completions/scenic.fish
     """
-    made = get_completion_class(shell)
-    assert made is not None
-    click.echo(made(context.find_root().command, {}, "scenic", _VARIABLE).source())
+    completion_class = get_completion_class(shell)
+    assert completion_class is not None
+    click.echo(completion_class(context.find_root().command, {}, "scenic", _VARIABLE).source())
     return CLEAN

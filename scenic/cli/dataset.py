@@ -32,12 +32,12 @@ def info(folder: Path) -> int:
     attempts = sum(part.attempts for part in manifest.parts)
     missing = sum(len(part.missing) for part in manifest.parts)
     table = Table.grid(padding=(0, 2))
-    done = sum(part.last - part.first for part in manifest.parts)
+    scene_count = sum(part.last - part.first for part in manifest.parts)
     rows = [
         ("program", f"{manifest.program} ({manifest.digest[:12]})"),
         ("scenes", f"{manifest.rows:,} of {manifest.count:,}, from number {manifest.first} on"),
         ("not found", f"{missing:,}"),
-        ("state", "complete" if manifest.is_complete else f"{done:,} looked for; go on with --resume"),
+        ("state", "complete" if manifest.is_complete else f"{scene_count:,} looked for; go on with --resume"),
         ("seed", str(manifest.seed)),
         ("format", f"{manifest.form}, {_parts(manifest)} of {manifest.part_size:,}"),
         ("acceptance", f"{manifest.rows / attempts:.3g}" if attempts else "unknown"),
@@ -91,29 +91,29 @@ def verify(folder: Path, program: str | None, share: str) -> int:
     from scenic.batch.manifest import Manifest
     from scenic.batch.verifying import verify as damages_of
 
-    wanted = _share(share)
+    share_to_compare = _share(share)
     manifest = Manifest.load(folder)
     scenario = None
-    if wanted > 0:
+    if share_to_compare > 0:
         from scenic.pipeline import load
 
         # Without steps upward in the path: meshes beside the program have their paths from it.
         scenario = load(program or os.path.abspath(folder / manifest.source), **manifest.options)
-    compared = 0
+    comparison_count = 0
 
     def advance(count: int) -> None:
-        nonlocal compared
-        compared += count
+        nonlocal comparison_count
+        comparison_count += count
 
-    found = list(damages_of(folder, scenario, share=wanted, advance=advance))
-    for item in found:
+    damages = list(damages_of(folder, scenario, share=share_to_compare, advance=advance))
+    for item in damages:
         print(f"{folder / item.file}: {item.what}")
     if not manifest.is_complete:
         print(f"{folder}: not complete: {manifest.rows:,} of {manifest.count:,} scenes")
-    print(f"{_parts(manifest)}, {compared:,} scenes compared, {len(found)} damaged")
-    if found:
+    print(f"{_parts(manifest)}, {comparison_count:,} scenes compared, {len(damages)} damaged")
+    if damages:
         print(f"mend it: {_mending(folder, manifest)}")
-    return FINDINGS if found else CLEAN
+    return FINDINGS if damages else CLEAN
 
 
 def _mending(folder: Path, manifest: "Manifest") -> str:

@@ -96,17 +96,17 @@ class _EstimateRequest(BatchRequest):
     @property
     def parts(self) -> list[BatchPart]:
         """The source of the runs, their use, and the place where they go."""
-        chosen: list[BatchPart] = [_SCREEN, *([_FOLDER] if self.output is not None else [])]
+        batch_parts: list[BatchPart] = [_SCREEN, *([_FOLDER] if self.output is not None else [])]
         if self.path.is_dir():
-            return [*chosen, _FOLDERS, _WITHOUT[_FOLDERS]]
+            return [*batch_parts, _FOLDERS, _WITHOUT[_FOLDERS]]
         ways = {
             _RARE: self.rare, _PRECISION: self.precision is not None, _BOUND: self.at_most is not None,
             _FOLLOW: self.follow is not None, _AGAINST: self.against is not None,
         }  # fmt: skip
         for way, is_chosen in ways.items():
             if is_chosen:
-                chosen += [way, _WITHOUT[way]]
-        return chosen
+                batch_parts += [way, _WITHOUT[way]]
+        return batch_parts
 
     def asked(self, settings: int) -> "Asked":
         """The question to the runs of each of some settings; all intervals hold together (Bonferroni)."""
@@ -280,9 +280,9 @@ def estimate(**options: Any) -> int:
     if request.path.is_dir():
         return _again(request)
     settings = settings_of(request.swept)
-    asked = request.asked(len(settings))
+    question = request.asked(len(settings))
     seed, is_drawn = _seed(request)
-    budget = asked.runs if request.rare else None
+    budget = question.runs if request.rare else None
     programs = [
         (
             request.runs(request.load(parameters), seed, budget),
@@ -296,7 +296,7 @@ def estimate(**options: Any) -> int:
         runs.check()
     if is_drawn:
         announce_seed(seed, "estimate")
-    results = _estimates(request, asked, programs, places)
+    results = _estimates(request, question, programs, places)
     return CLEAN if all(_is_answered(result) for result in results.values()) else NOT_ALL
 
 

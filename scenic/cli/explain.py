@@ -50,9 +50,9 @@ def explain(code: str | None) -> None:
 def _known(written: str) -> str:
     """The code that a user has written in some way: `sc111`, `111`, `error[SC111]`."""
     name = written.strip().upper()
-    bracketed = re.search(r"\[(.*)\]", name)
-    if bracketed is not None:
-        name = bracketed[1]
+    match = re.search(r"\[(.*)\]", name)
+    if match is not None:
+        name = match[1]
     if name.isdecimal():
         name = f"SC{name}"
     if name in CODES:

@@ -194,10 +194,10 @@ def falsify(**options: Any) -> int:
     ]
     if not request.static and request.simulator is None and all(item.is_timeless for item, _ in programs):
         warnings.warn(ScenicWarning(_TIMELESS, help=_STATIC), stacklevel=2)
-    drawn = secrets.randbits(32) if seed is None else seed
+    search_seed = secrets.randbits(32) if seed is None else seed
     if seed is None:
-        announce_seed(drawn, "search")
-    results = _search(request, request.plan(drawn), programs, places)
+        announce_seed(search_seed, "search")
+    results = _search(request, request.plan(search_seed), programs, places)
     return CLEAN if any(result.counterexamples for result in results.values()) else NOT_ALL
 
 

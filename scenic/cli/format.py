@@ -36,10 +36,10 @@ def format_command(paths: tuple[str, ...], check: bool, diff: bool, stdin_filena
     Exit codes: 0 all is in the usual style now, 1 a program has mistakes, or would change (--check, --diff), 2 wrong
     usage, or a file that cannot be read or written.
     """
-    found = discover(paths, Configurations())
-    problems = list(found.problems)
-    changed = 0
-    for name in found.files:
+    discovery = discover(paths, Configurations())
+    problems = list(discovery.problems)
+    change_count = 0
+    for name in discovery.files:
         try:
             text = (
                 sys.stdin.buffer.read().decode()
@@ -59,22 +59,22 @@ def format_command(paths: tuple[str, ...], check: bool, diff: bool, stdin_filena
             if name == STANDARD_INPUT and not (check or diff):
                 sys.stdout.write(text)
             continue
-        formatted = _as_it_was(result, text)
-        changed += formatted != text
+        new_text = _as_it_was(result, text)
+        change_count += new_text != text
         if diff:
             sys.stdout.write(_patch(source, result))
         elif name == STANDARD_INPUT and not check:
-            sys.stdout.write(formatted)
-        elif formatted != text and not check:
-            write(Path(name), formatted.encode())
-        elif formatted != text:
+            sys.stdout.write(new_text)
+        elif new_text != text and not check:
+            write(Path(name), new_text.encode())
+        elif new_text != text:
             sys.stderr.write(f"would change {name}\n")
     show_diagnostics(problems)
-    if not (diff or STANDARD_INPUT in found.files):
-        files = f"{len(found.files)} file{'' if len(found.files) == 1 else 's'}"
+    if not (diff or STANDARD_INPUT in discovery.files):
+        files = f"{len(discovery.files)} file{'' if len(discovery.files) == 1 else 's'}"
         verb = "would be changed" if check else "changed"
-        sys.stderr.write(f"{changed} of {files} {verb}\n")
-    return exit_code(problems) or (FINDINGS if changed and (check or diff) else 0)
+        sys.stderr.write(f"{change_count} of {files} {verb}\n")
+    return exit_code(problems) or (FINDINGS if change_count and (check or diff) else 0)
 
 
 def _as_it_was(result: str, text: str) -> str:

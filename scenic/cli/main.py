@@ -183,16 +183,18 @@ def _run() -> int:
         # The caller has closed it: who wants no output gets none.
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - it lasts as long as the process
     arguments = sys.argv[1:]
-    wanted = [item for item in arguments if item in GLOBAL]
+    global_options = [item for item in arguments if item in GLOBAL]
     if arguments[:1] not in ([name] for name in _COMMANDS):
-        meant = translated(arguments, list(_COMMANDS))
-        if meant is not None:
-            sys.stderr.write(f"here this is written: scenic {shlex.join([*wanted, *meant])}\n")
-            arguments = meant
+        translation = translated(arguments, list(_COMMANDS))
+        if translation is not None:
+            sys.stderr.write(f"here this is written: scenic {shlex.join([*global_options, *translation])}\n")
+            arguments = translation
         else:
             arguments = [item for item in arguments if item not in GLOBAL]
     return _guarded(
-        arguments, backtrace=bool({"-b", "--full-backtrace"} & set(wanted)), debug="--pdb" in wanted
+        arguments,
+        backtrace=bool({"-b", "--full-backtrace"} & set(global_options)),
+        debug="--pdb" in global_options,
     )
 
 
@@ -234,10 +236,10 @@ def _report(error: Exception) -> int:
     """Show an exception that escaped a command: a problem of the program, or else a fault of ours."""
     if isinstance(error, click.Abort):
         raise error
-    found = _diagnostics(error)
-    if found:
-        show_diagnostics(found)
-        return exit_code(found)
+    diagnostics = _diagnostics(error)
+    if diagnostics:
+        show_diagnostics(diagnostics)
+        return exit_code(diagnostics)
     internal = Diagnostic(
         "SC999",
         f"internal error: {type(error).__name__}: {error}",
@@ -257,9 +259,9 @@ def _diagnostics(error: Exception) -> tuple[Diagnostic, ...]:
     failures = sys.modules.get("scenic.failures")
     if failures is not None:
         # A program was run: the exception may be its own.
-        found: Diagnostic | None = failures.diagnose(error)
-        if found is not None:
-            return (found,)
+        diagnostic: Diagnostic | None = failures.diagnose(error)
+        if diagnostic is not None:
+            return (diagnostic,)
     return ()
 
 

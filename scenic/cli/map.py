@@ -49,8 +49,8 @@ def map_command(file: Path, output: Path | None, width: int) -> int:
             )
     network = _loaded(file)
     if output is not None:
-        drawn = svg(network, width).encode() if output.suffix.lower() == ".svg" else png(network, width)
-        write(output, drawn)
+        image = svg(network, width).encode() if output.suffix.lower() == ".svg" else png(network, width)
+        write(output, image)
         return CLEAN
     from rich.console import Console
     from rich.table import Table
@@ -85,10 +85,10 @@ def _speeds(network: "Network") -> str:
     for road in network.roads:
         for start, stop, limit in road.speedLimitRanges:
             lengths[limit] = lengths.get(limit, 0.0) + stop - start
-    ordered = sorted(lengths.items(), key=lambda item: (item[0] is None, item[0] or 0.0))
+    rows = sorted(lengths.items(), key=lambda item: (item[0] is None, item[0] or 0.0))
     return ", ".join(
         f"{'no limit' if limit is None else f'{3.6 * limit:.0f} km/h'} on {length / 1000:.1f} km"
-        for limit, length in ordered
+        for limit, length in rows
     )
 
 
@@ -128,11 +128,11 @@ def _signals(network: "Network") -> str:
     }
     counts = {name: sum(getattr(item, kind) for item in network.signals) for name, kind in kinds.items()}
     others = len(network.signals) - sum(counts.values())
-    shown = [f"{count} {name}" for name, count in (*counts.items(), ("others", others)) if count]
-    if not shown:
+    phrases = [f"{count} {name}" for name, count in (*counts.items(), ("others", others)) if count]
+    if not phrases:
         return "none"
-    held = sum(maneuver.signal is not None for maneuver in network.maneuvers)
-    return f"{', '.join(shown)}; they hold for {held} of {len(network.maneuvers)} maneuvers"
+    maneuver_count = sum(maneuver.signal is not None for maneuver in network.maneuvers)
+    return f"{', '.join(phrases)}; they hold for {maneuver_count} of {len(network.maneuvers)} maneuvers"
 
 
 def _loaded(file: Path) -> "Network":

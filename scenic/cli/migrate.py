@@ -56,13 +56,13 @@ def migrate(
         raise click.UsageError("--write goes neither with --diff nor with --check.")
     if as_json and diff:
         raise click.UsageError("--json and --diff exclude each other.")
-    found = discover(paths, Configurations())
-    problems = list(found.problems)
-    names = [name for name in found.files if name != STANDARD_INPUT]
+    discovery = discover(paths, Configurations())
+    problems = list(discovery.problems)
+    names = [name for name in discovery.files if name != STANDARD_INPUT]
     if strings:
         names += [name for name in _beside(paths) if name not in names]
     files: list[File] = []
-    if STANDARD_INPUT in found.files:
+    if STANDARD_INPUT in discovery.files:
         text = sys.stdin.buffer.read().decode("utf-8", "surrogateescape")
         file = convert_text(text, "<stdin>", flat=flat)
         files.append(file)
@@ -72,16 +72,16 @@ def migrate(
     problems += [file.problem for file in files if file.problem is not None]
     if diff:
         sys.stdout.write("".join(map(_patch, files)))
-    written = 0
+    write_count = 0
     if writing:
-        written, refusals = _write(files)
+        write_count, refusals = _write(files)
         problems += refusals
     if as_json:
         sys.stdout.write(json.dumps(_report(files, problems), indent=2) + "\n")
     else:
         sys.stderr.write("".join(_decisions(files)))
         show_diagnostics(problems)
-        sys.stderr.write("".join(_summary(files, written if writing else None)))
+        sys.stderr.write("".join(_summary(files, write_count if writing else None)))
     changes = any(file.changes for file in files)
     return exit_code(problems) or (FINDINGS if changes and check else 0)
 
@@ -138,10 +138,10 @@ def _decisions(files: Sequence[File]) -> Iterator[str]:
         if not places:
             continue
         yield f"decide: {rule.title} [{rule.name}]\n"
-        said = None
+        last_words = None
         for file, note in places:
-            if (note.message, note.help) != said:
-                said = (note.message, note.help)
+            if (note.message, note.help) != last_words:
+                last_words = (note.message, note.help)
                 yield f"  {note.message};\n  {note.help}\n"
             yield f"    {file.name}:{note.line}\n"
         yield "\n"
@@ -154,10 +154,10 @@ def _summary(files: Sequence[File], written: int | None) -> Iterator[str]:
         if counts[rule.name]:
             yield f"{counts[rule.name]:>{width}}  {rule.title} [{rule.name}]\n"
     decisions = sum(not note.rewritten for file in files for note in file.notes)
-    changed = sum(file.changes for file in files)
+    change_count = sum(file.changes for file in files)
     total = f"{len(files)} file{'' if len(files) == 1 else 's'}"
     what = (
-        f"{changed} of {total} would be converted (--write does it)"
+        f"{change_count} of {total} would be converted (--write does it)"
         if written is None
         else (f"{written} of {total} converted")
     )

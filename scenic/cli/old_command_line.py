@@ -65,8 +65,8 @@ def translated(arguments: Sequence[str], commands: Sequence[str]) -> list[str] |
     command, simulate, steps = "sample", False, None
     while rest:
         item = rest.pop(0)
-        name, joined, value = item.partition("=")
-        if joined and name in (*_VALUES, "--time", "--param"):
+        name, equals_sign, value = item.partition("=")
+        if equals_sign and name in (*_VALUES, "--time", "--param"):
             rest.insert(0, value)
             item = name
         if item in ("-S", "--simulate"):
@@ -81,11 +81,11 @@ def translated(arguments: Sequence[str], commands: Sequence[str]) -> list[str] |
         elif item in _SHOWS:
             command = _SHOWS[item]
         elif item in _VALUES and rest:
-            given, ours = rest.pop(0), _VALUES[item]
+            option_value, ours = rest.pop(0), _VALUES[item]
             if item == "--max-sims-per-scene" and {"-S", "--simulate"} & set(arguments):
-                options += ["--tries", given]
+                options += ["--tries", option_value]
             elif ours is not None:
-                options += [ours, given.lstrip("-") if item == "--gather-stats" else given]
+                options += [ours, option_value.lstrip("-") if item == "--gather-stats" else option_value]
         elif item not in GLOBAL:
             if item.startswith("-"):
                 return None
@@ -95,11 +95,11 @@ def translated(arguments: Sequence[str], commands: Sequence[str]) -> list[str] |
     if command != "sample":
         return [command, *files]
     if simulate:
-        command, unknown = "simulate", "--no-prune"
+        command, missing_option = "simulate", "--no-prune"
         more += () if steps is None else ("--time", steps)
     else:
-        unknown = "--show-records"  # scenes have none
-    return [command, *files, *(item for item in options if item != unknown), *more]
+        missing_option = "--show-records"  # scenes have none
+    return [command, *files, *(item for item in options if item != missing_option), *more]
 
 
 def _whole(value: str) -> str:

@@ -146,13 +146,15 @@ def _swept_values(
     _context: click.Context, _option: click.Parameter, given: tuple[str, ...]
 ) -> dict[str, tuple[Any, ...]]:
     """The values of ``NAME=VALUE,VALUE,...`` by name; text in quotation marks is one value."""
-    found = {}
+    values_by_name = {}
     for name, text in _named_texts(given).items():
-        quoted = len(text) >= 2 and text[0] == text[-1] == '"'
-        found[name] = tuple(parameter_value(part) for part in ([text] if quoted else text.split(",")))
-        if len(set(found[name])) < len(found[name]):
+        is_quoted = len(text) >= 2 and text[0] == text[-1] == '"'
+        values_by_name[name] = tuple(
+            parameter_value(part) for part in ([text] if is_quoted else text.split(","))
+        )
+        if len(set(values_by_name[name])) < len(values_by_name[name]):
             raise click.BadParameter(f"{name}: a value is given twice")
-    return found
+    return values_by_name
 
 
 def settings_of(swept: Mapping[str, Sequence[Any]]) -> list[tuple[dict[str, Any], dict[str, Any]]]:

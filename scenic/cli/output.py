@@ -63,7 +63,7 @@ def show_diagnostics(diagnostics: Iterable[Diagnostic], sources: Sources | None 
 @contextmanager
 def shown_warnings() -> Iterator[None]:
     """Within this, what a running program is warned of is shown as all findings are, each once."""
-    seen: set[Diagnostic] = set()
+    earlier_findings: set[Diagnostic] = set()
     with warnings.catch_warnings():
         as_python = warnings.showwarning
 
@@ -77,9 +77,9 @@ def shown_warnings() -> Iterator[None]:
         ) -> None:
             if not isinstance(message, ScenicWarning):
                 as_python(message, category, filename, lineno, file, line)
-            elif (found := message.diagnostic()) not in seen:
-                seen.add(found)
-                show_diagnostics([found])
+            elif (finding := message.diagnostic()) not in earlier_findings:
+                earlier_findings.add(finding)
+                show_diagnostics([finding])
 
         warnings.showwarning = show
         yield

@@ -47,17 +47,17 @@ async def _serve(file: Path | None, port: int, *, opens: bool) -> None:
     from scenic.playground.server import Playground
 
     try:
-        served = Playground(file)
+        server = Playground(file)
     except (OSError, UnicodeDecodeError) as error:
         raise click.ClickException(f"{file} cannot be read: {error}") from None
     try:
-        address = await served.start(port)
+        address = await server.start(port)
     except OSError as error:
         raise click.ClickException(f"port {port} cannot be used: {error.strerror}") from None
     click.echo(f"playground: {address} (Ctrl-C ends it)")
     if opens:
         webbrowser.open(address)
     try:
-        await served.wait()
+        await server.wait()
     finally:
-        await served.stop()
+        await server.stop()

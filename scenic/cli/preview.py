@@ -45,26 +45,32 @@ def preview(
     page = Page(os.path.basename(filename))
     missing: list[Exhausted] = []
     try:
-        loaded = scenarioFromString(text, scenario=scenario, filename=filename)
+        program = scenarioFromString(text, scenario=scenario, filename=filename)
         if wants_remarks:
             from scenic.assessment.remarks import remarks
 
             with output:
-                output.write(json.dumps(remarks(loaded)).encode())
+                output.write(json.dumps(remarks(program)).encode())
             return 0
-        for result in loaded.stream(count, seed=seed, time_limit=time_limit):
+        for result in program.stream(count, seed=seed, time_limit=time_limit):
             if isinstance(result, Exhausted):
                 missing.append(result)
             else:
                 page.add(result)
     except Exception as error:
-        told = diagnose(error)
-        found = error.diagnostics if isinstance(error, ParseCompileError) else [] if told is None else [told]
-        if not found:
+        diagnostic = diagnose(error)
+        diagnostics = (
+            error.diagnostics
+            if isinstance(error, ParseCompileError)
+            else []
+            if diagnostic is None
+            else [diagnostic]
+        )
+        if not diagnostics:
             raise
         # The text that is quoted is the one in the editor, whatever the file holds.
-        show_diagnostics(found, Sources([Source(text, filename)]))
-        return exit_code(found)
+        show_diagnostics(diagnostics, Sources([Source(text, filename)]))
+        return exit_code(diagnostics)
     if not len(page):
         click.echo(missing[0].message(), err=True)
         return 3

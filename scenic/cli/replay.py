@@ -142,29 +142,29 @@ def replay(
     if parameters:
         options["params"] = {**(options.get("params") or {}), **parameters}
     scenario = load(program or program_of(run), **options)
-    found = made_again(
+    repetition = made_again(
         run,
         scenario,
         simulator,
         shown=any(item is not None for item in (view, png, film)),
         accept_changes=accept_changes,
     )
-    _show(run.number, found.about)
+    _show(run.number, repetition.about)
     if show_records:
-        for name, value in found.about.get("records", {}).items():
+        for name, value in repetition.about.get("records", {}).items():
             print(f"  record {name} = {value}")
-    if found.page is None and (view, png, film) != (None, None, None):
+    if repetition.page is None and (view, png, film) != (None, None, None):
         print("nothing is shown, since there is no simulation")
-    if view is not None and found.page is not None:
-        _write_page(view, found.page, follow, opened=opened)
-    if found.pictures is not None and (png is not None or film is not None):
-        _draw(found.pictures, png, film, every, image_size, _camera(outlook, follow, around))
-    for words in found.unknown:
+    if view is not None and repetition.page is not None:
+        _write_page(view, repetition.page, follow, opened=opened)
+    if repetition.pictures is not None and (png is not None or film is not None):
+        _draw(repetition.pictures, png, film, every, image_size, _camera(outlook, follow, around))
+    for words in repetition.unknown:
         print(f"not compared: {words}")
-    if not found.departures:
+    if not repetition.departures:
         print("the same as kept, bit by bit")
         return CLEAN
-    for words in found.departures:
+    for words in repetition.departures:
         print(f"differs: {words}")
     return NOT_ALL
 
@@ -231,15 +231,15 @@ def _draw(
 
     size = size or SIZE
     last = len(pictures) - 1
-    chosen = evenly(len(pictures), _IMAGES) if every is None else [*range(0, last, every), last]
+    states = evenly(len(pictures), _IMAGES) if every is None else [*range(0, last, every), last]
     if png is not None and png.suffix:
         write(png, sheet(pictures, evenly(len(pictures), _ON_A_SHEET), size, outlook))
     elif png is not None:
         make_folder(png)
-        for state, image in zip(chosen, pictures.images(chosen, size, outlook), strict=True):
+        for state, image in zip(states, pictures.images(states, size, outlook), strict=True):
             write(png / f"state-{state:0{len(str(last))}d}.png", encoded(image))
     if film is not None:
-        film_of(pictures, chosen, film, size, outlook)
+        film_of(pictures, states, film, size, outlook)
 
 
 def _show(number: int, about: Mapping[str, Any]) -> None:

@@ -86,17 +86,21 @@ def progress_bar(count: int, doing: str, *, shown: bool) -> Iterator[Advance]:
         TimeRemainingColumn(),
     )
     console = Console(file=sys.stderr, no_color=not has_colours(sys.stderr))
-    begun = time.monotonic()
-    made = tried = 0
+    start_time = time.monotonic()
+    scene_count = attempt_count = 0
     with Progress(*columns, console=console, transient=True, redirect_stdout=False) as progress:
         task = progress.add_task(doing, total=count, rate="")
 
         def advance(scenes: int, attempts: int) -> None:
-            nonlocal made, tried
+            nonlocal scene_count, attempt_count
             if attempts:
-                made, tried = made + scenes, tried + attempts
-            seconds = max(time.monotonic() - begun, 1e-6)
-            rate = f"{made / seconds:.3g}/s, {made / tried:.2g} accepted" if tried else ""
+                scene_count, attempt_count = scene_count + scenes, attempt_count + attempts
+            seconds = max(time.monotonic() - start_time, 1e-6)
+            rate = (
+                f"{scene_count / seconds:.3g}/s, {scene_count / attempt_count:.2g} accepted"
+                if attempt_count
+                else ""
+            )
             progress.update(task, advance=scenes, rate=rate)
 
         yield advance

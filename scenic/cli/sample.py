@@ -59,17 +59,17 @@ def sample(**options: Any) -> int:
         "look for a loop without end in what is called on samples",
     )
     with endless:
-        missing, lost = sample_into_sinks(scenario, request, takers, deadline)
+        missing, lost_count = sample_into_sinks(scenario, request, takers, deadline)
     if request.settle is not None and scenario.program.settling.tally.scenes:
         sys.stderr.write(f"settling: {scenario.program.settling.tally}\n")
     if scenario.approximation is not None:
         sys.stderr.write(f"{scenario.approximation}\n")
-    if lost:
+    if lost_count:
         sys.stderr.write(
-            f"scenes that the earlier run did not find, and that are not looked for again: {lost:,}\n"
+            f"scenes that the earlier run did not find, and that are not looked for again: {lost_count:,}\n"
         )
     if not missing:
-        return NOT_ALL if lost else CLEAN
+        return NOT_ALL if lost_count else CLEAN
     from rich.console import Console
 
     from scenic.cli.render.rejections import render_missing

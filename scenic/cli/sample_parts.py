@@ -165,12 +165,12 @@ def check_sample(request: "SampleRequest") -> None:
     source = _DRAWN if request.approximate is None else _TOGETHER
     engine = _PROCESSES if request.jobs > 1 or request.dask is not None else _HERE
     parts = sink_parts(request).values()
-    chosen = [source if request.sampler is None else _CHOSEN, engine, *parts]
-    check_parts(chosen, (_CHOSEN, *SINKS.values()))
+    batch_parts = [source if request.sampler is None else _CHOSEN, engine, *parts]
+    check_parts(batch_parts, (_CHOSEN, *SINKS.values()))
     if (request.verified or request.accept_changes) and not request.resume:
         raise click.UsageError("--verify and --accept-changes go with --resume")
     forms = [form for part in parts for form in part.forms]
     if request.form is not None and request.form not in forms:
         raise click.UsageError(
-            f"--format {request.form} does not go with {chosen[2].name}: give {' or '.join(forms)}"
+            f"--format {request.form} does not go with {batch_parts[2].name}: give {' or '.join(forms)}"
         )

@@ -134,16 +134,18 @@ def sample_into_sinks(
     place = Path(request.output or "-")
     target = place if "lines" in names else None
     folder = place if names.keys() & {"dataset", "worlds", "labels"} else None
-    grown = None if target is None else GrowingFile(target, resume=request.resume)
+    growing_file = None if target is None else GrowingFile(target, resume=request.resume)
     to_terminal = "output" in names and sys.stdout.isatty()
     with ExitStack() as stack:
         _lock_files(stack, request, place if names.keys() & {"lines", "files"} else None)
         seed, form, part_size = _as_before(request, folder)
-        files, done = digest_of_files(file_digests(scenario)), 0
-        if grown is not None and request.resume:
-            compared = None if request.accept_changes else files
+        files, done_count = digest_of_files(file_digests(scenario)), 0
+        if growing_file is not None and request.resume:
+            files_to_compare = None if request.accept_changes else files
             first, count, points = request.first, request.count, request.points
-            seed, done = continued(grown, scenario.digest, seed, first, count, points=points, files=compared)
+            seed, done_count = continued(
+                growing_file, scenario.digest, seed, first, count, points=points, files=files_to_compare
+            )
         chosen_seed = secrets.randbits(32) if seed is None else seed
         if seed is None:
             announce_seed(chosen_seed, "scenes")
@@ -155,27 +157,27 @@ def sample_into_sinks(
             folder=Path.cwd() if target is None else target.parent,
             files=files,
         )
-        if grown is not None and done:
-            batch.lost = done - len(grown.kept())
+        if growing_file is not None and done_count:
+            batch.lost = done_count - len(growing_file.kept())
             if not request.accept_changes:
-                check_remade(grown, files, lambda k: batch.line(k, lines))
-        stack.enter_context(_kept_is_reported(grown, folder, request.count))
+                check_remade(growing_file, files, lambda k: batch.line(k, lines))
+        stack.enter_context(_kept_is_reported(growing_file, folder, request.count))
         takers = [stack.enter_context(sink) for sink in chosen]
-        put = _to_output if grown is None else stack.enter_context(grown).write
+        put = _to_output if growing_file is None else stack.enter_context(growing_file).write
         batch.advance, batch.engine = stack.enter_context(
             batch_run(request.count, "sampling", jobs=request.jobs, dask=request.dask, shown=not to_terminal)
         )
-        batch.advance(done, 0)
+        batch.advance(done_count, 0)
         if folder is not None:
             _write_folder(batch, folder, form, part_size)
         elif "table" in names:
             _write_table(batch, place)
         elif not names.keys() & {"output", "lines"}:
-            _give(batch, done, takers)
+            _give(batch, done_count, takers)
         elif to_terminal:
             _show_tables(batch, takers)
         else:
-            _write_lines(batch, done, lines, put, takers)
+            _write_lines(batch, done_count, lines, put, takers)
     return batch.missing, batch.lost
 
 
@@ -219,13 +221,13 @@ def _write_folder(batch: _Batch, folder: Path, form: str, part_size: int) -> Non
     request = batch.request
     run = Run(batch.engine, batch.deadline, batch.advance)
     resume = Resuming(request.verified, request.accept_changes) if request.resume else False
-    finished = make_dataset(batch.scenario, folder, batch.manifest(form, part_size), run, resume=resume)
-    batch.missing.extend(finished.missing)
-    lost = {k for part in finished.manifest.parts for k in part.missing}
-    batch.lost = len(lost.difference(item.k for item in finished.missing))
-    if skipped := sum(part.skipped for part in finished.manifest.parts):
+    outcome = make_dataset(batch.scenario, folder, batch.manifest(form, part_size), run, resume=resume)
+    batch.missing.extend(outcome.missing)
+    lost_numbers = {k for part in outcome.manifest.parts for k in part.missing}
+    batch.lost = len(lost_numbers.difference(item.k for item in outcome.missing))
+    if skip_count := sum(part.skipped for part in outcome.manifest.parts):
         sys.stderr.write(
-            f"{skipped:,} images are not there: their camera's object does not take part in the scene\n"
+            f"{skip_count:,} images are not there: their camera's object does not take part in the scene\n"
         )
 
 
@@ -241,10 +243,10 @@ def _write_lines(
         is_output = put is _to_output
         _give(batch, done, [*takers, lambda scene: put(lines.encoded(scene))], is_output=is_output)
         return
-    for made in in_processes(batch.scenario, lines.block, batch.job(done), batch.engine):
-        put(made.encoded)
-        batch.missing.extend(made.missing)
-        batch.advance(made.job.last - made.job.first, made.attempts)
+    for block in in_processes(batch.scenario, lines.block, batch.job(done), batch.engine):
+        put(block.encoded)
+        batch.missing.extend(block.missing)
+        batch.advance(block.job.last - block.job.first, block.attempts)
 
 
 def _give(batch: _Batch, done: int, takers: "list[sinks.Take]", *, is_output: bool = False) -> None:
@@ -281,9 +283,11 @@ def _kept_is_reported(grown: GrowingFile | None, folder: Path | None, count: int
         from scenic.batch.datasets import scenes_kept
 
         place = folder if grown is None else grown.part
-        kept = len(grown.lines_kept()) if grown is not None else 0 if folder is None else scenes_kept(folder)
-        if kept:
-            sys.stderr.write(f"{kept:,} of {count:,} kept in '{place}'; continue with --resume\n")
+        scene_count = (
+            len(grown.lines_kept()) if grown is not None else 0 if folder is None else scenes_kept(folder)
+        )
+        if scene_count:
+            sys.stderr.write(f"{scene_count:,} of {count:,} kept in '{place}'; continue with --resume\n")
         raise
 
 

@@ -43,8 +43,8 @@ def simulate_into_sinks(request: SimulateRequest) -> int:
     seed = request.seed
     if request.resume and seed is None and request.output is not None:
         seed = seed_of_simulations(request.output)
-    drawn = secrets.randbits(32) if seed is None else seed
-    batches = _batches(request, drawn)
+    chosen_seed = secrets.randbits(32) if seed is None else seed
+    batches = _batches(request, chosen_seed)
     settings = [setting for setting, _ in batches]
     numbers = range(request.first, request.first + request.count)
     code = CLEAN
@@ -53,19 +53,19 @@ def simulate_into_sinks(request: SimulateRequest) -> int:
             stack.enter_context(batch.opened(resume=request.resume, accept_changes=request.accept_changes))
             setting.rows.update({k: row for k in numbers if (row := batch.known(k)) is not None})
         if seed is None:
-            announce_seed(drawn, "simulations")
+            announce_seed(chosen_seed, "simulations")
         missing = len(batches) * request.count - sum(len(setting.rows) for setting in settings)
-        shown = not sys.stdout.isatty()
+        shows_progress = not sys.stdout.isatty()
         run = batch_run(
-            missing, "simulating", jobs=request.jobs, dask=request.dask, shown=shown, places=places
+            missing, "simulating", jobs=request.jobs, dask=request.dask, shown=shows_progress, places=places
         )
         advance, engine = stack.enter_context(run)
         for setting, batch in batches:
             code = max(code, _simulate(request, setting, batch, engine, advance))
         _show_summaries(request, settings)
         write_files(request, _FILES, request, settings)
-    failed = any(row.error is not None for setting in settings for row in setting.rows.values())
-    return FINDINGS if failed else code
+    has_failures = any(row.error is not None for setting in settings for row in setting.rows.values())
+    return FINDINGS if has_failures else code
 
 
 def _require_libraries(form: str) -> None:
@@ -89,18 +89,18 @@ def _batches(request: SimulateRequest, seed: int) -> list[tuple[Setting, Simulat
     batches = []
     for parameters, different in settings_of(request.swept):
         setting = Setting({}, different)
-        loaded = request.load(parameters, request.simulator, extra_params=request.extra_params)
+        scenario = request.load(parameters, request.simulator, extra_params=request.extra_params)
         place = request.output
         if place is not None and different:
             place /= safe_name(setting.label)
         batch = Simulations(
-            loaded, request.simulator, running, folder=place, form=FORMS[request.form],
+            scenario, request.simulator, running, folder=place, form=FORMS[request.form],
             shown=request.view is not None, only_violations=request.keep == "violations",
         )  # fmt: skip
         batches.append((setting, batch))
         if getattr(batch.simulator, "touches_with_parts", False):
-            find_convex_parts(loaded)
-        idle = nothing_happens(loaded, batch.simulator) if len(batches) == 1 else None
+            find_convex_parts(scenario)
+        idle = nothing_happens(scenario, batch.simulator) if len(batches) == 1 else None
         show_diagnostics([] if idle is None else [idle])
     return batches
 
@@ -148,15 +148,15 @@ def _show_summaries(request: SimulateRequest, settings: Sequence[Setting]) -> No
 
 def _total(rows: "Sequence[SimulationRow]", max_steps: int) -> str:
     """Return a line that sums up the outcomes of all simulations."""
-    made = [row.about for row in rows if row.about is not None]
-    late = sum(map(_is_late, made))
-    parts = [f"{len(made):,} of {len(rows):,} simulations"]
+    documents = [row.about for row in rows if row.about is not None]
+    late = sum(map(_is_late, documents))
+    parts = [f"{len(documents):,} of {len(rows):,} simulations"]
     if late:
         parts.append(f"{late:,} reached the time limit (--time {max_steps})")
-    if rejected := sum(row.missing is not None for row in rows):
-        parts.append(f"{rejected:,} rejected")
-    if failed := sum(row.error is not None for row in rows):
-        parts.append(f"{failed:,} failed")
+    if rejection_count := sum(row.missing is not None for row in rows):
+        parts.append(f"{rejection_count:,} rejected")
+    if failure_count := sum(row.error is not None for row in rows):
+        parts.append(f"{failure_count:,} failed")
     return ", ".join(parts)
 
 

@@ -270,11 +270,11 @@ def _images(
     from scenic.formats.png import png
     from scenic.formats.render import SIZE
 
-    chosen = Outlook(**outlook)
+    view = Outlook(**outlook)
 
     def take(scene: Scene) -> None:
         if folder is not None:
             folder.mkdir(exist_ok=True)
-        write(numbered(target, scene.k, count), png(scene, size or SIZE, chosen))
+        write(numbered(target, scene.k, count), png(scene, size or SIZE, view))
 
     yield take

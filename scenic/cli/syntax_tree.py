@@ -31,12 +31,12 @@ def syntax_tree(file: str, positions: bool) -> int:
     If the program has syntax errors, the parts that could be parsed are shown, and the exit code is 1.
     """
     source = read_source(file)
-    parsed = parse(source.text, filename=file)
-    found = in_order(parsed.diagnostics, filename=file)
-    show_diagnostics(found, Sources([source]))
-    shown = call_deep(
-        lambda: ast.dump(parsed.tree, indent=2, include_attributes=positions, **_ALL_FIELDS),
+    result = parse(source.text, filename=file)
+    diagnostics = in_order(result.diagnostics, filename=file)
+    show_diagnostics(diagnostics, Sources([source]))
+    tree_text = call_deep(
+        lambda: ast.dump(result.tree, indent=2, include_attributes=positions, **_ALL_FIELDS),
         file,
     )
-    sys.stdout.write(f"{shown}\n")
-    return exit_code(found)
+    sys.stdout.write(f"{tree_text}\n")
+    return exit_code(diagnostics)

@@ -140,14 +140,14 @@ def try_command(
         for source in (_read(file, stdin_filename) for file in files)
     ]  # fmt: skip
     code = 0
-    for trial, found in zip(trials, tried(trials, jobs), strict=True):
-        if not found["ok"]:
-            failed = EXIT_CODES[found["phase"]]
-            code = failed if code == 0 else min(code, failed)
+    for trial, report in zip(trials, tried(trials, jobs), strict=True):
+        if not report["ok"]:
+            failure_code = EXIT_CODES[report["phase"]]
+            code = failure_code if code == 0 else min(code, failure_code)
         if form is None:
-            _show(found, Source(trial.text, trial.filename))
+            _show(report, Source(trial.text, trial.filename))
         else:
-            print(json.dumps(found, indent=2 if form == "object" else None, ensure_ascii=False), flush=True)
+            print(json.dumps(report, indent=2 if form == "object" else None, ensure_ascii=False), flush=True)
     return code
 
 

@@ -97,8 +97,8 @@ def view(
         )
     title = "scenes" if file == _STANDARD_INPUT else source.name
     # One scene has the very name, of several each has its number.
-    chosen = [_sink(Path(name), title, len(head), image_size, outlook) for name in outputs]
-    _deliver(file, chain(head, scenes), chosen)
+    sinks = [_sink(Path(name), title, len(head), image_size, outlook) for name in outputs]
+    _deliver(file, chain(head, scenes), sinks)
     return CLEAN
 
 

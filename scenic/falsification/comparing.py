@@ -32,7 +32,9 @@ def file_departures(kept: Path, made: Path, form: Form, *, without: Sequence[str
 
     """
     about, again = about_file(kept, form), about_file(made, form)
-    found = list(differences(about, again, [name for name in about if name not in (*_LEFT_OUT, *without)]))
+    departures = list(
+        differences(about, again, [name for name in about if name not in (*_LEFT_OUT, *without)])
+    )
     if form == "xosc":
         departure = _route_departure(_routes(kept), _routes(made))
     elif form == "xml":
@@ -41,8 +43,8 @@ def file_departures(kept: Path, made: Path, form: Form, *, without: Sequence[str
         things = [item["name"] or f"{item['class']} {k}" for k, item in enumerate(about["objects"])]
         departure = _state_departure(_states(kept, form), _states(made, form), things)
     if departure is not None:
-        return [*found, departure]
-    return found or list(differences(about, again, ("records",)))
+        return [*departures, departure]
+    return departures or list(differences(about, again, ("records",)))
 
 
 def differences(
@@ -105,14 +107,14 @@ _Routes = Mapping[str, list[tuple[str, dict[str, str]]]]
 
 def _route_departure(old: _Routes, new: _Routes) -> str | None:
     """Return the first place at which the trajectories of two files differ."""
-    found = [
+    times_and_words = [
         (float(time), f"{name}'s {', '.join(differences(before, after, [*before]))}")
         for name, places in old.items()
         for (time, before), (_, after) in zip(places, new.get(name, []), strict=False)
         if before != after
     ]
-    if found:
-        time, words = min(found)
+    if times_and_words:
+        time, words = min(times_and_words)
         return f"from time {time:g} s on it departs: {words}"
     if {name: len(places) for name, places in old.items()} != {
         name: len(places) for name, places in new.items()

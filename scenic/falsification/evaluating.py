@@ -157,7 +157,7 @@ class Evaluation:
 
         The status is ``objective`` or ``unwritable`` where the search cannot go on: no objective, or no room for a counterexample.
         """
-        begun = time.perf_counter()
+        start_time = time.perf_counter()
         try:
             row = self._simulated(task)
         except (ObjectiveError, OutputError) as error:
@@ -171,7 +171,7 @@ class Evaluation:
         except Exception as error:  # noqa: BLE001 - it is told in the row, and the search goes on
             words = f"{type(error).__name__}: {error}"
             row = {"run": task.run, "status": "failed", "values": None, "error": words}
-        row["seconds"] = round(time.perf_counter() - begun, 4)
+        row["seconds"] = round(time.perf_counter() - start_time, 4)
         return row
 
     def _simulated(self, task: Task) -> dict[str, Any]:
@@ -181,9 +181,9 @@ class Evaluation:
             return {"run": task.run, "status": "rejected", "values": None, "attempts": scene.attempts}
         waiting = None if self.folder is None else self.folder / f".run-{task.run:06d}.jsonl"
         keeping = Kept(waiting, "jsonl", shown=waiting is not None, watcher=self.watcher)
-        with closing(keeping) as kept:
+        with closing(keeping) as keeper:
             reasons: list[str] = []
-            done = self.simulations.simulator.simulate(
+            simulation = self.simulations.simulator.simulate(
                 scene,
                 name=str(task.run),
                 key=f"{self.seed}:{task.run}:1".encode(),
@@ -191,12 +191,12 @@ class Evaluation:
                 keep_violations=True,
                 stuck_is_error=True,
                 enableReplay=False,
-                on_state=kept.begin(),
+                on_state=keeper.begin(),
                 onRejection=lambda error: reasons.append(str(error)),
                 source=task.source,
                 **self.simulations.course_options(),
             )
-            if done is None:
+            if simulation is None:
                 return {
                     "run": task.run,
                     "status": "rejected",
@@ -204,16 +204,16 @@ class Evaluation:
                     "attempts": scene.attempts,
                     "error": reasons[-1] if reasons else None,
                 }
-            values = [item.of_simulation(done.result, scene.params) for item in self.objectives]
+            values = [item.of_simulation(simulation.result, scene.params) for item in self.objectives]
             row = self._row(task.run, values, scene.attempts)
-            about = course_document(done, k=task.run, tries=1)
+            about = course_document(simulation, k=task.run, tries=1)
             row["requirements"] = {
                 item["label"]: {"verdict": item["verdict"], "robustness": _plain(item["robustness"])}
                 for item in about["requirements"]
             }
             row["steps"] = about["steps"]
             if row["status"] == "counterexample" and waiting is not None:
-                self._keep_course(scene, kept, done, about, task.run, waiting)
+                self._keep_course(scene, keeper, simulation, about, task.run, waiting)
             return row
 
     def _scene(self, task: Task) -> Scene | Exhausted:

@@ -230,13 +230,13 @@ def external_points(scenario: "Scenario") -> ExternalPoints:
     Raises `InvalidScenarioError` if ``externalSampler`` is no class of samplers.
     """
     parameters = scenario.params
-    wanted = parameters.get("externalSampler", VerifaiSampler)
-    if not (isinstance(wanted, type) and issubclass(wanted, ExternalSampler)):
+    sampler_class = parameters.get("externalSampler", VerifaiSampler)
+    if not (isinstance(sampler_class, type) and issubclass(sampler_class, ExternalSampler)):
         raise InvalidScenarioError(
-            f"the parameter `externalSampler` is {wanted!r}, which is no class of samplers",
+            f"the parameter `externalSampler` is {sampler_class!r}, which is no class of samplers",
             help="derive a class from `scenic.core.external_params.ExternalSampler`",
         )
-    sampler = wanted(space_of(scenario, "external").coordinates, parameters)
+    sampler = sampler_class(space_of(scenario, "external").coordinates, parameters)
     if type(sampler) is VerifaiSampler:
         if isinstance(sampler.sampler, SEQUENCES):
             return _Queue(sampler)

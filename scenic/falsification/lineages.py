@@ -146,10 +146,10 @@ class Ancestry:
         self._scenario = scenario
         self._seed = seed
         graph = scenario.outline.graph
-        drawn = [node for node in graph.nodes if node.is_drawn]
-        self.axes: Final = tuple(graph.address(node) for node in drawn if node.is_axis)
+        drawn_nodes = [node for node in graph.nodes if node.is_drawn]
+        self.axes: Final = tuple(graph.address(node) for node in drawn_nodes if node.is_axis)
         """The addresses of the axes, in order."""
-        self.keys: Final = tuple(graph.address(node) for node in drawn if not node.is_axis)
+        self.keys: Final = tuple(graph.address(node) for node in drawn_nodes if not node.is_axis)
         """The addresses of the words, in order."""
         self._held = held
         self._known: dict[Lineage, SceneDraws] = {}
@@ -161,16 +161,16 @@ class Ancestry:
 
     def all_draws(self, lineages: Sequence[Lineage]) -> list[SceneDraws]:
         """The draws of the scenes of some runs."""
-        known = self._known
-        missing = [item for item in lineages if item not in known]
+        draws_of = self._known
+        missing = [item for item in lineages if item not in draws_of]
         for lineage in missing:
             if not lineage.steps:
-                known[lineage] = self._first(lineage.first)
+                draws_of[lineage] = self._first(lineage.first)
         moving = [item for item in missing if item.steps]
         if moving:
             parents = self.all_draws([Lineage(item.first, item.steps[:-1]) for item in moving])
-            known |= zip(moving, self._moved(parents, [item.steps[-1] for item in moving]), strict=True)
-        return [known[item] for item in lineages]
+            draws_of |= zip(moving, self._moved(parents, [item.steps[-1] for item in moving]), strict=True)
+        return [draws_of[item] for item in lineages]
 
     def _moved(self, parents: Sequence[SceneDraws], steps: Sequence[Step]) -> list[SceneDraws]:
         """The draws that moves make of those of some runs."""

@@ -71,8 +71,10 @@ class Objective:
         if self.function is not None:
             return _number(self.function(result), self.label)
         if self.is_verdict:
-            wanted = (item for item in result.requirements if self.name is None or self._means(item))
-            return min((_by_verdict(item) for item in wanted if item.verdict is not None), default=math.inf)
+            requirements = (item for item in result.requirements if self.name is None or self._means(item))
+            return min(
+                (_by_verdict(item) for item in requirements if item.verdict is not None), default=math.inf
+            )
         records = {name: _values(value) for name, value in result.records.items()}
         if self.expression is not None:
             return self._evaluated({**params, **records})
@@ -94,8 +96,8 @@ class Objective:
                 f"the objective {self.name!r} is a parameter of the scenes, and nothing of simulations",
                 help=f"search scenes alone: --static; or minimise it as an expression: --minimize {self.name}",
             )
-        known = [*(item.label for item in outcomes), *records]
-        raise _unknown(self.name, known, "is neither a requirement nor recorded", "record ... as {}")
+        names = [*(item.label for item in outcomes), *records]
+        raise _unknown(self.name, names, "is neither a requirement nor recorded", "record ... as {}")
 
     def _means(self, outcome: Any) -> bool:
         """Return whether the objective names a requirement."""

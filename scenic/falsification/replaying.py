@@ -100,30 +100,30 @@ def kept_run(path: Path, number: int | None = None, *, worst: int | None = None)
     """
     if not path.exists():
         raise MissingFileError(f"cannot read '{path}': there is no such file or folder")
-    searched = path.is_dir() and kind_of(path) is not None
-    if worst is not None and not searched:
+    is_search = path.is_dir() and kind_of(path) is not None
+    if worst is not None and not is_search:
         raise ReplayError(
             f"'{path}' is no folder of a search or an estimate, so that none of its runs is the worst",
             help="name the folder that `scenic falsify -o` or `scenic estimate -o` has written, or a run by its number",
         )
     if path.is_file():
         return _simulation(path)
-    if searched:
+    if is_search:
         return _searched(path, number, worst)
     if path.parent.name == "counterexamples" and path.name.isdigit() and number is None:
         return _searched(path.parent.parent, int(path.name), None)
     files = sorted(file for form in _FORMS for file in path.glob(f"simulation-*.{form}"))
-    wanted = [item for item in files if number is None or int(item.stem.rpartition("-")[2]) == number]
+    matches = [item for item in files if number is None or int(item.stem.rpartition("-")[2]) == number]
     if not files and (searches := folders_of(path)):
         raise ReplayError(
             f"'{path}' holds the searches of a sweep", help=f"name one of them: '{searches[0]}'"
         )
-    if not wanted:
+    if not matches:
         raise ReplayError(
             f"'{path}' holds no run" if number is None else f"'{path}' holds no run {number}",
             help="name a folder that `scenic falsify -o`, `scenic estimate -o` or `scenic simulate -o` has written, or a file in it",
         )
-    return _simulation(wanted[0])
+    return _simulation(matches[0])
 
 
 def _searched(folder: Path, number: int | None, worst: int | None) -> KeptRun:
@@ -138,20 +138,22 @@ def _searched(folder: Path, number: int | None, worst: int | None) -> KeptRun:
             f"'{folder}' holds no run", help=f"the {kind.noun} has not finished any: --resume goes on with it"
         )
     if number is None:
-        known = [row for row in rows.values() if row["values"] is not None]
-        ranked = sorted(known, key=lambda row: min(map(float, row["values"]))) or [rows[first]]
-        if worst is not None and worst > len(ranked):
+        rows_with_values = [row for row in rows.values() if row["values"] is not None]
+        rows_by_value = sorted(rows_with_values, key=lambda row: min(map(float, row["values"]))) or [
+            rows[first]
+        ]
+        if worst is not None and worst > len(rows_by_value):
             raise ReplayError(
-                f"'{folder}' holds {len(ranked)} runs with a value, fewer than {worst}",
-                help=f"the worst run is --worst 1, the best one --worst {len(ranked)}",
+                f"'{folder}' holds {len(rows_by_value)} runs with a value, fewer than {worst}",
+                help=f"the worst run is --worst 1, the best one --worst {len(rows_by_value)}",
             )
-        number = int(ranked[(worst or 1) - 1]["run"])
+        number = int(rows_by_value[(worst or 1) - 1]["run"])
     if number not in rows:
         raise ReplayError(
             f"'{folder}' holds no run {number}", help=f"it holds runs {first} to {first + len(rows) - 1}"
         )
-    kept = folder / "counterexamples" / f"{number:04d}"
-    file, scene = kept / "simulation.jsonl", kept / "scene.json"
+    kept_folder = folder / "counterexamples" / f"{number:04d}"
+    file, scene = kept_folder / "simulation.jsonl", kept_folder / "scene.json"
     return KeptRun(
         number,
         _origin(manifest, folder),
@@ -230,13 +232,13 @@ def replay(
     )
     with tempfile.TemporaryDirectory() as folder:
         if run.row is None:
-            found = _simulate_again(run, scenario, simulator, shown, Path(folder))
+            repetition = _simulate_again(run, scenario, simulator, shown, Path(folder))
         else:
-            found = _search_again(run, run.row, scenario, simulator, objectives, shown, Path(folder))
-    found.departures[:0] = changes
+            repetition = _search_again(run, run.row, scenario, simulator, objectives, shown, Path(folder))
+    repetition.departures[:0] = changes
     if run.settings.get("program") != scenario.digest:
-        found.departures.insert(0, "the program or its parameters have changed since")
-    return found
+        repetition.departures.insert(0, "the program or its parameters have changed since")
+    return repetition
 
 
 class _Shown:
@@ -288,21 +290,21 @@ def _search_again(
         watcher if shown else None,
         1 if is_guided else None,
     )
-    found = _made_again(run, scenario, evaluation, numbers)
-    made = folder / "counterexamples" / f"{run.number:04d}"
-    result = Replay(found)
+    row_again = _made_again(run, scenario, evaluation, numbers)
+    new_folder = folder / "counterexamples" / f"{run.number:04d}"
+    result = Replay(row_again)
     if objectives is None:
         # The value is known from the row alone.
         result.unknown.append(
             f"the value: the objective was a function of Python, `{settings['objectives'][0]}`"
         )
-        if found["values"] is not None:
-            found.update({name: row[name] for name in ("values", "status")})
-    elif found["values"] is not None:
-        failed = min(map(float, found["values"])) <= settings["threshold"]
-        found["status"] = "counterexample" if failed else "held"
-    result.departures += row_departures(row, found)
-    course, scene = made / "simulation.jsonl", made / "scene.json"
+        if row_again["values"] is not None:
+            row_again.update({name: row[name] for name in ("values", "status")})
+    elif row_again["values"] is not None:
+        is_violation = min(map(float, row_again["values"])) <= settings["threshold"]
+        row_again["status"] = "counterexample" if is_violation else "held"
+    result.departures += row_departures(row, row_again)
+    course, scene = new_folder / "simulation.jsonl", new_folder / "scene.json"
     if run.trajectory is not None and course.exists():
         result.departures += file_departures(
             run.trajectory, course, run.form, without=("requirements", "tries")
@@ -312,7 +314,7 @@ def _search_again(
         result.departures.append("the scene differs from the one that was kept")
     if shown:
         result.pictures = watcher.pictures
-        _show(result, made, scenario)
+        _show(result, new_folder, scenario)
     return result
 
 
@@ -320,15 +322,17 @@ def _made_again(
     run: KeptRun, scenario: "Scenario", evaluation: Evaluation, numbers: Mapping[int, float]
 ) -> dict[str, Any]:
     """Return the row of a run that was made again; ``numbers`` are the draws that were chosen."""
-    held = run.settings.get("held")
+    held_data = run.settings.get("held")
     task = Task(run.number, numbers)
-    if held is not None or run.lineage is not None:
-        ancestry = Ancestry(scenario, run.settings["seed"], None if held is None else Held.from_data(held))
+    if held_data is not None or run.lineage is not None:
+        ancestry = Ancestry(
+            scenario, run.settings["seed"], None if held_data is None else Held.from_data(held_data)
+        )
         task = ancestry.task(run.lineage or Lineage(run.number))
-    found = evaluation(task) if evaluation.simulations is not None else next(evaluation.static(task))
-    if found["status"] == "objective":
-        raise ObjectiveError(found["error"], help=found["help"])
-    return found
+    row = evaluation(task) if evaluation.simulations is not None else next(evaluation.static(task))
+    if row["status"] == "objective":
+        raise ObjectiveError(row["error"], help=row["help"])
+    return row
 
 
 def _anything(_result: object) -> float:
@@ -345,10 +349,10 @@ def _show(result: Replay, made: Path, scenario: "Scenario") -> None:
         from scenic.formats.course_pictures import StatePictures
         from scenic.formats.html import Page
 
-        shown = scenario.replay(scene)
+        simulation = scenario.replay(scene)
         whole = Page(f"run {made.name}")
-        whole.add(shown)
-        result.page, result.pictures = whole.text(), StatePictures(shown)
+        whole.add(simulation)
+        result.page, result.pictures = whole.text(), StatePictures(simulation)
 
 
 def _simulations(
@@ -356,15 +360,15 @@ def _simulations(
 ) -> Simulations:
     """Return what simulates a run; raises `ReplayError` if the simulator was made in Python."""
     before = run.settings["simulator"]
-    given = run.origin.get("simulator", before)
-    made = Simulations(scenario, simulator or given, running, **options)
+    simulator_name = run.origin.get("simulator", before)
+    simulations = Simulations(scenario, simulator or simulator_name, running, **options)
     # A search keeps the name that was given, which may be none, and else the class, as simulations do.
-    if simulator is None and before not in (None, given, type(made.simulator).__name__):
+    if simulator is None and before not in (None, simulator_name, type(simulations.simulator).__name__):
         raise ReplayError(
             f"the run was simulated by an object of the class `{before}`, which its files do not hold",
             help="name the simulator: --simulator MODULE:CLASS; in Python: `replay(run, scenario, simulator)`",
         )
-    return made
+    return simulations
 
 
 def _simulate_again(
@@ -382,16 +386,16 @@ def _simulate_again(
     watcher = _Shown()
     options = {"shown": True, "watcher": watcher} if shown else {}
     batch = _simulations(run, scenario, simulator, running, folder=folder, form=run.form, **options)
-    found = batch(run.number)
-    if found.about is None:
-        words = found.missing if found.error is None else found.error.message
+    row = batch(run.number)
+    if row.about is None:
+        words = row.missing if row.error is None else row.error.message
         return Replay({}, [f"now there is no simulation: {words}"])
     assert run.trajectory is not None
-    made = folder / f"simulation-{run.number:04d}.{run.form}"
-    result = Replay(found.about, file_departures(run.trajectory, made, run.form))
-    if found.page is not None:
+    trajectory = folder / f"simulation-{run.number:04d}.{run.form}"
+    result = Replay(row.about, file_departures(run.trajectory, trajectory, run.form))
+    if row.page is not None:
         from scenic.formats.course_page import course_page
 
-        result.page = course_page(f"simulation {run.number}", [found.page])
+        result.page = course_page(f"simulation {run.number}", [row.page])
         result.pictures = watcher.pictures
     return result

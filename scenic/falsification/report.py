@@ -53,13 +53,13 @@ def importances(result: FalsificationResult) -> list[tuple[str, float]]:
     if len(rows) < 3:
         return []
     values = _ranks([_value(row) for row in rows])
-    found = []
+    strengths = []
     for name in rows[0]["point"]:
         places = _ranks([row["point"][name] for row in rows])
         spread = float(np.std(places) * np.std(values))
         together = float(np.mean((places - places.mean()) * (values - values.mean())))
-        found.append((name, abs(together) / spread if spread else 0.0))
-    return sorted(found, key=lambda item: -item[1])
+        strengths.append((name, abs(together) / spread if spread else 0.0))
+    return sorted(strengths, key=lambda item: -item[1])
 
 
 def _ranks(values: Sequence[float]) -> Any:
@@ -113,34 +113,34 @@ def _total(label: str, result: FalsificationResult) -> tuple[str, ...]:
 def _section(result: FalsificationResult, links_from: Path | None) -> list[str]:
     """The parts of the page about one search."""
     share, low, high = result.share()
-    failed = len(result.counterexamples)
-    known = [row for row in result.rows if row["values"] is not None]
+    failure_count = len(result.counterexamples)
+    rows_with_values = [row for row in result.rows if row["values"] is not None]
     parts = [
         f"<p>Made small: {html.escape(', '.join(result.objectives))}.</p>",
-        f"<p>{len(result.rows)} runs, {len(known)} with a value, {failed} counterexamples",
+        f"<p>{len(result.rows)} runs, {len(rows_with_values)} with a value, {failure_count} counterexamples",
         f": {100 * share:.3g}% (95% interval {100 * low:.3g}% to {100 * high:.3g}%, Clopper-Pearson).</p>"
-        if known
+        if rows_with_values
         else ".</p>",
     ]
     if result.is_blind:
         parts.append(
             "<p>All values are plus or minus infinity: of this objective only the truth is known, so nothing guides a search.</p>"
         )
-    finite = [row for row in known if math.isfinite(_value(row))]
+    finite = [row for row in rows_with_values if math.isfinite(_value(row))]
     if finite:
         parts += ["<h2>Value over runs</h2>", _progress(finite)]
-        ranked = importances(result)
-        shown = [name for name, _ in ranked[:_MOST_AXES]]
-        if shown:
+        strengths = importances(result)
+        axes = [name for name, _ in strengths[:_MOST_AXES]]
+        if axes:
             parts += [
                 "<h2>Parameters</h2>",
-                _parallel(finite, shown),
+                _parallel(finite, axes),
                 table(
                     ("parameter", "rank correlation"),
-                    [(name, f"{size:.2f}") for name, size in ranked[:_MOST_AXES]],
+                    [(name, f"{size:.2f}") for name, size in strengths[:_MOST_AXES]],
                 ),
             ]
-    worst = sorted(known, key=_value)[:_WORST]
+    worst = sorted(rows_with_values, key=_value)[:_WORST]
     parts += [
         "<h2>The worst runs</h2>",
         table(

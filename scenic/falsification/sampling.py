@@ -46,19 +46,19 @@ def sampled_by(
         )
     sampler = make_sampler(name, space, seed)
     attempts = 1 if len(space) == len(scenario.axes) else _ATTEMPTS
-    made = 0
-    while made < count:
+    scene_count = 0
+    while scene_count < count:
         try:
-            points = sampler.ask(sampler.batch or _TOGETHER)[: count - made]
+            points = sampler.ask(sampler.batch or _TOGETHER)[: count - scene_count]
         except NoMorePoints:
             return
         numbers = space.numbers(points)
         columns = {item.address: numbers[:, place] for place, item in enumerate(space.coordinates)}
         values = np.full(len(points), np.nan)
-        results = scenario.chosen(columns, len(points), seed=seed, first=made, max_attempts=attempts)
+        results = scenario.chosen(columns, len(points), seed=seed, first=scene_count, max_attempts=attempts)
         for place, result in enumerate(results):
             if not isinstance(result, Exhausted):
                 values[place] = 0.0 if objective is None else objective.of_scene(result)
             yield result
         sampler.tell(points, values)
-        made += len(points)
+        scene_count += len(points)

@@ -146,13 +146,13 @@ class FalsificationResult:
 
     def front(self) -> list[dict[str, Any]]:
         """The runs than which no other is at least as small in all objectives and smaller in one (Pareto's)."""
-        known = [(tuple(map(float, row["values"])), row) for row in self.rows if row["values"] is not None]
+        pairs = [(tuple(map(float, row["values"])), row) for row in self.rows if row["values"] is not None]
         return [
             row
-            for values, row in known
+            for values, row in pairs
             if not any(
                 other != values and all(a <= b for a, b in zip(other, values, strict=True))
-                for other, _ in known
+                for other, _ in pairs
             )
         ]
 
@@ -222,7 +222,7 @@ def _search(
         None if folder is None else folder.path,
         space.units,
     )
-    kept = [] if folder is None else folder.rows
+    kept_rows = [] if folder is None else folder.rows
     deadline = None if limits.time_limit is None else time.monotonic() + limits.time_limit
     failures = Failures()
     while len(result.rows) < limits.runs:
@@ -236,10 +236,10 @@ def _search(
         except Exhausted:
             break
         first = len(result.rows)
-        wanted = min(len(points), limits.runs - first)
-        known = kept[first : first + wanted]
-        rows = list(known)
-        with closing(_evaluated(evaluation, points, first, len(known), wanted, engine)) as parts:
+        run_count = min(len(points), limits.runs - first)
+        rows_of_batch = kept_rows[first : first + run_count]
+        rows = list(rows_of_batch)
+        with closing(_evaluated(evaluation, points, first, len(rows_of_batch), run_count, engine)) as parts:
             for part in parts:
                 if folder is not None:
                     folder.add(part)
@@ -342,10 +342,10 @@ def falsify(
         resume: continue the search in the folder.
 
     """
-    given = (
+    objective_list = (
         [] if objective is None else list(objective) if isinstance(objective, list | tuple) else [objective]
     )
-    objectives = [_objective(item) for item in given]
+    objectives = [_objective(item) for item in objective_list]
     if minimize is not None:
         objectives.append(Objective(expression=minimize))
     plan = Plan(
@@ -361,9 +361,11 @@ def falsify(
         max_steps,
         timestep,
     )
-    kept = None if folder is None else SearchFolder(Path(folder), plan.settings(scenario), resume=resume)
+    search_folder = (
+        None if folder is None else SearchFolder(Path(folder), plan.settings(scenario), resume=resume)
+    )
     engine = Processes(processes) if processes > 1 else None
-    return search(scenario, plan, Limits(n, stop_after, time_limit), engine=engine, folder=kept)
+    return search(scenario, plan, Limits(n, stop_after, time_limit), engine=engine, folder=search_folder)
 
 
 def _objective(item: Any) -> Objective:

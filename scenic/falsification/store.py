@@ -113,25 +113,25 @@ class RunsFolder(WrittenFolder):
 
     def _begin(self) -> None:
         """Compare the search with that of the folder, and take up its runs."""
-        wanted = self._settings
+        settings = self._settings
         if self.has_manifest and self._resume:
             earlier = self.document()
             different = [
-                name for name in wanted if name not in _DESCRIBING and earlier.get(name) != wanted[name]
+                name for name in settings if name not in _DESCRIBING and earlier.get(name) != settings[name]
             ]
             if different:
                 raise self.kind.error(
                     f"'{self.path}' holds another {self.kind.noun}: its {different[0]} differs",
                     help="give the same program and options, or name another folder",
                 )
-            before, now = (item.get("origin", {}).get("files", {}) for item in (earlier, wanted))
+            before, now = (item.get("origin", {}).get("files", {}) for item in (earlier, settings))
             changes = check_files(self.path, self.kind.error, before, now, accepted=self._accept_changes)
-            merged = self._gone_on(earlier)
+            combined_settings = self._gone_on(earlier)
             if changes:
                 change = {"run": self._first + len(self._read()), "changes": changes}
-                merged["accepted"] = [*earlier.get("accepted", []), change]
-            if merged != earlier:
-                self.save(merged)
+                combined_settings["accepted"] = [*earlier.get("accepted", []), change]
+            if combined_settings != earlier:
+                self.save(combined_settings)
         elif self.has_manifest and self._read():
             self.document()  # raises for that of something else
             raise self.kind.error(
@@ -145,7 +145,7 @@ class RunsFolder(WrittenFolder):
         else:
             if self.has_manifest:
                 self.document()  # raises for that of something else
-            self.save(wanted)
+            self.save(settings)
         self.rows = self._read()
         self._keep()
 

@@ -84,21 +84,21 @@ class Photographer:
         """The images and labels of a scene."""
         point = viewpoint(scene, self._camera, self._size)
         gallery = Gallery(self._classes, self._surfaces)
-        found = observe(scene, point, gallery=gallery, painted=self._previewed)
+        observation = observe(scene, point, gallery=gallery, painted=self._previewed)
         self._classes = gallery.classes
-        for label in found.labels:
+        for label in observation.labels:
             self.categories.setdefault(label.instance.category, len(self.categories) + 1)
         stem = f"{safe_name(self._camera)}-{scene.k:06d}"
         names = {output: f"{stem}{self._joint}{output}.png" for output in point.outputs}
-        files = {names[output]: self._picture(found, output) for output in point.outputs}
+        files = {names[output]: self._picture(observation, output) for output in point.outputs}
         if self._previewed:
             names["overlay"] = f"{stem}{self._joint}overlay.png"
-            files[names["overlay"]] = encoded(overlay(found))
-        labels = document(found, scene)
+            files[names["overlay"]] = encoded(overlay(observation))
+        labels = document(observation, scene)
         labels["images"] = names
         labels["categories"] = dict(self.categories)
         files[f"{stem}.json"] = (json.dumps(labels, allow_nan=False) + "\n").encode()
-        width, height = found.viewpoint.size
+        width, height = observation.viewpoint.size
         image = {
             "file_name": names.get("rgb") or next(iter(names.values())),
             "width": width,
@@ -107,7 +107,7 @@ class Photographer:
             "k": scene.k,
             "camera": self._camera,
         }
-        return Shot(files, image, list(self._annotations(found)))
+        return Shot(files, image, list(self._annotations(observation)))
 
     def _picture(self, found: Observation, output: str) -> bytes:
         match output:

@@ -71,12 +71,12 @@ def course_data(course: Course, tape: PoseTape) -> dict[str, Any]:
     data = page.data()
     (scene,) = data["scenes"]
     indices = {id(thing): index for index, thing in enumerate(course.objects)}
-    drawn = [indices[id(instance.thing)] for instance in instances]
+    columns = [indices[id(instance.thing)] for instance in instances]
     result = course.result
     scene["course"] = {
         "timestep": number(course.timestep),
         "steps": len(poses) - 1,
-        "poses": packed(poses[:, drawn]),
+        "poses": packed(poses[:, columns]),
         "reason": result.terminationReason,
         "requirements": [
             {
@@ -105,16 +105,16 @@ def course_page(title: str, courses: Sequence[Mapping[str, Any]]) -> str:
     for data in courses:
         # Most meshes and regions are the same in all simulations: they are on the page once.
         place: dict[str, list[int]] = {}
-        for kind, known in numbers.items():
+        for kind, number_of in numbers.items():
             place[kind] = []
             for item in data.get(kind, ()):
                 if kind == "grounds":
                     item = {**item, "mesh": place["meshes"][item["mesh"]]}
                 text = json.dumps(item)
-                if text not in known:
-                    known[text] = len(known)
+                if text not in number_of:
+                    number_of[text] = len(number_of)
                     together[kind].append(item)
-                place[kind].append(known[text])
+                place[kind].append(number_of[text])
         for scene in data["scenes"]:
             workspace = scene["workspace"]
             together["scenes"].append(

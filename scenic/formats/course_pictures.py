@@ -65,8 +65,8 @@ class StatePictures:
         self._states: list[tuple[Instance, ...]] = [instances]
         if poses is not None:
             numbers = {id(thing): number for number, thing in enumerate(scene.objects)}
-            drawn = [numbers[id(instance.thing)] for instance in instances]
-            self._states = [_placed(instances, state) for state in poses[:, drawn].astype(np.float64)]
+            columns = [numbers[id(instance.thing)] for instance in instances]
+            self._states = [_placed(instances, state) for state in poses[:, columns].astype(np.float64)]
         places = np.array([item.position for state in self._states for item in state]).reshape(-1, 3)
         # A few metres make no difference to the ground that is drawn.
         self._ground = gallery.ground(scene.workspace, np.unique(np.round(places / 5.0), axis=0) * 5.0)
@@ -96,24 +96,26 @@ class StatePictures:
             FollowError: there is no object to follow.
 
         """
-        chosen = [self._states[state] for state in evenly(len(self), _FRAMED)]
-        seen = [item for state in (*chosen, *(self._states[state] for state in states)) for item in state]
+        framing_states = [self._states[state] for state in evenly(len(self), _FRAMED)]
+        framing_instances = [
+            item for state in (*framing_states, *(self._states[state] for state in states)) for item in state
+        ]
         aspect = size[0] / size[1]
         if outlook.follow is None:
-            still = framing(framed(self._scene, seen, outlook), aspect, outlook)
+            still = framing(framed(self._scene, framing_instances, outlook), aspect, outlook)
             cameras = [still] * len(states)
         else:
             track = Track(self._states, outlook.follow, self.timestep)
             cameras = [track.camera(state, aspect, outlook) for state in states]
-        around = corners(seen)
+        around = corners(framing_instances)
         if outlook.follow is not None:
             # Shadows and the light of the sky are made for what is seen, which may be more than where objects are.
             around = np.concatenate(
                 [around, np.array([[-_SEEN, -_SEEN, 0], [_SEEN, _SEEN, 0]]) + around.mean(axis=0)]
             )
         for state, camera in zip(states, cameras, strict=True):
-            shown = (self._states[state],), (self._scene.params,), (self._ground,), (self._lamps[state],)
-            picture = Picture(self._surfaces, *shown)
+            contents = (self._states[state],), (self._scene.params,), (self._ground,), (self._lamps[state],)
+            picture = Picture(self._surfaces, *contents)
             with placed_errors(self._scene):
                 yield render(picture, 0, size, camera=camera, around=around)
 
@@ -197,13 +199,13 @@ def film_of(
     if path.suffix.lower() == ".gif":
         write(path, _gif(images, states, pictures.timestep))
         return
-    made = Film(path, pictures.timestep)
+    film = Film(path, pictures.timestep)
     try:
         for state, image in zip(states, images, strict=True):
-            made.add(state, image)
-        made.save()
+            film.add(state, image)
+        film.save()
     except BaseException:
-        made.drop()
+        film.drop()
         raise
 
 

@@ -37,27 +37,27 @@ _QUARTER: Final = (0.5**0.5, 0.0, 0.0, 0.5**0.5)
 
 def glb(scene: Scene) -> bytes:
     """The scene as the content of a ``.glb`` file."""
-    drawn = picture([scene])
+    scene_picture = picture([scene])
     buffers = _Buffers()
-    primitives = [buffers.surface(surface) for surface in drawn.surfaces]
+    primitives = [buffers.surface(surface) for surface in scene_picture.surfaces]
     looks = _Looks(buffers)
     meshes: dict[object, int] = {}
     mesh_list: list[dict[str, Any]] = []
     nodes: list[dict[str, Any]] = []
-    names = distinct_labels(drawn.scenes[0])
-    for index, instance in enumerate(drawn.scenes[0]):
+    names = distinct_labels(scene_picture.scenes[0])
+    for index, instance in enumerate(scene_picture.scenes[0]):
         with placed_errors(scene):
             texture = texture_of(instance.thing.properties.get("texture"), instance.color, instance.folder)
             image = texture if isinstance(texture, ImageTexture) else None
             # An image covers objects of each size in its own way.
-            own = (id(instance.thing),) if image is not None else ()
-            key = (instance.surface, instance.color, *own)
+            identity = (id(instance.thing),) if image is not None else ()
+            key = (instance.surface, instance.color, *identity)
             if key not in meshes:
                 meshes[key] = len(mesh_list)
                 parts = (
                     primitives[instance.surface]
                     if image is None
-                    else [(None, buffers.covered(drawn.surfaces[instance.surface], instance, image))]
+                    else [(None, buffers.covered(scene_picture.surfaces[instance.surface], instance, image))]
                 )
                 mesh_list.append(
                     {

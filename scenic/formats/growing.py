@@ -59,7 +59,7 @@ class GrowingFile:
         return [] if self._is_special else self._lines(self.part)
 
     def __enter__(self) -> Self:
-        kept = self.kept()
+        lines = self.kept()
         try:
             if self._is_special:
                 # A device or a pipe keeps its name, and has no content to go on with.
@@ -68,15 +68,15 @@ class GrowingFile:
             if (
                 self._resume
                 and self.path.exists()
-                and not (self.part.exists() and len(self._lines(self.part)) >= len(kept))
+                and not (self.part.exists() and len(self._lines(self.part)) >= len(lines))
             ):
                 os.replace(self.path, self.part)
             self._stream = self.part.open("r+b" if self._resume and self.part.exists() else "wb")
-            self._stream.truncate(sum(map(len, kept)))
+            self._stream.truncate(sum(map(len, lines)))
             self._stream.seek(0, os.SEEK_END)
         except OSError as error:
             raise _refusal(self.path, error) from error
-        self._is_empty = not kept
+        self._is_empty = not lines
         return self
 
     def write(self, lines: "ReadableBuffer") -> None:

@@ -182,8 +182,8 @@ def _mesh(surface: Surface) -> dict[str, str]:
     }
     if surface.paints is not None:
         paints = np.zeros((len(surface.paints), 4), np.uint8)
-        own = ~np.isnan(surface.paints[:, 0])
-        paints[own, :3], paints[own, 3] = np.round(linear(surface.paints[own]) * 255), 255
+        has_paint = ~np.isnan(surface.paints[:, 0])
+        paints[has_paint, :3], paints[has_paint, 3] = np.round(linear(surface.paints[has_paint]) * 255), 255
         mesh["paints"] = packed(paints)
     return mesh
 
@@ -240,14 +240,14 @@ def _brief(value: object) -> str:
     """A value in a few words."""
     match plain(value, {}):
         case str() as text:
-            shown = text
+            words = text
         case float() as real:
-            shown = f"{real:.6g}"
+            words = f"{real:.6g}"
         case {"$text": str() as text}:
-            shown = text
+            words = text
         case other:
-            shown = json.dumps(other)
-    return shown if len(shown) <= 80 else shown[:79] + "…"
+            words = json.dumps(other)
+    return words if len(words) <= 80 else words[:79] + "…"
 
 
 def _filled(template: str, parts: Mapping[str, str]) -> str:

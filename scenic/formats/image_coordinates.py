@@ -29,12 +29,12 @@ def image_coordinates(
     places = (mesh.vertices * np.asarray(size))[faces]
     cross = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
     normals = np.repeat(cross / np.maximum(np.linalg.norm(cross, axis=1, keepdims=True), 1e-30), 3, axis=0)
-    projected, _ = texture.projected(
+    projection, _ = texture.projected(
         places.reshape(-1, 3).astype(np.float32), normals.astype(np.float32), size
     )
-    coordinates = np.asarray(projected, np.float64).reshape(-1, 3, 2)
+    coordinates = np.asarray(projection, np.float64).reshape(-1, 3, 2)
     if texture.projection == "mesh":
-        own = coordinates_of(source, mesh.vertices, faces)
-        if own is not None:
-            coordinates = np.where(np.isnan(own), coordinates, own)
+        file_coordinates = coordinates_of(source, mesh.vertices, faces)
+        if file_coordinates is not None:
+            coordinates = np.where(np.isnan(file_coordinates), coordinates, file_coordinates)
     return coordinates

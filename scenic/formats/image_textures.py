@@ -91,12 +91,12 @@ class ImageTexture:
         rows = np.arange(len(places))
         away = normals[rows, axis] > 0
         # Seen from outside, nothing is mirrored: letters on the image can be read on all sides.
-        mirrored = np.where(axis == 0, ~away, np.where(axis == 1, away, False))
-        flipped = (axis == 2) & ~away & (self.projection != "planar")
-        u = places[rows, across] * np.where(mirrored, -1, 1)
-        v = places[rows, up] * np.where(flipped, -1, 1)
-        found = np.stack([u, v * self.image().aspect], axis=1) / scale + 0.5
-        return found.astype(np.float32), 1 / scale
+        is_mirrored = np.where(axis == 0, ~away, np.where(axis == 1, away, False))
+        is_flipped = (axis == 2) & ~away & (self.projection != "planar")
+        u = places[rows, across] * np.where(is_mirrored, -1, 1)
+        v = places[rows, up] * np.where(is_flipped, -1, 1)
+        coordinates = np.stack([u, v * self.image().aspect], axis=1) / scale + 0.5
+        return coordinates.astype(np.float32), 1 / scale
 
     def colors(self, own: Singles, coordinates: Singles, blur: Singles) -> Singles:
         """Linear colours ``(3, n)``; the object's own colour shows where the image is transparent.
@@ -107,9 +107,9 @@ class ImageTexture:
             blur: widths of the picture's pixels in coordinates, ``(n,)``.
 
         """
-        found = self.image().at(coordinates, blur)
-        alpha = found[:, 3:]
-        return np.asarray((found[:, :3] + (1 - alpha) * own).T, np.float32)
+        samples = self.image().at(coordinates, blur)
+        alpha = samples[:, 3:]
+        return np.asarray((samples[:, :3] + (1 - alpha) * own).T, np.float32)
 
 
 class _Image:
@@ -159,9 +159,9 @@ def _between(pixels: npt.NDArray[np.uint8], coordinates: Singles) -> Singles:
     result = np.zeros((len(coordinates), 4), np.float32)
     for x, y in ((0, 0), (1, 0), (0, 1), (1, 1)):
         weight = (across if x else 1 - across) * (down if y else 1 - down)
-        found = pixels[(top + y) % height, (left + x) % width]
-        result[:, :3] += decoded(found[:, :3]) * weight[:, None]
-        result[:, 3] += found[:, 3] * weight / np.float32(255)
+        texels = pixels[(top + y) % height, (left + x) % width]
+        result[:, :3] += decoded(texels[:, :3]) * weight[:, None]
+        result[:, 3] += texels[:, 3] * weight / np.float32(255)
     return result
 
 
@@ -170,8 +170,8 @@ def _read(path: str, name: str, _stamp: int, _length: int) -> _Image:
     """The image in a file that has not changed since."""
     pillow: Any = require_pillow()
     try:
-        with pillow.open(path) as opened:
-            image = opened.convert("RGBA")
+        with pillow.open(path) as file:
+            image = file.convert("RGBA")
     except (OSError, ValueError, SyntaxError, pillow.DecompressionBombError) as error:
         reason = str(error).replace(path, os.path.basename(path))
         raise TextureError(

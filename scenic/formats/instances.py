@@ -327,14 +327,14 @@ def _appearance(scene: Scene, number: int) -> Appearance | None:
 def picture(scenes: Iterable[Scene], *, ground: bool = False) -> Picture:
     """The picture of the scenes; with what their workspaces show under the objects if ``ground``."""
     gallery = Gallery()
-    drawn, params, grounds, lamps = [], [], [], []
+    instances_of_scenes, params, grounds, lamps = [], [], [], []
     for scene in scenes:
-        drawn.append(gallery.add(scene))
+        instances_of_scenes.append(gallery.add(scene))
         params.append(scene.params)
-        places = places_of(drawn[-1] if ground else ())
+        places = places_of(instances_of_scenes[-1] if ground else ())
         grounds.append(gallery.ground(scene.workspace, places))
         lamps.append(lit(gallery.lamps(scene.workspace, places), shown_colors(scene)))
-    return Picture(gallery.surfaces, tuple(drawn), tuple(params), tuple(grounds), tuple(lamps))
+    return Picture(gallery.surfaces, tuple(instances_of_scenes), tuple(params), tuple(grounds), tuple(lamps))
 
 
 def resting(instances: Sequence[Instance]) -> tuple[Instance, ...]:
@@ -344,12 +344,12 @@ def resting(instances: Sequence[Instance]) -> tuple[Instance, ...]:
     are as high as what they look like, if their own height is that of the mode.
     """
     return tuple(
-        replace(instance, size=(*instance.size[:2], shown), position=(x, y, z + shown / 2))
+        replace(instance, size=(*instance.size[:2], height), position=(x, y, z + height / 2))
         if getattr(instance.thing, "_planar", False)
         else instance
         for instance in instances
         for x, y, z in [instance.position]
-        for shown in [_shown_height(instance)]
+        for height in [_shown_height(instance)]
     )
 
 
@@ -435,7 +435,7 @@ def _smooth(vertices: Array, faces: npt.NDArray[np.int64], flat: Array, area: Ar
     corner, other = pairs.coords
     smooth = np.einsum("ij,ij->i", flat[owner[corner]], flat[other]) > CREASE
     corner, other = corner[smooth], other[smooth]
-    weighted = flat[other] * area[other, None]
-    total = np.column_stack([np.bincount(corner, weighted[:, axis], 3 * count) for axis in range(3)])
+    weighted_normals = flat[other] * area[other, None]
+    total = np.column_stack([np.bincount(corner, weighted_normals[:, axis], 3 * count) for axis in range(3)])
     length = np.linalg.norm(total, axis=1, keepdims=True)
     return np.where(length > 1e-30, total / np.maximum(length, 1e-30), flat[owner])

@@ -169,9 +169,9 @@ def _labels(
     for item in instances:
         body, number = bodies[id(item.thing)], index[id(item.thing)]
         occluders = [Occluder(bodies[id(thing)]) for thing in hiding if thing is not item.thing]
-        shown = objects == number
+        mask = objects == number
         full_pixels, full_box = _alone(views, viewpoint, body)
-        placed = viewpoint.project(body.poses.to_world(CORNERS))
+        image_corners = viewpoint.project(body.poses.to_world(CORNERS))
         middle = viewpoint.project(body.poses.position)
         pixels = int(counts[number + 1])
         labels.append(
@@ -182,11 +182,11 @@ def _labels(
                 pixels=pixels,
                 # Single precision may show a pixel of an outline that double precision does not.
                 full_pixels=max(full_pixels, pixels),
-                box=_box(shown),
+                box=_box(mask),
                 full_box=full_box,
-                corners=placed,
+                corners=image_corners,
                 depth=float(middle[0, 2]),
-                nearest=float(depth[shown].min()) if pixels else None,
+                nearest=float(depth[mask].min()) if pixels else None,
             )
         )
     return tuple(labels)
@@ -228,14 +228,14 @@ def _alone(views: Views, viewpoint: Viewpoint, body: Body) -> tuple[int, Box | N
         ],
         axis=-1,
     )
-    met = place(body, views, np.zeros(1, dtype=np.intp)).first(
+    distances = place(body, views, np.zeros(1, dtype=np.intp)).first(
         np.zeros(len(directions), dtype=np.intp), directions
     )
-    shown = np.isfinite(met).reshape(column.shape)
-    box = _box(shown)
+    mask = np.isfinite(distances).reshape(column.shape)
+    box = _box(mask)
     if box is not None:
         box = Box(box.left + left, box.top + top, box.width, box.height)
-    return int(shown.sum()), box
+    return int(mask.sum()), box
 
 
 def _box(mask: npt.NDArray[np.bool_]) -> Box | None:

@@ -76,21 +76,21 @@ def coarse_light(stage: Stage, eye: Singles, seen: Seen, shape: tuple[int, int])
     bright = seen.group != SKY
     halfway = np.flatnonzero(bright & same & ~steady)
     sun[halfway] = _sun(stage, eye, seen.take(halfway), _pattern(halfway, shape[1]), _OWN_SUN_RAYS)
-    mixed = np.flatnonzero(bright & ~same)
-    row, column = np.divmod(mixed, shape[1])
+    border_pixels = np.flatnonzero(bright & ~same)
+    row, column = np.divmod(border_pixels, shape[1])
     corners = [
         (row // _NODE + below) * size[1] + column // _NODE + beside for below in (0, 1) for beside in (0, 1)
     ]
     light = _from_neighbours(
         stage,
         eye,
-        seen.take(mixed),
+        seen.take(border_pixels),
         corners,
         nodes,
         Light(*(part.reshape(-1) for part in at_nodes)),
-        _pattern(mixed, shape[1]),
+        _pattern(border_pixels, shape[1]),
     )
-    sun[mixed], sky[mixed] = light.sun, light.sky
+    sun[border_pixels], sky[border_pixels] = light.sun, light.sky
     return Light(sun, sky)
 
 
@@ -122,23 +122,23 @@ def _from_neighbours(
 ) -> Light:
     """The light of those neighbours that show the same surface; where they disagree or are none, rays of its own."""
     count = len(pattern)
-    known, sky, sun = np.zeros((3, count), np.float32)
+    matches, sky, sun = np.zeros((3, count), np.float32)
     low, high = np.full(count, 2, np.float32), np.full(count, -1, np.float32)
     for corner in neighbours:
         match = groups[corner] == seen.group
-        known += match
+        matches += match
         sky += match * light.sky[corner]
         value = light.sun[corner]
         sun += match * value
         np.minimum(low, value, out=low, where=match)
         np.maximum(high, value, out=high, where=match)
-    share = 1 / np.maximum(known, 1)
+    share = 1 / np.maximum(matches, 1)
     sky *= share
     sun *= share
     bright = seen.group != SKY
-    unsure = np.flatnonzero(bright & ((high - low > _CLOSE) | (known == 0)))
+    unsure = np.flatnonzero(bright & ((high - low > _CLOSE) | (matches == 0)))
     sun[unsure] = _sun(stage, eye, seen.take(unsure), pattern[unsure], _OWN_SUN_RAYS)
-    alone = np.flatnonzero(bright & (known == 0))
+    alone = np.flatnonzero(bright & (matches == 0))
     sky[alone] = _sky(stage, eye, seen.take(alone), pattern[alone], _OWN_SKY_RAYS)
     return Light(sun, sky)
 

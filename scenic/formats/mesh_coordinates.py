@@ -40,10 +40,10 @@ def coordinates_of(
 
     """
     path = source.get("path")
-    found = None if path is None else _read(path, *_stamp(path))
-    if found is None:
+    places_and_coordinates = None if path is None else _read(path, *_stamp(path))
+    if places_and_coordinates is None:
         return None
-    places, coordinates = found
+    places, coordinates = places_and_coordinates
     rotation: Sequence[float] | None = source.get("initial_rotation")
     if rotation is not None:
         places = places @ quaternions.to_matrix(quaternions.from_euler(*rotation)).T

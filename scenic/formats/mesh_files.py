@@ -74,10 +74,10 @@ def check_unchanged(path: Path, sha256: str) -> None:
 
     """
     try:
-        found = digest_of(path)
+        digest = digest_of(path)
     except OSError:
         return
-    if found != sha256:
+    if digest != sha256:
         raise ChangedMeshError(
             f"the mesh file '{path}' has changed since the scenes were saved",
             help="put back the file that they were made with, or sample the scenes again",

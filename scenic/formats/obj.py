@@ -24,16 +24,16 @@ def obj(scene: Scene, library: str) -> tuple[bytes, bytes]:
         library: the name of the library's file, which has to lie beside the other.
 
     """
-    drawn = picture([scene])
-    instances = drawn.scenes[0]
+    scene_picture = picture([scene])
+    instances = scene_picture.scenes[0]
     materials: dict[Four, str] = {}
     for instance in instances:
-        for color in _colors(instance, drawn.surfaces[instance.surface]):
+        for color in _colors(instance, scene_picture.surfaces[instance.surface]):
             materials.setdefault(color, f"color{len(materials)}")
     lines = [f"# scene {scene.k} of seed {scene.seed}; metres, Z up", f"mtllib {library}"]
     first = 1
     for instance, name in zip(instances, distinct_labels(instances), strict=True):
-        surface = drawn.surfaces[instance.surface]
+        surface = scene_picture.surfaces[instance.surface]
         lines.append(f"o {name}".replace("\n", " "))
         lines += _surface(instance, surface, first, materials)
         first += len(surface.vertices)

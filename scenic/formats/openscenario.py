@@ -104,11 +104,11 @@ def openscenario_document(
     """
     xosc = openscenario_support()
     entities = _entities(things, names or [None] * len(things), flat=flat)
-    listed, init = xosc.Entities(), xosc.Init()
+    document_entities, init = xosc.Entities(), xosc.Init()
     act = xosc.Act("Simulation", _when(xosc, "begins", 0.0))
     times = [float(step * timestep) for step in range(len(poses))]
     for index, entity in enumerate(entities):
-        listed.add_scenario_object(entity.name, _scenario_object(xosc, entity))
+        document_entities.add_scenario_object(entity.name, _scenario_object(xosc, entity))
         places = _places(xosc, entity, [state[index] for state in poses], offset)
         init.add_init_action(entity.name, xosc.TeleportAction(places[0]))
         speed = math.hypot(*entity.thing.velocity)
@@ -127,7 +127,7 @@ def openscenario_document(
         name,
         "Scenic",
         xosc.ParameterDeclarations(),
-        listed,
+        document_entities,
         story,
         xosc.RoadNetwork(roadfile=map_path),
         xosc.Catalog(),
@@ -158,22 +158,22 @@ def map_beside(path: Any, folder: Path) -> str:
 
 
 def _entities(things: Sequence[Any], names: Sequence[str | None], *, flat: bool) -> list[_Entity]:
-    taken: set[str] = set()
-    found: list[_Entity] = []
+    names_in_use: set[str] = set()
+    entities: list[_Entity] = []
     for index, (thing, variable) in enumerate(zip(things, names, strict=True)):
         is_vehicle = bool(getattr(thing, "isVehicle", False))
         kind = (
             "Vehicle" if is_vehicle else "Pedestrian" if getattr(thing, "isPedestrian", False) else "Object"
         )
-        given = getattr(thing, "name", None)
-        wanted = given if isinstance(given, str) and given else variable or f"{kind}{index}"
-        name, number = wanted, 2
-        while name in taken:
-            name, number = f"{wanted}_{number}", number + 1
-        taken.add(name)
+        own_name = getattr(thing, "name", None)
+        base_name = own_name if isinstance(own_name, str) and own_name else variable or f"{kind}{index}"
+        name, number = base_name, 2
+        while name in names_in_use:
+            name, number = f"{base_name}_{number}", number + 1
+        names_in_use.add(name)
         back = -_wheelbase(thing) / 2 if is_vehicle else 0.0
-        found.append(_Entity(thing, name, is_vehicle, (0.0, back, 0.0 if flat else -thing.height / 2)))
-    return found
+        entities.append(_Entity(thing, name, is_vehicle, (0.0, back, 0.0 if flat else -thing.height / 2)))
+    return entities
 
 
 def _wheelbase(thing: Any) -> float:

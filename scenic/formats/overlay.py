@@ -26,14 +26,14 @@ def overlay(found: Observation) -> npt.NDArray[np.uint8]:
 
     assert found.rgb is not None
     pixels = found.rgb.copy()
-    shown = [label for label in found.labels if label.box is not None]
-    colors = {label.index: 255 * np.array(PALETTE[label.index % len(PALETTE)]) for label in shown}
-    for label in shown:
+    visible_labels = [label for label in found.labels if label.box is not None]
+    colors = {label.index: 255 * np.array(PALETTE[label.index % len(PALETTE)]) for label in visible_labels}
+    for label in visible_labels:
         mask = found.mask(label)
         pixels[mask] = ((1 - _TINT) * pixels[mask] + _TINT * colors[label.index]).astype(np.uint8)
     image = pillow.fromarray(pixels)
     draw = PIL.ImageDraw.Draw(image)
-    for label in shown:
+    for label in visible_labels:
         assert label.box is not None
         left, top = label.box.left, label.box.top
         color = tuple(int(part) for part in colors[label.index])

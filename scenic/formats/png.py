@@ -25,12 +25,12 @@ def png(scene: Scene, size: tuple[int, int] = SIZE, outlook: Outlook = STANDARD)
     Raises ``MissingLibraryError`` if Pillow is not installed.
     """
     require_pillow()
-    drawn = picture([scene], ground=True)
-    if any(drawn.grounds):
-        drawn = replace(drawn, scenes=(resting(drawn.scenes[0]),))
-    camera = framing(framed(scene, drawn.scenes[0], outlook), size[0] / size[1], outlook)
+    scene_picture = picture([scene], ground=True)
+    if any(scene_picture.grounds):
+        scene_picture = replace(scene_picture, scenes=(resting(scene_picture.scenes[0]),))
+    camera = framing(framed(scene, scene_picture.scenes[0], outlook), size[0] / size[1], outlook)
     with placed_errors(scene):
-        return encoded(render(drawn, 0, size, camera=camera))
+        return encoded(render(scene_picture, 0, size, camera=camera))
 
 
 def encoded(pixels: npt.NDArray[np.uint8] | npt.NDArray[np.uint16]) -> bytes:

@@ -132,13 +132,13 @@ def _composed(region: Composite) -> list[Array]:
     box = bounds(flat)
     if flat is None or box is None or region.dimension != 2:
         return lines
-    own = region.fixed_columns("the outline")
+    columns = region.fixed_columns("the outline")
     (lower, upper), height = box, _height(flat)
     hatches = [
         np.array([[lower[0], y, height], [upper[0], y, height]])
         for y in np.linspace(lower[1], upper[1], _HATCHES + 2)[1:-1]
     ]
-    return lines + _cut(hatches, lambda points: np.asarray(exactly_contains(region, points, own)))
+    return lines + _cut(hatches, lambda points: np.asarray(exactly_contains(region, points, columns)))
 
 
 def _cut(lines: Sequence[Array], keep: Keep) -> list[Array]:
@@ -155,8 +155,8 @@ def _cut(lines: Sequence[Array], keep: Keep) -> list[Array]:
             np.linspace(a, b, n, endpoint=False) for (a, b), n in zip(pairwise(line), counts, strict=True)
         ]
         fine = np.concatenate([*parts, line[-1:]])
-        kept = keep((fine[:-1] + fine[1:]) / 2)
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], kept, [False]]).astype(int)))
+        is_inside = keep((fine[:-1] + fine[1:]) / 2)
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], is_inside, [False]]).astype(int)))
         result += [fine[start : end + 1] for start, end in edges.reshape(-1, 2).tolist()]
     return result
 
@@ -204,8 +204,8 @@ def _mesh_lines(mesh: Mesh, side: tuple[int, int] | None, threshold: float) -> l
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-30)
     if side is not None:
-        chosen = normal[:, side[0]] * side[1] >= threshold - _SLACK
-        faces, normal = faces[chosen], normal[chosen]
+        faces_the_side = normal[:, side[0]] * side[1] >= threshold - _SLACK
+        faces, normal = faces[faces_the_side], normal[faces_the_side]
     if not len(faces):
         return []
     pairs = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
@@ -213,11 +213,11 @@ def _mesh_lines(mesh: Mesh, side: tuple[int, int] | None, threshold: float) -> l
     total = np.zeros((len(edges), 3))
     np.add.at(total, number, np.repeat(normal, 3, axis=0))
     # Two unit normals that enclose an angle a add up to a vector of length 2 cos(a / 2).
-    squared = (total**2).sum(axis=1)
-    sharp = (count != 2) | (squared < 2 + 2 * _CREASE)
-    curved = ~sharp & (squared < 4 - 1e-6)
+    squared_length = (total**2).sum(axis=1)
+    sharp = (count != 2) | (squared_length < 2 + 2 * _CREASE)
+    is_curved = ~sharp & (squared_length < 4 - 1e-6)
     lines = _longest(list(vertices[edges[sharp]]))
-    if curved.mean() > _ROUND:
+    if is_curved.mean() > _ROUND:
         for axis in range(3):
             lines += _section(vertices[faces], axis)
     return lines
@@ -243,8 +243,8 @@ def _cell_edges(filled: npt.NDArray[np.bool_]) -> list[Array]:
         steps = np.diff(edge.astype(np.int8), axis=2)
         starts, ends = np.argwhere(steps == 1), np.argwhere(steps == -1)
         # Both are in the order of the lines; padding moves all cells up by one.
-        joined = np.stack([starts, ends], axis=1).astype(float)
-        lines += list(joined[..., _AXES[axis]])
+        segments = np.stack([starts, ends], axis=1).astype(float)
+        lines += list(segments[..., _AXES[axis]])
     return lines
 
 
@@ -262,8 +262,8 @@ def _section(corners: Array, axis: int) -> list[Array]:
         place[(height[:, a] > 0) == (height[:, b] > 0)] = np.nan
         ends.append(place)
     places = np.stack(ends, axis=1)
-    met = ~np.isnan(places[..., 0])
-    return list(places[met].reshape(-1, 2, 3)) if len(places) else []
+    crosses = ~np.isnan(places[..., 0])
+    return list(places[crosses].reshape(-1, 2, 3)) if len(places) else []
 
 
 def view_outline(horizontal: float, vertical: float, distance: float) -> list[Array]:

@@ -96,9 +96,9 @@ class _Drawing:
         light = coarse_light(stage, lens.eye, coarse, shape)
         color = encoded(self._color(coarse, light)).reshape(3, *shape)
         group = coarse.group.reshape(shape)
-        torn = _jumps(coarse.nearness.reshape(shape)) & (group > 0)
-        beside = (group[:, 1:] != group[:, :-1]) | torn[:, 1:] | torn[:, :-1]
-        below = (group[1:] != group[:-1]) | torn[1:] | torn[:-1]
+        tears = _jumps(coarse.nearness.reshape(shape)) & (group > 0)
+        beside = (group[:, 1:] != group[:, :-1]) | tears[:, 1:] | tears[:, :-1]
+        below = (group[1:] != group[:-1]) | tears[1:] | tears[:-1]
         for plane in color:
             beside |= _apart(plane[:, 1:], plane[:, :-1])
             below |= _apart(plane[1:], plane[:-1])
@@ -108,10 +108,10 @@ class _Drawing:
         details = _between(beside, below, self._group.shape)
         if self._known is not None:
             # Ground and sky are told apart by their directions alone: where they meet is seen in the coarse image.
-            shown = stage.group_of(self._known.triangle)
-            details |= shown != np.where(self._group == GROUND, np.int32(SKY), self._group)
+            remembered_groups = stage.group_of(self._known.triangle)
+            details |= remembered_groups != np.where(self._group == GROUND, np.int32(SKY), self._group)
         self._detail(np.flatnonzero(details), (coarse.group, light, shape))
-        return _twice(torn, self._group.shape)
+        return _twice(tears, self._group.shape)
 
     def _recall(self, known: Buffer, directions: Singles, pixels: Index) -> Seen:
         """Return the surface points that pixels show, from a buffer of known results."""
@@ -130,12 +130,12 @@ class _Drawing:
         stage, lens = self._stage, self._lens
         directions = lens.through(pixels)
         if self._known is None:
-            seen = look(stage, lens.eye, directions)
+            hits = look(stage, lens.eye, directions)
         else:
-            seen = self._recall(self._known, directions, pixels)
-        light = fine_light(stage, lens.eye, seen, pixels, lens.width, coarse)
-        self.image.reshape(-1, 3)[pixels] = encoded(self._color(seen, light)).T
-        self._group.reshape(-1)[pixels] = seen.group
+            hits = self._recall(self._known, directions, pixels)
+        light = fine_light(stage, lens.eye, hits, pixels, lens.width, coarse)
+        self.image.reshape(-1, 3)[pixels] = encoded(self._color(hits, light)).T
+        self._group.reshape(-1)[pixels] = hits.group
 
     # Colours
 
@@ -145,13 +145,13 @@ class _Drawing:
         result = np.zeros((3, len(seen.group)), np.float32)
         thing = np.flatnonzero(seen.group > 0)
         triangle, sun, sky = seen.triangle[thing], light.sun[thing], light.sky[thing]
-        curved = stage.smooth[triangle]
-        if not curved.all():
+        is_smooth = stage.smooth[triangle]
+        if not is_smooth.all():
             for channel in range(3):
                 sunny = np.take(stage.flat[channel], triangle) * sun
                 result[channel, thing] = sunny + np.take(stage.flat[channel + 3], triangle) * sky
-        if curved.any():
-            some = np.flatnonzero(curved)
+        if is_smooth.any():
+            some = np.flatnonzero(is_smooth)
             result[:, thing[some]] = self._curved_color(seen.take(thing[some]), Light(sun[some], sky[some])).T
         if stage.textures and len(thing):
             start = self._lens.eye if eye is None else eye[thing]
@@ -213,28 +213,28 @@ class _Drawing:
         height, width = group.shape
         across, along = group[:, 1:] != group[:, :-1], group[1:] != group[:-1]
         # If three sides of a square of pixels join the same surface, so does the fourth.
-        mixed = across[:-1] | across[1:] | along[:, 1:]
+        has_edge = across[:-1] | across[1:] | along[:, 1:]
         for down in (0, 1):
             for right in (0, 1):
-                mixed |= torn[down : height - 1 + down, right : width - 1 + right]
+                has_edge |= torn[down : height - 1 + down, right : width - 1 + right]
         edge = np.zeros(group.shape, np.bool_)
         for down in (0, 1):
             for right in (0, 1):
-                edge[down : height - 1 + down, right : width - 1 + right] |= mixed
-        row, column = np.divmod(np.flatnonzero(mixed), width - 1)
+                edge[down : height - 1 + down, right : width - 1 + right] |= has_edge
+        row, column = np.divmod(np.flatnonzero(has_edge), width - 1)
         colors = self._corner_colors(row + 1, column + 1)
         number = np.full((height + 1, width + 1), -1, np.int32)
         number[row + 1, column + 1] = np.arange(len(row))
         pixels = np.flatnonzero(edge)
         image = self.image.reshape(-1, 3)
-        own = decoded(image[pixels])
-        total = own * np.float32(0.5)
+        own_colors = decoded(image[pixels])
+        total = own_colors * np.float32(0.5)
         row, column = np.divmod(pixels, width)
         for down in (0, 1):
             for right in (0, 1):
                 corner = number[row + down, column + right]
                 there = np.flatnonzero(corner >= 0)
-                part = own * np.float32(0.125)
+                part = own_colors * np.float32(0.125)
                 part[there] = colors[corner[there]]
                 total += part
         image[pixels] = encoded(total)
@@ -246,13 +246,13 @@ class _Drawing:
         """
         width = self._group.shape[1]
         directions = self._lens.directions(column.astype(np.float32), row.astype(np.float32))
-        found = first_groups(self._stage, self._lens.eye, directions)
+        corner_groups = first_groups(self._stage, self._lens.eye, directions)
         group, image = self._group.reshape(-1), self.image.reshape(-1, 3)
         pixel = row * width + column
         around = [pixel - width - 1, pixel - width, pixel - 1, pixel]
         total, matching = np.zeros((len(row), 3), np.float32), np.zeros(len(row), np.float32)
         for pixel in around:
-            match = np.flatnonzero(group[pixel] == found)
+            match = np.flatnonzero(group[pixel] == corner_groups)
             matching[match] += 1
             total[match] += decoded(image[pixel[match]])
         # Something too thin for the middle of any pixel takes the colour around it.

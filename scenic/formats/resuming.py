@@ -30,23 +30,27 @@ def continued(
     ``points`` is what scenes are made of, if not of random numbers. ``files`` is a digest of the files that decide the scenes, which
     is not compared if ``None``. Raises `ResumeError` where the lines are of another program, of other options or of another run.
     """
-    kept = grown.kept()
-    if not kept:
+    lines = grown.kept()
+    if not lines:
         return seed, 0
     try:
-        head, last = (json.loads(line) for line in (kept[0], kept[-1]))
-        made, begun, reached = (head["digest"], int(head["seed"])), int(head["k"]), int(last["k"])
-        same = made == (last["digest"], int(last["seed"]))
+        head, last = (json.loads(line) for line in (lines[0], lines[-1]))
+        recorded_run, first_number, last_number = (
+            (head["digest"], int(head["seed"])),
+            int(head["k"]),
+            int(last["k"]),
+        )
+        same = recorded_run == (last["digest"], int(last["seed"]))
         alike = head.get("points") == last.get("points") == points
-        unchanged = files is None or last.get("files", "") == files
+        has_same_files = files is None or last.get("files", "") == files
     except (ValueError, KeyError, TypeError) as error:
         raise ResumeError(f"'{grown.path}' does not hold scenes of an earlier run ({error})") from error
-    if made[0] != digest:
+    if recorded_run[0] != digest:
         raise ResumeError(
             f"'{grown.path}' holds scenes of another program, or of the same with other options",
             help="the program has changed since: sample to a new file",
         )
-    if not unchanged:
+    if not has_same_files:
         raise ResumeError(
             f"'{grown.path}' holds scenes of the same program with other modules, meshes or other files that it uses",
             help="put the files back, or sample to a new file; --accept-changes goes on, and each line tells by `files` which it is of",
@@ -56,12 +60,17 @@ def continued(
             f"'{grown.path}' holds scenes of other random numbers",
             help="give --sobol as in the run that is resumed, or leave it away as there",
         )
-    if not same or (seed is not None and seed != made[1]) or not first <= begun or reached >= first + count:
+    if (
+        not same
+        or (seed is not None and seed != recorded_run[1])
+        or not first <= first_number
+        or last_number >= first + count
+    ):
         raise ResumeError(
-            f"'{grown.path}' holds scenes {begun} to {reached} of seed {made[1]}, which this run does not make",
+            f"'{grown.path}' holds scenes {first_number} to {last_number} of seed {recorded_run[1]}, which this run does not make",
             help="give the same --seed, --first and -n as before, or a larger -n",
         )
-    return made[1], reached + 1 - first
+    return recorded_run[1], last_number + 1 - first
 
 
 def check_remade(grown: GrowingFile, files: str, line_of: Callable[[int], bytes | None]) -> None:
@@ -73,8 +82,8 @@ def check_remade(grown: GrowingFile, files: str, line_of: Callable[[int], bytes 
         line_of: makes the line of a scene of a number, or ``None`` if it is not found.
 
     """
-    kept = grown.kept()
-    for line in dict.fromkeys([*kept[:1], *kept[-1:]]):
+    lines = grown.kept()
+    for line in dict.fromkeys([*lines[:1], *lines[-1:]]):
         scene = json.loads(line)
         number = int(scene["k"])
         if scene.get("files", "") == files and line_of(number) != line:

@@ -39,10 +39,12 @@ class RevivedScene:
         self.params = told.params
         self.objects = objects
         self.names = {
-            made: read.name for made, read in zip(objects, told.objects, strict=True) if read.name is not None
+            revived: read.name
+            for revived, read in zip(objects, told.objects, strict=True)
+            if read.name is not None
         }
         self.egoObject = next(
-            (made for made, read in zip(objects, told.objects, strict=True) if read is told.ego), None
+            (revived for revived, read in zip(objects, told.objects, strict=True) if read is told.ego), None
         )
 
     def origin(self, thing: RevivedObject) -> "RevivedOrigin":
@@ -107,21 +109,21 @@ class Revival:
 
 def _shape_of(told: Mapping[str, Any]) -> Shape:
     """The shape of a ``shape`` entry of the file; raises ``MeshError`` where its mesh cannot be had."""
-    given = dict(told)
-    kind = given.pop("kind", None)
-    if "initial_rotation" in given:
-        given["initial_rotation"] = tuple(given["initial_rotation"])
+    fields = dict(told)
+    kind = fields.pop("kind", None)
+    if "initial_rotation" in fields:
+        fields["initial_rotation"] = tuple(fields["initial_rotation"])
     primitive = primitive_of(str(kind))
     if primitive is not None:
-        return primitive(**given)
+        return primitive(**fields)
     if kind != "mesh":
         raise ValueError(f"no kind of form is called {kind!r}")
-    path, sha256 = given.pop("path", None), given.pop("sha256", None)
+    path, sha256 = fields.pop("path", None), fields.pop("sha256", None)
     if path is None:
         raise MeshError("a mesh that the program itself made is not in the file")
     if sha256 is not None:
         check_unchanged(Path(path), sha256)
-    return MeshShape.fromFile(path, **given)
+    return MeshShape.fromFile(path, **fields)
 
 
 __all__ = ["Revival", "RevivedObject", "RevivedOrigin", "RevivedScene"]

@@ -54,10 +54,10 @@ class SceneTable:
         columns = SceneColumns(scenario)
         self._params = {name: _Field(arrow, [column]) for name, column in columns.params.items()}
         self._objects = columns.objects
-        given = dict.fromkeys(key for thing in columns.objects for key in thing.given)
+        property_names = dict.fromkeys(key for thing in columns.objects for key in thing.given)
         self._properties = {
             key: _Field(arrow, [thing.properties[key] for thing in columns.objects if key in thing.given])
-            for key in sorted(given)
+            for key in sorted(property_names)
         }
         self._object_type = arrow.struct(
             [

@@ -72,22 +72,22 @@ def scenery_of(params: Mapping[str, object]) -> Scenery:
         SceneryError: a value has no meaning, or there is no such key.
 
     """
-    found: dict[str, Any] = {}
+    fields: dict[str, Any] = {}
     for name, readers in _READERS.items():
-        given = params.get(name)
-        if not isinstance(given, Mapping):
+        parameter = params.get(name)
+        if not isinstance(parameter, Mapping):
             continue
-        for key, value in given.items():
+        for key, value in parameter.items():
             if key not in readers:
                 raise SceneryError(
                     f"`param {name}` has no {key!r}",
                     help=f"its keys are {', '.join(readers)}; see docs/howto/cameras.md",
                 )
             try:
-                found[key] = readers[key](value)
+                fields[key] = readers[key](value)
             except (TypeError, ValueError) as error:
                 raise SceneryError(f"{key!r} of `param {name}` must be {error}, not {value!r}") from error
-    return replace(USUAL, **found) if found else USUAL
+    return replace(USUAL, **fields) if fields else USUAL
 
 
 def _sun(value: Any) -> Array:

@@ -73,8 +73,10 @@ class Viewpoint:
         with np.errstate(divide="ignore", invalid="ignore"):
             across = self.size[0] * 0.5 * (1 + right / (ahead * self.camera.tangents[0]))
             down = self.size[1] * 0.5 * (1 - up / (ahead * self.camera.tangents[1]))
-        seen = ahead > 0
-        return np.stack([np.where(seen, across, np.nan), np.where(seen, down, np.nan), ahead], axis=-1)
+        is_ahead = ahead > 0
+        return np.stack(
+            [np.where(is_ahead, across, np.nan), np.where(is_ahead, down, np.nan), ahead], axis=-1
+        )
 
 
 def viewpoint(scene: Scene, name: str, size: tuple[int, int] | None) -> Viewpoint:
@@ -96,10 +98,10 @@ def viewpoint(scene: Scene, name: str, size: tuple[int, int] | None) -> Viewpoin
         return _of_object(name, objects[name], size or (640, 480))
     if name in _of_program(scene):
         raise AbsentCameraError(f"the camera {name!r} does not take part in scene {scene.k}")
-    known = ", ".join(repr(item) for item in [*sensors, *objects]) or "none"
+    names = ", ".join(repr(item) for item in [*sensors, *objects]) or "none"
     raise CameraError(
         f"the scene has no camera {name!r}",
-        help=f"cameras are sensors and objects by the names of their variables; here: {known}",
+        help=f"cameras are sensors and objects by the names of their variables; here: {names}",
     )
 
 
@@ -151,13 +153,13 @@ def sensor_viewpoint(
     name: str, owner: SceneObject, sensor: CameraSensor, size: tuple[int, int] | None = None
 ) -> Viewpoint:
     """The camera that is a sensor of an object; ``size`` in pixels instead of its own."""
-    mounted = sensor.offset
-    if mounted is None:
-        mounted = _triple(owner.properties.get("visionSensorOffset", (0.0, owner.length / 2, 0.0)))
+    offset = sensor.offset
+    if offset is None:
+        offset = _triple(owner.properties.get("visionSensorOffset", (0.0, owner.length / 2, 0.0)))
     width, height = size or (sensor.width, sensor.height)
     across = math.tan(sensor.fieldOfView / 2)
     tangents = (across, across * height / width)
-    return _placed(name, owner, mounted, sensor.rotation, tangents, (width, height), sensor.outputs)
+    return _placed(name, owner, offset, sensor.rotation, tangents, (width, height), sensor.outputs)
 
 
 def _of_object(name: str, owner: SceneObject, size: tuple[int, int]) -> Viewpoint:
@@ -184,10 +186,12 @@ def _placed(
     from scipy.spatial.transform import Rotation
 
     body = Rotation.from_quat(quaternion_of(owner))
-    turned = body * Rotation.from_euler("ZXY", rotation)
-    right, ahead, up = turned.as_matrix().T
+    orientation = body * Rotation.from_euler("ZXY", rotation)
+    right, ahead, up = orientation.as_matrix().T
     eye = np.array(_triple(owner.position)) + body.apply(offset)
-    return Viewpoint(name, owner, Camera(eye, right, up, ahead, tangents), turned.as_quat(), size, outputs)
+    return Viewpoint(
+        name, owner, Camera(eye, right, up, ahead, tangents), orientation.as_quat(), size, outputs
+    )
 
 
 def _triple(values: object) -> tuple[float, float, float]:

@@ -83,17 +83,19 @@ class Stage:
             surface = surfaces[instance.surface]
             matrix = instance.matrix()
             world = surface.vertices @ matrix[:3, :3].T + (matrix[:3, 3] - self.center)
-            turned = surface.normals / instance.size @ rotation_matrix(instance.quaternion).T
-            turned /= np.sqrt(np.einsum("ij,ij->i", turned, turned))[:, None]
+            world_normals = surface.normals / instance.size @ rotation_matrix(instance.quaternion).T
+            world_normals /= np.sqrt(np.einsum("ij,ij->i", world_normals, world_normals))[:, None]
             triangles.append(world.astype(np.float32)[surface.faces])
-            normals.append(turned.astype(np.float32)[surface.faces])
+            normals.append(world_normals.astype(np.float32)[surface.faces])
             owners.append(np.full(len(surface.faces), index, np.int32))
             texture = self.textures.get(index)
             if isinstance(texture, ImageTexture) and texture.projection == "mesh":
-                found = surface.coordinates(instance.thing.shape.source.as_dict())
-                if found is not None:
+                file_coordinates = surface.coordinates(instance.thing.shape.source.as_dict())
+                if file_coordinates is not None:
                     first = sum(map(len, owners[:-1]))
-                    self._coordinates[index] = _Coordinates(first, found, _density(found, triangles[-1]))
+                    self._coordinates[index] = _Coordinates(
+                        first, file_coordinates, _density(file_coordinates, triangles[-1])
+                    )
         for index, piece in enumerate(pieces, len(instances)):
             surface = surfaces[piece.surface]
             world = surface.vertices - self.center
@@ -115,7 +117,7 @@ class Stage:
         # Images bring their own colours.
         rgba[[k for k, item in self.textures.items() if isinstance(item, ImageTexture)], :3] = 1
         albedo = linear(rgba[:, :3])[self.owner]
-        painted = _paint([surfaces[instance.surface] for instance in instances], albedo)
+        paint_numbers = _paint([surfaces[instance.surface] for instance in instances], albedo)
         self.sunny, self.shady = _light_on(scenery, corner_normals, albedo)
         # Flat triangles are most of the pixels; entries of one array after the other are quick to take.
         flat = np.concatenate([self.sunny[:, 0], self.shady[:, 0]], axis=1).T
@@ -123,7 +125,7 @@ class Stage:
         rough = np.rint(mean * np.float32(2)).astype(np.int32) + 2
         code = (rough[:, 0] * 5 + rough[:, 1]) * 5 + rough[:, 2]
         # Surfaces of two colours are two surfaces.
-        kind = self.owner * (painted.max(initial=0) + 1) + painted
+        kind = self.owner * (paint_numbers.max(initial=0) + 1) + paint_numbers
         self._groups = np.append(kind * 125 + code + 1, np.int32(SKY))
         self.rays = RayScene(np.concatenate([*triangles, np.zeros((0, 3, 3), np.float32)]))
 
@@ -156,22 +158,24 @@ class Stage:
             item = self._instances[number]
             turn = rotation_matrix(item.quaternion).astype(np.float32)
             offset = (places[mine] - (np.array(item.position) - self.center).astype(np.float32)) @ turn
-            own = linear(item.color[:3])
+            own_color = linear(item.color[:3])
             if isinstance(texture, Texture):
-                change = linear(texture.color) / np.maximum(own, np.float32(1e-3)) - np.float32(1)
+                change = linear(texture.color) / np.maximum(own_color, np.float32(1e-3)) - np.float32(1)
                 factor[:, mine] += change[:, None] * texture.share(offset)
                 continue
-            seen = triangle[mine]
-            coordinates, density = texture.projected(offset, self.normals[seen] @ turn, item.size)
+            triangles = triangle[mine]
+            coordinates, density = texture.projected(offset, self.normals[triangles] @ turn, item.size)
             blur = pixel[mine] * np.float32(density)
             if number in self._coordinates:
                 second, third = (weight[mine] for weight in corners)
-                known = self._coordinates[number]
-                found = known.at(seen - known.first, second, third)
-                has = ~np.isnan(found[:, 0])
-                coordinates[has] = found[has]
-                blur[has] = pixel[mine][has] * known.density[seen[has] - known.first]
-            factor[:, mine] = texture.colors(own, coordinates, blur)
+                file_coordinates = self._coordinates[number]
+                interpolated = file_coordinates.at(triangles - file_coordinates.first, second, third)
+                has = ~np.isnan(interpolated[:, 0])
+                coordinates[has] = interpolated[has]
+                blur[has] = (
+                    pixel[mine][has] * file_coordinates.density[triangles[has] - file_coordinates.first]
+                )
+            factor[:, mine] = texture.colors(own_color, coordinates, blur)
         return factor
 
     def sunlit(self, places: Singles, normals: Singles, pattern: npt.NDArray[np.int64], rays: int) -> Singles:
@@ -237,21 +241,23 @@ def _paint(surfaces: Sequence[Surface], albedo: npt.NDArray[np.float32]) -> npt.
 
     Returns a number for each triangle ``(t,)``, 0 for those without a colour of their own, that differs between colours of a surface.
     """
-    painted = np.zeros(len(albedo), np.int32)
+    paint_numbers = np.zeros(len(albedo), np.int32)
     first = 0
     for surface in surfaces:
         paints = surface.face_paints()
         if paints is not None:
-            own = np.flatnonzero(~np.isnan(paints[:, 0]))
-            albedo[first + own] = linear(paints[own])
-            painted[first + own] = 1 + np.unique(paints[own], axis=0, return_inverse=True)[1].reshape(-1)
+            painted_triangles = np.flatnonzero(~np.isnan(paints[:, 0]))
+            albedo[first + painted_triangles] = linear(paints[painted_triangles])
+            paint_numbers[first + painted_triangles] = 1 + np.unique(
+                paints[painted_triangles], axis=0, return_inverse=True
+            )[1].reshape(-1)
         first += len(surface.faces)
-    return painted
+    return paint_numbers
 
 
 def _textures(instances: Sequence[Instance]) -> dict[int, Texture | ImageTexture]:
     """The textures of instances that have one, by their numbers; their files can be read."""
-    found = {}
+    texture_of_instance = {}
     for number, item in enumerate(instances):
         try:
             texture = texture_of(item.thing.properties.get("texture"), item.color, item.folder)
@@ -261,8 +267,8 @@ def _textures(instances: Sequence[Instance]) -> dict[int, Texture | ImageTexture
             error.thing = item.thing
             raise
         if texture is not None:
-            found[number] = texture
-    return found
+            texture_of_instance[number] = texture
+    return texture_of_instance
 
 
 def ground_light(albedo: Singles, sun: Singles, sky: Singles, scenery: Scenery = USUAL) -> Singles:

@@ -107,9 +107,9 @@ def texture_of(
     name = image_name(value)
     if name is not None:
         return _image(value, name, folder)
-    given = dict(value) if isinstance(value, Mapping) else {"pattern": value}
-    pattern, scale = given.pop("pattern", None), given.pop("scale", _SCALE)
-    second = given.pop("color", tuple(_DARKER * part for part in color[:3]))
+    fields = dict(value) if isinstance(value, Mapping) else {"pattern": value}
+    pattern, scale = fields.pop("pattern", None), fields.pop("scale", _SCALE)
+    second = fields.pop("color", tuple(_DARKER * part for part in color[:3]))
     try:
         red, green, blue = (float(part) for part in second)
         fine = (
@@ -119,19 +119,21 @@ def texture_of(
         )
     except (TypeError, ValueError):
         fine = False
-    if given or not fine:
+    if fields or not fine:
         raise _none_such(value)
     return Texture(pattern, float(scale), (red, green, blue))
 
 
 def _image(value: object, name: str, folder: Path | None) -> ImageTexture | None:
-    given = {key: item for key, item in value.items() if key != "image"} if isinstance(value, Mapping) else {}
-    scale, projection = given.pop("scale", None), given.pop("projection", PROJECTIONS[0])
+    fields = (
+        {key: item for key, item in value.items() if key != "image"} if isinstance(value, Mapping) else {}
+    )
+    scale, projection = fields.pop("scale", None), fields.pop("projection", PROJECTIONS[0])
     try:
         fine = (scale is None or 0 < scale < math.inf) and projection in PROJECTIONS
     except TypeError:
         fine = False
-    if given or not fine:
+    if fields or not fine:
         raise _none_such(value)
     if folder is None and not Path(name).is_absolute():
         return None

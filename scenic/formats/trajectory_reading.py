@@ -88,8 +88,8 @@ def read_trajectory(path: str | Path) -> Trajectory:
     file = Path(path)
     try:
         with file.open("rb") as stream:
-            packed = stream.read(4) == b"PAR1"
-        if packed:
+            is_parquet = stream.read(4) == b"PAR1"
+        if is_parquet:
             about, steps = parquet_about(file), parquet_steps(file)
         else:
             about, *steps = (json.loads(line) for line in file.read_text(encoding="utf-8").splitlines())

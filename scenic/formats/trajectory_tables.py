@@ -68,9 +68,9 @@ class ParquetFile:
         """The next state."""
         poses = zip(state["positions"], state["orientations"], strict=True)
         for index, (position, turn) in enumerate(poses):
-            done = state["actions"].get(str(index))
-            taken = None if done is None else _text(done)
-            values = (state["step"], state["time"], index, *position, *turn, taken)
+            action = state["actions"].get(str(index))
+            action_text = None if action is None else _text(action)
+            values = (state["step"], state["time"], index, *position, *turn, action_text)
             for column, value in zip(self._columns.values(), values, strict=True):
                 column.append(_number(value))
         if len(self._columns["step"]) >= GROUP:
@@ -132,9 +132,9 @@ def parquet_steps(path: Path) -> list[dict[str, Any]]:
         row = rows[step]
         row["positions"].append([number(table[name][index]) for name in _PLACES])
         row["orientations"].append([number(table[name][index]) for name in _TURNS])
-        done = table["actions"][index]
-        if done is not None:
-            row["actions"][str(table["object"][index])] = json.loads(done)
+        action = table["actions"][index]
+        if action is not None:
+            row["actions"][str(table["object"][index])] = json.loads(action)
     return rows
 
 

@@ -99,8 +99,8 @@ def webots_world(
     files: dict[str, bytes] = {}
     protos: list[str] = []
     nodes: list[str] = []
-    given = scene.params.get(WORLD_PARAMETER)
-    world = None if given is None else read_world(str(given))
+    world_path = scene.params.get(WORLD_PARAMETER)
+    world = None if world_path is None else read_world(str(world_path))
     frame = None if world is None else world.matrix
     for instance, label in zip(instances, _labels(instances), strict=True):
         thing: Any = instance.thing
@@ -148,8 +148,8 @@ def def_names(objects: Sequence[object]) -> dict[int, str]:
         ScenicValueError: two objects have one name, or a name cannot be a DEF name.
 
     """
-    found: dict[int, str] = {}
-    used: dict[str, Any] = {}
+    names: dict[int, str] = {}
+    things_by_name: dict[str, Any] = {}
     types: Counter[str] = Counter()
     for number, thing in enumerate(objects):
         name, kind = getattr(thing, "webotsName", None), getattr(thing, "webotsType", None)
@@ -165,15 +165,15 @@ def def_names(objects: Sequence[object]) -> dict[int, str]:
                 f"{name!r} of {thing!r} is not a DEF name of Webots",
                 help="`webotsName` and `webotsType` are letters, digits and `_`, and begin with no digit",
             )
-        if name in used or name in _RESERVED:
-            other = f"{used[name]!r}" if name in used else "a node of every written world"
+        if name in things_by_name or name in _RESERVED:
+            other = f"{things_by_name[name]!r}" if name in things_by_name else "a node of every written world"
             raise ScenicValueError(
                 f"{thing!r} has the DEF name {name} of {other}",
                 help="give each object a `webotsName` of its own, or all of them one `webotsType`",
             )
-        used[name] = thing
-        found[id(thing)] = name
-    return found
+        things_by_name[name] = thing
+        names[id(thing)] = name
+    return names
 
 
 def _labels(instances: Sequence[Instance]) -> list[str]:
@@ -282,19 +282,19 @@ def _geometry(thing: Any, stem: str, files: dict[str, bytes], name: str) -> str:
 def _robot(thing: object, proto: str, name: str, label: str, frame: Array | None = None) -> str:
     lines = [f"name {_text(label)}"]
     colors = ["primaryColor", "secondaryColor"] if hasattr(thing, "primaryColor") else ["color"]
-    for given in (
+    for field_name in (
         "shirtColor",
         "pantsColor",
         "shoesColor",
         *(colors if hasattr(thing, "roadDeviation") else ()),
     ):
-        value = getattr(thing, given, None)
+        value = getattr(thing, field_name, None)
         if value is not None:
-            lines.append(f"{given} {_numbers(value[:3])}")
-    for given in ("controller", "customData"):
-        value = getattr(thing, given, None)
+            lines.append(f"{field_name} {_numbers(value[:3])}")
+    for field_name in ("controller", "customData"):
+        value = getattr(thing, field_name, None)
         if value is not None:
-            lines.append(f"{given} {_text(str(value))}")
+            lines.append(f"{field_name} {_text(str(value))}")
     battery = getattr(thing, "battery", None)
     if battery is not None:
         lines.append(f"battery {_numbers(battery, listed=True)}")

@@ -178,10 +178,10 @@ class _Reader:
     def _node(self, word: str) -> WorldNode:
         name = None
         if word == "USE":
-            used = self._take()
-            if used not in self._defined:
-                raise self._error(f"no node is called {used}")
-            return self._defined[used]
+            def_name = self._take()
+            if def_name not in self._defined:
+                raise self._error(f"no node is called {def_name}")
+            return self._defined[def_name]
         if word == "DEF":
             name, word = self._take(), self._take()
         if not re.fullmatch(r"[A-Za-z_][\w.-]*", word) or self._take() != "{":

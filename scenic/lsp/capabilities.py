@@ -47,7 +47,7 @@ WATCHED: Final = ("**/*.scenic", "**/*.sc", "**/*.py", "**/pyproject.toml")
 def options_for(client: types.ClientCapabilities) -> Mapping[str, Any]:
     """By method: the options with which it is offered to a client."""
     files = _modules_and_folders()
-    found: dict[str, Any] = {
+    options: dict[str, Any] = {
         types.TEXT_DOCUMENT_DID_SAVE: types.SaveOptions(include_text=False),
         types.TEXT_DOCUMENT_COMPLETION: types.CompletionOptions(
             trigger_characters=[".", " ", ",", "(", '"', "'", "/"], resolve_provider=True
@@ -79,12 +79,12 @@ def options_for(client: types.ClientCapabilities) -> Mapping[str, Any]:
             types.CodeActionKind.RefactorExtract,
             types.CodeActionKind.RefactorInline,
         ]
-        found[types.TEXT_DOCUMENT_CODE_ACTION] = types.CodeActionOptions(kinds, resolve_provider=True)
+        options[types.TEXT_DOCUMENT_CODE_ACTION] = types.CodeActionOptions(kinds, resolve_provider=True)
     if get_capability(client, "text_document.range_formatting.ranges_support"):
-        found[types.TEXT_DOCUMENT_RANGE_FORMATTING] = types.DocumentRangeFormattingOptions(
+        options[types.TEXT_DOCUMENT_RANGE_FORMATTING] = types.DocumentRangeFormattingOptions(
             ranges_support=True
         )
-    return found
+    return options
 
 
 def _modules_and_folders() -> types.FileOperationRegistrationOptions:
@@ -101,15 +101,15 @@ def _modules_and_folders() -> types.FileOperationRegistrationOptions:
 
 def registrations(client: types.ClientCapabilities) -> list[types.Registration]:
     """The reports that the client is asked for, as far as it can be asked."""
-    found = []
+    reports = []
     if get_capability(client, "workspace.did_change_watched_files.dynamic_registration"):
         watchers = types.DidChangeWatchedFilesRegistrationOptions(
             [types.FileSystemWatcher(pattern) for pattern in WATCHED]
         )
         method = types.WORKSPACE_DID_CHANGE_WATCHED_FILES
-        found.append(types.Registration("scenic-watched-files", method, watchers))
+        reports.append(types.Registration("scenic-watched-files", method, watchers))
     if get_capability(client, "workspace.did_change_configuration.dynamic_registration"):
         section = types.DidChangeConfigurationRegistrationOptions("scenic")
         method = types.WORKSPACE_DID_CHANGE_CONFIGURATION
-        found.append(types.Registration("scenic-configuration", method, section))
-    return found
+        reports.append(types.Registration("scenic-configuration", method, section))
+    return reports

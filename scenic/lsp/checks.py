@@ -159,10 +159,10 @@ class Checks:
         present = self._session.documents.get(uri)
         if present is None:
             return
-        found, problems = check.result()
+        diagnostics, problems = check.result()
         if uri not in self._pulled:
             self._told.add(uri)
-            self._publish(uri, found, document.version)
+            self._publish(uri, diagnostics, document.version)
         self._show_problems(uri, problems)
         if present is not document:
             self.changed(uri)
@@ -192,21 +192,25 @@ class Checks:
         before = self._files(self._troubled.pop(document, ()))
         if problems:
             self._troubled[document] = problems
-        remaining = self._files([item for found in self._troubled.values() for item in found])
+        remaining = self._files(
+            [item for problems_of_document in self._troubled.values() for item in problems_of_document]
+        )
         for filename in sorted(before | self._files(problems)):
-            shown = [
+            diagnostics = [
                 item
-                for item in dict.fromkeys(each for found in self._troubled.values() for each in found)
+                for item in dict.fromkeys(
+                    each for problems_of_document in self._troubled.values() for each in problems_of_document
+                )
                 if item.filename is not None and os.path.abspath(item.filename) == filename
             ]
-            assert shown or filename not in remaining
+            assert diagnostics or filename not in remaining
             try:
                 source = read_source(filename)
             except ScenicError:
                 source = Source("", filename)
             uri = to_uri(filename)
             self._publish(
-                uri, _protocol(shown, Lines(source, self._session.encoding), uri, self._session), None
+                uri, _protocol(diagnostics, Lines(source, self._session.encoding), uri, self._session), None
             )
 
     @staticmethod
@@ -228,22 +232,24 @@ def found_in_document(
     if not document.programs:
         return [], ()
     configurations, rules = session.rules(document.snapshot.filename)
-    shown: list[types.Diagnostic] = []
+    diagnostics: list[types.Diagnostic] = []
     for each in document.programs:
-        found = found_in(each.snapshot, rules, project, stamp=stamp, go_on=go_on)
-        shown += _protocol(found, each.lines, document.uri, session)
-    return shown, configurations.problems
+        faults = found_in(each.snapshot, rules, project, stamp=stamp, go_on=go_on)
+        diagnostics += _protocol(faults, each.lines, document.uri, session)
+    return diagnostics, configurations.problems
 
 
 def _protocol(
     found: Sequence[Diagnostic], lines: Lines, uri: str, session: Session
 ) -> list[types.Diagnostic]:
     support = "text_document.publish_diagnostics"
-    told = session.has(support)
-    related = not told or session.can(f"{support}.related_information")
-    tags = not told or session.has(f"{support}.tag_support")
+    is_declared = session.has(support)
+    takes_related = not is_declared or session.can(f"{support}.related_information")
+    tags = not is_declared or session.has(f"{support}.tag_support")
     pages = session.can(f"{support}.code_description_support")
     return [
-        to_diagnostic(item, lines, uri, elsewhere=session.location, related=related, tags=tags, pages=pages)
+        to_diagnostic(
+            item, lines, uri, elsewhere=session.location, related=takes_related, tags=tags, pages=pages
+        )
         for item in found
     ]

@@ -91,10 +91,10 @@ class Lines:
             character = max(0, character - self._lead)
         if content.isascii() or self.encoding is Encoding.UTF32:
             return line + 1, min(character, len(content))
-        seen = 0
+        unit_count = 0
         for column, each in enumerate(content):
-            seen += units(each, self.encoding)
-            if seen > character:
+            unit_count += units(each, self.encoding)
+            if unit_count > character:
                 return line + 1, column
         return line + 1, len(content)
 

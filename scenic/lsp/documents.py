@@ -137,16 +137,16 @@ def _line(text: str, line: int) -> tuple[int, int] | None:
 
 
 def _offset(text: str, position: types.Position, encoding: Encoding) -> int:
-    found, character = _line(text, position.line), position.character
-    if found is None:
+    line_range, character = _line(text, position.line), position.character
+    if line_range is None:
         return len(text)
-    begin, end = found
+    begin, end = line_range
     content = text[begin:end]
     if content.isascii() or encoding is Encoding.UTF32:
         return begin + min(character, len(content))
-    seen = 0
+    unit_count = 0
     for column, each in enumerate(content):
-        seen += units(each, encoding)
-        if seen > character:
+        unit_count += units(each, encoding)
+        if unit_count > character:
             return begin + column
     return end

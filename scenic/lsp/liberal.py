@@ -34,13 +34,13 @@ def completed(method: str, params: object) -> Any:
     """The parameters of a message, with the fields that some clients leave out."""
     if not isinstance(params, dict):
         return params
-    required = _REQUIRED.get(method, {})
+    defaults = _REQUIRED.get(method, {})
     inside = {
         name: fields
         for name, fields in _REQUIRED_INSIDE.get(method, {}).items()
         if isinstance(params.get(name), dict)
     }
-    return _with_defaults(params, {**required, **inside}) if required or inside else params
+    return _with_defaults(params, {**defaults, **inside}) if defaults or inside else params
 
 
 def _with_defaults(given: Mapping[str, object], defaults: Mapping[str, object]) -> dict[str, Any]:

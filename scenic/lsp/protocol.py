@@ -148,11 +148,11 @@ class Protocol(LanguageServerProtocol):
             if name in self._cancelled:
                 raise JsonRpcRequestCancelled("the request was cancelled")
             self._check(method)
-            typed = self._typed(method, params)
+            message = self._typed(method, params)
         except JsonRpcException as error:
             self._send_response(name, error=error.to_response_error())
         else:
-            self._handle_request(name, method, typed)
+            self._handle_request(name, method, message)
         self._cancelled.discard(name)
 
     def _check(self, method: str) -> None:
@@ -175,14 +175,14 @@ class Protocol(LanguageServerProtocol):
             self.log(f"{method} was sent without an id, so it cannot be answered")
         elif self.stage is Stage.RUNNING:
             try:
-                typed = self._typed(method, params)
+                message = self._typed(method, params)
             except JsonRpcException as error:
                 # A notification has no answer; the log is the only place to say it.
                 self.log(f"{method}: {error.message}")
             else:
                 if method == types.CANCEL_REQUEST:
-                    self._cancelled.discard(typed.id)
-                self._handle_notification(method, typed)
+                    self._cancelled.discard(message.id)
+                self._handle_notification(method, message)
 
     def _answered(self, name: Any, fields: dict[str, Any]) -> None:
         self._result_types.pop(name, None)
@@ -274,11 +274,12 @@ class Protocol(LanguageServerProtocol):
             self._send_data({"jsonrpc": "2.0", "id": None, "error": error})
             return
         super()._send_response(msg_id, result, error)
-        method, begun = self._asked.pop(msg_id, (None, 0.0))
+        method, start_time = self._asked.pop(msg_id, (None, 0.0))
         if method is not None:
-            spent = round(1000 * (time.monotonic() - begun))
+            milliseconds = round(1000 * (time.monotonic() - start_time))
             self._trace(
-                f"answered request {method} ({msg_id}) after {spent} ms", result if error is None else error
+                f"answered request {method} ({msg_id}) after {milliseconds} ms",
+                result if error is None else error,
             )
 
     def _send_data(self, data: Any) -> None:
@@ -302,11 +303,11 @@ class Protocol(LanguageServerProtocol):
         header = f"Content-Length: {len(body)}\r\n\r\n" if self._include_headers else ""
         try:
             assert self.writer is not None
-            written = self.writer.write((header + body).encode("ascii"))
+            writing = self.writer.write((header + body).encode("ascii"))
         except (OSError, ValueError):
             return
-        if inspect.isawaitable(written):
-            sending = asyncio.ensure_future(written)
+        if inspect.isawaitable(writing):
+            sending = asyncio.ensure_future(writing)
             self._sending.add(sending)
             sending.add_done_callback(self._sending.discard)
 

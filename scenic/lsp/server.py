@@ -114,7 +114,7 @@ class Server(LanguageServer):
         from websockets.typing import Origin
 
         async def listen() -> None:
-            done = asyncio.Event()
+            shutdown = asyncio.Event()
 
             async def converse(connection: ServerConnection) -> None:
                 try:
@@ -122,12 +122,12 @@ class Server(LanguageServer):
                         connection, self._stopped, self.protocol, _logger, self.report_server_error
                     )
                 finally:
-                    done.set()
+                    shutdown.set()
 
-            allowed = [None, *map(Origin, origins)]
-            async with serve(converse, host, port, origins=allowed) as listening:
+            allowed_origins = [None, *map(Origin, origins)]
+            async with serve(converse, host, port, origins=allowed_origins) as listening:
                 _listens("ws", next(iter(listening.sockets)).getsockname())
-                await done.wait()
+                await shutdown.wait()
 
         asyncio.run(listen())
 

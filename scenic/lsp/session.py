@@ -132,12 +132,12 @@ class Session:
 
         Raises `JsonRpcInvalidParams` if there is neither.
         """
-        found = self.documents.get(uri)
-        if found is None:
-            found = self.file(uri)
-        if found is None:
+        document_here = self.documents.get(uri)
+        if document_here is None:
+            document_here = self.file(uri)
+        if document_here is None:
             raise JsonRpcInvalidParams(f"the document {uri} is not open, and no file can be read")
-        return found
+        return document_here
 
     def file(self, uri: str) -> Document | None:
         """A file that is not open, if it can be read."""
@@ -200,16 +200,16 @@ class Session:
 
     def project_beside(self, document: Document | None) -> Project:
         """The project, with the present texts of the open documents other than this one."""
-        opened = [one for each in self.documents.values() for one in (each.programs or (each,))]
-        for each in opened:
+        open_documents = [one for each in self.documents.values() for one in (each.programs or (each,))]
+        for each in open_documents:
             if each is document:
                 continue
             filename = each.snapshot.filename
             if each.version is not None and self._in_project.get(filename) is not each:
                 snapshot = each.snapshot
-                known = snapshot.resolution if each.is_program else None
+                resolution = snapshot.resolution if each.is_program else None
                 tree = snapshot.tree if each.is_program else None
-                self.project.open(filename, snapshot.text, tree=tree, resolution=known)
+                self.project.open(filename, snapshot.text, tree=tree, resolution=resolution)
                 self._in_project[filename] = each
         return self.project
 
@@ -222,7 +222,7 @@ class Session:
         return [(name, self._snapshot_of(name, opened.get(name))) for name in names]
 
     def _snapshot_of(self, filename: str, opened: Snapshot | None) -> Callable[[], Snapshot]:
-        project, known = self.project, self._snapshots
+        project, snapshots = self.project, self._snapshots
 
         def make() -> Snapshot:
             if opened is not None:
@@ -230,15 +230,15 @@ class Session:
             module = project.module(filename)
             if module is None:
                 return Snapshot("", filename)
-            kept = known.get(filename)
-            if kept is None or kept[0] is not module:
-                own = (
+            entry = snapshots.get(filename)
+            if entry is None or entry[0] is not module:
+                snapshot = (
                     Snapshot(module.source.text, filename)
                     if module.is_scenic
                     else PythonSnapshot(module.source, module.tree)
                 )
-                kept = known[filename] = (module, own)
-            return kept[1]
+                entry = snapshots[filename] = (module, snapshot)
+            return entry[1]
 
         return make
 
@@ -277,10 +277,10 @@ class Session:
             return types.WorkspaceEdit(changes=dict(changes))
         documents = []
         for uri, edits in changes.items():
-            opened = self.documents.get(uri)
-            version = None if opened is None else opened.version
-            named = types.OptionalVersionedTextDocumentIdentifier(uri, version)
-            documents.append(types.TextDocumentEdit(named, edits))
+            open_document = self.documents.get(uri)
+            version = None if open_document is None else open_document.version
+            identifier = types.OptionalVersionedTextDocumentIdentifier(uri, version)
+            documents.append(types.TextDocumentEdit(identifier, edits))
         return types.WorkspaceEdit(document_changes=documents)
 
     def rules(self, filename: str) -> tuple[Configurations, Rules]:
@@ -310,9 +310,9 @@ class Session:
             self._working[future] = document
             future.add_done_callback(lambda done: self._working.pop(done, None))
         if token is not None:
-            known = self.protocol.progress.tokens
-            known[token] = future
-            future.add_done_callback(lambda _done: known.pop(token, None))
+            futures = self.protocol.progress.tokens
+            futures[token] = future
+            future.add_done_callback(lambda _done: futures.pop(token, None))
         return future
 
     def outdate(self, uri: str) -> None:

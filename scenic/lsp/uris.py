@@ -26,9 +26,9 @@ def to_path(uri: str) -> str | None:
     if "\0" in path or not path:
         return None
     if sys.platform == "win32":
-        found = _DRIVE.match(path)
-        if found is not None:
-            path = found[1].lower() + path[found.end() - 1 :]
+        drive = _DRIVE.match(path)
+        if drive is not None:
+            path = drive[1].lower() + path[drive.end() - 1 :]
         elif parts.netloc:
             path = f"//{parts.netloc}{path}"
         path = path.replace("/", os.sep)

@@ -126,8 +126,8 @@ class Library:
         names = Names()
         for name in CLASSES:
             names.classes[name] = ClassInfo(name)
-        for module, imported, alias, star in _imports(tokens):
-            self._bring(names, source.filename, module, imported, alias, star)
+        for module, imported_name, alias, star in _imports(tokens):
+            self._bring(names, source.filename, module, imported_name, alias, star)
         for definition in definitions(tokens):
             info = _info(definition, names, source.filename)
             if info is None:
@@ -144,14 +144,14 @@ class Library:
     ) -> None:
         module = MOVED_MODULES.get(module, module)
         level = len(module) - len(module.lstrip("."))
-        found = self.finder.find(module[level:], importer=importer, level=level)
+        module_found = self.finder.find(module[level:], importer=importer, level=level)
         names.is_driving = names.is_driving or module in _DRIVING
         if not star and imported is None:
             names.others.add(alias)
             return
-        inner = self._module(found)
-        if inner is not None and found.filename is not None:
-            names.imported.append(found.filename)
+        inner = self._module(module_found)
+        if inner is not None and module_found.filename is not None:
+            names.imported.append(module_found.filename)
             names.is_driving = names.is_driving or inner.is_driving
         if star:
             if inner is not None:
@@ -159,12 +159,12 @@ class Library:
                 names.has_unseen = names.has_unseen or inner.has_unseen
                 names.unseen |= inner.unseen
                 names.others |= inner.others
-            elif found.is_missing:
+            elif module_found.is_missing:
                 names.has_unseen = True
             return
         assert imported is not None
         if inner is None:
-            (names.unseen if found.is_missing else names.others).add(alias)
+            (names.unseen if module_found.is_missing else names.others).add(alias)
         elif imported in inner.classes:
             names.classes[alias] = inner.classes[imported]
             names.others.discard(alias)
@@ -178,22 +178,22 @@ class Library:
         filename = found.filename
         if found.kind is not ModuleKind.SCENIC or filename is None:
             return None
-        known = self._known.get(filename)
-        if known is not None:
-            return known
+        names = self._known.get(filename)
+        if names is not None:
+            return names
         if filename in self._pending or len(self._pending) > _DEEPEST:
             return Names()
         self._pending.add(filename)
         try:
             source = read_source(filename)
-            known = self.names(source, tokens_of(source))
+            names = self.names(source, tokens_of(source))
         except ScenicError:
-            known = Names(has_unseen=True)
+            names = Names(has_unseen=True)
         self._pending.discard(filename)
         if is_of_library(filename):
-            known.imported.clear()
-        self._known[filename] = known
-        return known
+            names.imported.clear()
+        self._known[filename] = names
+        return names
 
 
 def _info(definition: DefinedClass, names: Names, filename: str) -> ClassInfo | None:
@@ -201,11 +201,13 @@ def _info(definition: DefinedClass, names: Names, filename: str) -> ClassInfo | 
     if not definition.bases:
         return ClassInfo("Object", definition.pinned, (filename,))
     for base in definition.bases:
-        known = names.classes.get(base)
-        if known is None and base in names.unseen:
-            known = ClassInfo("Object", True)
-        if known is not None:
-            return ClassInfo(known.root, definition.pinned or known.pinned, (filename, *known.filenames))
+        base_info = names.classes.get(base)
+        if base_info is None and base in names.unseen:
+            base_info = ClassInfo("Object", True)
+        if base_info is not None:
+            return ClassInfo(
+                base_info.root, definition.pinned or base_info.pinned, (filename, *base_info.filenames)
+            )
     if names.has_unseen and definition.bases[0][:1].isupper() and definition.bases[0] not in names.others:
         return ClassInfo("Object", True, (filename,))
     return None

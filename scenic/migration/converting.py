@@ -64,24 +64,30 @@ class Converter:
             dialect = Dialect(True, False, dialect.first, dialect.count)
         edits, notes, monitors = rewritten_words(tokens, names, dialect)
         readable = Source(edited(source.text, edits), filename)
-        parsed = parse(readable.text, filename=filename)
-        problem = first_error(parsed)
-        imported = tuple(names.imported)
+        result_of_parsing = parse(readable.text, filename=filename)
+        problem = first_error(result_of_parsing)
+        import_paths = tuple(names.imported)
         if problem is not None:
-            return Converted(text, (), dialect, problem, imported)
-        piece = TextPiece(readable, parsed.tree, names, dialect.is_old, self._flat, self._maps, monitors)
+            return Converted(text, (), dialect, problem, import_paths)
+        piece = TextPiece(
+            readable, result_of_parsing.tree, names, dialect.is_old, self._flat, self._maps, monitors
+        )
         rewrite_specifiers(piece)
         rewrite_statements(piece, self._library.finder)
         rewrite_expressions(piece)
         result = _checked(readable.text, piece.edits, filename)
         if isinstance(result, Diagnostic):
-            return Converted(text, (), dialect, result, imported)
-        found = tuple(sorted(dict.fromkeys((*notes, *piece.notes))))
+            return Converted(text, (), dialect, result, import_paths)
+        remaining_notes = tuple(sorted(dict.fromkeys((*notes, *piece.notes))))
         if result == source.text:
             return Converted(
-                text, tuple(each for each in found if not each.rewritten), dialect, None, imported
+                text,
+                tuple(each for each in remaining_notes if not each.rewritten),
+                dialect,
+                None,
+                import_paths,
             )
-        return Converted(restored(result, text), found, dialect, None, imported)
+        return Converted(restored(result, text), remaining_notes, dialect, None, import_paths)
 
 
 def _checked(text: str, edits: list[Edit], filename: str) -> str | Diagnostic:

@@ -58,16 +58,16 @@ def convert_embedded(text: str, filename: str, convert: Convert) -> tuple[str, t
     for string in strings:
         if not _SIGN.search(string.value):
             continue
-        converted = convert(string.value)
-        if not converted.is_old or converted.problem is not None:
+        conversion = convert(string.value)
+        if not conversion.is_old or conversion.problem is not None:
             continue
         several = "\n" in text[string.start : string.end]
-        if converted.text != string.value:
-            written = string.written(converted.text)
-            if written is None:
+        if conversion.text != string.value:
+            literal = string.written(conversion.text)
+            if literal is None:
                 notes.append(decision("formatted-string", string.line))
                 continue
-            edits.append(Edit(string.start, string.end, written))
+            edits.append(Edit(string.start, string.end, literal))
         notes += [
             Note(
                 string.line + (note.line - 1 if several else 0),
@@ -76,15 +76,15 @@ def convert_embedded(text: str, filename: str, convert: Convert) -> tuple[str, t
                 note.message,
                 note.help,
             )
-            for note in converted.notes
+            for note in conversion.notes
         ]
     return edited(text, edits), tuple(notes)
 
 
 def _of_markdown(text: str) -> Iterator[_String]:
-    for found in _FENCE.finditer(text):
-        indent = found["indent"]
-        body = found["body"]
+    for block in _FENCE.finditer(text):
+        indent = block["indent"]
+        body = block["body"]
         lines = body.splitlines(keepends=True)
         if any(line.strip() and not line.startswith(indent) for line in lines):
             continue
@@ -95,13 +95,13 @@ def _of_markdown(text: str) -> Iterator[_String]:
                 indent + line if line.strip() else line for line in result.splitlines(keepends=True)
             )
 
-        start = found.start("body")
-        yield _String(start, found.end("body"), text.count("\n", 0, start) + 1, value, written)
+        start = block.start("body")
+        yield _String(start, block.end("body"), text.count("\n", 0, start) + 1, value, written)
 
 
 def _of_json(text: str) -> Iterator[_String]:
-    for found in _JSON_STRING.finditer(text):
-        literal = found[0]
+    for match in _JSON_STRING.finditer(text):
+        literal = match[0]
         try:
             value = json.loads(literal)
         except ValueError:
@@ -110,7 +110,7 @@ def _of_json(text: str) -> Iterator[_String]:
         def written(result: str, literal: str = literal) -> str:
             return json.dumps(result, ensure_ascii=literal.isascii())
 
-        yield _String(found.start(), found.end(), text.count("\n", 0, found.start()) + 1, value, written)
+        yield _String(match.start(), match.end(), text.count("\n", 0, match.start()) + 1, value, written)
 
 
 def _of_python(text: str) -> Iterator[_String]:
@@ -141,18 +141,18 @@ def _of_python(text: str) -> Iterator[_String]:
             body, start = body[2:], start + 2
             literal = f"{prefix}{quote}{body}{quote}"
         value: str
-        written: Callable[[str], str | None]
+        write: Callable[[str], str | None]
         if "f" in prefix.lower():
-            value, written = re.sub(r"\{[^{}]*\}", "x", body), _refuse
+            value, write = re.sub(r"\{[^{}]*\}", "x", body), _refuse
         elif "\\" not in body or "r" in prefix.lower():
-            value, written = body, _plain(quote)
+            value, write = body, _plain(quote)
         else:
             try:
                 value = ast.literal_eval(literal)
             except (ValueError, SyntaxError):
                 continue
-            written = _escaped(body, quote)
-        yield _String(start, start + len(body), token.start[0], value, written)
+            write = _escaped(body, quote)
+        yield _String(start, start + len(body), token.start[0], value, write)
 
 
 def _refuse(_result: str) -> None:
@@ -177,9 +177,9 @@ def _escaped(body: str, quote: str) -> Callable[[str], str | None]:
 
     def written(result: str) -> str | None:
         pieces = [
-            (found[0], ast.literal_eval(f'"""{found[0]}"""'))
-            for found in _PIECE.finditer(body)
-            if found[0] != '"'
+            (match[0], ast.literal_eval(f'"""{match[0]}"""'))
+            for match in _PIECE.finditer(body)
+            if match[0] != '"'
         ]
         lines: dict[str, str] = {}
         line = source = ""

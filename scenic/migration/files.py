@@ -62,12 +62,12 @@ def convert_files(names: Sequence[str], roots: Sequence[str] = (), *, flat: bool
         if not name.endswith(_PROGRAMS) and name.endswith((".py", ".json", ".jsonl", ".md", ".markdown")):
             files[name] = _embedding(name, text, converter)
             continue
-        converted = converter.convert(text, name, is_old=is_old)
-        files[name] = _file(name, text, converted.text, converted.notes, converted.problem)
-        if converted.is_old and name not in old:
+        conversion = converter.convert(text, name, is_old=is_old)
+        files[name] = _file(name, text, conversion.text, conversion.notes, conversion.problem)
+        if conversion.is_old and name not in old:
             old.add(name)
-            imported = [by_path[path] for path in converted.imported if path in by_path]
-            waiting += [(each, True) for each in imported if each not in old]
+            imports = [by_path[path] for path in conversion.imported if path in by_path]
+            waiting += [(each, True) for each in imports if each not in old]
     return [files[name] for name in names]
 
 

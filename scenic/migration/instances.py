@@ -104,7 +104,7 @@ def unknown_classes(tokens: Sequence[Token], names: Names, *, certain: bool = Fa
     ``certain`` leaves out names that no module which was not found may define: in Scenic 3 these are mistakes.
     """
     bound = set(_bound(tokens))
-    found = set()
+    class_names = set()
     for index in _uses(tokens):
         token = tokens[index]
         name = token.text
@@ -119,8 +119,8 @@ def unknown_classes(tokens: Sequence[Token], names: Names, *, certain: bool = Fa
             or is_ego
             or (follower.text == "at" and name.upper() != name)
         ):
-            found.add(name)
-    return frozenset(found)
+            class_names.add(name)
+    return frozenset(class_names)
 
 
 def makers(tokens: Sequence[Token], names: Names, *, certain: bool = False) -> Iterator[int]:
@@ -129,10 +129,10 @@ def makers(tokens: Sequence[Token], names: Names, *, certain: bool = False) -> I
     ``certain`` leaves out those that may be meant as classes in Scenic 3: names that no specifier follows, except the
     value of the ego and whole statements.
     """
-    unknown = unknown_classes(tokens, names, certain=certain)
+    class_names = unknown_classes(tokens, names, certain=certain)
     for index in _uses(tokens):
         name = tokens[index].text
-        if name not in names.classes and name not in unknown:
+        if name not in names.classes and name not in class_names:
             continue
         if tokens[index + 1].text in _NOT_MADE:
             continue

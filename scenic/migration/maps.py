@@ -25,15 +25,15 @@ class MapFiles:
         folder has one.
         """
         folder = os.path.dirname(os.path.abspath(program))
-        found: list[str] = []
+        candidates: list[str] = []
         for root in dict.fromkeys((folder, *self._roots)):
             places = self._places.get(root)
             if places is None:
                 places = self._places[root] = _maps_in(root)
-            found += places.get(os.path.basename(path), ())
-        if not found:
+            candidates += places.get(os.path.basename(path), ())
+        if not candidates:
             return None
-        relative = {os.path.relpath(each, folder).replace(os.sep, "/") for each in found}
+        relative = {os.path.relpath(each, folder).replace(os.sep, "/") for each in candidates}
         return min(relative, key=lambda each: (each.count("/"), each))
 
 

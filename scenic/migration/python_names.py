@@ -28,10 +28,10 @@ def old_names(text: str) -> Iterator[Note]:
 def _names(node: ast.AST) -> Iterator[tuple[str, int]]:
     match node:
         case ast.Call(func=ast.Attribute(attr="simulate"), keywords=keywords):
-            given = {each.arg for each in keywords}
-            if "maxIterations" in given and "maxSteps" not in given:
+            keyword_names = {each.arg for each in keywords}
+            if "maxIterations" in keyword_names and "maxSteps" not in keyword_names:
                 yield "simulate(maxIterations=)", node.lineno
-            if "verbosity" in given:
+            if "verbosity" in keyword_names:
                 yield "simulate(verbosity=)", node.lineno
         case ast.FunctionDef(name="createSimulation", args=args):
             if any(each.arg == "verbosity" for each in (*args.args, *args.kwonlyargs)):

@@ -84,8 +84,8 @@ def _offset(piece: TextPiece, phrase: scenic.SpecifierPhrase, words: str) -> Non
 
 
 def _operand_is_whole(text: str, phrase: scenic.SpecifierPhrase, words: str) -> bool:
-    parsed = parse(f"x = new Object at ego {text}\n", filename="specifier")
-    for node in ast.walk(parsed.tree):
+    result = parse(f"x = new Object at ego {text}\n", filename="specifier")
+    for node in ast.walk(result.tree):
         if isinstance(node, scenic.SpecifierPhrase) and node.specifier == "at":
             value = node.operands[0]
             return (

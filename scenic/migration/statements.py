@@ -147,8 +147,8 @@ def _modules(piece: TextPiece, finder: Finder) -> None:
         match node:
             case scenic.Model(name=name):
                 _moved(piece, node, (name,))
-                found = finder.find(MOVED_MODULES.get(name, name), importer=piece.source.filename)
-                if found.kind in (ModuleKind.PYTHON, ModuleKind.COMPILED):
+                module = finder.find(MOVED_MODULES.get(name, name), importer=piece.source.filename)
+                if module.kind in (ModuleKind.PYTHON, ModuleKind.COMPILED):
                     start, end = piece.place(node)
                     text = f"from {MOVED_MODULES.get(name, name)} import *"
                     piece.edit("python-module", node, start, end, text)
@@ -170,7 +170,7 @@ def _loaded_maps(piece: TextPiece) -> None:
         for node in piece.of(ast.ImportFrom)
         if isinstance(node, ast.ImportFrom) and _brings_loaders(node)
     ]
-    loaded = False
+    has_loader = False
     for node in piece.of(ast.Expr) if imports else ():
         match node:
             case ast.Expr(value=ast.Call(func=ast.Name(id=name), args=[*_, path], keywords=[]) as call) if (
@@ -180,8 +180,8 @@ def _loaded_maps(piece: TextPiece) -> None:
                 piece.edit("loaded-map", node, start, piece.place(path)[0], MAP_LOADERS[name])
                 if name == "loadNetwork":
                     piece.edits.append(Edit(piece.place(path)[1], end, ""))
-                loaded = True
-    for node in imports if loaded else ():
+                has_loader = True
+    for node in imports if has_loader else ():
         start, end = piece.place(node)
         alone = piece.source.text[end : end + 1] == "\n"
         text = "param use2DMap = True" if not piece.flat else "" if alone else "pass"
@@ -194,9 +194,9 @@ def _moved(piece: TextPiece, node: ast.AST, names: tuple[str, ...]) -> None:
         today = MOVED_MODULES.get(name)
         if today is None:
             continue
-        found = re.compile(rf"(?<![\w.]){re.escape(name)}(?![\w.])").search(piece.source.text, start, end)
-        if found is not None:
-            piece.edit("moved-module", node, found.start(), found.end(), today)
+        match = re.compile(rf"(?<![\w.]){re.escape(name)}(?![\w.])").search(piece.source.text, start, end)
+        if match is not None:
+            piece.edit("moved-module", node, match.start(), match.end(), today)
         if name in LOST_CLASSES:
             piece.decide("lost-classes", node, name, name)
 
@@ -213,9 +213,9 @@ def _parameters(piece: TextPiece) -> None:
             today = PARAMETERS.get(item.name) if renames else None
             start, end = piece.place(item)
             if today is not None:
-                found = re.compile(rf"\b{re.escape(item.name)}\b").search(piece.source.text, start, end)
-                if found is not None:
-                    piece.edit("parameter-name", item, found.start(), found.end(), today)
+                match = re.compile(rf"\b{re.escape(item.name)}\b").search(piece.source.text, start, end)
+                if match is not None:
+                    piece.edit("parameter-name", item, match.start(), match.end(), today)
             is_pinned = is_pinned or item.name == "use2DMap"
             if item.name == "map" and has_map is None:
                 has_map = node

@@ -44,7 +44,7 @@ class Edit(NamedTuple):
 
 def tokens_of(source: Source) -> list[Token]:
     """The tokens of a text, without comments."""
-    found = lex(source.text, WORDS)
+    tokens = lex(source.text, WORDS)
     starts = line_starts(source)
     last = len(source.lines)
 
@@ -54,12 +54,12 @@ def tokens_of(source: Source) -> list[Token]:
     return [
         Token(kind, text, offset(line, column), offset(end_line, end_column), line)
         for kind, text, line, column, end_line, end_column in zip(
-            found.kinds,
-            found.texts,
-            found.lines,
-            found.columns,
-            found.end_lines,
-            found.end_columns,
+            tokens.kinds,
+            tokens.texts,
+            tokens.lines,
+            tokens.columns,
+            tokens.end_lines,
+            tokens.end_columns,
             strict=True,
         )
     ]
@@ -107,7 +107,7 @@ def restored(result: str, original: str) -> str:
             for place in range(new_start, new_end):
                 of = min(start + place - new_start, max(start, end - 1), len(ends) - 1)
                 line = after[place]
-                own = ends[of] or ends[max(0, of - 1)]
-                pieces.append(line[:-1] + own if line.endswith("\n") else line)
+                line_end = ends[of] or ends[max(0, of - 1)]
+                pieces.append(line[:-1] + line_end if line.endswith("\n") else line)
         result = "".join(pieces)
     return "\ufeff" * original.startswith("\ufeff") + result

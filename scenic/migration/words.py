@@ -46,15 +46,15 @@ def rewritten_words(
 
 
 def _decisions(tokens: Sequence[Token], names: Names) -> Iterator[Note]:
-    reported: set[str] = set()
-    unknown = unknown_classes(tokens, names)
+    reported_words: set[str] = set()
+    class_names = unknown_classes(tokens, names)
     for index, token in enumerate(tokens):
         if token.kind < NAME or (index and tokens[index - 1].text in ("class", "constructor", ".", "def")):
             continue
-        if token.text in unknown and token.text not in reported:
-            reported.add(token.text)
+        if token.text in class_names and token.text not in reported_words:
+            reported_words.add(token.text)
             yield decision("unknown-class", token.line, token.text, token.text)
         is_called = tokens[index + 1].text == "(" and token.text in names.classes
-        if is_called and token.text not in reported:
-            reported.add(token.text)
+        if is_called and token.text not in reported_words:
+            reported_words.add(token.text)
             yield decision("call-of-class", token.line, token.text, token.text)

@@ -154,8 +154,8 @@ class Playground:
         kind, _, name = path.partition("/")
         if kind == "scene" and name in self._pages and not is_socket:
             return _response(self._pages[name].encode(), "text/html", _POLICY_OF_SCENES)
-        given = parse_qs(parts.query).get("token", [""])[0]
-        if not secrets.compare_digest(given.encode(), self._token.encode()):
+        token = parse_qs(parts.query).get("token", [""])[0]
+        if not secrets.compare_digest(token.encode(), self._token.encode()):
             return _plain(
                 http.HTTPStatus.FORBIDDEN, "the token is missing: use the address that the command shows"
             )

@@ -81,11 +81,11 @@ class Watch:
         while not self._ended.is_set():
             self._wanted.wait(_INTERVAL)
             stamp = self._stamp()
-            asked = self._wanted.is_set()
-            if (stamp != self._seen or asked) and not self._ended.is_set():
+            is_requested = self._wanted.is_set()
+            if (stamp != self._seen or is_requested) and not self._ended.is_set():
                 self._wanted.clear()
                 self._seen = stamp
-                self.refresh(seed=self.view.seed + asked)
+                self.refresh(seed=self.view.seed + is_requested)
 
     def refresh(self, seed: int | None = None) -> None:
         """Run the program: first its scenes, then the report of what it costs. Only one thread may do this."""

@@ -57,20 +57,22 @@ def choose_simulator(name: str | None, scenario: Scenario) -> Simulator:
     module, colon, cls = _PLACES.get(name, name).partition(":")
     if not (module and colon and cls):
         plain = name.lower()
-        meant = plain if plain in _PLACES else nearest_option(plain, _PLACES)
-        own = "or MODULE:CLASS for one of your own"
+        similar_name = plain if plain in _PLACES else nearest_option(plain, _PLACES)
+        alternative = "or MODULE:CLASS for one of your own"
         raise SimulatorChoiceError(
             f"there is no simulator {name!r}",
-            help=f"did you mean `{meant}`?" if meant else f"use {', '.join(_PLACES)}, {own}",
+            help=f"did you mean `{similar_name}`?"
+            if similar_name
+            else f"use {', '.join(_PLACES)}, {alternative}",
         )
     try:
-        made = getattr(import_module(module), cls)()
+        simulator = getattr(import_module(module), cls)()
     except Located:
         raise
     except Exception as error:  # whatever a simulator does when it begins
         words = str(error) or type(error).__name__
         raise SimulatorChoiceError(f"the simulator {name!r} cannot be made: {words}") from error
-    return _checked(made, repr(name))
+    return _checked(simulator, repr(name))
 
 
 _PLACES: Final = MappingProxyType(
@@ -120,7 +122,7 @@ def simulate_number(
         key = f"{seed}:{k}:{number}".encode()
         if points is not None:
             options["source"] = driven(points, scene.dimension, seed=seed, scene=k, attempt=number - 1)
-        done = simulator.simulate(
+        simulation = simulator.simulate(
             scene,
             name=f"{k}",
             key=key,
@@ -131,9 +133,9 @@ def simulate_number(
             **options,
         )
         is_random = bool(draws) or not getattr(simulator, "deterministic", False)
-        if done is not None or not is_random:
+        if simulation is not None or not is_random:
             return Numbered(
-                k, seed, number, done, rejections=tuple(reasons.most_common()), is_random=is_random
+                k, seed, number, simulation, rejections=tuple(reasons.most_common()), is_random=is_random
             )
     return Numbered(k, seed, tries, None, rejections=tuple(reasons.most_common()))
 

@@ -31,15 +31,17 @@ class Cameras:
 
     def _image(self, now: "Present", owner: Any, name: str, sensor: CameraSensor) -> Any:
         """The image of one camera; a dictionary of images for one that gives several."""
-        seen = observe(now, sensor_viewpoint(name, owner, sensor), gallery=self._gallery, labelled=False)
-        instance = (seen.objects + 1).astype(np.uint16)
-        images = {"rgb": seen.rgb, "depth": seen.depth, "instance": instance}
+        observation = observe(
+            now, sensor_viewpoint(name, owner, sensor), gallery=self._gallery, labelled=False
+        )
+        instance = (observation.objects + 1).astype(np.uint16)
+        images = {"rgb": observation.rgb, "depth": observation.depth, "instance": instance}
         if "semantic" in sensor.outputs:
             kinds = [type(obj).__name__ for obj in now.objects]
             numbers = [self._classes.setdefault(kind, len(self._classes) + 1) for kind in kinds]
             images["semantic"] = np.array([0, *numbers], dtype=np.uint16)[instance]
-        wanted = {output: images[output] for output in sensor.outputs}
-        return wanted if len(wanted) != 1 else next(iter(wanted.values()))
+        outputs = {output: images[output] for output in sensor.outputs}
+        return outputs if len(outputs) != 1 else next(iter(outputs.values()))
 
 
 def carried(objects: Any) -> Iterator[tuple[Any, str, CameraSensor]]:

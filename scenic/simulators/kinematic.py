@@ -144,8 +144,8 @@ class KinematicSimulation(Simulation):
         group = self._group(obj)
         row = group.rows[id(obj)]
         x, y, z, vx, vy, vz, yaw, pitch, roll, _, rate, *_ = (float(group[name][row]) for name in _STATE)
-        stored = obj.__dict__
-        parent = stored["parentOrientation"]
+        attributes = obj.__dict__
+        parent = attributes["parentOrientation"]
         if parent != _UPRIGHT:
             local = parent.inverse * Orientation.fromEuler(yaw, pitch, roll)
             yaw, pitch, roll = local.eulerAngles
@@ -159,7 +159,7 @@ class KinematicSimulation(Simulation):
             "pitch": pitch,
             "roll": roll,
         }
-        return {name: values[name] if name in values else stored[name] for name in properties}
+        return {name: values[name] if name in values else attributes[name] for name in properties}
 
 
 _UPRIGHT: Final = Orientation()

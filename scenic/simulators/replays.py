@@ -124,8 +124,8 @@ class Tape:
         self.draws: Draws | None = None
         self.replaying = earlier is not None
         """True if the earlier simulation is still followed."""
-        seeded = Seeded(key)
-        self._others: Source = seeded if sourcing is None else sourcing(seeded)
+        seeded_source = Seeded(key)
+        self._others: Source = seeded_source if sourcing is None else sourcing(seeded_source)
         self._recorded = (
             None if earlier is None else Recorded(dict(earlier.draws), self._others, self._strayed)
         )
@@ -176,9 +176,9 @@ class Tape:
             self._state.extend(numbers)
             if self._earlier is None or not self.replaying or self._step >= len(self._earlier.states):
                 continue
-            expected = self._earlier.states[self._step][begin : begin + len(numbers)]
-            old, new = _shaped(expected, value), value
-            if len(expected) != len(numbers) or simulation.valuesHaveDiverged(obj, name, old, new):
+            recorded_numbers = self._earlier.states[self._step][begin : begin + len(numbers)]
+            old, new = _shaped(recorded_numbers, value), value
+            if len(recorded_numbers) != len(numbers) or simulation.valuesHaveDiverged(obj, name, old, new):
                 number = simulation.objects.index(obj)
                 self._diverged(f"{name} of object {number} is {new!r}, was {old!r}")
 

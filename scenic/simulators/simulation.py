@@ -230,10 +230,10 @@ class Simulation(ABC):
             return
         with self._isolated:
             self.check_actions(agent, tuple(actions))
-            done = self.actionSequence[-1]
-            done[agent] = (*done.get(agent, ()), *actions)
+            actions_of_step = self.actionSequence[-1]
+            actions_of_step[agent] = (*actions_of_step.get(agent, ()), *actions)
             self.executeActions({agent: tuple(actions)})
-            agent.__dict__["lastActions"] = done[agent]
+            agent.__dict__["lastActions"] = actions_of_step[agent]
 
     @property
     def is_over(self) -> bool:
@@ -254,7 +254,7 @@ class Simulation(ABC):
     def _whole(self) -> Generator[bool, None, None]:
         """The simulation from its set-up to its end, a step at a time."""
         run = self._run
-        ended = False
+        has_ended = False
         try:
             self.scene = self._original.within(self._copies)
             self.setup()
@@ -285,12 +285,12 @@ class Simulation(ABC):
                 self.records,
                 [item.outcome for item in run.followed],
             )
-            ended = True
+            has_ended = True
         except Exception as error:
             self._say_where(error)
             raise
         finally:
-            if not ended:
+            if not has_ended:
                 run.abandon()
                 self._restore()
             self._copies.release()
@@ -317,16 +317,16 @@ class Simulation(ABC):
             if PRELUDE in traceback.tb_frame.f_globals:
                 filename = traceback.tb_frame.f_code.co_filename
             traceback = traceback.tb_next
-        own = context.program_place(error.__traceback__), context.filename
-        if own[0] is None and self._run.failed_agent is not None:
-            own = self.place_of(self._run.failed_agent)
+        own_place = context.program_place(error.__traceback__), context.filename
+        if own_place[0] is None and self._run.failed_agent is not None:
+            own_place = self.place_of(self._run.failed_agent)
         if isinstance(error, Located):
-            raised = error.span or place, error.filename or filename
-            (error.span, error.filename), error.labels = reported(raised, own)
+            raise_place = error.span or place, error.filename or filename
+            (error.span, error.filename), error.labels = reported(raise_place, own_place)
         elif isinstance(error, RejectionException):
-            error.add_note(self._details(error, own[0] or place))
+            error.add_note(self._details(error, own_place[0] or place))
         elif place is not None and not isinstance(error, RejectSimulationException | GuardViolation):
-            (span, filename), labels = reported((place, filename), own)
+            (span, filename), labels = reported((place, filename), own_place)
             near = nearest_attribute(error)
             words = f"{type(error).__name__}: {error}"
             hint = "the program raised this exception during a simulation"
@@ -336,9 +336,11 @@ class Simulation(ABC):
                 hint = f"did you mean `{near}`?"
             if isinstance(error, StuckBehaviorError):
                 words, hint = str(error), "if it only computes for long, allow it more time (`--step-limit`)"
-            found = Diagnostic("SC400", words, span, filename=filename, help=hint, labels=labels)
+            diagnostic = Diagnostic("SC400", words, span, filename=filename, help=hint, labels=labels)
             line = place.line if span is None else span.line
-            annotate(error, found, f"{filename}:{line}: raised at step {self.currentTime} of a simulation")
+            annotate(
+                error, diagnostic, f"{filename}:{line}: raised at step {self.currentTime} of a simulation"
+            )
 
     def _details(self, error: RejectionException, place: Span | None) -> str:
         """The object that a rejection is about, the time and the line of the program, in words."""
@@ -358,14 +360,14 @@ class Simulation(ABC):
 
     def _restore(self) -> None:
         """Replace the copies that the simulation has changed by the scene's own objects."""
-        copied = list(self.scene.objects) if self.scene is not self._original else []
-        back = {id(copy): item for copy, item in zip(copied, self._original.objects, strict=False)}
+        copies = list(self.scene.objects) if self.scene is not self._original else []
+        back = {id(copy): item for copy, item in zip(copies, self._original.objects, strict=False)}
         self.objects = [back.get(id(item), item) for item in self.objects]
         self.agents = [back.get(id(item), item) for item in self.agents]
         for step in kept(self.actionSequence):
-            taken = {back.get(id(agent), agent): actions for agent, actions in step.items()}
+            original_actions = {back.get(id(agent), agent): actions for agent, actions in step.items()}
             step.clear()
-            step.update(taken)
+            step.update(original_actions)
         self.scene = self._original
 
     # What a simulator provides
@@ -531,18 +533,18 @@ class Simulation(ABC):
             raise RuntimeError(
                 f"simulator gave other properties of {obj!r} than it was asked for: {', '.join(sorted(wrong))}"
             )
-        stored = obj.__dict__
+        attributes = obj.__dict__
         for name in names:
-            value, old = values[name], stored[name]
+            value, old = values[name], attributes[name]
             if value is not old:
-                stored[name] = self._checked(obj, name, old, value)
+                attributes[name] = self._checked(obj, name, old, value)
         finals = self._finals[cls]
-        inputs = tuple([stored[name] for name in finals.inputs])
+        inputs = tuple([attributes[name] for name in finals.inputs])
         if inputs != self._inputs.get(id(obj)):
             # The simulator's angles are global where the object's own frame is turned.
             self._inputs[id(obj)] = inputs
             for entry in finals.builtin:
-                stored[entry.name] = entry.default(obj)
+                attributes[entry.name] = entry.default(obj)
         finals.renew_own(obj)
         self._tape.note(self, obj, names)
 
@@ -550,14 +552,19 @@ class Simulation(ABC):
         """The value as the object stores it; raises ``RuntimeError`` for one of another type than before."""
         if type(value) is type(old) and type(old) in _SIMPLE:
             return value
-        kind, wanted = kind_of(value), kind_of(old)
-        if wanted.is_number and wanted is not Kind.BOOLEAN and kind.is_number and kind is not Kind.BOOLEAN:
+        kind, old_kind = kind_of(value), kind_of(old)
+        if (
+            old_kind.is_number
+            and old_kind is not Kind.BOOLEAN
+            and kind.is_number
+            and kind is not Kind.BOOLEAN
+        ):
             return float(value) if type(old) is float else value
-        if wanted is kind and (not kind.is_boxed or old is None or isinstance(value, type(old))):
+        if old_kind is kind and (not kind.is_boxed or old is None or isinstance(value, type(old))):
             return value
         if old is None:
-            adopted = self._adopted.setdefault((id(obj), name), kind)
-            if adopted is kind:
+            adopted_kind = self._adopted.setdefault((id(obj), name), kind)
+            if adopted_kind is kind:
                 return value
         raise RuntimeError(
             f"simulator gave property {name!r} of {obj!r} a value of type {type(value).__name__}, "

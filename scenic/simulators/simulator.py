@@ -96,7 +96,7 @@ class Simulator(ABC):
             if source is not None:
                 options["source"] = _sourcing(source, scene, iteration - 1)
             try:
-                done = self._runSingleSimulation(scene, maxSteps, name=label, **options)
+                simulation = self._runSingleSimulation(scene, maxSteps, name=label, **options)
             except (RejectSimulationException, RejectionException, GuardViolation) as error:
                 if isinstance(error, GuardViolation) and raiseGuardViolations:
                     raise
@@ -104,12 +104,12 @@ class Simulator(ABC):
                     onRejection(error)
                 tell(f"  Rejected simulation {label} because: {error}")
                 continue
-            if done.result is not None:
-                reason = done.result.terminationReason
+            if simulation.result is not None:
+                reason = simulation.result.terminationReason
                 tell(
-                    f"  Simulation {label} ended successfully at time step {done.currentTime} because: {reason}"
+                    f"  Simulation {label} ended successfully at time step {simulation.currentTime} because: {reason}"
                 )
-            return done
+            return simulation
         return None
 
     def simulateStepped(

@@ -43,8 +43,8 @@ def file_digests(scenario: Scenario, *, modules: bool = True) -> dict[str, str]:
     files = {*record.files, *mesh_files(scenario), *texture_files(scenario)}
     if modules:
         files.update(module_files(record.imports, folder))
-    own = {path for path in files if not path.is_dir() and not _is_installed(path, folder)}
-    return dict(sorted((_name(path, folder), _digest(path)) for path in own))
+    own_files = {path for path in files if not path.is_dir() and not _is_installed(path, folder)}
+    return dict(sorted((_name(path, folder), _digest(path)) for path in own_files))
 
 
 def files_of_origin(scenario: Scenario) -> dict[str, dict[str, str]]:
@@ -94,16 +94,16 @@ def module_files(names: Iterable[str], folder: Path) -> Iterator[Path]:
 
     """
     places = [folder, *(Path(entry or ".").absolute() for entry in sys.path)]
-    left, seen = list(names), set()
+    left, names_done = list(names), set()
     while left:
         name = left.pop()
         if (
-            name in seen
+            name in names_done
             or name.partition(".")[0] in sys.builtin_module_names
             or name.partition(".")[0] == "scenic"
         ):
             continue
-        seen.add(name)
+        names_done.add(name)
         if "." in name:
             left.append(name.rpartition(".")[0])
         path = next((file for place in places if (file := _module_in(place, name)) is not None), None)

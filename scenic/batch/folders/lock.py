@@ -105,8 +105,8 @@ class Lock:
         if hasattr(os, "register_at_fork"):
             # A process that is forked must not hold the lock when this one has been killed.
             os.register_at_fork(after_in_child=_Forgetting(self))
-        started = datetime.now().astimezone().isoformat(timespec="seconds")
-        holder = _Holder(platform.node(), os.getpid(), started)
+        start_time = datetime.now().astimezone().isoformat(timespec="seconds")
+        holder = _Holder(platform.node(), os.getpid(), start_time)
         os.ftruncate(descriptor, 0)
         os.write(descriptor, json.dumps(asdict(holder)).encode())
         return self

@@ -27,11 +27,11 @@ def _command(diagnostic: Diagnostic) -> str:
         properties |= {"line": str(span.line), "endLine": str(span.end_line)}
         if span.line == span.end_line:  # columns of different lines are refused
             properties |= {"col": str(span.column + 1), "endColumn": str(span.end_column + 1)}
-    listed = ",".join(f"{name}={_property(value)}" for name, value in properties.items())
+    assignments = ",".join(f"{name}={_property(value)}" for name, value in properties.items())
     message = f"{diagnostic.code}: {diagnostic.message}"
     if diagnostic.help:
         message += f"\nhelp: {diagnostic.help}"
-    return f"::{_COMMANDS[diagnostic.severity]} {listed}::{_data(message)}"
+    return f"::{_COMMANDS[diagnostic.severity]} {assignments}::{_data(message)}"
 
 
 def _data(text: str) -> str:

@@ -18,13 +18,13 @@ _SEVERITIES: Final = {Severity.ERROR: "major", Severity.WARNING: "minor", Severi
 
 def render_gitlab(report: Report) -> str:
     """A list of findings, each with a fingerprint that does not depend on its line."""
-    seen: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     findings = []
     for diagnostic in report.diagnostics:
         text = _text_at(diagnostic, report)
         key = f"{diagnostic.filename}\0{diagnostic.code}\0{diagnostic.message}\0{text}"
-        seen[key] += 1
-        fingerprint = hashlib.sha256(f"{key}\0{seen[key]}".encode("utf-8", "surrogatepass")).hexdigest()
+        counts[key] += 1
+        fingerprint = hashlib.sha256(f"{key}\0{counts[key]}".encode("utf-8", "surrogatepass")).hexdigest()
         findings.append(_finding(diagnostic, fingerprint))
     return json.dumps(findings, indent=2) + "\n"
 

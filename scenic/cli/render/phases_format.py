@@ -29,7 +29,7 @@ def render_phases(report: Report) -> str:
     for item in report.diagnostics:
         if item.severity is Severity.ERROR:
             errors.setdefault(item.filename or "", []).append(item)
-    rows = [(name, *_worst(found, report)) for name, found in errors.items()]
+    rows = [(name, *_worst(errors_of_program, report)) for name, errors_of_program in errors.items()]
     lines = [f"{phase:<8}  {name}{'' if first is None else _said(first)}\n" for name, phase, first in rows]
     counts = Counter(phase for _, phase, _ in rows)
     numbers = ", ".join(f"{counts[phase]} {phase}" for phase in (*_ORDER, PASSES) if counts[phase])

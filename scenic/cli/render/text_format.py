@@ -134,9 +134,9 @@ def _marks(diagnostic: Diagnostic, span: Span, source: Source, colour: str) -> I
 
 
 def _snippet(marks: Sequence[_Mark], source: Source, width: int, paint: _Paint) -> Iterator[str]:
-    shown = sorted({mark.line for mark in marks})
+    line_numbers = sorted({mark.line for mark in marks})
     bar = paint("|", _BLUE)
-    for previous, line in zip([None, *shown], shown, strict=False):
+    for previous, line in zip([None, *line_numbers], line_numbers, strict=False):
         if previous is not None and line > previous + 1:
             yield paint("..." if width < 3 else "." * width, _BLUE)
         here = sorted(
@@ -172,15 +172,15 @@ def _window(line: str, mark: _Mark) -> tuple[str, _Window]:
         first = max(0, min(mark.start - _BEFORE, last - _WIDEST))
         last = min(last, first + _WIDEST)
     head, tail = "… " if first else "", " …" if last < len(line) else ""
-    columns, shown, column = [], [], 0
+    columns, pieces, column = [], [], 0
     for character in line[first:last]:
         columns.append(column)
         text = " " * (_TAB - column % _TAB) if character == "\t" else _visible(character)
-        shown.append(text)
+        pieces.append(text)
         column += _cells(text)
     # Marks may stand one after the last character, where something is missing.
     columns += (column, column + 1)
-    return head + "".join(shown) + tail, _Window(first, len(head), tuple(columns))
+    return head + "".join(pieces) + tail, _Window(first, len(head), tuple(columns))
 
 
 def _cells(text: str) -> int:

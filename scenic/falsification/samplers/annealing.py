@@ -29,13 +29,13 @@ class Annealing:
     batch = None
 
     def __init__(self, space: Space, seed: int, given: object = None) -> None:
-        chosen = options(
+        settings = options(
             given, {"T": 1.0, "decay_rate": 0.97, "iterations": 100, "num_epoch": 1_000_000}, "sa"
         )
-        self._start = float(chosen["T"])
-        self._decay = float(chosen["decay_rate"])
-        self._steps = int(chosen["iterations"])
-        self._epochs = int(chosen["num_epoch"])
+        self._start = float(settings["T"])
+        self._decay = float(settings["decay_rate"])
+        self._steps = int(settings["iterations"])
+        self._epochs = int(settings["num_epoch"])
         self._generator = np.random.default_rng(seed)
         self._dimension = len(space)
         self._told = 0
@@ -61,10 +61,10 @@ class Annealing:
             return points
         steps = self._generator.normal(0, 0.02 + 0.5 * math.sqrt(self._heat), size)
         steps *= self._generator.random(size) < _MOVED
-        moved = np.abs((self._current[0] + steps) % 2)
+        neighbours = np.abs((self._current[0] + steps) % 2)
         near = self._generator.random(count) >= _ANYWHERE
         near &= [not self._begins(self._told + place) for place in range(count)]
-        points[near] = np.where(moved > 1, 2 - moved, moved)[near]
+        points[near] = np.where(neighbours > 1, 2 - neighbours, neighbours)[near]
         return points
 
     def tell(self, points: Floats, values: Floats) -> None:

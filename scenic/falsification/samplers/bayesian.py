@@ -30,9 +30,9 @@ class Bayesian:
     batch = 1
 
     def __init__(self, space: Space, seed: int, given: object = None) -> None:
-        chosen = options(given, {"init_num": 5}, "bo")
+        settings = options(given, {"init_num": 5}, "bo")
         _library()
-        self._first = int(chosen["init_num"])
+        self._first = int(settings["init_num"])
         self._counts = [item.count for item in space.coordinates]
         self._generator = np.random.default_rng(seed)
         self._points: list[Floats] = []
@@ -45,9 +45,9 @@ class Bayesian:
         """See `Sampler.ask`."""
         rows = []
         for _ in range(count):
-            known = len(self._values) + len(self._waiting)
+            point_count = len(self._values) + len(self._waiting)
             finite = np.isfinite(self._values)
-            if known < self._first or not finite.any():
+            if point_count < self._first or not finite.any():
                 row = self._placed(self._generator.random((1, len(self._counts))))[0]
             else:
                 row = self._best()
@@ -97,8 +97,8 @@ class Bayesian:
         points = np.array(self._points)
         if len(values) > _MOST:
             best = np.argsort(values[: -_MOST // 2], kind="stable")[: _MOST // 2]
-            kept = np.concatenate([np.sort(best), np.arange(len(values) - _MOST // 2, len(values))])
-            points, values = points[kept], values[kept]
+            indices = np.concatenate([np.sort(best), np.arange(len(values) - _MOST // 2, len(values))])
+            points, values = points[indices], values[indices]
         spread = float(values.max() - values.min())
         return points, (values - values.mean()) / (spread if spread > 0 else 1.0)
 
@@ -125,8 +125,8 @@ class Bayesian:
         spread = self._generator.random((_CANDIDATES * 3 // 4, size))
         # What is worst is often at a border, where chance alone never is.
         at_borders = spread[: _CANDIDATES // 2]
-        snapped = self._generator.random(at_borders.shape) < self._generator.random((len(at_borders), 1))
-        at_borders[snapped] = np.round(at_borders[snapped])
+        is_snapped = self._generator.random(at_borders.shape) < self._generator.random((len(at_borders), 1))
+        at_borders[is_snapped] = np.round(at_borders[is_snapped])
         best = points[np.argsort(values, kind="stable")[:5]]
         width = 0.1 * 0.5 ** self._generator.integers(0, 5, (_CANDIDATES // 4, 1))
         near = best[np.arange(_CANDIDATES // 4) % len(best)]

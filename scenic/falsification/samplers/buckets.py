@@ -28,12 +28,12 @@ class _Buckets:
     name = "ce"
 
     def __init__(self, space: Space, seed: int, given: object = None) -> None:
-        chosen = options(given, _DEFAULTS, self.name)
-        self.alpha = float(chosen["alpha"])
-        self.threshold = float(chosen["thres"])
+        settings = options(given, _DEFAULTS, self.name)
+        self.alpha = float(settings["alpha"])
+        self.threshold = float(settings["thres"])
         if not 0 <= self.alpha <= 1:
             raise SamplerError(f"`alpha` lies between 0 and 1, not at {self.alpha}")
-        buckets = _attribute(chosen["cont"], "buckets", _BUCKETS)
+        buckets = _attribute(settings["cont"], "buckets", _BUCKETS)
         counts = np.ravel(buckets).astype(int)
         self.distributions = [np.array(item, dtype=np.float64) for item in shares_of(space, int(counts[0]))]
         for kind in ("cont", "disc"):
@@ -47,12 +47,12 @@ class _Buckets:
                 for place, count in zip(places, counts.tolist(), strict=True):
                     if space.coordinates[place].shares is None:
                         self.distributions[place] = np.full(count, 1 / count)
-            given_shares = _attribute(chosen[kind], "dist", None)
+            given_shares = _attribute(settings[kind], "dist", None)
             if given_shares is not None:
                 _checked(len(given_shares), len(places), f"{kind}.dist")
                 for place, shares in zip(places, given_shares, strict=True):
-                    found = np.array(shares, dtype=np.float64)
-                    self.distributions[place] = found / found.sum()
+                    weights = np.array(shares, dtype=np.float64)
+                    self.distributions[place] = weights / weights.sum()
         self.generator = np.random.default_rng(seed)
 
     def drawn(self) -> list[int]:

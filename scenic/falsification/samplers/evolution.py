@@ -34,10 +34,10 @@ class Evolution:
                 "the sampler 'cma' needs the package `cma`",
                 help=f"install it: {installation('falsify')}",
             ) from None
-        chosen = options(given, {"sigma": 0.3, "popsize": None}, "cma")
+        settings = options(given, {"sigma": 0.3, "popsize": None}, "cma")
         self._cma: Any = cma
-        self._sigma = float(chosen["sigma"])
-        self._size = chosen["popsize"]
+        self._sigma = float(settings["sigma"])
+        self._size = settings["popsize"]
         # The library knows no walk in one dimension: a coordinate that nothing reads makes two.
         self._dimension = max(2, len(space))
         self._wanted = len(space)
@@ -97,19 +97,19 @@ class Evolution:
                 self._told.append((solution, value))
         if len(self._told) < self._walk.popsize:
             return
-        known = [value for _, value in self._told if np.isfinite(value)]
-        worst = max(known, default=0.0)
-        spread = worst - min(known, default=0.0) + 1.0
+        finite_values = [value for _, value in self._told if np.isfinite(value)]
+        worst = max(finite_values, default=0.0)
+        spread = worst - min(finite_values, default=0.0) + 1.0
         fitness = [
             value
             if np.isfinite(value)
-            else (min(known, default=0.0) - spread if value == -np.inf else worst + spread)
+            else (min(finite_values, default=0.0) - spread if value == -np.inf else worst + spread)
             for _, value in self._told
         ]
         with self._quiet():
             self._walk.tell([solution for solution, _ in self._told], fitness)
-            ended = bool(self._walk.stop()) or not known
+            has_ended = bool(self._walk.stop()) or not finite_values
         self._told = []
-        if ended:
+        if has_ended:
             self._asked.clear()
             self._begin()

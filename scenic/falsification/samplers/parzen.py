@@ -42,8 +42,8 @@ class Parzen:
                 warnings.simplefilter("ignore")
                 trial = self._study.ask(self._laws)
             for place, item in enumerate(self._space.coordinates):
-                found = trial.params[f"x{place}"]
-                row[place] = found if item.count is None else (found + 0.5) / item.count
+                coordinate = trial.params[f"x{place}"]
+                row[place] = coordinate if item.count is None else (coordinate + 0.5) / item.count
             self._open.append((row.tobytes(), trial))
         return rows
 
@@ -51,7 +51,7 @@ class Parzen:
         """See `Sampler.tell`."""
         for point, value in zip(points, values.tolist(), strict=True):
             key = np.ascontiguousarray(point).tobytes()
-            place = next((place for place, (known, _) in enumerate(self._open) if known == key), None)
+            place = next((place for place, (open_key, _) in enumerate(self._open) if open_key == key), None)
             if place is None:
                 continue
             _, trial = self._open.pop(place)

@@ -45,10 +45,10 @@ def options(given: object, defaults: Mapping[str, object], name: str) -> dict[st
         if isinstance(given, Mapping)
         else {k: v for k, v in vars(given).items() if not k.startswith("_")}
     )
-    unknown = [key for key in plain if key not in defaults]
-    if unknown:
+    unknown_keys = [key for key in plain if key not in defaults]
+    if unknown_keys:
         raise SamplerError(
-            f"the sampler {name!r} has no option {unknown[0]!r}",
+            f"the sampler {name!r} has no option {unknown_keys[0]!r}",
             help=f"its options: {', '.join(defaults)}" if defaults else "it has none",
         )
     return {**defaults, **plain}

@@ -116,13 +116,13 @@ class Grid:
     batch = None
 
     def __init__(self, space: Space, seed: int, given: object = None) -> None:
-        chosen = options(given, {"N": _POINTS, "repeat": False}, "grid")
+        settings = options(given, {"N": _POINTS, "repeat": False}, "grid")
         continuous = [item for item in space.coordinates if item.is_continuous]
-        wanted = chosen["N"]
-        counts = list(wanted) if isinstance(wanted, Sequence) else [wanted] * len(continuous)
+        point_count = settings["N"]
+        counts = list(point_count) if isinstance(point_count, Sequence) else [point_count] * len(continuous)
         if len(counts) != len(continuous) or any(int(count) < 1 for count in counts):
             raise SamplerError(
-                f"the option `N` of the sampler 'grid' is {wanted!r}",
+                f"the option `N` of the sampler 'grid' is {point_count!r}",
                 help=f"give one number from 1 on, or {len(continuous)} of them, one for each continuous parameter",
             )
         sizes = iter(counts)
@@ -132,7 +132,7 @@ class Grid:
             else _middles(item.count or len(item.shares or (1.0,)))
             for item in space.coordinates
         ]
-        self._repeat = bool(chosen["repeat"])
+        self._repeat = bool(settings["repeat"])
         self._points = self._all()
 
     def _all(self) -> Any:

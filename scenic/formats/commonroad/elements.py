@@ -72,9 +72,9 @@ def add_location(root: Element, records: RoadRecords) -> None:
     add(location, "gpsLatitude", "999")
     add(location, "gpsLongitude", "999")
     if any(records.offset):
-        moved = add(location, "geoTransformation")
-        add(moved, "geoReference", "")
-        transformation = add(moved, "additionalTransformation")
+        shift = add(location, "geoTransformation")
+        add(shift, "geoReference", "")
+        transformation = add(shift, "additionalTransformation")
         names = ("xTranslation", "yTranslation", "zRotation")
         for name, value in zip(names, records.offset, strict=True):
             add(transformation, name, decimal(value))

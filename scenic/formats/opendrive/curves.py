@@ -82,7 +82,7 @@ class Curve:
 
     def bends(self) -> list[tuple[float, float, float]]:
         """For each piece its start, its end, and the largest curvature on it, in 1/m."""
-        found = []
+        rows = []
         for index, piece in enumerate(self._pieces):
             if piece.shape == "line":
                 bend = 0.0
@@ -90,8 +90,8 @@ class Curve:
                 bend = max(map(abs, piece.numbers))
             else:
                 bend = self._polynomials[index].bend
-            found.append((piece.s, piece.s + piece.length, bend))
-        return found
+            rows.append((piece.s, piece.s + piece.length, bend))
+        return rows
 
 
 def _arc(curvature: float, ds: Floats) -> tuple[Floats, Floats, Floats]:

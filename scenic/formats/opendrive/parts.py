@@ -122,7 +122,7 @@ NUMBERS_OF_SHAPES: Final[dict[str, tuple[str, ...]]] = {
 
 def lane_of(element: Element) -> Lane:
     link = element.first("link")
-    lost = set()
+    dropped_links = set()
 
     def neighbour(which: str) -> int | None:
         end = None if link is None else link.first(which)
@@ -131,7 +131,7 @@ def lane_of(element: Element) -> Lane:
         try:
             return integer_of(end, "id")
         except UnusablePart:
-            lost.add(which)
+            dropped_links.add(which)
             return None
 
     access = frozenset(
@@ -149,7 +149,7 @@ def lane_of(element: Element) -> Lane:
         tuple(sorted(speeds, key=lambda item: item.start)),
         access,
         element.line,
-        frozenset(lost),
+        frozenset(dropped_links),
     )
 
 

@@ -13,15 +13,15 @@ _ALIKE: Final = 5
 
 def told(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
     """The problems with at most a few of a kind, and a count of the others of that kind."""
-    seen: Counter[str] = Counter()
-    shown = []
+    counts: Counter[str] = Counter()
+    remaining = []
     for problem in problems:
-        seen[problem.kind] += 1
-        if seen[problem.kind] <= _ALIKE:
-            shown.append(problem)
-    for kind, count in seen.items():
+        counts[problem.kind] += 1
+        if counts[problem.kind] <= _ALIKE:
+            remaining.append(problem)
+    for kind, count in counts.items():
         if count > _ALIKE:
             first = next(problem for problem in problems if problem.kind == kind)
             message = f"{count - _ALIKE} more like: {first.message}"
-            shown.append(Problem(first.code, message, first.line, kind))
-    return tuple(shown)
+            remaining.append(Problem(first.code, message, first.line, kind))
+    return tuple(remaining)

@@ -204,8 +204,8 @@ class _Reader:
             self._faults.pop((element, "lanes"), None)
             raise UnusablePart("it has no planView", element, "planView")
         # Without a usable length only the reference line counts.
-        declared = math.nan if (element, "length") in self._faults else number_of(element, "length")
-        geometry = self._plan(name, plan, declared)
+        length = math.nan if (element, "length") in self._faults else number_of(element, "length")
+        geometry = self._plan(name, plan, length)
         ends = geometry[-1].s + geometry[-1].length
         lanes = element.first("lanes")
         if lanes is None:
@@ -389,12 +389,12 @@ class _Reader:
                 message = f"lane {lane.id} of road {road} is on the wrong side: left out"
                 self._tell("SC622", message, lane.line, "side")
             both = {lane.id: lane for lane in (*left, *right) if lane not in wrong}
-            ordered = sorted(both.values(), key=lambda lane: -lane.id)
+            lanes_by_id = sorted(both.values(), key=lambda lane: -lane.id)
             if len(self._problems) == before:
                 self._numbered(road, element, list(both))
             is_whole = len(self._problems) == before and not is_empty
             sections.append(
-                LaneSection(0.0 if not sections else start, tuple(ordered), element.line, is_whole)
+                LaneSection(0.0 if not sections else start, tuple(lanes_by_id), element.line, is_whole)
             )
         if sections and not any(section.lanes or section.is_whole for section in sections):
             raise _NoLanes
@@ -418,7 +418,7 @@ class _Reader:
                 self._tell("SC622", message, section.line, "numbers")
 
     def _lanes(self, road: str, side: Element | None) -> list[Lane]:
-        found: dict[int, Lane] = {}
+        lane_by_id: dict[int, Lane] = {}
         for element in () if side is None else side.all("lane"):
             try:
                 lane = lane_of(element)
@@ -428,7 +428,7 @@ class _Reader:
             if lane.id == 0:
                 continue
             self._lane_faults(f"lane {lane.id} of road {road}", element, lane)
-            if lane.id in found:
+            if lane.id in lane_by_id:
                 message = f"lane {lane.id} of road {road} is there twice: the second is left out"
                 self._tell("SC622", message, lane.line, "twice")
                 continue
@@ -436,8 +436,8 @@ class _Reader:
                 message = f"lane {lane.id} of road {road} has no width: left out"
                 self._tell("SC622", message, lane.line, "width")
                 continue
-            found[lane.id] = lane
-        return list(found.values())
+            lane_by_id[lane.id] = lane
+        return list(lane_by_id.values())
 
     def _lane_faults(self, name: str, element: Element, lane: Lane) -> None:
         """Report attributes that a lane lacks, and widths that do not begin with it."""
@@ -469,7 +469,7 @@ class _Reader:
         for element in () if signals is None else signals.children:
             if element.tag not in ("signal", "signalReference") or "id" not in element.attributes:
                 continue
-            given = element.attributes
+            attributes = element.attributes
             lanes = validity(element)
             # Some exporters write lanes 0 to 0 where they mean none of the own road.
             is_valid = not lanes or any(pair != (0, 0) for pair in lanes)
@@ -478,8 +478,8 @@ class _Reader:
                 if not is_valid:
                     continue
                 yield SignalReference(
-                    given["id"],
-                    given.get("orientation", "none"),
+                    attributes["id"],
+                    attributes.get("orientation", "none"),
                     number_or(element, "s", 0.0),
                     lanes,
                     element.line,
@@ -491,11 +491,11 @@ class _Reader:
                 self._tell_of(wrong.about, "SC621", f"a signal of road {road} is left out: {wrong}", "signal")
                 continue
             yield Signal(
-                given["id"],
-                given.get("country", ""),
-                given.get("type", ""),
-                given.get("subtype", ""),
-                given.get("orientation", "none"),
+                attributes["id"],
+                attributes.get("country", ""),
+                attributes.get("type", ""),
+                attributes.get("subtype", ""),
+                attributes.get("orientation", "none"),
                 *place,
                 number_or(element, "zOffset", 0.0),
                 number_or(element, "value", None),
@@ -512,7 +512,7 @@ class _Reader:
             if element.attributes.get("type") != "crosswalk":
                 continue
             try:
-                found = crosswalk_of(element)
+                crosswalk = crosswalk_of(element)
             except UnusablePart as wrong:
                 self._tell_of(
                     wrong.about,
@@ -521,7 +521,7 @@ class _Reader:
                     "crosswalk",
                 )
                 continue
-            yield found
+            yield crosswalk
 
     # Junctions
 
@@ -533,8 +533,10 @@ class _Reader:
             self._tell_of((element, "type"), "SC624", message, "type")
         connections = []
         for item in element.all("connection"):
-            given = item.attributes
-            if "incomingRoad" not in given or not ("connectingRoad" in given or "linkedRoad" in given):
+            attributes = item.attributes
+            if "incomingRoad" not in attributes or not (
+                "connectingRoad" in attributes or "linkedRoad" in attributes
+            ):
                 message = f"a connection of junction {name} without roads is left out"
                 self._tell_of((item, "incomingRoad"), "SC624", message, "connection")
                 self._left_out.add(f"connections of {name}")
@@ -542,25 +544,25 @@ class _Reader:
             links: list[LaneLinks] = []
             for link in item.all("laneLink"):
                 try:
-                    made = LaneLinks(integer_of(link, "from"), integer_of(link, "to"), link.line)
+                    link_pair = LaneLinks(integer_of(link, "from"), integer_of(link, "to"), link.line)
                 except UnusablePart as wrong:
                     message = f"a lane link of junction {name} is left out: {wrong}"
                     self._tell_of(wrong.about, "SC624", message, "link")
                     continue
-                if made in links:
+                if link_pair in links:
                     message = f"a connection of junction {name} has a lane link twice: once counts"
                     self._tell("SC624", message, link.line, "link twice")
                 else:
-                    links.append(made)
-            if given.get("contactPoint") not in ("start", "end"):
+                    links.append(link_pair)
+            if attributes.get("contactPoint") not in ("start", "end"):
                 message = f"a connection of junction {name} has no 'contactPoint': start counts"
                 self._tell_of((item, "contactPoint"), "SC624", message, "contact of connection")
-            connecting = given.get("connectingRoad", given.get("linkedRoad", ""))
-            contact = contact_of(given.get("contactPoint")) or "start"
+            connecting = attributes.get("connectingRoad", attributes.get("linkedRoad", ""))
+            contact = contact_of(attributes.get("contactPoint")) or "start"
             connections.append(
                 Connection(
-                    given.get("id", ""),
-                    given["incomingRoad"],
+                    attributes.get("id", ""),
+                    attributes["incomingRoad"],
                     connecting,
                     contact,
                     tuple(links) if item.first("laneLink") else None,

@@ -230,12 +230,12 @@ class _Rule:
 
 def _rules() -> _Rule:
     """The rule of the root, from which those of all others are reached."""
-    rules = {path: _Rule(*declared) for path, declared in _DECLARED.items()}
+    rules = {path: _Rule(*declaration) for path, declaration in _DECLARED.items()}
     for path, rule in rules.items():
         for child in rule.children:
-            found = rules.get(f"{path}/{child}", rules.get(child))
-            if found is not None:
-                rule.inner[child] = found
+            inner_rule = rules.get(f"{path}/{child}", rules.get(child))
+            if inner_rule is not None:
+                rule.inner[child] = inner_rule
     for shape in ("spiral", "arc", "poly3", "paramPoly3"):
         rules["geometry"].inner[shape] = rules[shape]
     return rules["OpenDRIVE"]
@@ -257,8 +257,8 @@ def faults_of(root: Element) -> Iterator[tuple[tuple[Element, str], Fault]]:
 def _faults_of_attributes(
     element: Element, rule: _Rule, name: str, where: str
 ) -> Iterator[tuple[tuple[Element, str], Fault]]:
-    for known, must in ((rule.required, True), (rule.optional, False)):
-        for attribute, check in known.items():
+    for attributes, must in ((rule.required, True), (rule.optional, False)):
+        for attribute, check in attributes.items():
             text = element.attributes.get(attribute)
             if text is None:
                 if must:
@@ -319,15 +319,15 @@ def _repeated_ids(root: Element) -> Iterator[tuple[tuple[Element, str], Fault]]:
     """Signals, objects and connections whose id another one of their kind has."""
     for paths in (("signals", "signal"), ("objects", "object")):
         outer, tag = paths
-        seen: set[str] = set()
+        identifiers: set[str] = set()
         for road in root.all("road"):
             group = road.first(outer)
             for item in () if group is None else group.all(tag):
-                yield from _again(item, seen, f"road {road.attributes.get('id')}", "road")
+                yield from _again(item, identifiers, f"road {road.attributes.get('id')}", "road")
     for junction in root.all("junction"):
-        seen = set()
+        identifiers = set()
         for item in junction.all("connection"):
-            yield from _again(item, seen, f"junction {junction.attributes.get('id')}", "junction")
+            yield from _again(item, identifiers, f"junction {junction.attributes.get('id')}", "junction")
 
 
 def _again(

@@ -96,10 +96,10 @@ def road_shape(
     """
     curve = Curve(road.geometry)
     tears = curve.tears()
-    torn = [index for index in np.flatnonzero(tears > _TORN).tolist() if not road.geometry[index].corrected]
-    if torn:
-        message = f"a piece of road {road.id} begins {tears[torn[0]]:.2f} m from where the one before it ends"
-        tell(Problem("SC621", message, road.geometry[torn[0] + 1].line, "torn"))
+    gaps = [index for index in np.flatnonzero(tears > _TORN).tolist() if not road.geometry[index].corrected]
+    if gaps:
+        message = f"a piece of road {road.id} begins {tears[gaps[0]]:.2f} m from where the one before it ends"
+        tell(Problem("SC621", message, road.geometry[gaps[0] + 1].line, "torn"))
     ends = [*(section.s for section in road.sections[1:]), road.length]
     shapes = []
     for section, end in zip(road.sections, ends, strict=True):

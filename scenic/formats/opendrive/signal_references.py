@@ -56,11 +56,13 @@ def _of_road(road: Element, signals: set[str], objects: set[str | None]) -> Iter
                     yield Problem("SC621", message, item.line, "validity")
             yield from _missing(name, item, "dependency", "id", "signal", signals)
             for reference in item.all("reference"):
-                known = signals if reference.attributes.get("elementType") == "signal" else objects | signals
-                named = reference.attributes.get("elementId")
-                if named is not None and named not in known:
+                identifiers = (
+                    signals if reference.attributes.get("elementType") == "signal" else objects | signals
+                )
+                target = reference.attributes.get("elementId")
+                if target is not None and target not in identifiers:
                     kind = reference.attributes.get("elementType", "element")
-                    message = f"{name} refers to {kind} {named}, which is not there"
+                    message = f"{name} refers to {kind} {target}, which is not there"
                     yield Problem("SC623", message, reference.line, "signal reference")
 
 

@@ -49,14 +49,14 @@ def read_tree(content: bytes, filename: str) -> tuple[Element, str]:
     parser = expat.ParserCreate()
     root = Element("", {}, 0)
     stack = [root]
-    skipped = 0
+    skipped_depth = 0
     reference: list[str] = []
 
     def start(name: str, attributes: dict[str, str]) -> None:
-        nonlocal skipped
+        nonlocal skipped_depth
         tag = name.rpartition(":")[2]
-        if skipped or tag in _SKIPPED:
-            skipped += 1
+        if skipped_depth or tag in _SKIPPED:
+            skipped_depth += 1
             if tag == "geoReference":
                 parser.CharacterDataHandler = reference.append
             return
@@ -65,9 +65,9 @@ def read_tree(content: bytes, filename: str) -> tuple[Element, str]:
         stack.append(element)
 
     def end(_name: str) -> None:
-        nonlocal skipped
-        if skipped:
-            skipped -= 1
+        nonlocal skipped_depth
+        if skipped_depth:
+            skipped_depth -= 1
             parser.CharacterDataHandler = None
         else:
             stack.pop()

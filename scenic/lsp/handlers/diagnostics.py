@@ -48,16 +48,16 @@ def _workspace(
 
     def work(go_on: GoOn) -> types.WorkspaceDiagnosticReport:
         with progress:
-            named = {to_uri(path): path for path in _programs(project)}
-            for done, uri in enumerate(sorted(named.keys() | documents.keys())):
+            paths = {to_uri(path): path for path in _programs(project)}
+            for number, uri in enumerate(sorted(paths.keys() | documents.keys())):
                 go_on()
                 document = documents.get(uri) or session.file(uri)
                 if document is None:
                     continue
-                found, _ = found_in_document(session, document, project, stamp, go_on)
-                report = _report(uri, document.version, found, previous.get(uri))
+                diagnostics, _ = found_in_document(session, document, project, stamp, go_on)
+                report = _report(uri, document.version, diagnostics, previous.get(uri))
                 partial.add([report], types.WorkspaceDiagnosticReport)
-                progress.report(done + 1, len(named))
+                progress.report(number + 1, len(paths))
         return types.WorkspaceDiagnosticReport(partial.rest)
 
     return session.work(work, token=params.work_done_token)

@@ -46,10 +46,10 @@ def _actions(session: Session, params: types.CodeActionParams) -> list[types.Cod
         if not document.has_part_of(params.range):
             continue
         span = document.lines.from_range(params.range)
-        found = found_in(document.snapshot, rules, project, stamp=session.generation)
-        repairable |= can_repair_all(found)
-        actions += _at_place(session, document, found, span, only)
-        if not automatic and _wanted(ORGANIZE, only) and can_organize(document.snapshot, found):
+        diagnostics = found_in(document.snapshot, rules, project, stamp=session.generation)
+        repairable |= can_repair_all(diagnostics)
+        actions += _at_place(session, document, diagnostics, span, only)
+        if not automatic and _wanted(ORGANIZE, only) and can_organize(document.snapshot, diagnostics):
             actions += _of_document(session, document, ORGANIZE, "Organize imports")
     if not automatic and _wanted(FIX_ALL, only) and repairable:
         actions += _of_document(session, whole, FIX_ALL, "Make all repairs of scenic")
@@ -70,8 +70,8 @@ def _at_place(
     if _wanted(_EXTRACT, only):
         yield from _refactoring(session, document, _EXTRACT, extract_variable(document.snapshot, span))
     if _wanted(_INLINE, only):
-        inlined = inline_variable(document.snapshot, span.line, span.column)
-        yield from _refactoring(session, document, _INLINE, inlined)
+        inlining = inline_variable(document.snapshot, span.line, span.column)
+        yield from _refactoring(session, document, _INLINE, inlining)
 
 
 def _refactoring(
@@ -161,10 +161,10 @@ def _action(
     item: Diagnostic | None = None,
 ) -> types.CodeAction:
     """An action, and the diagnostic that it answers."""
-    shown = None
+    answers = None
     if item is not None:
-        shown = [to_diagnostic(item, document.lines, document.uri, elsewhere=session.location)]
-    return types.CodeAction(title, kind, shown, edit=_changes(session, document, edits))
+        answers = [to_diagnostic(item, document.lines, document.uri, elsewhere=session.location)]
+    return types.CodeAction(title, kind, answers, edit=_changes(session, document, edits))
 
 
 def _changes(session: Session, document: Document, edits: Sequence[Edit]) -> types.WorkspaceEdit:
@@ -227,25 +227,29 @@ def _prepare_rename(
 ) -> types.PrepareRenamePlaceholder | None:
     document, line, column = place_of(session, params)
     try:
-        found = navigation.prepare_rename(session.project_with(document), document.snapshot, line, column)
+        place_and_name = navigation.prepare_rename(
+            session.project_with(document), document.snapshot, line, column
+        )
     except navigation.RenameError as error:
         raise JsonRpcException(str(error), types.LSPErrorCodes.RequestFailed) from None
-    if found is None:
+    if place_and_name is None:
         return None
-    return types.PrepareRenamePlaceholder(document.lines.to_range(found[0]), found[1])
+    return types.PrepareRenamePlaceholder(document.lines.to_range(place_and_name[0]), place_and_name[1])
 
 
 def _rename(session: Session, params: types.RenameParams) -> types.WorkspaceEdit:
     document, line, column = place_of(session, params)
     name = params.new_name
     try:
-        changed = navigation.rename(session.project_with(document), document.snapshot, line, column, name)
+        replacements = navigation.rename(
+            session.project_with(document), document.snapshot, line, column, name
+        )
     except navigation.RenameError as error:
         if not name.isidentifier():
             raise JsonRpcInvalidParams(str(error)) from None
         raise JsonRpcException(str(error), types.LSPErrorCodes.RequestFailed) from None
     changes: dict[str, list[types.TextEdit]] = {}
-    for place, text in changed:
+    for place, text in replacements:
         edit = types.TextEdit(session.lines_of(place.filename).to_range(place.span), text)
         changes.setdefault(session.uri_of(place.filename), []).append(edit)
     return session.workspace_edit(changes)

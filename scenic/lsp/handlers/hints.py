@@ -53,33 +53,33 @@ def _inline_values(session: Session, params: types.InlineValueParams) -> list[ty
     document = session.document(params.text_document.uri)
     lines = document.lines
     # The line that is about to run shows what it will read.
-    stopped = lines.from_position(params.context.stopped_location.end)
+    stop = lines.from_position(params.context.stopped_location.end)
     return [
         types.InlineValueVariableLookup(
             lines.to_range(each.span), case_sensitive_lookup=True, variable_name=each.name
         )
         if each.expression is None
         else types.InlineValueEvaluatableExpression(lines.to_range(each.span), each.expression)
-        for each in inline_values(document.snapshot, lines.from_range(params.range), stopped)
+        for each in inline_values(document.snapshot, lines.from_range(params.range), stop)
     ]
 
 
 def _lenses(session: Session, params: types.CodeLensParams) -> list[types.CodeLens]:
     session.shows_remarks = True
     document = session.document(params.text_document.uri)
-    found = []
+    code_lenses = []
     for lens in lenses(document.snapshot):
         for command in (SHOW, SAMPLE, SIMULATE) if lens.simulates else (SHOW, SAMPLE):
             data = {"uri": document.uri, "scenario": lens.scenario, "command": command}
-            shown = _command(document.uri, lens.scenario, command)
-            found.append(types.CodeLens(document.lines.to_range(lens.span), shown, data))
+            shown_command = _command(document.uri, lens.scenario, command)
+            code_lenses.append(types.CodeLens(document.lines.to_range(lens.span), shown_command, data))
     remarks = session.remarks.get(document.uri)
     # An editor shows a command without a name as words that cannot be clicked.
-    found += [
+    code_lenses += [
         types.CodeLens(document.lines.to_range(share.span), types.Command(share.words, ""))
         for share in (() if remarks is None else shares(document.snapshot, remarks))
     ]
-    return found
+    return code_lenses
 
 
 def _resolve_lens(_session: Session, lens: types.CodeLens) -> types.CodeLens:

@@ -65,16 +65,16 @@ def _hover(session: Session, params: types.HoverParams) -> types.Hover | None:
 
 def _completion(session: Session, params: types.CompletionParams) -> types.CompletionList:
     document, line, column = place_of(session, params)
-    typed = None if params.context is None else params.context.trigger_character
-    if not document.programs or (typed == " " and not must_follow(document.snapshot, line, column)):
+    trigger = None if params.context is None else params.context.trigger_character
+    if not document.programs or (trigger == " " and not must_follow(document.snapshot, line, column)):
         return types.CompletionList(is_incomplete=False, items=[])
-    found = completions(session.project_with(document), document.snapshot, line, column)
+    completion_list = completions(session.project_with(document), document.snapshot, line, column)
     snippets = session.can("text_document.completion.completion_item.snippet_support")
     # The place is the same for all, and need be said but once to clients that know of that.
     once = "editRange" in session.lists("text_document.completion.completion_list.item_defaults")
-    place = document.lines.to_range(found.span)
+    place = document.lines.to_range(completion_list.span)
     items = []
-    for item in found.items:
+    for item in completion_list.items:
         snippet = item.snippet if snippets else None
         text = item.text if snippet is None else snippet
         items.append(
@@ -96,13 +96,13 @@ def _completion(session: Session, params: types.CompletionParams) -> types.Compl
 
 def _resolve(session: Session, item: types.CompletionItem) -> types.CompletionItem:
     data: dict[str, Any] = item.data if isinstance(item.data, dict) else {}
-    uri, listed = data.get("uri"), data.get("key")
-    key = tuple(each for each in listed if isinstance(each, str)) if isinstance(listed, list) else ()
+    uri, key_parts = data.get("uri"), data.get("key")
+    key = tuple(each for each in key_parts if isinstance(each, str)) if isinstance(key_parts, list) else ()
     if not key or not isinstance(uri, str) or item.documentation is not None:
         return item
-    opened = session.documents.get(uri)
-    project = session.project if opened is None else session.project_with(opened)
-    text = document(project, None if opened is None else opened.snapshot, key)
+    open_document = session.documents.get(uri)
+    project = session.project if open_document is None else session.project_with(open_document)
+    text = document(project, None if open_document is None else open_document.snapshot, key)
     if text is not None:
         path = "text_document.completion.completion_item.documentation_format"
         item.documentation = markup(session, text, path)
@@ -110,22 +110,22 @@ def _resolve(session: Session, item: types.CompletionItem) -> types.CompletionIt
 
 
 def _signature_help(session: Session, params: types.SignatureHelpParams) -> types.SignatureHelp | None:
-    opened, line, column = place_of(session, params)
-    found = signature_help(session.project_with(opened), opened.snapshot, line, column)
-    if found is None:
+    open_document, line, column = place_of(session, params)
+    help_found = signature_help(session.project_with(open_document), open_document.snapshot, line, column)
+    if help_found is None:
         return None
     path = "text_document.signature_help.signature_information"
     offsets = session.can(f"{path}.parameter_information.label_offset_support")
     parameters = [
-        types.ParameterInformation((start, end) if offsets else found.label[start:end])
-        for start, end in found.parameters
+        types.ParameterInformation((start, end) if offsets else help_found.label[start:end])
+        for start, end in help_found.parameters
     ]
     documentation = None
-    if found.documentation:
-        documentation = markup(session, found.documentation, f"{path}.documentation_format")
-    active = len(parameters) if found.active is None else found.active
+    if help_found.documentation:
+        documentation = markup(session, help_found.documentation, f"{path}.documentation_format")
+    active = len(parameters) if help_found.active is None else help_found.active
     # The signature repeats the number: without it, `null` would be sent, which clients read as no parameter.
-    signature = types.SignatureInformation(found.label, documentation, parameters, active)
+    signature = types.SignatureInformation(help_found.label, documentation, parameters, active)
     return types.SignatureHelp([signature], active_signature=0, active_parameter=active)
 
 

@@ -207,7 +207,7 @@ def _workspace_symbols(
     partial: Partial[types.WorkspaceSymbol] = Partial(session, params.partial_result_token)
 
     def work(go_on: GoOn) -> list[types.WorkspaceSymbol]:
-        found = []
+        items = []
         with progress:
             for filename, snapshot in snapshots:
                 go_on()
@@ -220,10 +220,10 @@ def _workspace_symbols(
                     item = types.WorkspaceSymbol(
                         place, symbol.name, KINDS[symbol.kind], container_name=container or None
                     )
-                    found.append(item)
+                    items.append(item)
         start = query.lower()
-        found.sort(key=lambda item: (not item.name.lower().startswith(start), item.name.lower()))
-        partial.add(found[:_MOST])
+        items.sort(key=lambda item: (not item.name.lower().startswith(start), item.name.lower()))
+        partial.add(items[:_MOST])
         return partial.rest
 
     return session.work(work, token=params.work_done_token)
@@ -240,15 +240,15 @@ def _resolve_symbol(session: Session, symbol: types.WorkspaceSymbol) -> types.Wo
 def _moniker(session: Session, params: types.MonikerParams) -> list[types.Moniker] | None:
     document, line, column = place_of(session, params)
     project = session.project_with(document)
-    found = navigation.moniker(project, document.snapshot, line, column)
-    if found is None:
+    identity = navigation.moniker(project, document.snapshot, line, column)
+    if identity is None:
         return None
     unique, kind = types.UniquenessLevel.Project, types.MonikerKind.Export
-    if found.is_local:
+    if identity.is_local:
         unique, kind = types.UniquenessLevel.Document, types.MonikerKind.Local
-    elif found.is_import:
+    elif identity.is_import:
         kind = types.MonikerKind.Import
-    return [types.Moniker("scenic", found.identifier, unique, kind)]
+    return [types.Moniker("scenic", identity.identifier, unique, kind)]
 
 
 HANDLERS: Final = {

@@ -46,7 +46,7 @@ def _execute(session: Session, params: types.ExecuteCommandParams) -> Future[str
         raise _failed("save the program first: its file is what is simulated")
     title = "Simulating" if simulates else "Sampling"
     progress = Progress(session, params.work_done_token, title)
-    allowed = _permission(session, document)
+    await_permission = _permission(session, document)
     loop = asyncio.get_running_loop()
     name, seed = options.get("scenario"), options.get("seed")
     scenario = name if isinstance(name, str) else None
@@ -55,7 +55,7 @@ def _execute(session: Session, params: types.ExecuteCommandParams) -> Future[str
     count = _SAMPLED if params.command == SAMPLE else 1
 
     def work(go_on: GoOn) -> str:
-        allowed(go_on)
+        await_permission(go_on)
         try:
             with progress:
                 if simulates:
@@ -104,7 +104,7 @@ def _permission(session: Session, document: Document) -> Callable[[GoOn], None]:
         raise _failed(_NOT_HERE)
     if session.trusted is None and session.has("window.show_message"):
         # The client does not know of trust, but the user can be asked.
-        answered = threading.Event()
+        answer_event = threading.Event()
         name = document.snapshot.filename.rpartition("/")[2]
         question = types.ShowMessageRequestParams(
             types.MessageType.Warning,
@@ -112,10 +112,10 @@ def _permission(session: Session, document: Document) -> Callable[[GoOn], None]:
             [types.MessageActionItem(_RUN), types.MessageActionItem("Cancel")],
         )
         answer = session.ask(types.WINDOW_SHOW_MESSAGE_REQUEST, question)
-        answer.add_done_callback(lambda _answer: answered.set())
+        answer.add_done_callback(lambda _answer: answer_event.set())
 
         def wait(go_on: GoOn) -> None:
-            while not answered.wait(_INTERVAL):
+            while not answer_event.wait(_INTERVAL):
                 go_on()
             refused = answer.cancelled() or answer.exception() is not None
             chosen = None if refused else answer.result()

@@ -29,9 +29,9 @@ def _symbols(
     session: Session, params: types.DocumentSymbolParams
 ) -> list[types.DocumentSymbol] | list[types.SymbolInformation]:
     document = session.document(params.text_document.uri)
-    found = symbols(document.snapshot)
+    document_symbols = symbols(document.snapshot)
     if session.can("text_document.document_symbol.hierarchical_document_symbol_support"):
-        return [_symbol(document, each) for each in found]
+        return [_symbol(document, each) for each in document_symbols]
     return [
         types.SymbolInformation(
             types.Location(document.uri, document.lines.to_range(symbol.span)),
@@ -39,7 +39,7 @@ def _symbols(
             KINDS[symbol.kind],
             container_name=container or None,
         )
-        for symbol, container in flat(found)
+        for symbol, container in flat(document_symbols)
     ]
 
 

@@ -29,7 +29,7 @@ def read_settings(session: Session) -> None:
     """Ask the client for its settings, if it can be asked."""
     if not session.can("workspace.configuration"):
         return
-    wanted = types.ConfigurationParams([types.ConfigurationItem(section=_SECTION)])
+    question = types.ConfigurationParams([types.ConfigurationItem(section=_SECTION)])
 
     def take(answer: Future[Any]) -> None:
         refused = answer.cancelled() or answer.exception() is not None
@@ -37,7 +37,7 @@ def read_settings(session: Session) -> None:
         if isinstance(result, list) and result:
             take_settings(session, result[0])
 
-    session.ask(types.WORKSPACE_CONFIGURATION, wanted).add_done_callback(take)
+    session.ask(types.WORKSPACE_CONFIGURATION, question).add_done_callback(take)
 
 
 def _configuration(session: Session, params: types.DidChangeConfigurationParams) -> None:

@@ -165,11 +165,13 @@ def ids(category: str) -> tuple[str, ...]:
     Raises `InvalidScenarioError` for a category that CARLA does not have.
     """
     if category not in CATALOGUE:
-        meant = nearest(category, CATALOGUE)
+        similar_category = nearest(category, CATALOGUE)
         raise InvalidScenarioError(
             f"CARLA has no blueprints of the category {category!r}",
             span=here(),
-            help=f"did you mean `{meant}`?" if meant else f"its categories are {', '.join(CATALOGUE)}",
+            help=f"did you mean `{similar_category}`?"
+            if similar_category
+            else f"its categories are {', '.join(CATALOGUE)}",
         )
     return tuple(CATALOGUE[category])
 
@@ -179,14 +181,14 @@ def known_blueprint(blueprint: Any) -> Any:
     context = current.get()
     for each in options_of(blueprint) or [blueprint]:
         if isinstance(each, str) and _ID.fullmatch(each) and each not in _SIZES:
-            meant = nearest(each, _SIZES)
+            similar_id = nearest(each, _SIZES)
             warn(
                 f"CARLA's catalogues have no blueprint {each!r}",
                 code="SC405",
                 span=None if context is None else context.own_place(),
                 filename=None if context is None else context.filename,
-                help=f"did you mean `{meant}`?"
-                if meant
+                help=f"did you mean `{similar_id}`?"
+                if similar_id
                 else "take one of a list, such as `Uniform(*blueprints.carModels)`",
             )
     return blueprint
@@ -238,10 +240,14 @@ def __getattr__(name: str) -> tuple[str, ...]:
     """The established lists: ``carModels`` are the ids of the category ``car``, ``busStopModels`` those of ``bus_stop``."""
     if name in _LISTS:
         return ids(_LISTS[name])
-    meant = nearest(name, _LISTS) if not name.startswith("__") else None
+    similar_list = nearest(name, _LISTS) if not name.startswith("__") else None
     raise AttributeError(
         f"there is no list of blueprints `{name}`"
-        + (f": did you mean `{meant}`?" if meant else f"; there are {', '.join(list(_LISTS)[:_SHOWN])}, ...")
+        + (
+            f": did you mean `{similar_list}`?"
+            if similar_list
+            else f"; there are {', '.join(list(_LISTS)[:_SHOWN])}, ..."
+        )
         if not name.startswith("__")
         else f"module {__name__!r} has no attribute {name!r}"
     )

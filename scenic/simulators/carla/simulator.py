@@ -165,8 +165,8 @@ class CarlaSimulation(DrivingSimulation):
                 f"{obj!r} has no blueprint, so CARLA cannot create it", help="use a class of the CARLA model"
             )
         library = self._world.get_blueprint_library()
-        found = library.filter(obj.blueprint)
-        if not len(found):
+        blueprints = library.filter(obj.blueprint)
+        if not len(blueprints):
             versions = (
                 f"server {self._client.get_server_version()}, client {self._client.get_client_version()}"
             )
@@ -175,7 +175,7 @@ class CarlaSimulation(DrivingSimulation):
                 f"this CARLA ({versions}) has no blueprint {obj.blueprint!r}",
                 help="give another one, `with blueprint ...`" if near is None else f"did you mean {near!r}?",
             )
-        blueprint = found[0]
+        blueprint = blueprints[0]
         if obj.rolename is not None and blueprint.has_attribute("role_name"):
             blueprint.set_attribute("role_name", obj.rolename)
         if blueprint.has_attribute("is_invincible"):
@@ -301,8 +301,8 @@ class CarlaSimulation(DrivingSimulation):
             "roll": math.radians(transform.rotation.roll),
             "elevation": location.z,
         }
-        stored = obj.__dict__
-        return {name: values[name] if name in values else stored[name] for name in properties}
+        attributes = obj.__dict__
+        return {name: values[name] if name in values else attributes[name] for name in properties}
 
     def closest_traffic_light(self, vehicle: object, distance: float) -> str:
         """The colour of the light that governs a vehicle within a distance, in small letters; ``none`` if there is none."""

@@ -184,26 +184,26 @@ class MetaDriveSimulation(DrivingSimulation):
 
     def step(self) -> None:
         """Drive every vehicle by its controls, and advance the environment."""
-        begun = time.monotonic()
-        own = [0.0, 0.0]
+        start_time = time.monotonic()
+        ego_action = [0.0, 0.0]
         for obj in self.objects:
             if getattr(obj, "isVehicle", False):
                 actor = self._actors[id(obj)]
                 action = _action(actor, obj.controls)
                 if actor is self._environment.agent:
-                    own = action
+                    ego_action = action
                 else:
                     actor.before_step(action)
-        self._environment.step(own)
+        self._environment.step(ego_action)
         render, space = self._shown
         if render and not space:
             self._environment.render(mode="topdown")
         if self._real_time:
-            time.sleep(max(0.0, float(self.timestep) - (time.monotonic() - begun)))
+            time.sleep(max(0.0, float(self.timestep) - (time.monotonic() - start_time)))
 
     def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
         """The present state of an object."""
-        actor, stored = self._actors[id(obj)], obj.__dict__
+        actor, attributes = self._actors[id(obj)], obj.__dict__
         x, y = (float(part) for part in actor.position[:2])
         vx, vy = (float(part) for part in actor.velocity[:2])
         heading = actor.heading_theta - math.pi / 2
@@ -214,7 +214,7 @@ class MetaDriveSimulation(DrivingSimulation):
             "speed": math.hypot(vx, vy),
             "yaw": yaw,
         }
-        return {name: values[name] if name in values else stored[name] for name in properties}
+        return {name: values[name] if name in values else attributes[name] for name in properties}
 
     def _place(self, position: Any) -> list[float]:
         x, y, *_ = position

@@ -145,15 +145,15 @@ class NewtonianSimulation(DrivingSimulation):
     def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
         """The present values of an object."""
         state = self._states[id(obj)]
-        stored = obj.__dict__
+        attributes = obj.__dict__
         yaw = state.heading
-        parent = stored["parentOrientation"]
+        parent = attributes["parentOrientation"]
         if parent is not _UPRIGHT and parent != _UPRIGHT:
             yaw = (yaw - parent.yaw + math.pi) % (2 * math.pi) - math.pi
-        turned: dict[str, float] = {}
+        angles: dict[str, float] = {}
         if state.frame is not None:
             local = operate("compose", operate("inverse", parent), Orientation.of(tuple(state.frame)))
-            yaw, turned["pitch"], turned["roll"] = local.eulerAngles
+            yaw, angles["pitch"], angles["roll"] = local.eulerAngles
         x, y, z = state.velocity
         values: dict[str, Any] = {
             "position": Vector.of(state.position),
@@ -162,10 +162,10 @@ class NewtonianSimulation(DrivingSimulation):
             "angularSpeed": abs(state.rate),
             "angularVelocity": Vector.of((0.0, 0.0, state.rate)),
             "yaw": yaw,
-            "elevation": None if stored.get("elevation") is None else state.position[2],
-            **turned,
+            "elevation": None if attributes.get("elevation") is None else state.position[2],
+            **angles,
         }
-        return {name: values[name] if name in values else stored[name] for name in properties}
+        return {name: values[name] if name in values else attributes[name] for name in properties}
 
     def steering_for(self, agent: Any, curvature: float) -> float:
         """The position of the steering wheel by which a car of this simulator drives a curve."""

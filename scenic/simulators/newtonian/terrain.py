@@ -43,8 +43,8 @@ class Terrain:
         new = np.array([state.position for state in states])
         heights = self._levels.heights(new)
         # Off the road, nobody knows a height: what leaves it goes on level.
-        settled = heights + np.array([state.above for state in states])
-        new[:, 2] = np.where(np.isfinite(heights), settled, new[:, 2])
+        resting_heights = heights + np.array([state.above for state in states])
+        new[:, 2] = np.where(np.isfinite(heights), resting_heights, new[:, 2])
         frames = self._levels.frames(new, np.array([state.heading for state in states]))
         for state, place, frame in zip(states, new.tolist(), frames.tolist(), strict=True):
             state.position = (place[0], place[1], place[2])

@@ -29,11 +29,11 @@ def body(thing: Any, name: str) -> Any:
 
     joints = None if thing.dynamics == "static" else "default"
     if getattr(thing, "robosuite_class", None) is not None:
-        made = getattr(objects, thing.robosuite_class)(name=name)
+        model = getattr(objects, thing.robosuite_class)(name=name)
         if joints is None:
-            for joint in made.get_obj().findall("joint"):
-                made.get_obj().remove(joint)
-        return made
+            for joint in model.get_obj().findall("joint"):
+                model.get_obj().remove(joint)
+        return model
     size = np.array([thing.width, thing.length, thing.height]) / 2
     source = thing.shape.source
     options = {
@@ -91,8 +91,8 @@ def middle(made: Any) -> Floats:
         corners.append(points @ turn.T + back @ (data.geom_xpos[geom] - data.xpos[root]))
     if not corners:
         return np.zeros(3)
-    found = np.concatenate(corners)
-    return np.asarray((found.min(axis=0) + found.max(axis=0)) / 2, np.float64)
+    all_corners = np.concatenate(corners)
+    return np.asarray((all_corners.min(axis=0) + all_corners.max(axis=0)) / 2, np.float64)
 
 
 def body_pose(thing: Any, offset: Floats) -> tuple[Floats, Floats]:

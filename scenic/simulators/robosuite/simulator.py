@@ -101,7 +101,7 @@ class RobosuiteSimulation(Simulation):
                 "robosuite needs a robot", help="put one into the scene, such as `new Panda`"
             )
         robosuite = library()
-        shared = {
+        arguments = {
             "robots": [robot.robot_type for robot in self._robots],
             "controller_configs": [_controller(robot) for robot in self._robots],
             "gripper_types": [robot.gripper_type for robot in self._robots],
@@ -118,11 +118,11 @@ class RobosuiteSimulation(Simulation):
         configs = [_own_config(robot) for robot in self._robots]
         if self._settings.use_environment is None:
             self.env = environment_class()(
-                build=self._build, place=self._place, robot_configs=configs, **shared
+                build=self._build, place=self._place, robot_configs=configs, **arguments
             )
         else:
-            del shared["base_types"]
-            self.env = _environment(robosuite, self._settings.use_environment, shared)
+            del arguments["base_types"]
+            self.env = _environment(robosuite, self._settings.use_environment, arguments)
         self.observations = self.env.reset()
         if self._settings.use_environment is not None:
             self._place_in_task()
@@ -138,11 +138,11 @@ class RobosuiteSimulation(Simulation):
         elif getattr(obj, "arena", None) is not None:
             self._tables.append(obj)
         elif self._settings.use_environment is None:
-            made = body(obj, f"{type(obj).__name__}_{len(self._bodies)}")
-            offset = middle(made)
-            self._bodies[id(obj)] = (obj, made, offset)
+            model = body(obj, f"{type(obj).__name__}_{len(self._bodies)}")
+            offset = middle(model)
+            self._bodies[id(obj)] = (obj, model, offset)
             if obj.dynamics == "static":
-                placed_statically(made, *body_pose(obj, offset))
+                placed_statically(model, *body_pose(obj, offset))
 
     def _build(self, robots: list[Any]) -> tuple[Any, list[Any]]:
         """Place robosuite's models of robots; returns arena and objects."""
@@ -163,20 +163,22 @@ class RobosuiteSimulation(Simulation):
         """Give objects of robosuite's own task the poses of the objects of the same names."""
         from robosuite.models.objects import MujocoObject
 
-        models = {made.name: made for made in self.env.model.mujoco_objects if isinstance(made, MujocoObject)}
+        models = {
+            model.name: model for model in self.env.model.mujoco_objects if isinstance(model, MujocoObject)
+        }
         originals = self._original.objects
         for number, thing in enumerate(self.objects):
             if thing in self._robots or thing in self._tables:
                 continue
             name = self._original.names.get(originals[number])
-            made = models.get(str(name))
-            if made is None:
+            model = models.get(str(name))
+            if model is None:
                 raise SimulationCreationError(
                     f"the environment {self._settings.use_environment!r} of robosuite has no object {name!r}",
                     help=f"name variables after its objects: {', '.join(models) or 'it has none'}",
                 )
-            offset = middle(made)
-            self._bodies[id(thing)] = (thing, made, offset)
+            offset = middle(model)
+            self._bodies[id(thing)] = (thing, model, offset)
         self._place(self.env)
         self.observations = self.env._get_observations(force_update=True)
 
@@ -184,13 +186,13 @@ class RobosuiteSimulation(Simulation):
 
     def control(self, agent: object, parts: Mapping[str, Sequence[float]]) -> None:
         """Set inputs of a robot's controllers for the next step; grippers keep theirs."""
-        known = self._robot(agent)._action_split_indexes
+        ranges = self._robot(agent)._action_split_indexes
         for part, values in parts.items():
-            size = known[part][1] - known[part][0] if part in known else 0
+            size = ranges[part][1] - ranges[part][0] if part in ranges else 0
             if len(values) != size:
                 raise ScenicValueError(
                     f"the part {part!r} of {agent!r} takes {size} numbers, not {len(values)}",
-                    help=f"its parts are {', '.join(f'{name} ({end - start})' for name, (start, end) in known.items())}",
+                    help=f"its parts are {', '.join(f'{name} ({end - start})' for name, (start, end) in ranges.items())}",
                 )
         self._controls.setdefault(id(agent), {}).update(parts)
 
@@ -199,7 +201,7 @@ class RobosuiteSimulation(Simulation):
 
     def step(self) -> None:
         """Let controllers and physics run for one step."""
-        begun = time.monotonic()
+        start_time = time.monotonic()
         action = [
             robot.create_action_vector(
                 {part: np.array(values) for part, values in self._controls.get(id(thing), {}).items()}
@@ -213,7 +215,7 @@ class RobosuiteSimulation(Simulation):
         if self._settings.render:
             self.env.render()
         if self._settings.real_time:
-            time.sleep(max(0.0, float(self.timestep) - (time.monotonic() - begun)))
+            time.sleep(max(0.0, float(self.timestep) - (time.monotonic() - start_time)))
 
     def sense(self) -> None:
         """Let cameras see."""
@@ -240,16 +242,16 @@ class RobosuiteSimulation(Simulation):
     def _body_properties(self, obj: Any) -> dict[str, Any]:
         if id(obj) not in self._bodies or obj.dynamics == "static":
             return {}
-        _, made, offset = self._bodies[id(obj)]
+        _, model, offset = self._bodies[id(obj)]
         data = self.env.sim.data
-        number = self.env.sim.model.body_name2id(made.root_body)
+        number = self.env.sim.model.body_name2id(model.root_body)
         w, x, y, z = data.body_xquat[number].tolist()
         matrix = data.body_xmat[number].reshape(3, 3)
         local = obj.parentOrientation.inverse * Orientation.of((x, y, z, w))
         yaw, pitch, roll = local.eulerAngles
         velocity, turning = (
-            data.get_joint_qvel(made.joints[0])[:3],
-            matrix @ data.get_joint_qvel(made.joints[0])[3:],
+            data.get_joint_qvel(model.joints[0])[:3],
+            matrix @ data.get_joint_qvel(model.joints[0])[3:],
         )
         velocity = velocity + np.cross(turning, matrix @ offset)
         return {
@@ -272,8 +274,8 @@ class RobosuiteSimulation(Simulation):
 
 def _controller(robot: Any) -> Any:
     """The configuration of a robot's controllers: its own, or one that is named or given for its arms."""
-    given = robot.controller_config
-    if given is None:
+    configuration = robot.controller_config
+    if configuration is None:
         return None
     library()
     from robosuite.controllers import load_composite_controller_config, load_part_controller_config
@@ -284,7 +286,7 @@ def _controller(robot: Any) -> Any:
 
     arms = REGISTERED_ROBOTS[robot.robot_type].arms
     try:
-        if isinstance(given, str):
+        if isinstance(configuration, str):
             parts = (
                 "JOINT_POSITION",
                 "JOINT_VELOCITY",
@@ -293,10 +295,10 @@ def _controller(robot: Any) -> Any:
                 "OSC_POSE",
                 "IK_POSE",
             )
-            if given not in parts:
-                return load_composite_controller_config(controller=given)
-            given = load_part_controller_config(default_controller=given)
-        return refactor_composite_controller_config(dict(given), robot.robot_type, list(arms))
+            if configuration not in parts:
+                return load_composite_controller_config(controller=configuration)
+            configuration = load_part_controller_config(default_controller=configuration)
+        return refactor_composite_controller_config(dict(configuration), robot.robot_type, list(arms))
     except Exception as error:
         raise SimulationCreationError(
             f"robosuite has no controllers {robot.controller_config!r}: {error}",
@@ -313,11 +315,13 @@ def _own_config(robot: Any) -> dict[str, Any]:
 def _environment(robosuite: Any, name: str, settings: dict[str, Any]) -> Any:
     from scenic.language.spelling import nearest
 
-    known = list(robosuite.ALL_ENVIRONMENTS)
-    if name not in known:
-        meant = nearest(name, known)
+    names = list(robosuite.ALL_ENVIRONMENTS)
+    if name not in names:
+        similar_name = nearest(name, names)
         raise SimulationCreationError(
             f"robosuite has no environment {name!r}",
-            help=f"did you mean {meant!r}?" if meant else f"its environments are {', '.join(known)}",
+            help=f"did you mean {similar_name!r}?"
+            if similar_name
+            else f"its environments are {', '.join(names)}",
         )
     return robosuite.make(name, **settings)

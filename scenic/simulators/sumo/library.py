@@ -43,15 +43,15 @@ def convert(road_map: Path, network: Path) -> None:
         SimulationCreationError: SUMO cannot read the map.
 
     """
-    found = find_spec("sumo")
-    if found is None or found.origin is None:
+    spec = find_spec("sumo")
+    if spec is None or spec.origin is None:
         raise UnsupportedError(
             "the SUMO simulator needs the package eclipse-sumo, which converts maps",
             help=f"install it: {installation('sumo')}",
         )
-    home = Path(found.origin).parent
+    home = Path(spec.origin).parent
     program = home / "bin" / ("netconvert.exe" if sys.platform == "win32" else "netconvert")
-    done = subprocess.run(
+    process = subprocess.run(
         [
             str(program),
             *("--opendrive-files", str(road_map), "--output-file", str(network)),
@@ -62,11 +62,11 @@ def convert(road_map: Path, network: Path) -> None:
         text=True,
         check=False,
     )
-    if done.returncode or not network.exists():
-        said = next(
-            (line for line in done.stderr.splitlines() if line.startswith("Error")), done.stderr.strip()
+    if process.returncode or not network.exists():
+        message = next(
+            (line for line in process.stderr.splitlines() if line.startswith("Error")), process.stderr.strip()
         )
         raise SimulationCreationError(
-            f"SUMO cannot read the map {road_map}: {said}",
+            f"SUMO cannot read the map {road_map}: {message}",
             help="the map must be an OpenDRIVE file with roads for cars",
         )

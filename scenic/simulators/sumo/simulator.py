@@ -117,8 +117,8 @@ class SumoSimulation(NewtonianSimulation):
             return
         # SUMO's heights are those of the road, ours those of the middle of objects.
         above = self._heights.setdefault(id(obj), state.position[2] - pose.z)
-        turned = (pose.heading - state.heading + math.pi) % (2 * math.pi) - math.pi
-        state.rate = turned / float(self.timestep)
+        heading_change = (pose.heading - state.heading + math.pi) % (2 * math.pi) - math.pi
+        state.rate = heading_change / float(self.timestep)
         state.position = (pose.x, pose.y, pose.z + above)
         state.heading, state.speed = pose.heading, pose.speed
         state.velocity = (-pose.speed * math.sin(pose.heading), pose.speed * math.cos(pose.heading), 0.0)

@@ -129,9 +129,9 @@ class Traffic:
     def step(self, bodies: list[Body]) -> None:
         """Advance SUMO by a step, and make the routes of those that it drives long enough."""
         self._sumo.simulationStep()
-        found = self._sumo.vehicle.getAllSubscriptionResults()
+        results = self._sumo.vehicle.getAllSubscriptionResults()
         for body in bodies:
-            body.last = found.get(body.name, {})
+            body.last = results.get(body.name, {})
             if body.own_speed is not None and body.last:
                 # SUMO takes the speed of a body that was put somewhere for that of the move.
                 self._sumo.vehicle.setPreviousSpeed(body.name, body.own_speed)

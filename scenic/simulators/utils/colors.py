@@ -111,10 +111,10 @@ def _shifted_together(
     """`_shifted` of many colours: the formula of `colorsys.hls_to_rgb`, equal in every bit."""
     try:
         numbers = {color: number for number, color in enumerate(dict.fromkeys(colors))}
-        known = np.array([colorsys.rgb_to_hls(*color) for color in numbers])
+        hls_colors = np.array([colorsys.rgb_to_hls(*color) for color in numbers])
     except (TypeError, ValueError, ArithmeticError):
         return None
-    bases = known[list(map(numbers.__getitem__, colors))]
+    bases = hls_colors[list(map(numbers.__getitem__, colors))]
     shifts = np.array([hues, lightnesses, saturations])
     h, l, s = np.clip(bases.T + shifts, 0.0, 1.0)  # noqa: E741
     most = np.where(l <= 0.5, l * (1.0 + s), l + s - l * s)

@@ -33,25 +33,25 @@ class Names:
         """
         name, kind = getattr(obj, "webotsName", None), getattr(obj, "webotsType", None)
         if name is not None:
-            wanted = str(name)
+            def_name = str(name)
         elif kind is not None:
-            wanted = self._next_of(str(kind))
+            def_name = self._next_of(str(kind))
         else:
-            wanted = f"object_{number}"
-        node = self._supervisor.getFromDef(wanted)
+            def_name = f"object_{number}"
+        node = self._supervisor.getFromDef(def_name)
         if node is None:
             if not hasattr(obj, "webotsObject"):
                 return None
             raise SimulationCreationError(
-                f"the world has no node with the DEF name {wanted}, for {obj!r}",
+                f"the world has no node with the DEF name {def_name}, for {obj!r}",
                 help="name a node by `webotsName` or `webotsType`, or let the object be made: `with webotsAdhoc {}`",
             )
-        if wanted in self._used:
+        if def_name in self._used:
             raise SimulationCreationError(
-                f"{obj!r} and {self._used[wanted]!r} have the same node {wanted}",
+                f"{obj!r} and {self._used[def_name]!r} have the same node {def_name}",
                 help="give each object a `webotsName` of its own, or all of them one `webotsType`",
             )
-        self._used[wanted] = obj
+        self._used[def_name] = obj
         return node
 
     def _next_of(self, kind: str) -> str:

@@ -89,8 +89,8 @@ def _supervisor() -> Any:
 
 def _coordinate_system(supervisor: Any) -> str:
     """The value of ``WorldInfo.coordinateSystem``; raises `SimulationCreationError` if the robot is not a supervisor."""
-    asked = getattr(supervisor, "getSupervisor", None)
-    root = None if asked is not None and not asked() else supervisor.getRoot()
+    get_supervisor = getattr(supervisor, "getSupervisor", None)
+    root = None if get_supervisor is not None and not get_supervisor() else supervisor.getRoot()
     if root is None:
         raise SimulationCreationError(
             "the robot of this controller is not a supervisor",
@@ -271,17 +271,17 @@ class WebotsSimulation(Simulation):
 
     def getProperties(self, obj: object, properties: Any) -> Mapping[str, Any]:
         """Read the state of the object's node."""
-        stored, node = obj.__dict__, self._nodes.get(id(obj))
+        attributes, node = obj.__dict__, self._nodes.get(id(obj))
         if node is None or not self._has_pose(obj):
-            return {name: stored[name] for name in properties}
+            return {name: attributes[name] for name in properties}
         offset = Vector(*getattr(obj, "positionOffset", (0, 0, 0)))
         position = Vector(*self.axes.place_here(node.getPosition()).tolist()) - offset
         numbers = list(node.getVelocity())
         velocity = Vector(*self.axes.place_here(numbers[:3]).tolist())
         spin = Vector(*self.axes.spin_here(numbers[3:]).tolist())
-        turned = matrix_of(self.axes.turn_here(node.getOrientation()))
-        orientation = orientation_of(turned @ matrix_of(_offset(obj)).T)
-        yaw, pitch, roll = (stored["parentOrientation"].inverse * orientation).eulerAngles
+        angles = matrix_of(self.axes.turn_here(node.getOrientation()))
+        orientation = orientation_of(angles @ matrix_of(_offset(obj)).T)
+        yaw, pitch, roll = (attributes["parentOrientation"].inverse * orientation).eulerAngles
         values: dict[str, Any] = {
             "position": position,
             "velocity": velocity,
@@ -294,9 +294,9 @@ class WebotsSimulation(Simulation):
             "elevation": float(position.z),
         }
         battery = node.getField("battery") if "battery" in properties else None
-        if battery is not None and stored.get("battery") is not None:
+        if battery is not None and attributes.get("battery") is not None:
             values["battery"] = tuple(battery.getMFFloat(place) for place in range(battery.getCount()))
-        return {name: values[name] if name in values else stored[name] for name in properties}
+        return {name: values[name] if name in values else attributes[name] for name in properties}
 
 
 def _offset(obj: object) -> Orientation:

@@ -51,24 +51,24 @@ def regions_of_program(parameters: Any) -> RoadRegions:
             "`setLocalWorld(__file__, 'FILE.wbt')`, before the model",
         )
     try:
-        found = streets_of(read_world(str(path)))
+        roads = streets_of(read_world(str(path)))
     except WorldError as error:
         raise NoWorldError(error.message, help=error.help) from error
-    if not found.streets and not found.crossroads:
+    if not roads.streets and not roads.crossroads:
         raise NoWorldError(f"the world '{path}' has no roads", help="it needs nodes `Road` or `Crossroad`")
     direction = PolygonalVectorField(
-        "roadDirection", [cell for street in found.streets for cell in street.lanes], defaultHeading=0.0
+        "roadDirection", [cell for street in roads.streets for cell in street.lanes], defaultHeading=0.0
     )
-    surfaces = [street.surface for street in found.streets]
-    roadway = _union([*surfaces, *found.crossroads])
-    sidewalks = _union([each for street in found.streets for each in street.sidewalks]).difference(roadway)
-    crossings = _union(found.crossings)
-    junctions = _union(found.crossroads)
+    surfaces = [street.surface for street in roads.streets]
+    roadway = _union([*surfaces, *roads.crossroads])
+    sidewalks = _union([each for street in roads.streets for each in street.sidewalks]).difference(roadway)
+    crossings = _union(roads.crossings)
+    junctions = _union(roads.crossroads)
     road = _region(roadway, direction)
     everything = _region(_union([roadway, sidewalks, crossings]))
     assert road is not None
     assert everything is not None
-    lines = [line for street in found.streets for line in street.curbs]
+    lines = [line for street in roads.streets for line in street.curbs]
     return RoadRegions(
         direction,
         road,

@@ -87,8 +87,8 @@ def _placed(world: WorldFile, node: WorldNode, points: Array) -> Array:
     x, y, z, angle = node.vector("rotation", (0, 0, 1, 0))
     axis = np.array([x, y, z])
     length = float(np.linalg.norm(axis))
-    turned = points if not length else Rotation.from_rotvec(axis / length * angle).apply(points)
-    there = np.asarray(turned).reshape(-1, 3) + node.vector("translation", (0, 0, 0))
+    rotated_points = points if not length else Rotation.from_rotvec(axis / length * angle).apply(points)
+    there = np.asarray(rotated_points).reshape(-1, 3) + node.vector("translation", (0, 0, 0))
     ours: Array = (there @ world.matrix)[:, :2]
     return ours
 
@@ -133,9 +133,9 @@ def _street(world: WorldFile, node: WorldNode, crossroads: Sequence[object], kee
 
     name = str(node.fields.get("id", node.fields.get("name", node.name or "")))
     way = _placed(world, node, _way(world, node))
-    moved = np.ones(len(way), dtype=bool)
-    moved[1:] = np.linalg.norm(np.diff(way, axis=0), axis=1) > 1e-9
-    way = way[moved]
+    is_distinct = np.ones(len(way), dtype=bool)
+    is_distinct[1:] = np.linalg.norm(np.diff(way, axis=0), axis=1) > 1e-9
+    way = way[is_distinct]
     count = round(node.number("numberOfLanes", 2))
     forward = round(node.number("numberOfForwardLanes", 1))
     width = node.number("width", 7)
@@ -176,12 +176,12 @@ def _sidewalks(node: WorldNode, way: Array, width: float) -> list[Any]:
 
     widths = node.vector("roadBorderWidth", (_BORDER,))
     border = float(widths[0]) if len(widths) else _BORDER
-    found = []
+    sidewalks = []
     for side, field in ((-1, "rightBorder"), (1, "leftBorder")):
         if node.flag(field, True) and border > 0:
             inner, outer = (_offset(way, side * (width / 2 + more)) for more in (0, border))
-            found.append(_valid(Polygon([*inner, *outer[::-1]])))
-    return found
+            sidewalks.append(_valid(Polygon([*inner, *outer[::-1]])))
+    return sidewalks
 
 
 def _opposite(heading: float) -> float:
@@ -197,8 +197,8 @@ def _offset(way: Array, distance: float) -> Array:
     shares = 1 + np.sum(before * after, axis=1, keepdims=True)
     # Where a road turns back on itself there is no corner.
     mitre = np.where(shares > 0.2, (before + after) / np.maximum(shares, 0.2), after)
-    moved: Array = way + distance * mitre
-    return moved
+    offset_points: Array = way + distance * mitre
+    return offset_points
 
 
 def _at_crossroads(line: Array, crossroads: Sequence[Any]) -> Array:
