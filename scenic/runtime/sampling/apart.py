@@ -58,6 +58,7 @@ class Apart:
         may_meet: which objects of different groups must not collide, ``(objects, objects)``.
         number: of the check of collisions among those of the whole plan.
         bunch: how many groups together hardly ever collide.
+        crowding: how many others a group collides with on average where each is drawn by itself.
 
     """
 
@@ -68,6 +69,7 @@ class Apart:
     may_meet: NDArray[np.bool_]
     number: int
     bunch: int
+    crowding: float
 
     @property
     def leaves(self) -> int:
@@ -128,12 +130,16 @@ def separated(engine: Engine, plan: Plan, reads: Reads, leaf: int) -> Apart | No
     may_meet = np.zeros((len(check.objects), len(check.objects)), dtype=np.bool_)
     may_meet[one[between], two[between]] = may_meet[two[between], one[between]] = True
     numbers = range(len(plan.checks)) if plan.numbers is None else plan.numbers
-    bunch = _bunch(engine, kinds, len(groups), may_meet)
-    return Apart(leaf, tuple(groups), tuple(kinds), kind_of, may_meet, numbers[place], bunch)
+    chance = _chance_to_collide(engine, kinds, len(groups), may_meet)
+    bunch = int(np.clip(np.sqrt(2 * BUNCHED / chance), 2, len(groups)))
+    crowding = chance * np.count_nonzero(may_meet) / len(groups)
+    return Apart(leaf, tuple(groups), tuple(kinds), kind_of, may_meet, numbers[place], bunch, crowding)
 
 
-def _bunch(engine: Engine, kinds: Sequence[Kind], groups: int, may_meet: NDArray[np.bool_]) -> int:
-    """The number of groups that collide about as often as `BUNCHED`, by the collisions among candidates for some."""
+def _chance_to_collide(
+    engine: Engine, kinds: Sequence[Kind], groups: int, may_meet: NDArray[np.bool_]
+) -> float:
+    """Return the share of pairs of bodies of different groups that collide though they must not, by candidates for some groups."""
     bodies = Bodies()
     pending = engine.pending([(0, k) for k in range(TRIED)])
     for kind in kinds:
@@ -144,7 +150,7 @@ def _bunch(engine: Engine, kinds: Sequence[Kind], groups: int, may_meet: NDArray
         if len(batch.rows):
             bodies.add([item.body(batch) for item in kind.objects], kind.numbers[member[batch.rows]])
     pairs, met = bodies.pairs(may_meet)
-    return int(np.clip(np.sqrt(2 * BUNCHED * (pairs + 1) / (met + 0.5)), 2, groups))
+    return (met + 0.5) / (pairs + 1)
 
 
 def _groups(

@@ -85,8 +85,9 @@ class Bodies:
 
         """
         free = np.ones(lanes, dtype=np.bool_)
-        one, two, lane = self._near(chosen, lane, part)
-        wanted = may_meet[self._thing[one], self._thing[two]] & ~self._allow[one] & ~self._allow[two]
+        first, second = self._near(chosen, lane, part)
+        one, two, lane = chosen[first], chosen[second], lane[first]
+        wanted = self._forbidden(one, two, may_meet)
         one, two, lane = one[wanted], two[wanted], lane[wanted]
         for step in rows(len(lane), 1, _STEP):
             left = np.flatnonzero(free[lane[step]]) + step.start
@@ -95,23 +96,45 @@ class Bodies:
                 free[lane[left[met]]] = False
         return free
 
+    def meetings(
+        self, chosen: Indices, lane: Indices, part: Indices, is_new: Booleans, may_meet: Booleans
+    ) -> tuple[Indices, Indices]:
+        """Return the places in ``chosen`` of the bodies that collide, pair by pair, where one of them at least is new.
+
+        The arguments are those of `apart`; ``is_new`` ``(n,)`` masks the new bodies.
+        """
+        first, second = self._near(chosen, lane, part)
+        wanted = is_new[first] | is_new[second]
+        wanted &= self._forbidden(chosen[first], chosen[second], may_meet)
+        first, second = first[wanted], second[wanted]
+        met = [
+            self._collide(chosen[first[step]], chosen[second[step]]) for step in rows(len(first), 1, _STEP)
+        ]
+        collides = np.concatenate([np.empty(0, dtype=np.bool_), *met])
+        return first[collides], second[collides]
+
     def pairs(self, may_meet: Booleans) -> tuple[int, int]:
         """The number of pairs of bodies that may meet, and of those that do, each body with all others."""
         every = np.arange(len(self))
-        one, two, _ = self._near(every, np.zeros_like(every), every)
-        wanted = may_meet[self._thing[one], self._thing[two]] & ~self._allow[one] & ~self._allow[two]
+        one, two = self._near(every, np.zeros_like(every), every)
+        wanted = self._forbidden(one, two, may_meet)
         counts = np.bincount(self._thing[: len(self)], minlength=len(may_meet))
         total = int(counts @ may_meet @ counts) // 2
         return total, int(np.count_nonzero(self._collide(one[wanted], two[wanted]))) if wanted.any() else 0
 
-    def _near(self, chosen: Indices, lane: Indices, part: Indices) -> tuple[Indices, Indices, Indices]:
-        """The pairs of rows of different parts, and their lanes, whose spheres may share a point.
+    def _forbidden(self, one: Indices, two: Indices, may_meet: Booleans) -> Booleans:
+        """Return a mask of the pairs of rows whose bodies must not collide."""
+        may = may_meet[self._thing[one], self._thing[two]]
+        return np.asarray(may & ~self._allow[one] & ~self._allow[two])
+
+    def _near(self, chosen: Indices, lane: Indices, part: Indices) -> tuple[Indices, Indices]:
+        """The pairs of places in ``chosen``, of one lane and different parts, whose spheres may share a point.
 
         Bodies are sorted along one axis, lane by lane, and compared with those that follow within reach.
         """
         if len(chosen) < 2:
             none = np.empty(0, dtype=np.intp)
-            return none, none, none
+            return none, none
         places = self._places[chosen]
         lowest, highest = np.nanmin(places[:, :2], axis=0), np.nanmax(places[:, :2], axis=0)
         along = int(highest[1] - lowest[1] > highest[0] - lowest[0])
@@ -130,8 +153,7 @@ class Bodies:
         x, y, z = ((places[one, axis] - places[two, axis]) for axis in range(3))
         most = (places[one, 10] + places[two, 10]) * (1 + _MARGIN)
         close = x * x + y * y + z * z <= most * most
-        one, two = one[close], two[close]
-        return chosen[one], chosen[two], lane[one]
+        return one[close], two[close]
 
     def _collide(self, one: Indices, two: Indices) -> Booleans:
         if len(self._solids.meshes) != len(self._meshes):

@@ -21,13 +21,14 @@ from scenic.runtime.geometry.ragged import expand
 from scenic.runtime.sampling.apart import Apart
 from scenic.runtime.sampling.components import Components
 from scenic.runtime.sampling.composed import Composed
+from scenic.runtime.sampling.crowd_chains import is_loose, settle
 from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, FinishedLanes
 from scenic.runtime.sampling.halving import Tree
-from scenic.runtime.sampling.joining import join
+from scenic.runtime.sampling.joining import Joined, join
 from scenic.runtime.sampling.pairing import pair
 from scenic.runtime.sampling.pending import Task
 from scenic.runtime.sampling.profiling import Meter, Profile
-from scenic.runtime.sampling.report import Exhausted
+from scenic.runtime.sampling.report import Approximation, Exhausted, joined
 
 __all__ = ["PiecewiseEngine"]
 
@@ -53,11 +54,12 @@ _FAILED: Final = -1
 
 @dataclass(frozen=True, slots=True)
 class _Limits:
-    """Limits on the effort for a scene; see `Engine.scenes`."""
+    """Limits on the effort for a scene; see `Engine.scenes`. ``approximate``: crowds are moved until they are nearly of their law."""
 
     attempts: int
     lanes: int | None = None
     deadline: float | None = None
+    approximate: bool = False
 
 
 class _Block:
@@ -73,6 +75,7 @@ class _Block:
         self.missing: dict[int, Exhausted] = {}
         self.errors: dict[int, list[CandidateError]] = {}
         self.end = len(tasks)
+        self.reports: list[Approximation] = []
 
 
 class PiecewiseEngine:
@@ -142,6 +145,25 @@ class PiecewiseEngine:
         while block := list(islice(waiting, _BLOCK)):
             yield from self._block(block, limits)
 
+    def can_approximate(self) -> bool:
+        """Return whether crowds that can be moved are all that makes scenes rare."""
+        crowds = [tree for tree in self._components.trees if isinstance(tree, Apart)]
+        others = [self._engine(number) for number in self._whole_ones]
+        return (
+            bool(crowds)
+            and len(crowds) + len(others) == self.count
+            and all(map(is_loose, crowds))
+            and all(engine.rehearsal() > 0 for engine in others)
+        )
+
+    def approximate(
+        self, tasks: Sequence[tuple[int, int]], *, max_attempts: int, together: int
+    ) -> Iterator[Accepted | Exhausted]:
+        """The scenes of ``tasks``, in order, with crowds that are only nearly of their law (`can_approximate`)."""
+        limits = _Limits(max_attempts, approximate=True)
+        for start in range(0, len(tasks), together):
+            yield from self._block(tasks[start : start + together], limits)
+
     def foresee(
         self, tasks: Iterable[tuple[int, int]], *, max_attempts: int, more: bool = True
     ) -> Iterator[Accepted | Exhausted]:
@@ -183,7 +205,8 @@ class PiecewiseEngine:
             else:
                 self._joined(tree, block, limits)
         good = [row for row in range(block.end) if row not in block.missing and row not in block.errors]
-        found = iter(self._finished([tasks[row] for row in good], block.attempts[good]))
+        approximation = joined(block.reports)
+        found = iter(self._finished([tasks[row] for row in good], block.attempts[good], approximation))
         for row in range(block.end):
             if row in block.missing:
                 yield block.missing[row]
@@ -237,7 +260,11 @@ class PiecewiseEngine:
             "deadline": limits.deadline,
         }
         begun = time.thread_time()
-        if isinstance(tree, Apart):
+        found: Joined
+        if isinstance(tree, Apart) and limits.approximate:
+            found, report = settle(self._whole, tree, tasks, max_attempts=limits.attempts)
+            block.reports.append(report)
+        elif isinstance(tree, Apart):
             found = pair(self._whole, tree, tasks, **options)
         else:
             found = join(self._whole, tree, tasks, **options)
@@ -282,7 +309,12 @@ class PiecewiseEngine:
         places = [self._components.places[number] for number in self._whole_ones]
         block.attempts[:, places] = np.where(passes.any(axis=2), np.where(fails, _FAILED, first + 1), 0).T
 
-    def _finished(self, tasks: Sequence[tuple[int, int]], attempts: NDArray[np.int64]) -> list[Accepted]:
+    def _finished(
+        self,
+        tasks: Sequence[tuple[int, int]],
+        attempts: NDArray[np.int64],
+        approximation: Approximation | None = None,
+    ) -> list[Accepted]:
         """Scenes of known attempts ``(n, leaves)``."""
         if not tasks:
             return []
@@ -294,7 +326,8 @@ class PiecewiseEngine:
             one = slice(lane, lane + 1)
             return self._whole.batch(self._source(seeds[one], numbers[one], attempts[one]), grouped=False)
 
-        found = FinishedLanes(seeds, numbers, attempts.max(axis=1).tolist(), batch, alone, attempts)
+        most = attempts.max(axis=1).tolist()
+        found = FinishedLanes(seeds, numbers, most, batch, alone, attempts, approximation)
         return [(found, lane) for lane in range(len(tasks))]
 
     def _source(self, seeds: Sequence[int], numbers: Sequence[int], attempts: NDArray[np.int64]) -> Source:

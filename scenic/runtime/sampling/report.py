@@ -118,7 +118,8 @@ class Approximation:
         effective: about how many independent scenes say as much as these.
         survival: the share of lanes that lived at each block, ``1`` where none was lost.
         sweeps: how often all blocks were moved at the end.
-        correlation: between what the blocks were before these sweeps and after, without what chance alone gives.
+        correlation: between what the blocks were before these sweeps and after, without what chance alone gives; of a crowd the share
+            of its groups that have not moved.
 
     """
 
@@ -131,7 +132,7 @@ class Approximation:
 
     @property
     def is_mixed(self) -> bool:
-        """True if the sweeps went on until copies had parted."""
+        """True if hardly anything is left in scenes of how they were begun."""
         return self.correlation < CORRELATED
 
     def __str__(self) -> str:
@@ -142,6 +143,20 @@ class Approximation:
         if self.is_mixed:
             return told
         return (
-            f"{told}; warning: copies have not parted (correlation {self.correlation:.2f}), so that the law may be "
-            f"far from the program's; compare several seeds, or make more scenes together"
+            f"{told}; warning: scenes still depend on how they were begun (correlation {self.correlation:.2f}), so that "
+            f"the law may be far from the program's; compare several seeds, or make more scenes together"
         )
+
+
+def joined(reports: Sequence[Approximation]) -> Approximation | None:
+    """The report of scenes that consist of independent parts, from the reports of these; ``None`` without a part."""
+    if len(reports) < 2:
+        return reports[0] if reports else None
+    return Approximation(
+        reports[0].lanes,
+        sum(report.log_probability for report in reports),
+        min(report.effective for report in reports),
+        tuple(share for report in reports for share in report.survival),
+        max(report.sweeps for report in reports),
+        max(report.correlation for report in reports),
+    )

@@ -152,6 +152,11 @@ class Sampler:
         """Scenes of a seed that are only approximately of the program's law; see `Scenario.stream`."""
         if self.impossible:
             return self._not_found((seed, k) for k in range(first, first + count))
+        self._divide()
+        limit = self._most_attempts(max_attempts)
+        if isinstance(self._finder, PiecewiseEngine) and self._finder.can_approximate():
+            wanted = [(seed, k) for k in range(first, first + count)]
+            return self._finder.approximate(wanted, max_attempts=limit, together=lanes)
         from scenic.runtime.sampling.approximate import approximated  # few runs want it
 
         return approximated(
@@ -160,7 +165,7 @@ class Sampler:
             first,
             count,
             lanes=lanes,
-            max_attempts=self._most_attempts(max_attempts),
+            max_attempts=limit,
             checks=[check for engine in self.engines for check in engine.plan.checks],
             fixing=self._fixed,
         )

@@ -136,4 +136,4 @@ def test_chance_is_not_taken_for_dependence_and_dependence_is_seen() -> None:
     assert measured([], 16) == 0
     good = Approximation(16, -3.0, 15.0, (1.0,), 4, 0.05)
     assert "warning" not in str(good)
-    assert "copies have not parted" in str(replace(good, correlation=0.4))
+    assert "still depend on how they were begun" in str(replace(good, correlation=0.4))
