@@ -1,10 +1,26 @@
 """The sequential test of a bound of a probability (Wald, "Sequential tests of statistical hypotheses", 1945)."""
 
 import math
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
 
 from scenic.dataclass import dataclass
 
 __all__ = ["BoundTest"]
+
+_SMALL: Final = 0.01
+"""Bound below which the thresholds are those of this bound, with the same ratio of probabilities."""
+
+_RARE_MARGIN: Final = 0.001
+"""Distance by which such a threshold is moved to the safe side; the thresholds differ by less than 0.0002."""
+
+_STEPS: Final = 100_000
+"""Runs beyond which a path is not followed, and mean number of runs from which the overshoot is neglected, times 20."""
+
+_REST: Final = 1e-7
+"""Chance of the paths that are not followed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,8 +34,10 @@ class BoundTest:
         confidence: between 0 and 1.
         power: between 0 and 1.
 
-    Between ``good`` and ``bound`` either answer may come. The thresholds are ``1 / (1 - confidence)`` and ``1 - power``: both
-    errors are as promised exactly, and not only nearly, as with Wald's own.
+    Between ``good`` and ``bound`` either answer may come. With the thresholds ``1 / (1 - confidence)`` and ``1 - power`` both errors
+    are as promised exactly, and not only nearly, as with Wald's own. A violation takes the evidence far beyond the lower one, so that the
+    test errs less than it may, and takes longer. So the lower threshold is moved towards 0 by this overshoot (Siegmund, "Sequential
+    analysis", 1985), as far as the exact chances of both errors allow.
 
     """
 
@@ -38,7 +56,8 @@ class BoundTest:
         evidence = self.evidence(violations, runs)
         if evidence >= -math.log1p(-self.confidence):
             return True
-        return False if evidence <= math.log1p(-self.power) else None
+        lower = _lower_threshold(self.bound, self.good, self.confidence, self.power)
+        return False if evidence <= lower else None
 
     def expected_runs(self, probability: float) -> float:
         """Wald's approximation of the mean number of runs, which neglects by how much the evidence passes a threshold."""
@@ -73,3 +92,47 @@ class BoundTest:
     def _increments(self) -> tuple[float, float]:
         """The evidence that a run adds which fails, and one that holds."""
         return math.log(self.good / self.bound), math.log1p(-self.good) - math.log1p(-self.bound)
+
+
+@lru_cache(maxsize=64)
+def _lower_threshold(bound: float, good: float, confidence: float, power: float) -> float:
+    """The evidence at which the answer is "more": the highest one tried at which both errors are as promised."""
+    upper, wanted = -math.log1p(-confidence), 1 - power
+    best = lower = math.log(wanted)
+    scale = max(1.0, _SMALL / bound)
+    test = BoundTest(scale * bound, scale * good, confidence, power)
+    if not lower < 0 < upper or 20 * test.expected_runs(test.good) > _STEPS:
+        return best
+    for _ in range(4):
+        chance = _chance_of_more(test, test.good, lower, upper)
+        if chance <= wanted and 1 - _chance_of_more(test, test.bound, lower, upper) <= 1 - confidence:
+            best = max(best, lower)
+        # The chance is nearly proportional to the likelihood ratio of the threshold.
+        lower = min(lower + math.log(wanted / chance), lower / 2)
+    return best - (_RARE_MARGIN if scale > 1 and best > math.log(wanted) else 0)
+
+
+def _chance_of_more(test: BoundTest, probability: float, lower: float, upper: float) -> float:
+    """The chance of the answer "more" with these thresholds, exactly but for `_REST`, over the numbers of violations after each run."""
+    failing, holding = test.evidence(1, 1), test.evidence(0, 1)
+    span = holding - failing
+    chances, first, chance, left = np.ones(1), 0, 0.0, 1.0
+    for runs in range(1, _STEPS + 1):
+        moved = np.empty(len(chances) + 1)
+        moved[0], moved[1:] = 0.0, chances
+        moved *= probability
+        moved[:-1] += (1 - probability) * chances
+        # With `first` violations or more, up to `last`, neither threshold is reached.
+        last = math.ceil((runs * holding - lower) / span) - 1 - first
+        if last < len(moved) - 1:
+            over = float(moved[max(0, last + 1) :].sum())
+            chance, left = chance + over, left - over
+            moved = moved[: max(0, last + 1)]
+        least = math.floor((runs * holding - upper) / span) + 1 - first
+        if least > 0:
+            left -= float(moved[:least].sum())
+            moved, first = moved[least:], first + least
+        chances = moved
+        if left < _REST or not len(chances):
+            break
+    return chance
