@@ -8,7 +8,7 @@ number of the cell, so that nothing else of the graph has to know.
 import hashlib
 import math
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,9 @@ from scenic.graph.draws import Floats, Words
 __all__ = ["BoundedDistinct", "Distinct", "Finite", "Law", "Listed", "Sequential", "Step"]
 
 Cells = NDArray[np.intp]
+
+_MOST_ENTRIES: Final = 1 << 19
+"""Combinations of a group that are compared at a time, in all lanes."""
 
 
 class Law(Protocol):
@@ -104,43 +107,50 @@ class Sequential:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Distinct:
-    """Variables of which no two have values of one *label*: seats, slots, numbers that differ.
+    """Groups of variables whose values take *labels* (seats, slots, numbers that differ), none of which is taken twice.
 
     Attributes:
-        labels: of each variable the labels of its values, each below ``width``.
-        weights: of each variable the weights of its values.
-        completions: for each set of used labels, as bits, the weight of all choices of the variables that are left: as many
-            have been chosen as labels are used.
+        rows: of each group the combinations of its variables' values that are possible, ``(m, members)``.
+        labels: of each group the labels that its combinations take, as bits ``(m,)``: the same number of them each.
+        weights: of each group the weights of its combinations ``(m,)``.
+        completions: for each set of used labels, as bits, the weight of all choices of the groups that are left: the set tells which.
+        outputs: the places of the variables among the members of all groups, one after the other.
 
     """
 
-    labels: tuple[Cells, ...]
+    rows: tuple[Cells, ...]
+    labels: tuple[NDArray[np.int64], ...]
     weights: tuple[Floats, ...]
     completions: Floats
+    outputs: tuple[int, ...]
 
     @property
     def numbers(self) -> int:
-        return len(self.labels)
+        return len(self.rows)
 
     def choose(self, draws: Floats) -> Cells:
+        largest = max(len(rows) for rows in self.rows)
+        step = max(1, _MOST_ENTRIES // largest)
+        count = max(1, draws.shape[1])
+        parts = [self._chosen(draws[:, start : start + step]) for start in range(0, count, step)]
+        return np.concatenate(parts, axis=1)
+
+    def _chosen(self, draws: Floats) -> Cells:
         used_labels = np.zeros(draws.shape[1], dtype=np.int64)
-        result = np.empty((len(self.labels), draws.shape[1]), dtype=np.intp)
-        for place, (labels, weights, numbers) in enumerate(
-            zip(self.labels, self.weights, draws, strict=True)
-        ):
-            bits = np.int64(1) << labels.astype(np.int64)
+        members = []
+        for rows, bits, weights, numbers in zip(self.rows, self.labels, self.weights, draws, strict=True):
             free = (used_labels[:, np.newaxis] & bits) == 0
             after = self.completions[used_labels[:, np.newaxis] | bits]
             cumulative = np.cumsum(np.where(free, weights * after, 0.0), axis=1)
             limit = numbers * cumulative[:, -1]
-            # The first value whose sum exceeds the limit: never one of weight zero.
-            label = np.minimum((cumulative <= limit[:, np.newaxis]).sum(axis=1), len(labels) - 1)
-            result[place] = label
-            used_labels |= bits[label]
-        return result
+            # The first combination whose sum exceeds the limit: never one of weight zero.
+            place = np.minimum((cumulative <= limit[:, np.newaxis]).sum(axis=1), len(bits) - 1)
+            members.append(rows[place].T)
+            used_labels |= bits[place]
+        return np.concatenate(members)[list(self.outputs)]
 
     def arrays(self) -> Sequence[NDArray[np.generic]]:
-        return [*self.labels, *self.weights]
+        return [*self.rows, *self.labels, *self.weights]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,8 +1,7 @@
 """Variables of which no two may have the same value: seats, slots, numbers that differ.
 
-Their law is exact by dynamic programming over the set of values that are used (M. Held and R. Karp, "A dynamic programming
-approach to sequencing problems", 1962, count the same states), whatever the weights, and however many places are forbidden.
-For more values than that can count, draws follow a bound of the weights, and some of them are rejected.
+Values get *labels*, so that two variables exclude each other where their labels are equal. For more labels than sets can be counted
+of (`scenic.analysis.finite.occupying`), draws follow a bound of the weights, and some of them are rejected.
 """
 
 import math
@@ -15,12 +14,9 @@ from numpy.typing import NDArray
 from scenic.analysis.finite.tables import Table
 from scenic.dataclass import dataclass
 from scenic.graph.bounds import Floats
-from scenic.graph.finite import BoundedDistinct, Distinct
+from scenic.graph.finite import BoundedDistinct
 
-__all__ = ["Differing", "differing"]
-
-MOST_LABELS: Final = 20
-"""Values in all, at most, of which sets are counted."""
+__all__ = ["Differing", "bounded", "labelled"]
 
 MOST_BOUNDED_LABELS: Final = 64
 """Values in all, at most."""
@@ -31,24 +27,25 @@ LEAST: Final = 3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Differing:
-    """Variables that differ.
+    """Variables that differ, drawn under a bound.
 
     Attributes:
         variables: their numbers.
         law: chooses their values.
         weight: the share of all combinations that the law takes, including those that it rejects.
-        scopes: the scopes of the tables that its choices meet, if they do always.
 
     """
 
     variables: tuple[int, ...]
-    law: Distinct | BoundedDistinct
+    law: BoundedDistinct
     weight: float
-    scopes: frozenset[frozenset[int]]
 
 
-def differing(tables: Sequence[Table], weights: Mapping[int, Floats]) -> Differing | None:
-    """The largest set of variables found of which no two may have values of one label; ``None`` where there is none."""
+def labelled(tables: Sequence[Table], sizes: Mapping[int, int]) -> dict[int, NDArray[np.intp]] | None:
+    """The labels of the values of variables, from 0 on, any two of which exclude each other where labels are equal.
+
+    Returns the largest such set of variables that is met, ``None`` where there is none.
+    """
     pairs: dict[frozenset[int], Table] = {
         frozenset(table.scope): table for table in tables if len(table.scope) == 2
     }
@@ -57,16 +54,18 @@ def differing(tables: Sequence[Table], weights: Mapping[int, Floats]) -> Differi
         one, other = pair
         neighbours.setdefault(one, set()).add(other)
         neighbours.setdefault(other, set()).add(one)
-    tried: set[int] = set()
-    for start in sorted(neighbours, key=lambda variable: (-len(neighbours[variable]), variable)):
-        if start in tried:
-            continue
-        found = _labelled(start, neighbours, pairs, weights)
-        if found is not None:
-            return found
-        tried.add(start)
-        if len(tried) == LEAST:
-            break
+    starts = sorted(neighbours, key=lambda variable: (-len(neighbours[variable]), variable))
+    for start in starts[:LEAST]:
+        labels = _labelled(start, neighbours, pairs, sizes)
+        if len(labels) >= LEAST:
+            number = {
+                label: place
+                for place, label in enumerate(sorted({i for row in labels.values() for i in row}))
+            }
+            return {
+                member: np.array([number[label] for label in labels[member]], dtype=np.intp)
+                for member in sorted(labels)
+            }
     return None
 
 
@@ -74,17 +73,17 @@ def _labelled(
     start: int,
     neighbours: Mapping[int, set[int]],
     pairs: Mapping[frozenset[int], Table],
-    weights: Mapping[int, Floats],
-) -> Differing | None:
+    sizes: Mapping[int, int],
+) -> dict[int, list[int]]:
     """A set of variables around one, each pair of which differs, with labels of their values."""
-    labels: dict[int, list[int]] = {start: list(range(len(weights[start])))}
-    width = len(weights[start])
+    labels: dict[int, list[int]] = {start: list(range(sizes[start]))}
+    width = sizes[start]
     for variable in sorted(neighbours[start]):
         if not all(variable in neighbours[member] for member in labels):
             continue
         mine: list[int] = []
         used = width
-        for value in range(len(weights[variable])):
+        for value in range(sizes[variable]):
             clashes = {
                 member: {
                     theirs[place]
@@ -109,20 +108,10 @@ def _labelled(
             ):
                 break
             mine.append(label)
-        if len(mine) == len(weights[variable]):
+        if len(mine) == sizes[variable]:
             labels[variable] = mine
             width = used
-    if len(labels) < LEAST:
-        return None
-    return _solved(labels, weights)
-
-
-def _set_bits(width: int) -> np.ndarray[tuple[int], np.dtype[np.int8]]:
-    """The number of bits that are set in each number of ``width`` bits."""
-    counts = np.zeros(1, dtype=np.int8)
-    for _ in range(width):
-        counts = np.concatenate([counts, counts + np.int8(1)])
-    return counts
+    return labels
 
 
 def _row(table: Table, variable: int, value: int) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
@@ -130,48 +119,22 @@ def _row(table: Table, variable: int, value: int) -> np.ndarray[tuple[int], np.d
     return np.asarray(entries[value])
 
 
-def _solved(labels: Mapping[int, list[int]], weights: Mapping[int, Floats]) -> Differing | None:
-    every = sorted({label for mine in labels.values() for label in mine})
-    width = len(every)
+def bounded(labels: Mapping[int, NDArray[np.intp]], weights: Mapping[int, Floats]) -> Differing | None:
+    """Variables that differ, drawn under a bound, so that choices may clash; ``None`` where they have too many labels."""
+    width = 1 + max(int(mine.max()) for mine in labels.values())
     if width > MOST_BOUNDED_LABELS:
         return None
-    number = {label: place for place, label in enumerate(every)}
-    members = sorted(labels)
-    placed = [np.array([number[label] for label in labels[member]], dtype=np.intp) for member in members]
+    members = tuple(labels)
+    placed = tuple(labels.values())
     mine = tuple(weights[member] for member in members)
-    if width > MOST_LABELS:
-        return _bounded(members, tuple(placed), mine, width)
-    counts = _set_bits(width)
-    completions = np.zeros(1 << width)
-    completions[counts == len(members)] = 1.0
-    for place in range(len(members) - 1, -1, -1):
-        sums = np.bincount(placed[place], weights=weights[members[place]], minlength=width)
-        sets = np.flatnonzero(counts == place)
-        for label in np.flatnonzero(sums > 0).tolist():
-            free = sets[(sets >> label) & 1 == 0]
-            completions[free] += sums[label] * completions[free | (1 << label)]
-    weight = float(completions[0])
-    law = Distinct(tuple(placed), mine, completions)
-    scopes = frozenset(
-        frozenset((one, other)) for place, one in enumerate(members) for other in members[:place]
-    )
-    return Differing(tuple(members), law, weight, scopes)
-
-
-def _bounded(
-    members: Sequence[int], labels: tuple[NDArray[np.intp], ...], weights: tuple[Floats, ...], width: int
-) -> Differing | None:
-    """The same for many labels: the choices may clash, so that no table is met always."""
     if width < len(members):
-        return Differing(
-            tuple(members), BoundedDistinct(labels, weights, width, np.zeros(0, np.intp)), 0.0, frozenset()
-        )
-    clash = np.array([values.argmax() for values in weights], dtype=np.intp)
-    shared = np.intersect1d(labels[0], labels[1])
+        return Differing(members, BoundedDistinct(placed, mine, width, np.zeros(0, np.intp)), 0.0)
+    clash = np.array([values.argmax() for values in mine], dtype=np.intp)
+    shared = np.intersect1d(placed[0], placed[1])
     if not len(shared):
         return None
     for place in (0, 1):
-        clash[place] = np.flatnonzero(labels[place] == shared[0])[0]
-    law = BoundedDistinct(labels, weights, width, clash)
-    largest = [np.bincount(mine, weights=each).max() for mine, each in zip(labels, weights, strict=True)]
-    return Differing(tuple(members), law, math.exp(law.bound + float(np.log(largest).sum())), frozenset())
+        clash[place] = np.flatnonzero(placed[place] == shared[0])[0]
+    law = BoundedDistinct(placed, mine, width, clash)
+    largest = [np.bincount(here, weights=each).max() for here, each in zip(placed, mine, strict=True)]
+    return Differing(members, law, math.exp(law.bound + float(np.log(largest).sum())))

@@ -9,7 +9,7 @@ from scenic.analysis.finite.tables import Mask, Table
 from scenic.dataclass import dataclass
 from scenic.graph.bounds import Floats
 
-__all__ = ["Constraint", "Problem", "aligned", "components", "consistent", "merged"]
+__all__ = ["Constraint", "Problem", "Reduced", "aligned", "components", "consistent", "merged"]
 
 ROUNDS: Final = 64
 """Passes over the tables that strike out values, at most."""
@@ -121,3 +121,31 @@ def consistent(tables: Sequence[Table], domains: dict[int, Mask]) -> bool:
                     return False
                 waiting.update(dict.fromkeys(reading[variable]))
     return True
+
+
+class Reduced:
+    """A component whose variables have only the values that are left.
+
+    Args:
+        problem: the problem.
+        constraints: those of the component.
+        domains: of each of its variables the values that are left, as a mask.
+
+    """
+
+    def __init__(self, problem: Problem, constraints: Sequence[Constraint], domains: dict[int, Mask]) -> None:
+        self.values = {variable: np.flatnonzero(mask) for variable, mask in domains.items()}
+        self.sizes = {variable: len(values) for variable, values in self.values.items()}
+        self.weights = {
+            variable: problem.weights[variable][values] for variable, values in self.values.items()
+        }
+        self.draws = sorted(variable for variable in domains if variable < problem.draws)
+        self.constraints = constraints
+
+    def tables(self, constraints: Sequence[Constraint]) -> list[Table]:
+        """The tables of some constraints over the values that are left."""
+        found = []
+        for table in dict.fromkeys(table for constraint in constraints for table in constraint.tables):
+            places = np.ix_(*(self.values[variable] for variable in table.scope))
+            found.append(Table(table.scope, table.allowed[places]))
+        return merged(found)

@@ -11,13 +11,14 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.analysis.finite.differing import Differing, differing
+from scenic.analysis.finite.differing import bounded
 from scenic.analysis.finite.elimination import eliminate, ordered
 from scenic.analysis.finite.listing import solutions
-from scenic.analysis.finite.network import Constraint, Problem, components, consistent, merged
-from scenic.analysis.finite.tables import Mask, Table
+from scenic.analysis.finite.network import Constraint, Problem, Reduced, components, consistent, merged
+from scenic.analysis.finite.occupying import Exclusive, exclusives, occupied
+from scenic.analysis.finite.tables import Mask
 from scenic.dataclass import dataclass
-from scenic.graph.finite import BoundedDistinct, Law, Listed, Sequential
+from scenic.graph.finite import Law, Listed, Sequential
 
 __all__ = ["Component", "Drawn", "solve"]
 
@@ -80,27 +81,6 @@ def solve(problem: Problem) -> list[Component]:
     return [_solved(problem, group) for group in components(problem.constraints)]
 
 
-class _Reduced:
-    """A component whose variables have the values that are left only."""
-
-    def __init__(self, problem: Problem, constraints: Sequence[Constraint], domains: dict[int, Mask]) -> None:
-        self.values = {variable: np.flatnonzero(mask) for variable, mask in domains.items()}
-        self.sizes = {variable: len(values) for variable, values in self.values.items()}
-        self.weights = {
-            variable: problem.weights[variable][values] for variable, values in self.values.items()
-        }
-        self.draws = sorted(variable for variable in domains if variable < problem.draws)
-        self.constraints = constraints
-
-    def tables(self, constraints: Sequence[Constraint]) -> list[Table]:
-        """The tables of some constraints over the values that are left."""
-        found = []
-        for table in dict.fromkeys(table for constraint in constraints for table in constraint.tables):
-            places = np.ix_(*(self.values[variable] for variable in table.scope))
-            found.append(Table(table.scope, table.allowed[places]))
-        return merged(found)
-
-
 def _solved(problem: Problem, constraints: Sequence[Constraint]) -> Component:
     scope = sorted({variable for constraint in constraints for variable in constraint.scope})
     domains: dict[int, Mask] = {variable: problem.weights[variable] > 0 for variable in scope}
@@ -109,7 +89,7 @@ def _solved(problem: Problem, constraints: Sequence[Constraint]) -> Component:
     tables = merged(table for constraint in constraints for table in constraint.tables)
     if not consistent(tables, domains):
         return Component(draws, domains, every, (), every, 0.0)
-    reduced = _Reduced(problem, every, domains)
+    reduced = Reduced(problem, every, domains)
     struck = float(np.prod([reduced.weights[variable].sum() for variable in draws]))
     best: tuple[tuple[Drawn, ...], tuple[Constraint, ...]] | None = None
     eliminated = _eliminated(reduced, every)
@@ -131,7 +111,7 @@ def _solved(problem: Problem, constraints: Sequence[Constraint]) -> Component:
     return Component(draws, domains, every, kept, best[1] if kept else (), share, count)
 
 
-def _eliminated(reduced: _Reduced, constraints: Sequence[Constraint]) -> Drawn | None:
+def _eliminated(reduced: Reduced, constraints: Sequence[Constraint]) -> Drawn | None:
     """The way by elimination, if tables remain small."""
     tables = reduced.tables(constraints)
     scopes = [frozenset(table.scope) for table in tables]
@@ -154,7 +134,7 @@ def _eliminated(reduced: _Reduced, constraints: Sequence[Constraint]) -> Drawn |
     )
 
 
-def _listed(reduced: _Reduced, constraints: Sequence[Constraint]) -> tuple[Drawn, ...] | None:
+def _listed(reduced: Reduced, constraints: Sequence[Constraint]) -> tuple[Drawn, ...] | None:
     """The way by a list of all solutions, if these are few."""
     tables = reduced.tables(constraints)
     coupled = frozenset[int]().union(*(table.scope for table in tables))
@@ -179,7 +159,7 @@ def _listed(reduced: _Reduced, constraints: Sequence[Constraint]) -> tuple[Drawn
     return drawn, *(_alone(reduced, variable) for variable in reduced.draws if variable not in coupled)
 
 
-def _alone(reduced: _Reduced, variable: int) -> Drawn:
+def _alone(reduced: Reduced, variable: int) -> Drawn:
     """A variable of which values were struck out, by itself."""
     weights = reduced.weights[variable]
     step = eliminate([], {variable: weights}, [variable])
@@ -193,40 +173,35 @@ def _alone(reduced: _Reduced, variable: int) -> Drawn:
     )
 
 
-def _strongest(reduced: _Reduced) -> tuple[tuple[Drawn, ...], tuple[Constraint, ...]]:
+def _strongest(reduced: Reduced) -> tuple[tuple[Drawn, ...], tuple[Constraint, ...]]:
     """Ways that meet the strongest constraints: by elimination alone, or after values that differ."""
     ways = [_relaxed(reduced, reduced.constraints, frozenset())]
-    tables = reduced.tables(reduced.constraints)
-    found = differing([table for table in tables if set(table.scope) <= set(reduced.draws)], reduced.weights)
-    if found is not None:
-        differ = _differ(reduced, found)
-        met = [
-            constraint
-            for constraint in reduced.constraints
-            if all(
-                frozenset(table.scope) in found.scopes or len(table.scope) == 1 for table in constraint.tables
-            )
-            and constraint.scope <= set(found.variables)
-        ]
-        others, more = _relaxed(reduced, reduced.constraints, frozenset(found.variables))
-        ways.append(((differ, *others), (*met, *more)))
+    for exclusive in exclusives(reduced):
+        drawn, met = _differing(reduced, exclusive)
+        if drawn is not None:
+            others, more = _relaxed(reduced, reduced.constraints, frozenset(drawn.variables))
+            ways.append(((drawn, *others), (*met, *more)))
     return min(ways, key=lambda way: float(np.prod([drawn.share for drawn in way[0]])))
 
 
-def _differ(reduced: _Reduced, found: Differing) -> Drawn:
-    bounded = isinstance(found.law, BoundedDistinct)
-    return Drawn(
-        found.variables,
-        tuple(reduced.values[variable] for variable in found.variables),
-        found.law,
-        (None,) * found.law.numbers if bounded else found.variables,
-        found.weight,
-        "each value at most once, under a bound" if bounded else "each value at most once",
-    )
+def _differing(reduced: Reduced, exclusive: Exclusive) -> tuple[Drawn | None, tuple[Constraint, ...]]:
+    """The way by values of which each occurs at most once, and the constraints that it meets always."""
+    taken = occupied(reduced, exclusive)
+    if taken is not None:
+        values = tuple(reduced.values[variable] for variable in taken.variables)
+        way = "each value at most once"
+        return Drawn(taken.variables, values, taken.law, taken.numbers, taken.weight, way), taken.met
+    differ = bounded(exclusive.labels, reduced.weights) if exclusive.are_single else None
+    if differ is None:
+        return None, ()
+    values = tuple(reduced.values[variable] for variable in differ.variables)
+    numbers = (None,) * differ.law.numbers
+    way = "each value at most once, under a bound"
+    return Drawn(differ.variables, values, differ.law, numbers, differ.weight, way), ()
 
 
 def _relaxed(
-    reduced: _Reduced, constraints: Sequence[Constraint], without: frozenset[int]
+    reduced: Reduced, constraints: Sequence[Constraint], without: frozenset[int]
 ) -> tuple[tuple[Drawn, ...], tuple[Constraint, ...]]:
     """The way by elimination that takes as many constraints as possible, the strongest first, none about some variables."""
     free = [constraint for constraint in constraints if not constraint.scope & without]
