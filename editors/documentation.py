@@ -70,12 +70,12 @@ def page() -> str:
             ("specifier", "gives", "meaning"),
             (
                 (
-                    _written(declared.forms, declared.operands),
-                    ", ".join(f"`{each.property}` ({each.priority})" for each in declared.specifies)
+                    _written(declaration.forms, declaration.operands),
+                    ", ".join(f"`{each.property}` ({each.priority})" for each in declaration.specifies)
                     or "the property",
-                    declared.documentation,
+                    declaration.documentation,
                 )
-                for declared in SPECIFIERS.values()
+                for declaration in SPECIFIERS.values()
             ),
         )
     )
@@ -85,8 +85,12 @@ def page() -> str:
         _table(
             ("operator", "result", "meaning"),
             (
-                (_written(declared.forms, declared.operands), declared.result, declared.documentation)
-                for declared in OPERATORS.values()
+                (
+                    _written(declaration.forms, declaration.operands),
+                    declaration.result,
+                    declaration.documentation,
+                )
+                for declaration in OPERATORS.values()
             ),
         )
     )
@@ -96,10 +100,10 @@ def page() -> str:
             ("operator", "meaning"),
             (
                 (
-                    _written(declared.forms, (Operand(name, "") for name in declared.operands)),
-                    declared.documentation,
+                    _written(declaration.forms, (Operand(name, "") for name in declaration.operands)),
+                    declaration.documentation,
                 )
-                for declared in TEMPORAL_OPERATORS.values()
+                for declaration in TEMPORAL_OPERATORS.values()
             ),
         )
     )
@@ -138,14 +142,14 @@ def _agrees(words: list[str], form: Form) -> bool:
 
 def diagrams() -> Mapping[str, str]:
     """The diagrams as SVG, by name."""
-    found = {
+    drawings = {
         _slug(STATEMENTS[node].title): _drawn(_statement(_forms_of(node)))
         for node in STATEMENTS
         if _forms_of(node)
     }
     rows = [each.row for each in RULES["specifier"].alternatives]
     return {
-        **found,
+        **drawings,
         "specifiers": _drawn(railroad.Choice(0, *(railroad.Sequence(*_row(row)) for row in rows))),
     }
 

@@ -28,29 +28,29 @@ _GROUPS = {
 
 def syntax() -> str:
     """The text of the file."""
-    known = VOCABULARY
-    operand = rf"\>\ze\s\+\%({_any(known.infix)}\>\)\@![[:alnum:]_\"'([{{]"
+    vocabulary = VOCABULARY
+    operand = rf"\>\ze\s\+\%({_any(vocabulary.infix)}\>\)\@![[:alnum:]_\"'([{{]"
     start = r"^\s*\zs"
-    statements = [row for row in known.phrases if row[0] in known.statement_starts]
-    operators = [row for row in known.phrases if row[0] not in known.statement_starts]
+    statements = [row for row in vocabulary.phrases if row[0] in vocabulary.statement_starts]
+    operators = [row for row in vocabulary.phrases if row[0] not in vocabulary.statement_starts]
     lines = [
-        f"syn keyword scenicStatement {_listed(known.statement_words)}",
-        f"syn keyword scenicOperator {_listed(known.operator_words - {'with'})}",
-        f"syn keyword scenicConstant {_listed(known.constants)}",
-        f"syn keyword scenicVariable {_listed(known.variables)}",
-        f"syn keyword scenicClass {_listed(known.classes)}",
-        f"syn match scenicFunction /\\<{_any(known.functions)}\\ze(/",
+        f"syn keyword scenicStatement {_listed(vocabulary.statement_words)}",
+        f"syn keyword scenicOperator {_listed(vocabulary.operator_words - {'with'})}",
+        f"syn keyword scenicConstant {_listed(vocabulary.constants)}",
+        f"syn keyword scenicVariable {_listed(vocabulary.variables)}",
+        f"syn keyword scenicClass {_listed(vocabulary.classes)}",
+        f"syn match scenicFunction /\\<{_any(vocabulary.functions)}\\ze(/",
         r"syn match scenicProperty /\<with\s\+\zs\h\w*\ze\s/",
         r"syn match scenicProperty /^\s\+\zs\h\w*\ze\s*\%(\[[a-z, ]\+\]\)\?\s*:\s*[^[:space:]#:=]/",
-        f"syn match scenicOperator /\\<{_any(known.before_operands)}{operand}/",
-        rf"syn match scenicOperator /\%([[:alnum:]_)\]]\s\)\@2<={_any(known.after_operands)}\>\%(\s*[=(.]\)\@!/",
+        f"syn match scenicOperator /\\<{_any(vocabulary.before_operands)}{operand}/",
+        rf"syn match scenicOperator /\%([[:alnum:]_)\]]\s\)\@2<={_any(vocabulary.after_operands)}\>\%(\s*[=(.]\)\@!/",
         rf"syn match scenicOperator /\<{_rows(operators)}\>/",
-        rf"syn match scenicStatement /{start}{_any(known.statements)}{operand}/",
+        rf"syn match scenicStatement /{start}{_any(vocabulary.statements)}{operand}/",
         rf"syn match scenicStatement /{start}{_rows(statements)}\>\%(\s*[=(.]\)\@!/",
-        rf"syn match scenicStatement /{start}{_any(known.whole_statements)}\ze\s*\%($\|[#;]\)/",
-        rf"syn match scenicStatement /{start}{_any(known.headers)}\>\ze\s.*:\s*\%(#.*\)\?$/",
-        rf"syn match scenicStatement /{start}{_any(known.blocks)}\ze\s*:/",
-        rf"syn match scenicDefinition /\<{_any(known.definitions)}\>\ze\s\+\h\w*/ nextgroup=scenicDefined skipwhite",
+        rf"syn match scenicStatement /{start}{_any(vocabulary.whole_statements)}\ze\s*\%($\|[#;]\)/",
+        rf"syn match scenicStatement /{start}{_any(vocabulary.headers)}\>\ze\s.*:\s*\%(#.*\)\?$/",
+        rf"syn match scenicStatement /{start}{_any(vocabulary.blocks)}\ze\s*:/",
+        rf"syn match scenicDefinition /\<{_any(vocabulary.definitions)}\>\ze\s\+\h\w*/ nextgroup=scenicDefined skipwhite",
         r"syn match scenicDefined /\h\w*/ contained",
     ]
     links = [f"hi def link scenic{name} {group}" for name, group in _GROUPS.items()]

@@ -48,10 +48,10 @@ def main(arguments: Sequence[str]) -> None:
         check_folder(folder)
     except (OSError, OutputError) as error:
         raise SystemExit(f"the folder '{folder}' cannot be used: {error}") from error
-    started = time.perf_counter()
+    start_time = time.perf_counter()
     rooms = sampled("furnished_room", ROOMS)
     attempts = sum(room.attempts for room in rooms)
-    seconds = time.perf_counter() - started
+    seconds = time.perf_counter() - start_time
     print(f"{ROOMS} furnished rooms sampled from {attempts} candidates in {seconds:.1f} s (seed {SEED})")
 
     def leave(name: str, content: bytes, what: str) -> None:
@@ -66,7 +66,7 @@ def main(arguments: Sequence[str]) -> None:
     for name in SMALL_PROGRAMS:
         (scene,) = sampled(name, 1)
         leave(f"{name}.png", png(scene, PICTURE), f"examples/{program(name).parent.name}/{name}.scenic")
-    print(f"done in {time.perf_counter() - started:.1f} s")
+    print(f"done in {time.perf_counter() - start_time:.1f} s")
 
 
 if __name__ == "__main__":

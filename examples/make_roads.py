@@ -201,11 +201,15 @@ def _mouth(k: int, arms: int, radius: float) -> list[str]:
     leaving = (inner * math.cos(way - _HALF), inner * math.sin(way - _HALF), way - _HALF + math.pi / 2)
     entry = curve((*mouth, way + math.pi), (x, y, heading))
     exit_line = curve(leaving, (*mouth, way))
-    ring_before, ring_after, own = _end_of(10 + last, "end"), _end_of(10 + k, "start"), _end_of(k + 1, "end")
+    ring_before, ring_after, end_of_arm = (
+        _end_of(10 + last, "end"),
+        _end_of(10 + k, "start"),
+        _end_of(k + 1, "end"),
+    )
     ways = (
         (20, onto, width(_RING), ring_before, ring_after, -1),
-        (30, entry, width(3.5, _RING, entry.length), own, ring_after, -1),
-        (40, exit_line, width(_RING, 3.5, exit_line.length), ring_before, own, 1),
+        (30, entry, width(3.5, _RING, entry.length), end_of_arm, ring_after, -1),
+        (40, exit_line, width(_RING, 3.5, exit_line.length), ring_before, end_of_arm, 1),
     )
     return [
         road(

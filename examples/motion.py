@@ -56,10 +56,10 @@ SHOTS: Final[Mapping[str, Shot]] = MappingProxyType(
 
 def exposed(simulation: Any, moments: Sequence[float]) -> Picture:
     """The objects of a simulation at several moments."""
-    drawn = picture([simulation.scene])
+    scene_picture = picture([simulation.scene])
     numbers = {id(thing): number for number, thing in enumerate(simulation.objects)}
     instances: list[Instance] = []
-    for instance in drawn.scenes[0]:
+    for instance in scene_picture.scenes[0]:
         number = numbers[id(instance.thing)]
         before: tuple[float, float, float] | None = None
         for index, moment in reversed(list(enumerate(moments))):
@@ -78,14 +78,14 @@ def exposed(simulation: Any, moments: Sequence[float]) -> Picture:
                     color=(red, green, blue, opacity),
                 )
             )
-    return dataclasses.replace(drawn, scenes=(tuple(instances),))
+    return dataclasses.replace(scene_picture, scenes=(tuple(instances),))
 
 
 def shown(name: str) -> bytes:
     """The picture of an example, as a PNG file."""
     shot = SHOTS[name]
     scenario = load(program(name))
-    done = simulate_number(
+    result = simulate_number(
         scenario,
         choose_simulator(None, scenario),
         seed=1,
@@ -94,12 +94,12 @@ def shown(name: str) -> bytes:
         maxSteps=shot.steps,
         keep_poses=True,
     )
-    if done.simulation is None:
+    if result.simulation is None:
         raise SystemExit(f"{name}: simulation {shot.k} is rejected")
-    exposures = exposed(done.simulation, shot.moments)
+    exposures = exposed(result.simulation, shot.moments)
     width, height = SIZE
-    wanted = [each for each in exposures.scenes[0] if not shot.around or each.label in shot.around]
-    camera = framing(corners(wanted), width / height, shot.outlook)
+    instances = [each for each in exposures.scenes[0] if not shot.around or each.label in shot.around]
+    camera = framing(corners(instances), width / height, shot.outlook)
     return encoded(render(exposures, 0, SIZE, camera=camera))
 
 

@@ -132,32 +132,32 @@ def judgements(example: str, run: Trajectory) -> dict[str, Judgement] | None:
     """
     if example in JUDGES:
         return JUDGES[example](run)
-    told = {item["label"] for item in run.about["requirements"]}
+    labels = {item["label"] for item in run.about["requirements"]}
     for judge in JUDGES.values():
         try:
-            judged = judge(run)
+            verdicts = judge(run)
         except (KeyError, ValueError):
             continue  # it has other objects or records
-        if judged.keys() == told:
-            return judged
+        if verdicts.keys() == labels:
+            return verdicts
     return None
 
 
 def disagreements(example: str, run: Trajectory) -> list[str]:
     """Describe the differences between the simulation's verdicts and margins and those computed from its trajectory."""
-    judged = judgements(example, run)
-    if judged is None:
+    verdicts = judgements(example, run)
+    if verdicts is None:
         return [f"a simulation of none of {', '.join(JUDGES)}"]
-    told = {item["label"]: item for item in run.about["requirements"]}
-    found = [f"{label}: not judged by both" for label in judged.keys() ^ told.keys()]
-    for label in judged.keys() & told.keys():
-        held, margin = judged[label]
-        verdict, robustness = told[label]["verdict"], told[label]["robustness"]
-        if not held or verdict not in ("TRUE", "PRESUMABLY_TRUE"):
-            found.append(f"{label}: {verdict} in the simulation, {held} in its trajectory")
+    recorded = {item["label"]: item for item in run.about["requirements"]}
+    differences = [f"{label}: not judged by both" for label in verdicts.keys() ^ recorded.keys()]
+    for label in verdicts.keys() & recorded.keys():
+        holds, margin = verdicts[label]
+        verdict, robustness = recorded[label]["verdict"], recorded[label]["robustness"]
+        if not holds or verdict not in ("TRUE", "PRESUMABLY_TRUE"):
+            differences.append(f"{label}: {verdict} in the simulation, {holds} in its trajectory")
         if margin is not None and not np.isclose(margin, robustness, rtol=1e-6, atol=1e-6):
-            found.append(f"{label}: by {robustness} in the simulation, by {margin} in its trajectory")
-    return found
+            differences.append(f"{label}: by {robustness} in the simulation, by {margin} in its trajectory")
+    return differences
 
 
 def main(folders: Sequence[str]) -> int:
@@ -169,9 +169,9 @@ def main(folders: Sequence[str]) -> int:
             print(f"{folder}: there are no simulations here", file=sys.stderr)
             return 2
         for file in files:
-            found = disagreements(folder.name, read_trajectory(file))
-            wrong += bool(found)
-            print(f"{file}: {'; '.join(found) or 'holds'}")
+            differences = disagreements(folder.name, read_trajectory(file))
+            wrong += bool(differences)
+            print(f"{file}: {'; '.join(differences) or 'holds'}")
     return 1 if wrong else 0
 
 

@@ -32,9 +32,9 @@ def main(arguments: list[str] | None = None) -> int:
     options = _options().parse_args(arguments)
     seed = options.seed if options.seed is not None else secrets.randbelow(1 << 32)
     jobs = usable_processors() if options.jobs is None else options.jobs
-    counted = options.programs is not None or options.mutants is not None
+    has_counts = options.programs is not None or options.mutants is not None
     seconds = options.minutes * 60 if options.minutes is not None else options.seconds
-    if seconds is None and not counted:
+    if seconds is None and not has_counts:
         seconds = _SECONDS
     limit = f"for {seconds:g} s" if seconds is not None else "to the given numbers"
     print(f"fuzzing {limit} with seed {seed} and {jobs} workers", flush=True)
@@ -48,16 +48,16 @@ def main(arguments: list[str] | None = None) -> int:
         options.first,
         options.only,
     )
-    report, died = run(
+    report, deaths = run(
         budget, jobs=jobs, on_failure=lambda failure: _show(failure, start, save=not options.no_save)
     )
-    for each in died:
+    for each in deaths:
         _show_death(each, start, save=not options.no_save)
-    short = _summary(report, died, time.time() - start, seed)
+    short = _summary(report, deaths, time.time() - start, seed)
     if short and options.require_coverage:
         print("the coverage falls short of what is required")
     serious = [each for each in report.failures if each.signature.property not in options.tolerate]
-    return 1 if serious or died or (short and options.require_coverage) else 0
+    return 1 if serious or deaths or (short and options.require_coverage) else 0
 
 
 def _options() -> argparse.ArgumentParser:
@@ -166,8 +166,8 @@ def _summary(report: Report, died: Sequence[WorkerDied], seconds: float, seed: i
         print(f"making and parsing alone: {texts / parsing:.0f}/s in each worker")
         print(f"programs that pass all checks and are lowered: {100 * report.sound / report.programs:.0f} %")
         print("milliseconds for each text:")
-        for name, spent in sorted(report.seconds.items(), key=lambda item: -item[1]):
-            print(f"    {1000 * spent / texts:7.3f}  {name}")
+        for name, seconds_of_step in sorted(report.seconds.items(), key=lambda item: -item[1]):
+            print(f"    {1000 * seconds_of_step / texts:7.3f}  {name}")
     shares = report.coverage.shares()
     for share in shares:
         print(share)

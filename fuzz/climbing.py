@@ -108,18 +108,18 @@ class Climber:
         return self._memo[key]
 
     def _operand(self, at: int, slot: Slot) -> Parsed | None:
-        found = self._start(at, slot)
-        if found is None:
+        operand = self._start(at, slot)
+        if operand is None:
             return None
         ladders = [slot.ladder] if slot.ladder is Ladder.ORDINARY else [Ladder.ORDINARY, Ladder.TEMPORAL]
         while True:
             for ladder in ladders:
-                longer = self._longer(found, slot, ladder)
+                longer = self._longer(operand, slot, ladder)
                 if longer is not None:
-                    found = longer
+                    operand = longer
                     break
             else:
-                return found
+                return operand
 
     def _start(self, at: int, slot: Slot) -> Parsed | None:
         """Parse the beginning of an operand: an operator before its operand, an expression in brackets, or a name."""

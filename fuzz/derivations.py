@@ -209,34 +209,36 @@ class Derivations:
         )
 
     def _flattened(self, rule: str, seen: frozenset[str]) -> list[tuple[_Path, float]]:
-        found: list[tuple[_Path, float]] = []
+        paths: list[tuple[_Path, float]] = []
         for source in self._sources[rule]:
             target = _only_reference(source.items)
-            own = self._weights.get(source.rule, 1.0)
+            weight_of_source = self._weights.get(source.rule, 1.0)
             for alternative in source.counts_as:
-                own *= self._weights.get(alternative, 1.0)
+                weight_of_source *= self._weights.get(alternative, 1.0)
             if target is None:
-                found.append(((source,), own))
+                paths.append(((source,), weight_of_source))
             elif target not in seen and target != rule:
                 inner = self._flattened(target, seen | {rule})
                 # Otherwise the many operators would crowd out the few other statements.
-                factor = own * len(inner) ** 0.5 / sum(weight for _, weight in inner)
-                found += (((source, *path), weight * factor) for path, weight in inner)
-        return found
+                factor = weight_of_source * len(inner) ** 0.5 / sum(weight for _, weight in inner)
+                paths += (((source, *path), weight * factor) for path, weight in inner)
+        return paths
 
     def distances(self, aim: AlternativeId) -> Mapping[str, int]:
         """Return the least number of expansions from each rule to the alternative ``aim``; 0 if one is enough."""
         distances: dict[str, int] = {}
-        found = {
+        frontier = {
             rule
             for rule, sources in self._sources.items()
             if any(aim in source.counts_as for source in sources)
         }
         distance = 0
-        while found:
-            distances.update(dict.fromkeys(found, distance))
+        while frontier:
+            distances.update(dict.fromkeys(frontier, distance))
             distance += 1
-            found = {user for rule in found for user in self._users.get(rule, ()) if user not in distances}
+            frontier = {
+                user for rule in frontier for user in self._users.get(rule, ()) if user not in distances
+            }
         return distances
 
     @cached_property
@@ -266,9 +268,9 @@ class Derivations:
 
     def _all_heights(self) -> dict[str, int]:
         heights = dict.fromkeys(self._sources, _INFINITE)
-        changed = True
-        while changed:
-            changed = False
+        is_changing = True
+        while is_changing:
+            is_changing = False
             for rule, sources in self._sources.items():
                 height = min(
                     heights[target]
@@ -278,24 +280,24 @@ class Derivations:
                 )
                 if height < heights[rule]:
                     heights[rule] = height
-                    changed = True
+                    is_changing = True
         if endless := [rule for rule, height in heights.items() if height >= _INFINITE]:
             raise GrammarError(f"no sentence can be made of {endless}")
         return heights
 
     def _height_of(self, items: Iterable[Item], heights: Mapping[str, int]) -> int:
-        needed = 0
+        height = 0
         for item in items:
             match item:
                 case Reference() if not _is_terminal(item.rule):
-                    needed = max(needed, heights[item.rule])
+                    height = max(height, heights[item.rule])
                 case Repeat(item=inner, at_least_one=True):
-                    needed = max(needed, self._height_of((inner,), heights) - 1)
+                    height = max(height, self._height_of((inner,), heights) - 1)
                 case Gather():
-                    needed = max(needed, self._height_of((item.item,), heights) - 1)
+                    height = max(height, self._height_of((item.item,), heights) - 1)
                 case _:
                     pass
-        return needed + 1
+        return height + 1
 
 
 def load() -> Derivations:
@@ -369,7 +371,7 @@ def _keys(alternative: Alternative) -> list[str]:
 def _words(alternative: Alternative) -> set[str]:
     """Return the names by which an alternative can be called: functions of its action, and rules and words among its items."""
     words = set(re.findall(r"(\w+)\s*\(", alternative.action or ""))
-    for item in _within(named.item for named in alternative.items):
+    for item in _within(entry.item for entry in alternative.items):
         match item:
             case Reference():
                 words.add(item.rule)

@@ -109,7 +109,7 @@ def try_fault(fault: Fault, *, project: Path = ROOT, seconds: float, seed: int) 
         command = [sys.executable, "-m", "fuzz", "--seconds", f"{seconds:g}", "--seed", str(seed)]
         start = time.monotonic()
         try:
-            done = subprocess.run(
+            process = subprocess.run(
                 [*command, "--jobs", "1", "--first"],
                 cwd=root,
                 env={**os.environ, "PYTHONPATH": str(root)},
@@ -121,15 +121,15 @@ def try_fault(fault: Fault, *, project: Path = ROOT, seconds: float, seed: int) 
             )
         except subprocess.TimeoutExpired:
             return Result(fault, time.monotonic() - start, error="the run did not end")
-        taken = time.monotonic() - start
-        found = list(corpus.entries(root / "fuzz" / "corpus"))
-        if found:
-            said = _FOUND.search(done.stdout)
-            seconds = float(said[1]) if said else taken
-            return Result(fault, seconds, found[0].path.stem.split("-")[1], found[0].text)
-        if done.returncode == 0:
-            return Result(fault, taken)
-        return Result(fault, taken, error=(done.stderr or done.stdout).strip()[-2000:])
+        elapsed = time.monotonic() - start
+        entries = list(corpus.entries(root / "fuzz" / "corpus"))
+        if entries:
+            statement = _FOUND.search(process.stdout)
+            seconds = float(statement[1]) if statement else elapsed
+            return Result(fault, seconds, entries[0].path.stem.split("-")[1], entries[0].text)
+        if process.returncode == 0:
+            return Result(fault, elapsed)
+        return Result(fault, elapsed, error=(process.stderr or process.stdout).strip()[-2000:])
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -140,9 +140,9 @@ def main(arguments: list[str] | None = None) -> int:
         for fault in faults:
             print(f"{fault.name:26} {fault.place:10} {fault.what}")
         return 0
-    unknown = set(options.only) - {fault.name for fault in FAULTS}
-    if unknown:
-        print(f"there is no fault {', '.join(sorted(unknown))}; see --list", file=sys.stderr)
+    unknown_names = set(options.only) - {fault.name for fault in FAULTS}
+    if unknown_names:
+        print(f"there is no fault {', '.join(sorted(unknown_names))}; see --list", file=sys.stderr)
         return 2
     print(f"{len(faults)} faults, {options.seconds:g} s each, with seed {options.seed}", flush=True)
     clean = True
@@ -156,11 +156,11 @@ def main(arguments: list[str] | None = None) -> int:
         for fault in faults:
             results.append(try_fault(fault, project=project, seconds=options.seconds, seed=options.seed))
             _show(results[-1])
-    found = sum(result.found_by is not None for result in results)
-    print(f"{found} of {len(results)} found")
+    found_count = sum(result.found_by is not None for result in results)
+    print(f"{found_count} of {len(results)} found")
     if options.write_docs:
         write_table(PAGE, table(results, seconds=options.seconds, seed=options.seed))
-    return 0 if clean and found >= _REQUIRED * len(results) else 1
+    return 0 if clean and found_count >= _REQUIRED * len(results) else 1
 
 
 def _options() -> argparse.ArgumentParser:
@@ -186,9 +186,9 @@ def _show(result: Result) -> None:
 
 def table(results: Sequence[Result], *, seconds: float, seed: int) -> str:
     """The results as a table in Markdown."""
-    found = sum(result.found_by is not None for result in results)
+    found_count = sum(result.found_by is not None for result in results)
     lines = [
-        f"{found} of {len(results)} found, with {seconds:g} seconds for each, one worker, and seed {seed}.",
+        f"{found_count} of {len(results)} found, with {seconds:g} seconds for each, one worker, and seed {seed}.",
         "",
         "| fault | in | what is wrong | found by | seconds | shrunk program |",
         "|---|---|---|---|---|---|",

@@ -246,11 +246,11 @@ class _Generator:
             state.stars = int(len(option.items) > 1)
         elif plan.starred:
             stars -= 1
-        given, state.given = state.given, None
+        role_before, state.given = state.given, None
         if plan.first_specifier:
             state.claimed = set()
-        claimed = state.claimed
-        claimed |= plan.properties
+        properties_before = state.claimed
+        properties_before |= plan.properties
         if plan.has_parameters:
             state.names.open_signature()
         state.in_lines += plan.has_lines
@@ -261,8 +261,8 @@ class _Generator:
             state.aim = aim if index == way else None
             state.alone = plan.one_target and not state.wild and state.around.place is not Place.COMPOSE
             state.role = next(roles, Role.ANY) if count_names(item) else Role.ANY
-            if given is not None and state.role is not Role.ANY:
-                state.role, given = given, None
+            if role_before is not None and state.role is not Role.ANY:
+                state.role, role_before = role_before, None
             state.given = plan.given[index]
             state.generous = generous
             step = plan.steps[index]
@@ -279,7 +279,7 @@ class _Generator:
         del state.bans[bans:]
         if option.rule == "specifier":
             state.specified = True
-            state.claimed = claimed
+            state.claimed = properties_before
             if state.pieces[-1].text == "visible":
                 state.sees = len(state.pieces)
 
@@ -412,26 +412,26 @@ class _Generator:
 
     def _repeat(self, item: Item, separator: Item | None, *, at_least_one: bool) -> None:
         state = self._state
-        depth, given, alone = state.depth, state.given, state.alone
+        depth, role_before, alone = state.depth, state.given, state.alone
         generous, state.generous = state.generous, False
         # Statements go on with a probability of 3/4, all else with one of 1/2.
         more = 4 if isinstance(item, Reference) and "statement" in item.rule else 2
-        started = False
+        has_items = False
         while True:
-            if (started or not at_least_one) and state.aim is None:
+            if (has_items or not at_least_one) and state.aim is None:
                 state.depth = depth
                 # Drawn in any case: shrinking deletes parts, and what comes after them must not need more draws.
                 enough = state.draws.number(4 if generous else more) == 0
-                if enough or (started and alone) or not (generous or self._fits(item)):
+                if enough or (has_items and alone) or not (generous or self._fits(item)):
                     return
                 # Once is enough to have several.
-                generous = generous and not started
-                if started and separator is not None:
+                generous = generous and not has_items
+                if has_items and separator is not None:
                     self._emit(separator)
             state.depth = depth
-            state.given = given
+            state.given = role_before
             self._emit(item)
-            started = True
+            has_items = True
 
     # Tokens.
 

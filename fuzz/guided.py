@@ -151,8 +151,8 @@ def _fuzz(folder: Path, options: argparse.Namespace) -> None:
             print(f"    saved as {path.name}")
         sys.stdout.flush()
 
-    kept, begin = folder / "kept", folder / "begin"
-    kept.mkdir(parents=True, exist_ok=True)
+    corpus_folder, begin = folder / "kept", folder / "begin"
+    corpus_folder.mkdir(parents=True, exist_ok=True)
     begin.mkdir(exist_ok=True)
     texts = list(target.seeds())
     for number, text in enumerate(texts):
@@ -169,7 +169,7 @@ def _fuzz(folder: Path, options: argparse.Namespace) -> None:
             f"-dict={words}",
             f"-artifact_prefix={folder}/",
             "-rss_limit_mb=4096",
-            str(kept),
+            str(corpus_folder),
             str(begin),
         ],
         target.Target(report),

@@ -128,9 +128,11 @@ def roles_of(option: Option, nodes: frozenset[str], count: int) -> Sequence[Role
     if "Nonlocal" in nodes:
         return [Role.NONLOCAL] * count
     path = {each.rule for each in option.counts_as}
-    given = next((role for (rule, used), role in _OF_REFERENCES.items() if {rule, used} <= path), None)
-    if given is not None:
-        return [given] * count
+    common_role = next(
+        (role for (rule, used_rule), role in _OF_REFERENCES.items() if {rule, used_rule} <= path), None
+    )
+    if common_role is not None:
+        return [common_role] * count
     roles = _ROLES.get(option.rule, ())[-count:] if count else ()
     return [*[Role.ANY] * (count - len(roles)), *roles]
 
@@ -270,11 +272,13 @@ class Names:
         if candidates is None:
             name = self._fresh(role, share, number, fits)
         else:
-            own, provided = candidates
-            if own and (share < _OWN_SHARE or not provided):
-                name = self._pick(own, int(share / (_OWN_SHARE if provided else 1) * len(own)), fits)
+            own_names, other_names = candidates
+            if own_names and (share < _OWN_SHARE or not other_names):
+                name = self._pick(
+                    own_names, int(share / (_OWN_SHARE if other_names else 1) * len(own_names)), fits
+                )
             else:
-                name = self._pick(provided, number, fits)
+                name = self._pick(other_names, number, fits)
         self._use(role, name)
         return name
 
@@ -286,18 +290,20 @@ class Names:
 
     def _fresh(self, role: Role, share: float, number: int, fits: Callable[[str], bool]) -> str:
         names = _FRESH[role]
-        used: frozenset[str] | set[str] | dict[str, Kind] = frozenset()
+        names_in_use: frozenset[str] | set[str] | dict[str, Kind] = frozenset()
         if role is Role.PARAMETER and self._signatures:
-            used = self._signatures[-1]
+            names_in_use = self._signatures[-1]
         elif role is Role.GLOBAL or (role is Role.PROPERTY and self._scopes[-1].kind == "class"):
-            used = self._scopes[-1].touched
+            names_in_use = self._scopes[-1].touched
         if role in _ONCE:
             self._turns += 1
             if role is not Role.PARAMETER and not self._wild:
                 names = (*names[self._turns % len(names) :], *names[: self._turns % len(names)])
         elif share > 1 - _SOFT_SHARE and role is not Role.TRACKED:
             return self._pick(self._bindable, number, fits)
-        return self._pick(names, int(share * len(names)), lambda name: name not in used and fits(name))
+        return self._pick(
+            names, int(share * len(names)), lambda name: name not in names_in_use and fits(name)
+        )
 
     def _use(self, role: Role, name: str) -> None:
         scope = self._scopes[-1]
@@ -328,33 +334,33 @@ class Names:
             case Role.NONLOCAL:
                 return self._of_outer() or _FRESH[Role.BIND_VALUE], ()
             case Role.DELETED:
-                own = [name for name in self._scopes[-1].names if name not in RESERVED]
-                return own or _FRESH[Role.BIND_VALUE], ()
+                own_names = [name for name in self._scopes[-1].names if name not in RESERVED]
+                return own_names or _FRESH[Role.BIND_VALUE], ()
             case _:
                 return None
 
     def _reach(self, kind: Kind | None) -> list[str]:
         """The names that can be read, those of inner scopes first."""
-        found: dict[str, Kind] = {}
+        kind_of_name: dict[str, Kind] = {}
         last = len(self._scopes) - 1
         for index in range(last, -1, -1):
             scope = self._scopes[index]
             # The names of a class are out of reach of what is in it.
             if index == last or scope.kind != "class":
                 for name, bound_to in reversed(scope.names.items()):
-                    found.setdefault(name, bound_to)
+                    kind_of_name.setdefault(name, bound_to)
         if kind is None:
-            return list(found)
-        return [name for name, bound_to in found.items() if bound_to is kind]
+            return list(kind_of_name)
+        return [name for name, bound_to in kind_of_name.items() if bound_to is kind]
 
     def _of_outer(self) -> list[str]:
-        own = self._scopes[-1]
-        if own.kind not in _FUNCTIONS or own.kind == "lambda":
+        inner_scope = self._scopes[-1]
+        if inner_scope.kind not in _FUNCTIONS or inner_scope.kind == "lambda":
             return []
         return [
             name
             for scope in self._scopes[1:-1]
             if scope.kind in ("def", "async def")
             for name in scope.names
-            if name not in own.touched and name not in TRACKED
+            if name not in inner_scope.touched and name not in TRACKED
         ]

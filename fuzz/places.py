@@ -127,17 +127,17 @@ def reads_ego(option: Option, alternatives: Iterable[Alternative]) -> bool:
 
 def _reads_ego(alternative: Alternative) -> bool:
     action = _tight(alternative)
-    if found := re.search(r'operator="([^"]+)",operands=\[(.*)\]', action):
-        operands = OPERATORS[found[1]].operands if found[1] in OPERATORS else ()
-        given = found[2].split(",")
+    if match := re.search(r'operator="([^"]+)",operands=\[(.*)\]', action):
+        operands = OPERATORS[match[1]].operands if match[1] in OPERATORS else ()
+        operand_texts = match[2].split(",")
         return any(
             operand.default == EGO and value == "None"
-            for operand, value in zip(operands, given, strict=False)
+            for operand, value in zip(operands, operand_texts, strict=False)
         )
-    if found := re.search(r'specifier="([^"]+)"', action):
-        declared = SPECIFIERS.get(found[1])
-        return declared is not None and (
-            declared.reads_ego or any(operand.default == EGO for operand in declared.operands)
+    if match := re.search(r'specifier="([^"]+)"', action):
+        declaration = SPECIFIERS.get(match[1])
+        return declaration is not None and (
+            declaration.reads_ego or any(operand.default == EGO for operand in declaration.operands)
         )
     return False
 
@@ -224,8 +224,8 @@ def demand_of(option: Option, nodes: frozenset[str]) -> Demand | None:
     if any(alternatives.issuperset(together) for together in _NEVER):
         return lambda _: False
     demands = [_OF_PYTHON[node] for node in nodes if node in _OF_PYTHON]
-    named = nodes | {helper for rule, helper in _HELPERS.items() if rule == option.rule}
-    demands += [_demand_of_statement(node) for node in named if node in STATEMENTS]
+    node_names = nodes | {helper for rule, helper in _HELPERS.items() if rule == option.rule}
+    demands += [_demand_of_statement(node) for node in node_names if node in STATEMENTS]
     if "star_import/1" in alternatives:
         demands.append(lambda around: around.place is Place.TOP and around.function is None)
     if "mapping_item/1" in alternatives:

@@ -90,27 +90,30 @@ def plans_of(derivations: Derivations) -> dict[str, tuple[Plan, ...]]:
         for rule, options in derivations.options.items()
     }
     # What all options of a rule demand, the options that need the rule demand, too.
-    passed: set[str] = set()
+    rules_done: set[str] = set()
     while True:
         rules = {
-            rule: any_of([plan.demand for plan in found if plan.demand is not None])
-            for rule, found in plans.items()
-            if rule not in passed and all(plan.demand is not None for plan in found)
+            rule: any_of([plan.demand for plan in plans_of_rule if plan.demand is not None])
+            for rule, plans_of_rule in plans.items()
+            if rule not in rules_done and all(plan.demand is not None for plan in plans_of_rule)
         }
         if not rules:
             return plans
-        passed |= rules.keys()
-        plans = {rule: tuple(_with_demands(plan, rules) for plan in found) for rule, found in plans.items()}
+        rules_done |= rules.keys()
+        plans = {
+            rule: tuple(_with_demands(plan, rules) for plan in plans_of_rule)
+            for rule, plans_of_rule in plans.items()
+        }
 
 
 def _plan(derivations: Derivations, option: Option) -> Plan:
     alternatives = [derivations.alternative(each) for each in option.counts_as]
     nodes = frozenset[str]().union(*map(nodes_of, alternatives))
     steps: list[Step | None] = [None] * len(option.items)
-    given: list[Role | None] = [None] * len(option.items)
+    roles: list[Role | None] = [None] * len(option.items)
     for rule, index in option.leads_to:
         steps[index] = steps[index] or step_into(option, nodes, rule)
-        given[index] = given[index] or role_given(option, rule)
+        roles[index] = roles[index] or role_given(option, rule)
     if "comprehension" in steps:
         steps = ["comprehension"] * len(steps)
     names = sum(map(count_names, option.items))
@@ -118,7 +121,7 @@ def _plan(derivations: Derivations, option: Option) -> Plan:
         option,
         tuple(steps),
         tuple(roles_of(option, nodes, names)),
-        tuple(given),
+        tuple(roles),
         demand_of(option, nodes),
         tuple(_bans(option)),
         option.rule in SIGNATURES,

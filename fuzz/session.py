@@ -103,7 +103,7 @@ class Report:
         self.coverage.add(other.coverage.covered)
         self.repeated += other.repeated
         for failure in other.failures:
-            if any(known.signature == failure.signature for known in self.failures):
+            if any(earlier.signature == failure.signature for earlier in self.failures):
                 self.repeated[failure.signature] += 1
             else:
                 self.failures.append(failure)
@@ -122,8 +122,8 @@ def signature_of(name: str, error: BaseException) -> Signature:
     if isinstance(error, Violation):
         # The first words of the message, without places and what is quoted of the text.
         first, _, _ = str(error).partition("\n")
-        unquoted = re.sub(r"'[^']*'|\"[^\"]*\"|`[^`]*`", "", first)
-        detail = " ".join([word for word in unquoted.split() if word.isalpha()][:_WORDS])
+        plain_text = re.sub(r"'[^']*'|\"[^\"]*\"|`[^`]*`", "", first)
+        detail = " ".join([word for word in plain_text.split() if word.isalpha()][:_WORDS])
     elif isinstance(error, TookTooLongError):
         # Where it was when the time was over is a matter of chance.
         detail = "it does not end"
@@ -256,7 +256,7 @@ def try_text(
         if error is not None:
             right = False
             signature = signature_of(each.name, error)
-            if any(known.signature == signature for known in report.failures):
+            if any(earlier.signature == signature for earlier in report.failures):
                 report.repeated[signature] += 1
                 continue
             reason = "".join(traceback.format_exception(error)[-3:])
@@ -286,7 +286,7 @@ def shrink(
     failure: Failure, broken: Property, again: Callable[[Draws], Sample], choices: Sequence[int]
 ) -> Failure:
     """The same failure with as short a text as Hypothesis finds, starting with the one made from ``choices``."""
-    found = [failure]
+    failures = [failure]
     until = time.monotonic() + _LONGEST
     endless = failure.signature.exception == TookTooLongError.__name__
 
@@ -299,7 +299,7 @@ def shrink(
         # Shrinking must not slip from one failure to another.
         if error is not None and signature_of(broken.name, error) == failure.signature:
             reason = "".join(traceback.format_exception(error)[-3:])
-            found.append(replace(failure, text=sample.text, reason=reason, mutant=mutant))
+            failures.append(replace(failure, text=sample.text, reason=reason, mutant=mutant))
             raise _Failed(str(failure.signature)) from error
 
     test = settings(
@@ -312,7 +312,7 @@ def shrink(
     with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(_Stop, _Failed, Flaky):
         # Hypothesis tries the shortest one last. What fails only sometimes is a failure, too.
         test()
-    return found[-1]
+    return failures[-1]
 
 
 def _samples(again: Callable[[Draws], Sample]) -> SearchStrategy[Sample]:

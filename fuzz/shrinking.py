@@ -35,15 +35,15 @@ def shrunk(text: str, fails: Callable[[str], bool], *, most: int = _MOST) -> str
 
 def _without_needless(units: Sequence[str], fails: Callable[[str], bool]) -> list[str]:
     """Leaves out runs of units, from long ones to single ones."""
-    kept = list(units)
-    size = len(kept)
+    remaining = list(units)
+    size = len(remaining)
     while size > 1:
         size = (size + 1) // 2
         start = 0
-        while start < len(kept):
-            rest = kept[:start] + kept[start + size :]
-            if len(rest) < len(kept) and fails("".join(rest)):
-                kept = rest
+        while start < len(remaining):
+            rest = remaining[:start] + remaining[start + size :]
+            if len(rest) < len(remaining) and fails("".join(rest)):
+                remaining = rest
             else:
                 start += size
-    return kept
+    return remaining

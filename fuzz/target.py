@@ -87,10 +87,10 @@ class Target:
             error = fault_of(each, case)
             if error is not None:
                 self._found(each, text, error)
-        taken = time.process_time() - start
-        if taken > _SLOW:
+        elapsed = time.process_time() - start
+        if elapsed > _SLOW:
             signature = Signature("answers_in_time", "Slow", "")
-            self._tell(Finding(signature, text, f"{taken:.1f} s for {len(text)} characters"))
+            self._tell(Finding(signature, text, f"{elapsed:.1f} s for {len(text)} characters"))
 
     def _found(self, broken: Property, text: str, error: BaseException) -> None:
         signature = signature_of(broken.name, error)

@@ -304,14 +304,14 @@ def readings(case: Case) -> tuple[Reading, ...]:
     full = predicted(words)
     if full is None:
         raise Violation("the table of precedence refuses it")
-    written = {
+    texts = {
         "in full": written_in_full(plain, condition),
         "as the table predicts": f"require {full}",
     }
     return (
         Reading("as the grammar derives it", case.text, condition_of(case.text)),
         Reading("on one line", plain, condition),
-        *(Reading(name, text, condition_of(text)) for name, text in written.items()),
+        *(Reading(name, text, condition_of(text)) for name, text in texts.items()),
     )
 
 
@@ -352,28 +352,28 @@ def all_texts_are_one_tree(case: Case) -> None:
 def all_texts_have_one_verdict(case: Case) -> None:
     """However a formula is written, its verdict on a finite trace is the same."""
     read = {name: formula_of(condition, atom=ast.dump) for name, _, condition in readings(case)}
-    expected = read["in full"]
-    atoms = sorted(atoms_of(expected))
+    reference_formula = read["in full"]
+    atoms = sorted(atoms_of(reference_formula))
     for trace in random_traces(case.number, atoms):
-        meant = verdict(expected, trace)
+        reference_verdict = verdict(reference_formula, trace)
         for name, formula in read.items():
-            found = verdict(formula, trace)
-            if found is not meant:
-                raise Violation(f"{found.name} {name}, {meant.name} in full, on {trace}")
+            verdict_here = verdict(formula, trace)
+            if verdict_here is not reference_verdict:
+                raise Violation(f"{verdict_here.name} {name}, {reference_verdict.name} in full, on {trace}")
 
 
 def the_table_alone_gives_the_verdict(case: Case) -> None:
     """The tree that the table of precedence predicts, which no parser of ours made, has the verdict of the parser's."""
-    climbed = Climber(" ".join(words_of(case))).whole(Ladder.TEMPORAL)
-    if climbed is None:
+    climbed_tree = Climber(" ".join(words_of(case))).whole(Ladder.TEMPORAL)
+    if climbed_tree is None:
         raise Violation("the table of precedence refuses it")
     condition = condition_of(case.text)
     if not _is_propositional(condition):
         return
-    expected, found = _formula_of_climbed(climbed), formula_of(condition)
-    for trace in random_traces(case.number, sorted(atoms_of(expected))):
-        if verdict(found, trace) is not verdict(expected, trace):
-            raise Violation(f"{text_of(found)} is not {text_of(expected)} on {trace}")
+    expected_formula, parser_formula = _formula_of_climbed(climbed_tree), formula_of(condition)
+    for trace in random_traces(case.number, sorted(atoms_of(expected_formula))):
+        if verdict(parser_formula, trace) is not verdict(expected_formula, trace):
+            raise Violation(f"{text_of(parser_formula)} is not {text_of(expected_formula)} on {trace}")
 
 
 def formulas_are_followed_as_meant(case: Case) -> None:
@@ -382,21 +382,21 @@ def formulas_are_followed_as_meant(case: Case) -> None:
     if not _is_propositional(condition):
         return
     formula = formula_of(condition)
-    lowered = lower(case.result.tree, resolve(case.result.tree, case.source))
+    module = lower(case.result.tree, resolve(case.result.tree, case.source))
     prelude = _Prelude()
     names = sorted(atoms_of(formula))
     scope: dict[str, Any] = {**dict.fromkeys(names, False), "__scenic__": prelude}
-    exec(compile(lowered, "<fuzz>", "exec"), scope)
-    followed = required(prelude.required, "", None, None)
+    exec(compile(module, "<fuzz>", "exec"), scope)
+    requirement = required(prelude.required, "", None, None)
     for trace in random_traces(case.number, names):
-        monitor = Monitor(followed.formula)
+        monitor = Monitor(requirement.formula)
         for state in trace:
             # Nothing in the text binds the names, so that the code reads them when it is called.
             scope.update((name, name in state) for name in names)
-            monitor.add(partial(_holds, followed))
-        meant = verdict(formula, trace)
-        if monitor.verdict is None or monitor.verdict.name != meant.name:
-            raise Violation(f"simulations find {monitor.verdict}, not {meant}, on {trace}")
+            monitor.add(partial(_holds, requirement))
+        expected_verdict = verdict(formula, trace)
+        if monitor.verdict is None or monitor.verdict.name != expected_verdict.name:
+            raise Violation(f"simulations find {monitor.verdict}, not {expected_verdict}, on {trace}")
 
 
 def _holds(followed: Required, index: int) -> bool:

@@ -152,8 +152,8 @@ def formula_of(node: ast.expr, atom: Callable[[ast.expr], str] | None = None) ->
             return (word, *(formula_of(each, atom) for each in values))
         case ast.IfExp(test=test, body=body, orelse=orelse):
             # There is no temporal operator in it, so all three are about one state.
-            yes, no, chosen = (formula_of(each, atom) for each in (body, orelse, test))
-            return conditional(yes, chosen, no)
+            yes, no, condition = (formula_of(each, atom) for each in (body, orelse, test))
+            return conditional(yes, condition, no)
         case tree.Temporal(operator=word, operands=operands):
             return (word, *(formula_of(each, atom) for each in operands))
     if atom is None:

@@ -126,7 +126,7 @@ def _rounds(
         if remaining <= 0 or should_stop():
             return
         begin(budget.seed + number)
-        known = len(report.failures)
+        reported_count = len(report.failures)
         run_round(
             report,
             seed_of_round=budget.seed + number,
@@ -140,7 +140,7 @@ def _rounds(
             first=budget.first,
             trying=trying,
         )
-        for failure in report.failures[known:]:
+        for failure in report.failures[reported_count:]:
             on_failure(failure)
         if budget.first and report.failures:
             return
@@ -173,15 +173,15 @@ class _Team:
     def run(self) -> tuple[Report, tuple[WorkerDied, ...]]:
         for process in self._processes:
             process.start()
-        interrupted = False
+        has_interrupt = False
         while self._waiting:
             try:
                 self._listen()
             except KeyboardInterrupt:
-                if interrupted:
+                if has_interrupt:
                     break
                 # The workers end their round; a second interruption ends them.
-                interrupted = True
+                has_interrupt = True
                 self._stop.set()
         for process in self._processes:
             if process.is_alive() and self._waiting:
@@ -202,7 +202,7 @@ class _Team:
             case int():
                 self._seeds[worker] = message
             case Failure():
-                if not any(known.signature == message.signature for known in self._report.failures):
+                if not any(earlier.signature == message.signature for earlier in self._report.failures):
                     self._report.failures.append(message)
                     self._on_failure(message)
                     if self._first:

@@ -29,8 +29,11 @@ def of_scenic(grammar: Grammar, nodes: Collection[str]) -> frozenset[Alternative
     They hold a word of Scenic, make one of its ``nodes``, need a rule that does, or are in a rule used by such ones only.
     """
     everything = alternatives(grammar)
-    items = {each: [named.item for named in found.items] for each, found in everything.items()}
-    found = {
+    items = {
+        each: [entry.item for entry in scenic_alternatives.items]
+        for each, scenic_alternatives in everything.items()
+    }
+    scenic_alternatives = {
         each
         for each, alternative in everything.items()
         if not _PYTHON_WORDS.issuperset(_words(items[each]))
@@ -38,9 +41,13 @@ def of_scenic(grammar: Grammar, nodes: Collection[str]) -> frozenset[Alternative
     }
     rules = {each.rule for each in everything}
     while True:
-        count = len(found)
-        whole = {rule for rule in rules if all(each in found for each in everything if each.rule == rule)}
-        found |= {each for each in everything if whole.intersection(_needed(items[each]))}
+        count = len(scenic_alternatives)
+        whole = {
+            rule
+            for rule in rules
+            if all(each in scenic_alternatives for each in everything if each.rule == rule)
+        }
+        scenic_alternatives |= {each for each in everything if whole.intersection(_needed(items[each]))}
         of_python: set[str] = set()
         stack = [grammar.start]
         while stack:
@@ -48,11 +55,11 @@ def of_scenic(grammar: Grammar, nodes: Collection[str]) -> frozenset[Alternative
             if rule not in of_python:
                 of_python.add(rule)
                 for each in everything:
-                    if each.rule == rule and each not in found:
+                    if each.rule == rule and each not in scenic_alternatives:
                         stack += _referred(items[each])
-        found |= {each for each in everything if each.rule not in of_python}
-        if len(found) == count:
-            return frozenset(found)
+        scenic_alternatives |= {each for each in everything if each.rule not in of_python}
+        if len(scenic_alternatives) == count:
+            return frozenset(scenic_alternatives)
 
 
 def _words(items: Iterable[Item]) -> Iterator[str]:

@@ -116,19 +116,19 @@ def alternatives(grammar: Grammar) -> Mapping[AlternativeId, Alternative]:
 
     Left out are rules that are only looked at, and groups of one alternative, which are used with the one around them.
     """
-    used: set[str] = set()
+    rule_names: set[str] = set()
     stack = [grammar.start]
     while stack:
         name = stack.pop()
-        if name not in used:
-            used.add(name)
+        if name not in rule_names:
+            rule_names.add(name)
             stack += _references(
-                named.item for alternative in grammar.rules[name].alternatives for named in alternative.items
+                entry.item for alternative in grammar.rules[name].alternatives for entry in alternative.items
             )
     return {
         AlternativeId(rule.name, number): alternative
         for rule in grammar.rules.values()
-        if rule.name in used
+        if rule.name in rule_names
         for number, alternative in enumerate(rule.alternatives, 1)
     }
 
@@ -205,15 +205,17 @@ class TracingParser:
         tree, position = self._build(*lists, actions)(self._grammar.start, 0)
         if tree is None:
             return Trace(None, frozenset())
-        found: set[Choice] = set()
+        choices: set[Choice] = set()
         for match in position.matches():
             identity = AlternativeId(match.rule, match.number)
-            found.add(Choice(identity))
+            choices.add(Choice(identity))
             items = self._grammar.rules[match.rule].alternatives[match.number - 1].items
-            varied = [(number, named.item) for number, named in enumerate(items, 1) if is_varied(named.item)]
-            for (number, item), value in zip(varied, match.values, strict=True):
-                found.update(Choice(identity, number, each) for each in self._found(item, value, kinds))
-        return Trace(tree, self._choices & found)
+            variable_items = [
+                (number, entry.item) for number, entry in enumerate(items, 1) if is_varied(entry.item)
+            ]
+            for (number, item), value in zip(variable_items, match.values, strict=True):
+                choices.update(Choice(identity, number, each) for each in self._found(item, value, kinds))
+        return Trace(tree, self._choices & choices)
 
     def _found(self, item: Item, value: Any, kinds: Sequence[int]) -> Iterator[str]:
         """The forms that an item has, whose value is ``value``."""

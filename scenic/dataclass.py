@@ -37,22 +37,22 @@ def _dataclass(cls: type[Any] | None = None, /, **options: bool) -> Any:
     """
     if cls is None:
         return lambda given: _dataclass(given, **options)
-    own = {name: value for name, value in vars(cls).items() if name not in _NOT_TAKEN}
-    own["__annotations__"] = names = cls.__annotations__  # those of the class alone
-    made = cls
+    attributes = {name: value for name, value in vars(cls).items() if name not in _NOT_TAKEN}
+    attributes["__annotations__"] = names = cls.__annotations__  # those of the class alone
+    data_class = cls
     if options.get("slots", False):
         slots = (*names, "__weakref__") if options.get("weakref_slot", False) else tuple(names)
-        others = {name: value for name, value in own.items() if name not in names}
-        made = _again(cls, {**others, "__slots__": slots})
-    _stand_in(made, own, options)
-    if options.get("eq", True) and not options.get("frozen", False) and "__hash__" not in own:
-        made.__hash__ = None  # type: ignore[assignment]
+        others = {name: value for name, value in attributes.items() if name not in names}
+        data_class = _again(cls, {**others, "__slots__": slots})
+    _stand_in(data_class, attributes, options)
+    if options.get("eq", True) and not options.get("frozen", False) and "__hash__" not in attributes:
+        data_class.__hash__ = None  # type: ignore[assignment]
     if options.get("frozen", False):
-        _freeze(made)
+        _freeze(data_class)
         if options.get("slots", False):
-            made.__getstate__ = _field_values  # type: ignore[assignment]
-            made.__setstate__ = _set_field_values
-    return made
+            data_class.__getstate__ = _field_values  # type: ignore[assignment]
+            data_class.__setstate__ = _set_field_values
+    return data_class
 
 
 def _stand_in(cls: type[Any], own: dict[str, Any], options: Mapping[str, bool]) -> None:
@@ -71,16 +71,16 @@ def _stand_in(cls: type[Any], own: dict[str, Any], options: Mapping[str, bool]) 
             part = parts.get(wanted, "init")
             # Python's decorator leaves alone what is there already, so it is given a class without stand-ins.
             # Where there is no description it would write one, which takes longest.
-            described = {**own, "__doc__": own.get("__doc__") or cls.__name__}
-            blank = _again(cls, described)
-            wished = {**options, **_NOTHING, part: True}
+            attributes = {**own, "__doc__": own.get("__doc__") or cls.__name__}
+            blank = _again(cls, attributes)
+            options_here = {**options, **_NOTHING, part: True}
             if part == "eq":
-                wished["order"] = options.get("order", False)
-            made = vars(dataclasses.dataclass(**wished)(blank))
+                options_here["order"] = options.get("order", False)
+            methods = vars(dataclasses.dataclass(**options_here)(blank))
             if "__dataclass_fields__" in waiting and not options.get("slots", False):
-                _set_defaults(cls, made)
+                _set_defaults(cls, methods)
             for name in [name for name in waiting if parts.get(name, part) == part]:
-                setattr(cls, name, made[name])
+                setattr(cls, name, methods[name])
                 waiting.discard(name)
 
     for name in parts:

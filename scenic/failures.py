@@ -26,9 +26,9 @@ def diagnose(error: BaseException) -> Diagnostic | None:
     """An exception as a diagnostic: with its place in the program, if the program or its use caused it."""
     if isinstance(error, Located):
         return error.diagnostic()
-    told = annotation(error)
-    if told is not None:
-        return _with_origin(told, error)
+    annotation_of_error = annotation(error)
+    if annotation_of_error is not None:
+        return _with_origin(annotation_of_error, error)
     place = locate(error.__traceback__) if error.__traceback__ is not None else None
     if place is None:
         return None
@@ -41,14 +41,14 @@ def diagnose(error: BaseException) -> Diagnostic | None:
             help="modules are .scenic files beside the program, or anything that Python can import",
         )
     near = nearest_attribute(error)
-    found = Diagnostic(
+    diagnostic = Diagnostic(
         "SC400",
         f"{type(error).__name__}: {error}",
         place.span,
         filename=place.filename,
         help=f"did you mean `{near}`?" if near else "the program raised this exception while it ran",
     )
-    return _with_origin(found, error)
+    return _with_origin(diagnostic, error)
 
 
 def _with_origin(found: Diagnostic, error: BaseException) -> Diagnostic:
@@ -91,20 +91,20 @@ def placed(text: str, filename: str) -> Iterator[None]:
             error.span = error.span or (place.span if place else None)
             error.filename = error.filename or (place.filename if place else filename)
         if not isinstance(error, ParseCompileError):
-            raised: Place = error.span, error.filename
-            (error.span, error.filename), labels = reported(raised, (_program_place(error), filename))
+            raise_place: Place = error.span, error.filename
+            (error.span, error.filename), labels = reported(raise_place, (_program_place(error), filename))
             error.labels += labels
         if error.filename == filename:
             error.program = text
         raise
     except Exception as error:
-        found = diagnose(error)
-        if found is not None and found.span is not None:
-            own = _program_place(error), filename
-            (span, file), labels = reported((found.span, found.filename), own)
-            span = found.span if span is None else span
-            found = replace(found, span=span, filename=file, labels=labels or found.labels)
-            annotate(error, found, f"{file}:{span.line}:{span.column + 1}: raised while the program ran")
+        diagnostic = diagnose(error)
+        if diagnostic is not None and diagnostic.span is not None:
+            program_place = _program_place(error), filename
+            (span, file), labels = reported((diagnostic.span, diagnostic.filename), program_place)
+            span = diagnostic.span if span is None else span
+            diagnostic = replace(diagnostic, span=span, filename=file, labels=labels or diagnostic.labels)
+            annotate(error, diagnostic, f"{file}:{span.line}:{span.column + 1}: raised while the program ran")
         raise
 
 

@@ -235,30 +235,31 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
         self._simulation: Simulation | None = None
         self._objects: dict[str, Any] = {}
         self._present: Present | None = None
-        wanted = observations if isinstance(observations, Mapping) else {agent: observations}
-        self._watched = [(owner, name) for owner, names in wanted.items() for name in names]
+        names_by_owner = observations if isinstance(observations, Mapping) else {agent: observations}
+        self._watched = [(owner, name) for owner, names in names_by_owner.items() for name in names]
         self.action_space = actions.space
         self.observation_space = self._observation_space(bounds or {})
 
     def _observation_space(self, bounds: Mapping[str, tuple[float, float]]) -> spaces.Dict:
         """The kinds of the observations, read off a scene."""
         scene = self._scene(0, 0)
-        named = _named(scene.names, scene.objects, scene.egoObject)
-        found: dict[str, spaces.Space[Any]] = {}
+        objects_by_name = _named(scene.names, scene.objects, scene.egoObject)
+        box_of: dict[str, spaces.Space[Any]] = {}
         for owner, name in self._watched:
-            if owner not in named:
-                known = ", ".join(named)
+            if owner not in objects_by_name:
+                names = ", ".join(objects_by_name)
                 raise InvalidScenarioError(
                     f"the program has no object {owner!r}",
-                    help=f"objects go by the names of their variables; here: {known}",
+                    help=f"objects go by the names of their variables; here: {names}",
                 )
             key = f"{owner}.{name}"
-            found[key] = _box(named[owner], name, bounds.get(key, bounds.get(name)))
-        if self._name not in named:
+            box_of[key] = _box(objects_by_name[owner], name, bounds.get(key, bounds.get(name)))
+        if self._name not in objects_by_name:
             raise InvalidScenarioError(
-                f"the program has no agent {self._name!r}", help=f"its objects are {', '.join(named)}"
+                f"the program has no agent {self._name!r}",
+                help=f"its objects are {', '.join(objects_by_name)}",
             )
-        return spaces.Dict(found)
+        return spaces.Dict(box_of)
 
     # The interface
 
@@ -308,7 +309,7 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
         simulation.take(agent, actions)
         info: dict[str, Any] = {}
         terminated = truncated = False
-        ended: str | None = None
+        end_reason: str | None = None
         try:
             going = simulation.advanceOnce()
         except _Rejected as error:
@@ -319,13 +320,15 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
         if not going and result is not None:
             truncated = result.terminationType is TerminationType.timeLimit
             terminated = not truncated
-            ended = result.terminationReason
-            info["reason"] = ended
+            end_reason = result.terminationReason
+            info["reason"] = end_reason
             info["requirements"] = {
                 item.label: None if item.verdict is None else item.verdict.name
                 for item in result.requirements
             }
-        moment = Moment(agent, self._objects, actions, simulation.records, simulation.currentRealTime, ended)
+        moment = Moment(
+            agent, self._objects, actions, simulation.records, simulation.currentRealTime, end_reason
+        )
         if not going:
             self._simulation = None
         return self._observe(), self._rewarded(moment), terminated, truncated, info

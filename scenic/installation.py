@@ -67,11 +67,11 @@ def _rivals() -> Iterator[Finding]:
 
 def _requirements() -> Iterator[Finding]:
     try:
-        wanted = metadata.requires("scenic-lang") or []
+        requirements = metadata.requires("scenic-lang") or []
     except metadata.PackageNotFoundError:
-        wanted = []
+        requirements = []
     versions = []
-    for requirement in wanted:
+    for requirement in requirements:
         if "extra ==" in requirement:
             continue
         name = re.split(r"[^A-Za-z0-9_.-]", requirement)[0]

@@ -49,13 +49,13 @@ def sampled(scenario: Scenario, n: int = 1, *, seed: int | None = None, **limits
     Scenes that are not found within the limits are shown as their report, and left out.
     """
     results = scenario.stream(n, seed=0 if seed is None else seed, **limits)
-    found: list[Scene] = []
+    scenes: list[Scene] = []
     for result in _followed(results, n):
         if isinstance(result, Exhausted):
             _display(_exhausted_html(result))
         else:
-            found.append(result)
-    return found
+            scenes.append(result)
+    return scenes
 
 
 def _followed(results: Iterator[Any], n: int) -> Iterator[Any]:
@@ -113,8 +113,8 @@ def _row_html(row: SimulationRow) -> str:
         (item["label"], item["verdict"].lower().replace("_", " "), _brief(item["robustness"]))
         for item in row.about["requirements"]
     ]
-    played = embedded_courses([row.page], f"simulation {row.k}") if row.page else ""
-    return head + (table(("requirement", "verdict", "robustness"), verdicts) if verdicts else "") + played
+    film = embedded_courses([row.page], f"simulation {row.k}") if row.page else ""
+    return head + (table(("requirement", "verdict", "robustness"), verdicts) if verdicts else "") + film
 
 
 def _brief(value: object) -> str:
@@ -146,16 +146,16 @@ def _explain(
 ) -> None:
     """Show the diagnostics of an error of Scenic in place of a traceback."""
     if isinstance(error, ParseCompileError):
-        found: Sequence[Diagnostic] = error.diagnostics
+        diagnostics: Sequence[Diagnostic] = error.diagnostics
     else:
         diagnose = getattr(error, "diagnostic", None)
         if diagnose is None:
             shell.showtraceback((kind, error, traceback), tb_offset=tb_offset)
             return
-        found = [diagnose()]
-    lines = _diagnostics_text(found)
-    shown: Any = import_module("IPython.display")  # has no types
-    shown.display({"text/html": _diagnostics_html(found), "text/plain": "\n".join(lines)}, raw=True)
+        diagnostics = [diagnose()]
+    lines = _diagnostics_text(diagnostics)
+    display: Any = import_module("IPython.display")  # has no types
+    display.display({"text/html": _diagnostics_html(diagnostics), "text/plain": "\n".join(lines)}, raw=True)
     # Tools that run notebooks take the error of a cell from here.
     shell._showtraceback(kind, error, lines)
 

@@ -290,22 +290,22 @@ class _Options:
 
     def given(self) -> dict[str, Any]:
         """The keyword arguments of `load` that differ from the defaults."""
-        given: dict[str, Any] = {}
+        arguments: dict[str, Any] = {}
         if self.params:
-            given["params"] = dict(self.params)
+            arguments["params"] = dict(self.params)
             if not self.strict_params:
-                given["extra_params"] = True
+                arguments["extra_params"] = True
         if self.model is not None:
-            given["model"] = self.model
+            arguments["model"] = self.model
         if self.scenario is not None:
-            given["scenario"] = self.scenario
+            arguments["scenario"] = self.scenario
         if self.mode_2d:
-            given["mode2D"] = True
+            arguments["mode2D"] = True
         if not self.prune:
-            given["prune"] = False
+            arguments["prune"] = False
         if self.settle is not None:
-            given["settle"], given["settle_tolerance"], given["settle_keep"] = self.settle
-        return given
+            arguments["settle"], arguments["settle_tolerance"], arguments["settle_keep"] = self.settle
+        return arguments
 
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> "_Options":
@@ -378,11 +378,11 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
         with placed(text, filename):
             with preserved(), beside(Path(filename).parent):
                 seed_globals(PROGRAM_SEED)
-                seeded = states()
+                generator_states = states()
                 module, state = modules.run(code, filename, {SOURCE_NAME: Source(text, filename)})
                 program.top = _run_chosen(module, state, options.scenario)
                 program.ego, program.workspace = state.ego, state.workspace
-                if not is_as(seeded):
+                if not is_as(generator_states):
                     _warn_of_draws(text, filename)
                 apply_noise(program)
                 record = context.record
@@ -393,19 +393,25 @@ def _run(code: CodeType, text: str, filename: str, options: _Options) -> _Ran:
             program.variables = _names(module, state.ego)
             _settle_parameters(program, strict=options.strict_params)
             workspace = state.workspace or Workspace(everywhere)
-            outlined = _outlined(program, workspace, options)
+            outline = _outlined(program, workspace, options)
     finally:
         current.reset(token)
-    return _Ran(program, outlined, state.ego, workspace, program.variables, _regions(module))
+    return _Ran(program, outline, state.ego, workspace, program.variables, _regions(module))
 
 
 def _warn_of_draws(text: str, filename: str) -> None:
     """Warn of a program that has drawn from the generators of Python or NumPy, once for all scenes."""
     from scenic.compiler.check import check_text
 
-    found = next((item for item in check_text(text, filename=filename) if item.code == "SC407"), None)
-    if found is not None:
-        warn(found.message, code=found.code, span=found.span, filename=filename, help=found.help)
+    diagnostic = next((item for item in check_text(text, filename=filename) if item.code == "SC407"), None)
+    if diagnostic is not None:
+        warn(
+            diagnostic.message,
+            code=diagnostic.code,
+            span=diagnostic.span,
+            filename=filename,
+            help=diagnostic.help,
+        )
     elif re.search(r"\brandom\b", text) and not re.search(r"\bseed\(|SC407", text):
         # Not of libraries, which draw while they are imported, nor where a seed or a comment says that it is meant.
         warn(
@@ -449,7 +455,7 @@ def _export(scene: Scene, path: Path) -> bool:
 
 def _run_chosen(module: ModuleType, state: Module, chosen: str | None) -> ModularScenario | None:
     """Run the set-up of the scenario that the file means (section 2.6 of the specification)."""
-    defined = {
+    scenarios = {
         item.__name__: item
         for item in vars(module).values()
         if isinstance(item, type)
@@ -457,30 +463,30 @@ def _run_chosen(module: ModuleType, state: Module, chosen: str | None) -> Modula
         and item._definition.setup is not None
         and item._definition.setup.__globals__ is vars(module)
     }
-    if chosen is not None and chosen not in defined:
-        near = nearest(chosen, defined)
-        known = ", ".join(sorted(defined)) or "none"
+    if chosen is not None and chosen not in scenarios:
+        near = nearest(chosen, scenarios)
+        names = ", ".join(sorted(scenarios)) or "none"
         raise ScenarioChoiceError(
             f"there is no scenario {chosen!r}",
             filename=state.filename,
-            help=f"did you mean {near!r}?" if near else f"scenarios of this file: {known}",
+            help=f"did you mean {near!r}?" if near else f"scenarios of this file: {names}",
         )
-    scenario = defined.get(chosen or "Main")
-    if scenario is None and len(defined) == 1:
-        (only,) = defined.values()
+    scenario = scenarios.get(chosen or "Main")
+    if scenario is None and len(scenarios) == 1:
+        (only,) = scenarios.values()
         scenario = None if _needed(only) else only
     if scenario is None:
-        if len(defined) > 1:
+        if len(scenarios) > 1:
             raise ScenarioChoiceError(
-                f"the file defines {len(defined)} scenarios: {', '.join(defined)}",
+                f"the file defines {len(scenarios)} scenarios: {', '.join(scenarios)}",
                 filename=state.filename,
                 help="choose one with `--scenario NAME`",
             )
         return None
-    needed = _needed(scenario)
-    if needed:
+    missing_arguments = _needed(scenario)
+    if missing_arguments:
         raise ScenarioChoiceError(
-            f"scenario {scenario.__name__!r} needs arguments: {', '.join(needed)}",
+            f"scenario {scenario.__name__!r} needs arguments: {', '.join(missing_arguments)}",
             filename=state.filename,
             help="give its parameters default values",
         )
@@ -505,12 +511,12 @@ def _needed(scenario: type[ModularScenario]) -> list[str]:
 def _settle_parameters(program: Program, *, strict: bool) -> None:
     for name, value in program.overrides.items():
         if strict and name not in program.parameters and name not in program.read_parameters:
-            known = ", ".join(sorted(program.parameters)) or "none"
+            names = ", ".join(sorted(program.parameters)) or "none"
             near = nearest(name, program.parameters)
             raise InvalidScenarioError(
                 f"the program has no parameter {name!r}",
                 code="SC603",
-                help=f"did you mean {near!r}?" if near else f"its parameters: {known}",
+                help=f"did you mean {near!r}?" if near else f"its parameters: {names}",
             )
         program.parameters[name] = value
 

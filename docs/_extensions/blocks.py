@@ -35,7 +35,7 @@ def options_of(info: str) -> dict[str, str]:
 def blocks_of(page: str) -> list[Block]:
     """The code blocks of a page, in order."""
     lines = page.splitlines(keepends=True)
-    found: list[Block] = []
+    blocks: list[Block] = []
     fence, first, info = "", 0, ""
     for number, line in enumerate(lines):
         match = _FENCE.match(line.rstrip("\n"))
@@ -44,9 +44,9 @@ def blocks_of(page: str) -> list[Block]:
         elif fence and line.strip() == fence:
             language, _, rest = info.partition(" ")
             text = "".join(lines[first + 1 : number])
-            found.append(Block(language, options_of(rest), text, first, number))
+            blocks.append(Block(language, options_of(rest), text, first, number))
             fence = ""
-    return found
+    return blocks
 
 
 def with_outputs(page: str, outputs: Mapping[int, str]) -> str:

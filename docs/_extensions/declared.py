@@ -48,12 +48,12 @@ def specifier_text(name: str) -> str:
     """A specifier: its forms, what it means, what it gives with which priority, and what it needs."""
     entry = SPECIFIERS[name]
     text = [f"`{form}`\n" for form in entry.forms] + [f"{entry.documentation}\n"]
-    given = [
+    properties = [
         f"`{item.property}` (priority {item.priority}{f', if {item.when}' if item.when else ''})"
         for item in entry.specifies
     ]
-    if given:
-        text.append(f"*Gives* {', '.join(given)}.\n")
+    if properties:
+        text.append(f"*Gives* {', '.join(properties)}.\n")
     if entry.modifies:
         text.append(f"*May adjust* {_listed(entry.modifies)} that another specifier gives.\n")
     if entry.needs:

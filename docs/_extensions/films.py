@@ -51,10 +51,10 @@ def simulated(path: Path, seed: int) -> tuple[Any, PoseTape]:
 
     scenario = load(path, mode2D=True)
     simulator = choose_simulator(None, scenario)
-    done = simulate_number(scenario, simulator, seed=seed, k=0, tries=20, maxSteps=_MOST, beginning=begin)
-    if done.simulation is None:
+    result = simulate_number(scenario, simulator, seed=seed, k=0, tries=20, maxSteps=_MOST, beginning=begin)
+    if result.simulation is None:
         raise ValueError(f"{path}: simulation 0 of seed {seed} is rejected")
-    return done.simulation, tapes[-1]
+    return result.simulation, tapes[-1]
 
 
 def measured(simulation: Any) -> list[str]:
@@ -68,10 +68,12 @@ def measured(simulation: Any) -> list[str]:
         finite = [float(value) for value in values if math.isfinite(value)]
         if finite:
             lines.append(f"{name}: {min(finite):.2f} to {max(finite):.2f}")
-    named = [item for item in simulation.result.requirements if item.verdict is not None and item.label]
+    requirements = [
+        item for item in simulation.result.requirements if item.verdict is not None and item.label
+    ]
     return lines + [
         f"{item.label}: {item.verdict.name.lower().replace('_', ' ')}"
-        for item in named
+        for item in requirements
         if not item.label.startswith("requirement on")
     ]
 

@@ -110,13 +110,13 @@ def snippets() -> Iterator[Mapping[str, Any]]:
 def _headings(lines: list[str], end: int) -> tuple[list[str], int]:
     """The headings above a line, and the line after the last of them."""
     above: list[tuple[int, str]] = []
-    start, fenced = 0, False
+    start, is_code = 0, False
     for number, line in enumerate(lines[:end]):
-        fenced ^= line.startswith("```")
-        found = None if fenced else _HEADING.match(line)
-        if found is not None:
-            above = [item for item in above if item[0] < len(found[1])]
-            above.append((len(found[1]), found[2].strip()))
+        is_code ^= line.startswith("```")
+        heading = None if is_code else _HEADING.match(line)
+        if heading is not None:
+            above = [item for item in above if item[0] < len(heading[1])]
+            above.append((len(heading[1]), heading[2].strip()))
             start = number + 1
     return [title for _, title in above] or [""], start
 

@@ -48,9 +48,12 @@ def dead_links(site: Path) -> list[str]:
             target = (path.parent / unquote(parts.path)).resolve() if parts.path else path
             if target.is_dir():
                 target /= "index.html"
-            known = read.get(target)
+            linked_page = read.get(target)
             if not target.exists() or (
-                anchor and anchor != "top" and known is not None and unquote(anchor) not in known.anchors
+                anchor
+                and anchor != "top"
+                and linked_page is not None
+                and unquote(anchor) not in linked_page.anchors
             ):
                 dead.append(f"{path.relative_to(site)}: {link}")
     return dead

@@ -127,9 +127,11 @@ def _drawn(shot: Shot) -> PIL.Image.Image:
             assert colours is not None
             panels.append(PIL.Image.fromarray(colours))
             continue
-        drawn = picture([scene], ground=True)
-        camera = framing(framed(scene, drawn.scenes[0], shot.outlook), size[0] / size[1], shot.outlook)
-        panels.append(PIL.Image.fromarray(render(drawn, 0, size, camera=camera)))
+        scene_picture = picture([scene], ground=True)
+        camera = framing(
+            framed(scene, scene_picture.scenes[0], shot.outlook), size[0] / size[1], shot.outlook
+        )
+        panels.append(PIL.Image.fromarray(render(scene_picture, 0, size, camera=camera)))
     width, height = panels[0].size
     row = PIL.Image.new("RGB", (len(panels) * (width + GAP) - GAP, height), "white")
     for number, panel in enumerate(panels):
@@ -140,7 +142,7 @@ def _drawn(shot: Shot) -> PIL.Image.Image:
 def _motion(shot: Shot, size: tuple[int, int]) -> PIL.Image.Image:
     """Moments of a simulation in one picture, the earlier ones the more transparent."""
     scenario = load(shot.path, mode2D=shot.mode2D)
-    done = simulate_number(
+    result = simulate_number(
         scenario,
         choose_simulator(None, scenario),
         seed=shot.seed,
@@ -149,14 +151,14 @@ def _motion(shot: Shot, size: tuple[int, int]) -> PIL.Image.Image:
         maxSteps=shot.steps,
         keep_poses=True,
     )
-    if done.simulation is None:
+    if result.simulation is None:
         raise ValueError(f"{shot.path}: simulation {shot.k} of seed {shot.seed} is rejected")
     if shot.plan:
-        return plans.drawn(done.simulation.scene, _footprints(done.simulation), size)
+        return plans.drawn(result.simulation.scene, _footprints(result.simulation), size)
     moments = [number / (EXPOSURES - 1) for number in range(EXPOSURES)]
-    exposures = exposed(done.simulation, moments)
+    exposures = exposed(result.simulation, moments)
     points = (
-        framed(done.simulation.scene, exposures.scenes[0], shot.outlook)
+        framed(result.simulation.scene, exposures.scenes[0], shot.outlook)
         if shot.outlook.workspace
         else corners(exposures.scenes[0])
     )

@@ -33,8 +33,8 @@ class ScenicBlock(SphinxDirective):
         """The code, and a picture if the block's options request it."""
         code = "\n".join(self.content) + "\n"
         options = options_of(self.arguments[0]) if self.arguments else {}
-        shown = "\n".join(self.content)
-        block = nodes.literal_block(shown, shown, language="scenic")
+        program = "\n".join(self.content)
+        block = nodes.literal_block(program, program, language="scenic")
         self.set_source_info(block)
         programs = self.env.temp_data.setdefault("scenic_programs", Programs())
         if "fragment" in options:
@@ -61,21 +61,21 @@ class ScenicBlock(SphinxDirective):
             alt=f"{what} of this program",
             classes=["scene"] if shot.count == 1 else [],
         )
-        shown: list[nodes.Node] = [
+        page_nodes: list[nodes.Node] = [
             image if shot.count == 1 else nodes.container("", image, classes=["scenes"])
         ]
         if "page" in options:
             page = kept_page(shot, PAGES, f"{shot.path.stem}: {what.lower()}")
-            used = self.env.metadata[self.env.docname].setdefault("scenic_pages", "")
-            self.env.metadata[self.env.docname]["scenic_pages"] = f"{used} {page.name}"
+            page_names = self.env.metadata[self.env.docname].setdefault("scenic_pages", "")
+            self.env.metadata[self.env.docname]["scenic_pages"] = f"{page_names} {page.name}"
             up = "../" * self.env.docname.count("/")
             link = nodes.raw(
                 "",
                 f'<p class="turn"><a href="{up}scenes/{page.name}">Turn it in three dimensions</a></p>',
                 format="html",
             )
-            shown.append(link)
-        return shown
+            page_nodes.append(link)
+        return page_nodes
 
 
 class CameraImage(SphinxDirective):

@@ -113,9 +113,9 @@ class PageRun:
 
     def _program(self, block: Block) -> str:
         if "fragment" in block.options:
-            found = scenic.parse(block.text).diagnostics
-            if found:
-                raise WrongOutputError(f"line {block.first + 1}: {found[0].message}")
+            diagnostics = scenic.parse(block.text).diagnostics
+            if diagnostics:
+                raise WrongOutputError(f"line {block.first + 1}: {diagnostics[0].message}")
             return ""
         path = Path(f"{block.options.get('name', 'program')}.scenic")
         self.programs.text(block.text, block.options)
@@ -124,14 +124,14 @@ class PageRun:
         if "fails" in block.options:
             return _called(["sample", path.name, "--seed", seed, "--max-attempts", "2000"])
         last = int(block.options.get("k", "0")) + int(block.options.get("draw") or 1)
-        with contextlib.redirect_stdout(io.StringIO()) as written:
+        with contextlib.redirect_stdout(io.StringIO()) as output:
             scenario = load(path, mode2D="2d" in block.options)
             scenes = scenario.sample(last, seed=int(seed))
             if "params" in block.options:
                 _show(scenes[-1].params)
             if "steps" in block.options:
                 _show(_records(scenario, block.options))
-        return written.getvalue()
+        return output.getvalue()
 
     def _python(self, block: Block) -> str | None:
         # Line numbers of the page appear in tracebacks.
@@ -145,7 +145,7 @@ class PageRun:
 
 def _records(scenario: Scenario, options: Mapping[str, str]) -> Mapping[str, Any]:
     """Return the records of a simulation, if the block shows them."""
-    done = simulate_number(
+    result = simulate_number(
         scenario,
         choose_simulator(None, scenario),
         seed=int(options.get("seed", "1")),
@@ -153,9 +153,9 @@ def _records(scenario: Scenario, options: Mapping[str, str]) -> Mapping[str, Any
         tries=20,
         maxSteps=int(options["steps"]),
     )
-    if done.simulation is None:
-        raise WrongOutputError(f"all simulations are rejected: {done.rejections}")
-    return done.simulation.result.records if "records" in options else {}
+    if result.simulation is None:
+        raise WrongOutputError(f"all simulations are rejected: {result.rejections}")
+    return result.simulation.result.records if "records" in options else {}
 
 
 def _show(values: Mapping[str, Any]) -> None:
@@ -194,15 +194,15 @@ def _commands(block: Block) -> str:
 
 def _called(arguments: list[str]) -> str:
     """Return the output of the command line, from both of its streams."""
-    written = io.StringIO()
+    output = io.StringIO()
     with (
         mock.patch.object(sys, "argv", ["scenic", *arguments]),
-        contextlib.redirect_stdout(written),
-        contextlib.redirect_stderr(written),
+        contextlib.redirect_stdout(output),
+        contextlib.redirect_stderr(output),
         contextlib.suppress(SystemExit),
     ):
         main()
-    return "".join(line.rstrip() + "\n" for line in written.getvalue().rstrip().splitlines())
+    return "".join(line.rstrip() + "\n" for line in output.getvalue().rstrip().splitlines())
 
 
 def checked(page: str, run: PageRun) -> str:

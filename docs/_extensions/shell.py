@@ -44,15 +44,15 @@ def run_commands(text: str) -> None:
 
     """
     for words in commands_of(text):
-        given = b""
+        piped_input = b""
         while words:
             end = words.index("|") if "|" in words else len(words)
             command, words = words[:end], words[end + 1 :]
             if "<" in command:
                 place = command.index("<")
-                given = Path(command[place + 1]).read_bytes()
+                piped_input = Path(command[place + 1]).read_bytes()
                 command = command[:place] + command[place + 2 :]
-            given = _called(_reduced(command), given)
+            piped_input = _called(_reduced(command), piped_input)
 
 
 def _reduced(command: list[str]) -> list[str]:
@@ -77,14 +77,14 @@ def _called(command: list[str], given: bytes) -> bytes:
     with mock.patch.multiple(sys, argv=command, stdin=stdin, stdout=stdout, stderr=stderr):
         try:
             main()
-        except SystemExit as ended:
-            code = ended.code
-    written = []
+        except SystemExit as end:
+            code = end.code
+    outputs = []
     for stream in (stdout, stderr):
         with contextlib.suppress(ValueError):
             stream.flush()
         assert isinstance(stream.buffer, io.BytesIO)
-        written.append(stream.buffer.getvalue())
+        outputs.append(stream.buffer.getvalue())
     if code:
-        raise WrongCommandError(f"{shlex.join(command)} ends with {code}: {written[1].decode()}")
-    return written[0]
+        raise WrongCommandError(f"{shlex.join(command)} ends with {code}: {outputs[1].decode()}")
+    return outputs[0]

@@ -52,9 +52,9 @@ def diagnostic() -> None:
         try:
             load(path)
         except ScenicSyntaxError as error:
-            shown = render_text(list(error.diagnostics), Sources(), True).replace(f"{folder}/", "")
+            text = render_text(list(error.diagnostics), Sources(), True).replace(f"{folder}/", "")
     console = rich.console.Console(record=True, width=64, file=io.StringIO())
-    console.print(rich.text.Text.from_ansi(shown.rstrip()))
+    console.print(rich.text.Text.from_ansi(text.rstrip()))
     (HERE / "diagnostic.svg").write_text(
         console.export_svg(title="scenic check desk.scenic"), encoding="utf-8"
     )
@@ -78,12 +78,12 @@ def cameras() -> PIL.Image.Image:
     colours = observe(scene, viewpoint(scene, "rgb", None)).rgb
     assert colours is not None
     depth = observe(scene, viewpoint(scene, "depth", None)).depth
-    seen = observe(scene, viewpoint(scene, "classes", None))
+    observation = observe(scene, viewpoint(scene, "classes", None))
     near = np.where(np.isfinite(depth), 1 - np.clip((depth - 1) / 5, 0, 1), 0)
     grey = np.repeat((255 * near).astype(np.uint8)[..., None], 3, axis=2)
     kinds = sorted({type(thing).__name__ for thing in scene.objects})
     of_class = np.array([kinds.index(type(thing).__name__) for thing in scene.objects] + [-1])
-    panels = [colours, grey, _painted(of_class[seen.objects]), _painted(seen.objects)]
+    panels = [colours, grey, _painted(of_class[observation.objects]), _painted(observation.objects)]
     height, width, _ = colours.shape
     sheet = PIL.Image.new("RGB", (2 * width, 2 * height))
     draw = PIL.ImageDraw.Draw(sheet)

@@ -24,19 +24,21 @@ STEPS = 55
 
 def strip(simulation: Any) -> bytes:
     """Moments of a simulation, row by row, as a PNG file."""
-    drawn = picture([simulation.scene])
+    scene_picture = picture([simulation.scene])
     numbers = {id(thing): number for number, thing in enumerate(simulation.objects)}
-    near = [item for item in drawn.scenes[0] if item.label != "table"]
+    near = [item for item in scene_picture.scenes[0] if item.label != "table"]
     camera = framing(corners(near), SIZE[0] / SIZE[1], Outlook(azimuth=25, elevation=30))
     last = len(simulation.poses) - 1
     images = []
     for moment in np.linspace(0, last, COLUMNS * ROWS).round().astype(int).tolist():
         instances = []
-        for item in drawn.scenes[0]:
+        for item in scene_picture.scenes[0]:
             position, turn = simulation.poses[moment][numbers[id(item.thing)]]
             place, row = tuple(position), (turn.x, turn.y, turn.z, turn.w)
             instances.append(dataclasses.replace(item, position=place, quaternion=row))
-        images.append(render(dataclasses.replace(drawn, scenes=(tuple(instances),)), 0, SIZE, camera=camera))
+        images.append(
+            render(dataclasses.replace(scene_picture, scenes=(tuple(instances),)), 0, SIZE, camera=camera)
+        )
     rows = [
         np.concatenate(images[start : start + COLUMNS], axis=1) for start in range(0, len(images), COLUMNS)
     ]

@@ -34,29 +34,29 @@ def main() -> None:
     options.add_argument("-n", type=int, default=20, help="runs")
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("-o", "--output", type=Path, default=Path("labels"))
-    given = options.parse_args()
-    given.output.mkdir(parents=True, exist_ok=True)
-    scenario = scenic.load(PROGRAM, params={"recordFolder": str(given.output)})
+    arguments = options.parse_args()
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    scenario = scenic.load(PROGRAM, params={"recordFolder": str(arguments.output)})
     rows, runs = [], []
-    for scene in scenario.sample(given.n, seed=given.seed):
-        done = labelled(scenario, scene, given.output / f"images-{scene.k:03d}")
-        rows += list(labels(done.result.records, scene.k, given.output / f"images-{scene.k:03d}"))
-        verdicts = {item.label: item.verdict.name.lower() for item in done.result.requirements}
-        satisfied = not any(verdict.endswith("false") for verdict in verdicts.values())
-        runs.append({"run": scene.k, **verdicts, "satisfied": satisfied})
+    for scene in scenario.sample(arguments.n, seed=arguments.seed):
+        simulation = labelled(scenario, scene, arguments.output / f"images-{scene.k:03d}")
+        rows += list(labels(simulation.result.records, scene.k, arguments.output / f"images-{scene.k:03d}"))
+        verdicts = {item.label: item.verdict.name.lower() for item in simulation.result.requirements}
+        is_satisfied = not any(verdict.endswith("false") for verdict in verdicts.values())
+        runs.append({"run": scene.k, **verdicts, "satisfied": is_satisfied})
         print(
-            f"run {scene.k}: {done.result.records['visible'][-1][0]} steps, satisfied: {satisfied}",
+            f"run {scene.k}: {simulation.result.records['visible'][-1][0]} steps, satisfied: {is_satisfied}",
             flush=True,
         )
-    write(given.output / "labels.csv", rows)
-    write(given.output / "runs.csv", runs)
+    write(arguments.output / "labels.csv", rows)
+    write(arguments.output / "runs.csv", runs)
     print(f"{sum(run['satisfied'] for run in runs)} of {len(runs)} runs satisfy the formula")
     wrong = sum(row["in view"] != row["visible"] for row in rows)
     print(f"{wrong} of {len(rows)} images would be labelled wrongly if nothing could hide the car")
     for run in runs:
         mine = [row for row in rows if row["run"] == run["run"]]
-        if run["satisfied"] and (found := moments(mine)):
-            strip(found, given.output).save(given.output / "moments.png")
+        if run["satisfied"] and (moments_of_run := moments(mine)):
+            strip(moments_of_run, arguments.output).save(arguments.output / "moments.png")
             break
 
 
@@ -70,7 +70,7 @@ def labelled(scenario: Any, scene: Any, folder: Path) -> Any:
         present.k = simulation.currentTime
         images.add(present)
 
-    done = scenario.getSimulator().simulate(
+    run = scenario.getSimulator().simulate(
         scene,
         maxSteps=MOST_STEPS,
         name=str(scene.k),
@@ -79,7 +79,7 @@ def labelled(scenario: Any, scene: Any, folder: Path) -> Any:
         on_state=look,
     )
     images.finish()
-    return done
+    return run
 
 
 def labels(records: Any, run: int, folder: Path) -> Iterator[dict[str, Any]]:

@@ -22,15 +22,15 @@ def main() -> None:
     options.add_argument("table", type=Path)
     options.add_argument("--seed", type=int, required=True, help="the seed of the simulations in the table")
     options.add_argument("-o", "--output", type=Path, default=Path("worst.svg"))
-    given = options.parse_args()
-    rows = list(csv.DictReader(given.table.open()))
+    arguments = options.parse_args()
+    rows = list(csv.DictReader(arguments.table.open()))
     worst = min((row for row in rows if row["robustness"]), key=lambda row: float(row["robustness"]))
     print(f"numToys={worst['numToys']}, simulation {worst['k']}: robustness {worst['robustness']}")
     scenario = scenic.load(PROGRAM, params={"numToys": int(worst["numToys"])})
     number = int(worst["k"])
-    scene = scenario.sample(number + 1, seed=given.seed)[number]
-    (run,) = scenario.simulate(1, seed=given.seed, first=number, max_steps=1200, keep_violations=True)
-    given.output.write_text(drawing(scene, [place for _, place in run.about["records"]["path"]]))
+    scene = scenario.sample(number + 1, seed=arguments.seed)[number]
+    (run,) = scenario.simulate(1, seed=arguments.seed, first=number, max_steps=1200, keep_violations=True)
+    arguments.output.write_text(drawing(scene, [place for _, place in run.about["records"]["path"]]))
 
 
 def drawing(scene: object, path: list[list[float]]) -> str:

@@ -18,23 +18,23 @@ def lowering_loses_nothing(case: Case) -> None:
 
     Behaviors are not looked into: what they do is compiled only where there are simulations.
     """
-    found = lowered(case)
-    if found is None:
+    lowering = lowered(case)
+    if lowering is None:
         return
     there: Counter[str] = Counter()
     places = set()
-    for node in ast.walk(found.module):
+    for node in ast.walk(lowering.module):
         there.update(_words(node))
         if isinstance(node, ast.expr):
             places.add(place(node))
-    wanted: Counter[str] = Counter()
-    for node in _compiled(found.tree):
-        wanted.update(_words(node))
+    words_of_program: Counter[str] = Counter()
+    for node in _compiled(lowering.tree):
+        words_of_program.update(_words(node))
         if isinstance(node, ast.expr) and place(node) not in places:
             raise Violation(f"nothing stands at the place of {type(node).__name__}, {place(node)}")
-    lost = wanted - there
-    if lost:
-        raise Violation(f"lost: {', '.join(sorted(lost))}")
+    missing_words = words_of_program - there
+    if missing_words:
+        raise Violation(f"lost: {', '.join(sorted(missing_words))}")
 
 
 def _compiled(tree: ast.Module) -> Iterator[ast.AST]:
@@ -75,12 +75,12 @@ def parsing_loses_nothing(case: Case) -> None:
     """All names of a program are in its tree, and as many numbers as it has."""
     if case.has_error:
         return
-    written: Counter[str] = Counter()
+    words_of_program: Counter[str] = Counter()
     numbers = 0
     for kind, text in zip(case.tokens.kinds, case.tokens.texts, strict=True):
         # Soft keywords may be names, or not.
         if kind == NAME:
-            written[text] += 1
+            words_of_program[text] += 1
         numbers += kind == NUMBER
     there: Counter[str] = Counter()
     for node in ast.walk(case.result.tree):
@@ -93,9 +93,9 @@ def parsing_loses_nothing(case: Case) -> None:
             isinstance(value, int | float | complex) and not isinstance(value, bool) for value in values
         )
         numbers -= isinstance(name := getattr(node, "name", None), str) and name[:1] in "0123456789."
-    lost = written - there
-    if lost or numbers > 0:
-        raise Violation(f"not in the tree: {', '.join(sorted(lost)) or f'{numbers} numbers'}")
+    missing_words = words_of_program - there
+    if missing_words or numbers > 0:
+        raise Violation(f"not in the tree: {', '.join(sorted(missing_words)) or f'{numbers} numbers'}")
 
 
 _NUMBERS: Final = ("value", "probability")

@@ -17,19 +17,19 @@ def formatted_texts_read_the_same(case: Case) -> None:
     """A text without errors is formatted to a text with the same tree, which is formatted to itself."""
     if case.has_error:
         return
-    written = format_text(case.text)
-    if written is None:
+    new_text = format_text(case.text)
+    if new_text is None:
         raise Violation("it is not formatted")
-    again = parse(written)
+    again = parse(new_text)
     if again.diagnostics:
-        raise Violation(f"what was written is refused: {describe(again.diagnostics[0])}\n{written}")
+        raise Violation(f"what was written is refused: {describe(again.diagnostics[0])}\n{new_text}")
     where = difference(case.result.tree, again.tree)
     if where is not None:
-        raise Violation(f"another tree: {where}\n{written}")
+        raise Violation(f"another tree: {where}\n{new_text}")
     if case.number % 4 == 0 or case.thorough:
-        twice = format_text(written)
-        if twice != written:
-            raise Violation(f"formatted differently the second time:\n{written}{twice}")
+        twice = format_text(new_text)
+        if twice != new_text:
+            raise Violation(f"formatted differently the second time:\n{new_text}{twice}")
 
 
 def on_lines(text: str) -> str:

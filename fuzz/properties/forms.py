@@ -43,9 +43,9 @@ def operators_follow_the_table(case: Case) -> None:
     """
     if case.has_error:
         return
-    needed = _needed_parentheses(case)
-    if needed:
-        text = _without(case, needed[case.number % len(needed)])
+    parentheses = _needed_parentheses(case)
+    if parentheses:
+        text = _without(case, parentheses[case.number % len(parentheses)])
         again = parse(text)
         if not again.diagnostics and difference(case.result.tree, again.tree) is None:
             raise Violation(f"the table says that this is no operand without parentheses:\n{text}")
@@ -54,14 +54,14 @@ def operators_follow_the_table(case: Case) -> None:
 def _needed_parentheses(case: Case) -> list[tuple[int, int]]:
     """The parentheses that are needed, as pairs of tokens; raises `Violation` if some are missing."""
     tokens = case.tokens
-    needed: list[tuple[int, int]] = []
+    parentheses: list[tuple[int, int]] = []
     starts = list(zip(tokens.lines, tokens.columns, strict=True))
     stack: list[tuple[ast.AST, Ladder]] = [(case.result.tree, Ladder.ORDINARY)]
     while stack:
         node, ladder = stack.pop()
         if isinstance(node, _OPERATORS):
             parts = _parts(node, starts, tokens.texts)
-            stack.extend(_check(node, parts, ladder, needed))
+            stack.extend(_check(node, parts, ladder, parentheses))
         elif isinstance(node, scenic.Require):
             stack.append((node.condition, Ladder.TEMPORAL))
         else:
@@ -69,7 +69,7 @@ def _needed_parentheses(case: Case) -> list[tuple[int, int]]:
     # Of two pairs around an operand none is.
     return [
         (first, last)
-        for first, last in needed
+        for first, last in parentheses
         if (tokens.texts[first - 1], tokens.texts[last + 1]) != ("(", ")")
     ]
 
@@ -106,7 +106,7 @@ def _parts(node: Any, starts: Sequence[tuple[int, int]], texts: Sequence[str]) -
         parts.append((_Part("", target, operand), stop))
         position = bisect_left(starts, last)
     parts.extend((_Part(texts[index]), index) for index in range(position, bisect_left(starts, end)))
-    found: list[_Part] = []
+    pieces: list[_Part] = []
     for index, (part, _) in enumerate(parts):
         if part.operand is not None:
             (before, opening), (after, closing) = (
@@ -114,10 +114,10 @@ def _parts(node: Any, starts: Sequence[tuple[int, int]], texts: Sequence[str]) -
                 parts[min(len(parts) - 1, index + 1)],
             )
             around = (opening, closing) if (before.text, after.text) == ("(", ")") else None
-            found.append(_Part("", part.operand, part.node, around))
+            pieces.append(_Part("", part.operand, part.node, around))
         elif part.text not in ("", "(", ")"):
-            found.append(part)
-    return found
+            pieces.append(part)
+    return pieces
 
 
 def _check(
@@ -131,8 +131,8 @@ def _check(
             (slots for form in _forms(node, ladder) if (slots := _matched(form, parts)) is not None), None
         )
     if slots is None:
-        written = " ".join(part.text or "_" for part in parts)
-        raise Violation(f"{_where(node)}: `{written}` is no form of it with these operands")
+        form_text = " ".join(part.text or "_" for part in parts)
+        raise Violation(f"{_where(node)}: `{form_text}` is no form of it with these operands")
     for part, slot in zip((part for part in parts if part.operand is not None), slots, strict=True):
         assert part.node is not None
         form = form_of(part.node, slot.ladder) or form_of(part.node)
@@ -161,13 +161,13 @@ def _matched(form: Form, parts: Sequence[_Part]) -> tuple[Slot, ...] | None:
     """The slots of a form, if this is how the parts are written."""
     if len(form.parts) != len(parts):
         return None
-    for expected, part in zip(form.parts, parts, strict=True):
-        match expected:
+    for form_part, part in zip(form.parts, parts, strict=True):
+        match form_part:
             case Word():
-                if part.text != expected.text:
+                if part.text != form_part.text:
                     return None
             case Slot():
-                target = expected.target
+                target = form_part.target
                 if target is None or part.operand != (target.field, target.index):
                     return None
             case Content():
@@ -193,9 +193,9 @@ def _chain(node: Any, parts: Sequence[_Part], ladder: Ladder) -> tuple[Slot, ...
     operators = [node.op] * (len(node.values) - 1) if isinstance(node, ast.BoolOp) else node.ops
     name = type(node).__name__
     forms = [forms_of(name, type(each).__name__, ladder)[0] for each in operators]
-    expected = [part for form in forms for part in (*form.words, None)]
-    given = [part.text or None for part in parts[1:]]
-    if parts[0].operand is None or given != expected:
+    form_words = [part for form in forms for part in (*form.words, None)]
+    words = [part.text or None for part in parts[1:]]
+    if parts[0].operand is None or words != form_words:
         return None
     order = [part.operand for part in parts if part.operand is not None]
     if order != [target for _, target in _operands(node)]:

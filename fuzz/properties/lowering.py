@@ -105,19 +105,19 @@ def _without(tree: ast.Module, spans: Sequence[Span | None]) -> ast.Module:
 
 def programs_can_be_compiled(case: Case) -> None:
     """Every tree without errors lowers to code that Python compiles, and places of nodes and code are those of the program."""
-    found = lowered(case)
-    if found is None:
+    lowering = lowered(case)
+    if lowering is None:
         return
-    check_places(found)
+    check_places(lowering)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            code = compile(found.module, FILENAME, "exec", dont_inherit=True)
+            code = compile(lowering.module, FILENAME, "exec", dont_inherit=True)
         except SyntaxError as error:
             if not _COMPLAINT.fullmatch(error.msg):
                 raise Violation(f"Python refuses it: {error.msg}, line {error.lineno}") from error
             return
-    check_code(case, found, code)
+    check_code(case, lowering, code)
 
 
 # Places of nodes.
@@ -171,7 +171,7 @@ def _innermost(statements: Sequence[tuple[Any, Any]], node: ast.stmt) -> tuple[A
 def check_code(case: Case, found: Lowering, code: CodeType) -> None:
     """Instructions are on lines that hold tokens, and every statement that makes code has some on its lines."""
     lines = _token_lines(case)
-    used: set[int] = set()
+    lines_of_code: set[int] = set()
     for each in _codes(code):
         for line, end_line, column, end_column in each.co_positions():
             if line is None or line == 0 or (each is code and not found.module.body):
@@ -180,7 +180,7 @@ def check_code(case: Case, found: Lowering, code: CodeType) -> None:
                 # The start of the module, which is no place of the program.
                 continue
             end = line if end_line is None else end_line
-            used.update(range(line, end + 1) if end - line < 1000 else (line, end))
+            lines_of_code.update(range(line, end + 1) if end - line < 1000 else (line, end))
             for one, offset in ((line, column), (end, end_column)):
                 if one not in lines:
                     raise Violation(
@@ -192,7 +192,7 @@ def check_code(case: Case, found: Lowering, code: CodeType) -> None:
                     )
     for node in _making_code(found.tree.body):
         first, last = _start(node)[0], _end(node)[0]
-        if used.isdisjoint(range(first, last + 1)):
+        if lines_of_code.isdisjoint(range(first, last + 1)):
             raise Violation(f"no instruction is on the lines of the {_where(node)}")
 
 

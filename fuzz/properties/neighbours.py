@@ -37,19 +37,19 @@ def mistakes_leave_the_rest_alone(case: Case) -> None:
     line, column = draw.choice(places)
     lines = text.split("\n")
     lines.insert(line - 1, " " * column + draw.choice(_WRONG))
-    broken = "\n".join(lines)
-    result = parse(broken)
+    wrong_text = "\n".join(lines)
+    result = parse(wrong_text)
     mistakes = [each for each in result.diagnostics if is_syntax_error(each)]
     if [each.span.line if each.span else 0 for each in mistakes] != [line]:
-        said = "; ".join(map(describe, mistakes)) or "nothing"
-        raise Violation(f"not one error in line {line}, but {said}\n{broken}")
+        descriptions = "; ".join(map(describe, mistakes)) or "nothing"
+        raise Violation(f"not one error in line {line}, but {descriptions}\n{wrong_text}")
     for node in ast.walk(result.tree):
         for name, block in ast.iter_fields(node):
             if isinstance(block, list) and any(_is_gap(each, line) for each in block):
                 setattr(node, name, [each for each in block if not _is_gap(each, line)])
     where = difference(tree, result.tree)
     if where is not None:
-        raise Violation(f"another tree beside a wrong line {line}: {where}\n{broken}")
+        raise Violation(f"another tree beside a wrong line {line}: {where}\n{wrong_text}")
 
 
 def _places(tree: ast.Module) -> Iterator[tuple[int, int]]:

@@ -36,8 +36,8 @@ def diagnostics_lie_in_the_text(case: Case) -> None:
     So do the places of labels and of the changes that repair it; these do not overlap. The check says what the parser says,
     and never raises.
     """
-    checked = set(case.checked)
-    for diagnostic in {*case.result.diagnostics, *checked}:
+    check_diagnostics = set(case.checked)
+    for diagnostic in {*case.result.diagnostics, *check_diagnostics}:
         for what, span in spans_of(diagnostic):
             if span is None:
                 raise Violation(f"{what} without a place: {describe(diagnostic)}")
@@ -48,9 +48,9 @@ def diagnostics_lie_in_the_text(case: Case) -> None:
             for (before, _), (after, _) in pairwise(edits):
                 if (before.end_line, before.end_column) > (after.line, after.column):
                     raise Violation(f"edits overlap: {describe(diagnostic)}")
-    said = {(each.code, each.span, each.message) for each in checked}
+    keys = {(each.code, each.span, each.message) for each in check_diagnostics}
     for diagnostic in case.result.diagnostics:
-        if is_syntax_error(diagnostic) and (diagnostic.code, diagnostic.span, diagnostic.message) not in said:
+        if is_syntax_error(diagnostic) and (diagnostic.code, diagnostic.span, diagnostic.message) not in keys:
             raise Violation(f"the check does not say: {describe(diagnostic)}")
 
 

@@ -83,10 +83,14 @@ def names_mean_what_python_says(case: Case) -> None:
             except (SyntaxError, ValueError, RecursionError):
                 # It may be no program of Python's, or none any more.
                 continue
-            found = resolve(tree, case.source).references
+            references = resolve(tree, case.source).references
             _check_names(
                 code,
-                {(place(part), part.id): each for part, each in found.items() if isinstance(part, ast.Name)},
+                {
+                    (place(part), part.id): each
+                    for part, each in references.items()
+                    if isinstance(part, ast.Name)
+                },
             )
 
 
@@ -176,11 +180,11 @@ def _check_names(code: CodeType, references: dict[Any, Reference]) -> None:
             or name in TRACKED
         ):
             continue
-        found = references.get((((at.lineno, at.col_offset), (at.end_lineno, at.end_col_offset)), name))
+        reference = references.get((((at.lineno, at.col_offset), (at.end_lineno, at.end_col_offset)), name))
         kind = _kind(instruction.opname)
-        if found is None or kind is None:
+        if reference is None or kind is None:
             continue
-        scope = None if found.binding is None else found.binding.scope
+        scope = None if reference.binding is None else reference.binding.scope
         if kind not in _expected(scope):
             what = "nothing" if scope is None else f"a name of the {scope.kind} {scope.name}"
             raise Violation(

@@ -175,7 +175,7 @@ class _Program:
 
 def _extents(tree: ast.AST) -> list[tuple[Any, Any]]:
     """Start and end of each statement, with its decorators."""
-    found = []
+    ranges = []
     for node in ast.walk(tree):
         if isinstance(node, ast.stmt):
             start = (node.lineno, node.col_offset)
@@ -183,8 +183,8 @@ def _extents(tree: ast.AST) -> list[tuple[Any, Any]]:
             if decorators:
                 # The `@` stands before it.
                 start = (decorators[0].lineno, 0)
-            found.append((start, (node.end_lineno, node.end_col_offset)))
-    return found
+            ranges.append((start, (node.end_lineno, node.end_col_offset)))
+    return ranges
 
 
 def _common(left: str, right: str) -> int:
@@ -201,16 +201,16 @@ def _common(left: str, right: str) -> int:
 
 def _extended(tokens: Sequence[tuple[int, int, int]], text: str, start: int, end: int) -> int:
     """The end of the brackets and strings that begin between ``start`` and ``end``, and of those that begin in them."""
-    opened: list[int] = []
+    starts: list[int] = []
     pairs: list[tuple[int, int]] = []
     for token_start, token_end, kind in tokens:
         mark = text[token_start:token_end]
         if kind in (STRING, ERROR):
             pairs.append((token_start, token_end))
         elif kind == FSTRING_START or mark in ("(", "[", "{"):
-            opened.append(token_start)
-        elif (kind == FSTRING_END or mark in (")", "]", "}")) and opened:
-            pairs.append((opened.pop(), token_end))
+            starts.append(token_start)
+        elif (kind == FSTRING_END or mark in (")", "]", "}")) and starts:
+            pairs.append((starts.pop(), token_end))
     for pair_start, pair_end in sorted(pairs):
         if start <= pair_start < end < pair_end:
             end = pair_end

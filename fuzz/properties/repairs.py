@@ -24,20 +24,22 @@ def repairs_repair(case: Case) -> None:
     for diagnostic in repairable[:: -(-len(repairable) // _MOST) or 1]:
         if diagnostic.fix is None:
             continue
-        repaired, made = apply_fixes(text, [diagnostic.fix])
-        if made != 1 or repaired == text:
+        new_text, edit_count = apply_fixes(text, [diagnostic.fix])
+        if edit_count != 1 or new_text == text:
             raise Violation(f"the repair changes nothing: {describe(diagnostic)}")
-        after = check_text(repaired, filename=FILENAME)
+        after = check_text(new_text, filename=FILENAME)
         if _shown(diagnostic) in map(_shown, after) and _starts_before_edits(diagnostic):
-            raise Violation(f"the repair leaves: {describe(diagnostic)}\n{repaired}")
+            raise Violation(f"the repair leaves: {describe(diagnostic)}\n{new_text}")
         # By the parser: what only Python's compiler refuses may have been there before, behind other errors.
-        errors = [each for each in parse(repaired).diagnostics if is_syntax_error(each)]
+        errors = [each for each in parse(new_text).diagnostics if is_syntax_error(each)]
         if case.has_error:
             # Of several errors in one statement only the first may be reported, so others may come out now.
-            known = sum(map(is_syntax_error, case.result.diagnostics))
-            errors = [each for each in errors if len(errors) > known and _is_of_edit(each, diagnostic.fix)]
+            error_count = sum(map(is_syntax_error, case.result.diagnostics))
+            errors = [
+                each for each in errors if len(errors) > error_count and _is_of_edit(each, diagnostic.fix)
+            ]
         if errors:
-            raise Violation(f"the repair of {describe(diagnostic)} makes {describe(errors[0])}\n{repaired}")
+            raise Violation(f"the repair of {describe(diagnostic)} makes {describe(errors[0])}\n{new_text}")
 
 
 def _shown(diagnostic: Diagnostic) -> tuple[str, str, object]:

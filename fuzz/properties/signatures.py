@@ -65,9 +65,9 @@ def _of_python(cls: type[ast.AST]) -> Signature:
     types_of: Mapping[str, Any] | None = getattr(cls, "_field_types", None)
     if types_of is not None:
         return tuple(_annotated(cls, name, annotation) for name, annotation in types_of.items())
-    found = _SIGNATURE.fullmatch((cls.__doc__ or "").strip())
+    match = _SIGNATURE.fullmatch((cls.__doc__ or "").strip())
     fields: list[Field] = []
-    for type_name, mark, name in _FIELD.findall(found[1] if found else ""):
+    for type_name, mark, name in _FIELD.findall(match[1] if match else ""):
         kind: Kind = "optional" if mark == "?" else "list" if mark == "*" else "one"
         if kind == "list" and (cls.__name__, name) in _GAPS:
             kind = "list with gaps"
@@ -115,7 +115,7 @@ def _shown(value: object) -> str:
 
 
 def _signatures() -> dict[type[ast.AST], Signature]:
-    found: dict[type[ast.AST], Signature] = {}
+    signature_of_class: dict[type[ast.AST], Signature] = {}
     sources: tuple[tuple[object, Callable[[type[ast.AST]], Signature]], ...] = (
         (ast, _of_python),
         (tree, _of_scenic),
@@ -125,11 +125,11 @@ def _signatures() -> dict[type[ast.AST], Signature]:
             if (
                 isinstance(cls, type)
                 and issubclass(cls, ast.AST)
-                and cls not in found
+                and cls not in signature_of_class
                 and "_fields" in vars(cls)
             ):
-                found[cls] = read(cls)
-    return found
+                signature_of_class[cls] = read(cls)
+    return signature_of_class
 
 
 SIGNATURES: Final[Mapping[type[ast.AST], Signature]] = types.MappingProxyType(_signatures())

@@ -147,14 +147,14 @@ def _exchange(nodes: list[ast.AST], draw: random.Random) -> None:
         return
     node, name, index = draw.choice(places)
     donor, donor_name, donor_index = draw.choice(places)
-    value, given = _get(node, name, index), _get(donor, donor_name, donor_index)
+    value, replacement = _get(node, name, index), _get(donor, donor_name, donor_index)
     if (
-        _holds(given, value)
-        or any(part is node for part in ast.walk(given))
-        or isinstance(given, ast.Starred)
+        _holds(replacement, value)
+        or any(part is node for part in ast.walk(replacement))
+        or isinstance(replacement, ast.Starred)
     ):
-        given = ast.copy_location(ast.Constant(value=draw.choice((None, 0, 1.5, "x", True))), value)
-    _set(node, name, index, given)
+        replacement = ast.copy_location(ast.Constant(value=draw.choice((None, 0, 1.5, "x", True))), value)
+    _set(node, name, index, replacement)
 
 
 def _values(value: Any) -> list[tuple[int | None, Any]]:

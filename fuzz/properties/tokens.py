@@ -36,10 +36,14 @@ def tokens_are_where_they_are_written(case: Case) -> None:
         start, end = starts[line] + column, starts[end_line] + end_column
         # Of a text with mistakes, what is missing may have been put in.
         if kind != ERROR and not (kind == STRING and case.has_error):
-            written = data[start:end].decode("utf-8", "surrogatepass")
-            unescaped = written.replace("{{", "{").replace("}}", "}") if kind == FSTRING_MIDDLE else written
-            if text not in (written, unescaped, unicodedata.normalize("NFKC", written)):
-                raise Violation(f"the token {text!r} at {line}:{column} stands where {written!r} is written")
+            source_text = data[start:end].decode("utf-8", "surrogatepass")
+            plain_text = (
+                source_text.replace("{{", "{").replace("}}", "}") if kind == FSTRING_MIDDLE else source_text
+            )
+            if text not in (source_text, plain_text, unicodedata.normalize("NFKC", source_text)):
+                raise Violation(
+                    f"the token {text!r} at {line}:{column} stands where {source_text!r} is written"
+                )
         if not case.has_error:
             if start < last:
                 raise Violation(f"the token {text!r} at {line}:{column} begins before the one before it ends")

@@ -54,56 +54,56 @@ def check_and_server_agree(case: Case) -> None:
     The editor spares a line that may be half typed, and leaves out what depends on it: names that are not defined.
     """
     project = _project()
-    expected = check_text(case.text, filename=FILENAME, surroundings_of=surroundings_in(project))
-    shown = {
+    expected_diagnostics = check_text(case.text, filename=FILENAME, surroundings_of=surroundings_in(project))
+    answers = {
         "the editor": diagnostics(case.text, filename=FILENAME, project=project),
         "the command": _command()(Task(FILENAME, Rules(), text=case.text)).diagnostics,
     }
-    for who, found in shown.items():
+    for who, answer in answers.items():
         if who == "the editor":
-            missing = [each for each in expected if each not in found]
-            spared = all(each.code in _SPARED or each.message.endswith(_ALONE) for each in missing)
-            if spared and all(each in expected for each in found):
+            missing = [each for each in expected_diagnostics if each not in answer]
+            is_allowed = all(each.code in _SPARED or each.message.endswith(_ALONE) for each in missing)
+            if is_allowed and all(each in expected_diagnostics for each in answer):
                 continue
-        if found != expected:
-            said = next((describe(each) for each in found if each not in expected), "less")
-            raise Violation(f"{who} says: {said}")
+        if answer != expected_diagnostics:
+            difference = next((describe(each) for each in answer if each not in expected_diagnostics), "less")
+            raise Violation(f"{who} says: {difference}")
 
 
 def places_survive_conversion(case: Case) -> None:
     """Editors and other programs receive the same places as the check reports, in any encoding of columns."""
-    found = case.checked
+    diagnostics = case.checked
     for kind, encoding in _ENCODINGS.items():
         if encoding == "utf-16-le" and _PAIRED.search(case.text):
             # In this encoding two such halves are one character, so that no client can have them as two.
             continue
-        for each in found:
+        for each in diagnostics:
             _check_protocol(each, case.source, kind, encoding)
-    report = Report(found)
+    report = Report(diagnostics)
     for name in FORMATS:
         text = render(name, report)
         if name == "json":
-            said = json.loads(text)["diagnostics"]
-            if said != [_plain(each) for each in found]:
+            report_diagnostics = json.loads(text)["diagnostics"]
+            if report_diagnostics != [_plain(each) for each in diagnostics]:
                 raise Violation("the JSON says something else")
 
 
 def _check_protocol(item: Diagnostic, source: Source, kind: Encoding, encoding: str) -> None:
     lines = Lines(source, kind)
-    made = to_diagnostic(item, lines, _URI)
-    if made.code != item.code or not made.message.startswith(item.message):
+    converted_item = to_diagnostic(item, lines, _URI)
+    if converted_item.code != item.code or not converted_item.message.startswith(item.message):
         raise Violation(f"the protocol says something else: {describe(item)}")
-    expected = [span for _, span in spans_of(item)]
+    spans = [span for _, span in spans_of(item)]
     edits = () if item.fix is None else lines.to_edits(item.fix.edits, "\n")
     ranges = [
-        made.range,
-        *(each.location.range for each in made.related_information or ()),
+        converted_item.range,
+        *(each.location.range for each in converted_item.related_information or ()),
         *(each.range for each in edits),
     ]
-    if len(ranges) != len(expected):
+    if len(ranges) != len(spans):
         raise Violation(f"the protocol has other labels or changes: {describe(item)}")
-    for span, given in zip(expected, ranges, strict=True):
-        back = (*_column(given.start, source, encoding), *_column(given.end, source, encoding))
+    for span, range_here in zip(spans, ranges, strict=True):
+        back = (*_column(range_here.start, source, encoding), *_column(range_here.end, source, encoding))
         if span is not None and back != _clipped(span, source):
             raise Violation(f"{span} comes back from {encoding} as {back}: {describe(item)}")
 

@@ -160,10 +160,10 @@ def nodes_lie_in_the_text(case: Case) -> None:
         cls = node.__class__
         start, end = outer_start, outer_end
         if "lineno" in node._attributes:
-            located: Any = node
+            placed_node: Any = node
             try:
-                start = (located.lineno, located.col_offset)
-                end = (located.end_lineno, located.end_col_offset)
+                start = (placed_node.lineno, placed_node.col_offset)
+                end = (placed_node.end_lineno, placed_node.end_col_offset)
             except AttributeError as problem:
                 raise Violation(f"{cls.__name__} has no place: {problem}") from None
             if end < start:
@@ -182,7 +182,7 @@ def nodes_lie_in_the_text(case: Case) -> None:
                 )
             if getattr(node, "decorator_list", None):
                 # Decorators stand before what they decorate.
-                start = _start(located.decorator_list[0], start)
+                start = _start(placed_node.decorator_list[0], start)
         if isinstance(node, ast.JoinedStr):
             # The text of a field with `=` starts with the blanks after the brace, and ends with those after the sign.
             loose.update(node.values)
@@ -227,15 +227,15 @@ def _check_order(node: ast.AST, row: list[ast.AST]) -> None:
     for part in row:
         if "lineno" not in part._attributes:
             continue
-        located: Any = part
+        placed_node: Any = part
         start = _start(part, last)
         if getattr(part, "decorator_list", None):
-            start = min(start, _start(located.decorator_list[0], start))
+            start = min(start, _start(placed_node.decorator_list[0], start))
         if start < last and not (_stands_for_both(node) or _is_of_field(node, last, part)):
             raise Violation(
                 f"{_where(part)} in {_where(node)} begins before the part before it ends, at {last}"
             )
-        last = (located.end_lineno, located.end_col_offset)
+        last = (placed_node.end_lineno, placed_node.end_col_offset)
 
 
 def _stands_for_both(node: ast.AST) -> bool:

@@ -21,8 +21,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--only", metavar="NAMES", help="try these properties alone, with commas between")
     options = parser.parse_args(arguments)
     names = None if options.only is None else options.only.split(",")
-    if unknown := set(names or ()) - set(PROPERTIES):
-        parser.error(f"no property {', '.join(sorted(unknown))}; there are {', '.join(PROPERTIES)}")
+    if unknown_names := set(names or ()) - set(PROPERTIES):
+        parser.error(f"no property {', '.join(sorted(unknown_names))}; there are {', '.join(PROPERTIES)}")
     first = secrets.randbelow(1 << 32) if options.seed is None else options.seed
     print(f"{options.programs} typed programs with seed {first}", flush=True)
     rounds = [
@@ -31,8 +31,8 @@ def main(arguments: list[str] | None = None) -> int:
     ]
     start, report = time.time(), Report()
     with multiprocessing.get_context("spawn").Pool(max(1, options.jobs)) as pool:
-        for found in pool.starmap(run_round, rounds, chunksize=1):
-            report.add(found)
+        for round_report in pool.starmap(run_round, rounds, chunksize=1):
+            report.add(round_report)
     for failure in report.failures:
         print(failure)
     for outcome, count in report.outcomes.most_common():

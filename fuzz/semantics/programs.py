@@ -64,7 +64,7 @@ class _Maker:
         if self.numbers:
             leaves.append(lambda: self.pick(*self.numbers))
         inner = depth - 1
-        drawn = [
+        distributions = [
             lambda: f"Uniform({self.number(inner)}, {self.number(inner)})",
             lambda: f"DiscreteRange({self.pick('-1', '0')}, {self.pick('2', '4')})",
             lambda: f"Normal({self.number(0)}, 1)",
@@ -72,7 +72,7 @@ class _Maker:
             lambda: f"Discrete({{{self.number(inner)}: 1, {self.number(inner)}: 2}})",
         ]
         others = [
-            *(() if self.fixed else drawn),
+            *(() if self.fixed else distributions),
             lambda: f"({self.number(inner)} {self.pick('+', '-', '*')} {self.number(inner)})",
             lambda: f"{self.pick('abs', 'sin', 'cos')}({self.number(inner)})",
             lambda: f"{self.pick('max', 'min')}({self.number(inner)}, {self.number(inner)})",
@@ -213,18 +213,18 @@ class _Maker:
 
     def others(self) -> list[str]:
         sides = ("width", "length", "height")
-        found = [f"with {name} {self.pick(*_SIZES)}" for name in sides if self.rarely(2)]
+        specifiers = [f"with {name} {self.pick(*_SIZES)}" for name in sides if self.rarely(2)]
         if self.rarely(3):
-            found.append(f"with load {self.number(1)}")
+            specifiers.append(f"with load {self.number(1)}")
         if self.rarely(3):
-            found.append(f"with shape {self.pick('CylinderShape()', 'SpheroidShape()', 'ConeShape()')}")
+            specifiers.append(f"with shape {self.pick('CylinderShape()', 'SpheroidShape()', 'ConeShape()')}")
         if self.rarely(6):
-            found.append("with requireVisible True")
+            specifiers.append("with requireVisible True")
         if self.upto(1):
-            found.append("with allowCollisions True")
+            specifiers.append("with allowCollisions True")
         if self.behaviors and self.upto(1):
-            found.append(f"with behavior {self.pick(*self.behaviors)}({self.number(0)})")
-        return found
+            specifiers.append(f"with behavior {self.pick(*self.behaviors)}({self.number(0)})")
+        return specifiers
 
     def made(self) -> str:
         """A new object, in the specifiers' order or another one."""

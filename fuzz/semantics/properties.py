@@ -146,12 +146,14 @@ def narrowing_loses_nothing(run: Run) -> None:
     except Exception as error:  # noqa: BLE001 - of a condition that sampling did not reach
         coded(error)
         return
-    accepted = [not isinstance(result, Exhausted) for result in results]
-    narrowed = {axis.address: index for index, axis in enumerate(run.scenario.axes)}
-    if not any(accepted) or narrowed.keys() != numbers.keys():
+    is_accepted = [not isinstance(result, Exhausted) for result in results]
+    axis_numbers = {axis.address: index for index, axis in enumerate(run.scenario.axes)}
+    if not any(is_accepted) or axis_numbers.keys() != numbers.keys():
         return
-    kept = run.scenario.domain.contains(points[:, [list(numbers).index(address) for address in narrowed]])
-    assert kept[np.array(accepted)].all(), "an accepted point is not in the domain"
+    is_in_domain = run.scenario.domain.contains(
+        points[:, [list(numbers).index(address) for address in axis_numbers]]
+    )
+    assert is_in_domain[np.array(is_accepted)].all(), "an accepted point is not in the domain"
 
 
 def definite_numbers_are_random_ones(run: Run) -> None:

@@ -34,7 +34,7 @@ class Report:
 def run_round(seed_of_round: int, count: int = ROUND, names: Collection[str] | None = None) -> Report:
     """Runs ``count`` programs of a seed through the named properties, or all; the first failure ends the round, and is shrunk."""
     report = Report()
-    failed: list[tuple[str, str, str]] = []
+    failures: list[tuple[str, str, str]] = []
 
     @seed(seed_of_round)
     @settings(
@@ -53,15 +53,15 @@ def run_round(seed_of_round: int, count: int = ROUND, names: Collection[str] | N
                 with limited(SECONDS):
                     PROPERTIES[name](run)
             except (Exception, TookTooLongError) as error:
-                failed.append((name, program.text, _reason(error)))
+                failures.append((name, program.text, _reason(error)))
                 raise AssertionError(name) from error
-        if not failed:
+        if not failures:
             report.outcomes[f"{run.outcome.stage} {run.outcome.code}".strip()] += 1
 
     try:
         attempt()
     except AssertionError:
-        name, text, reason = failed[-1]  # The last that was tried is the smallest.
+        name, text, reason = failures[-1]  # The last that was tried is the smallest.
         report.failures.append(f"FAILED {name} (seed {seed_of_round})\n{text}{reason}\n")
     return report
 

@@ -70,7 +70,7 @@ class Analysis:
 
     def items_of(self, alternative: Alternative) -> Iterator[Item]:
         """The items of an alternative and all items within them."""
-        stack = [named.item for named in reversed(alternative.items)]
+        stack = [entry.item for entry in reversed(alternative.items)]
         while stack:
             item = stack.pop()
             yield item
@@ -96,16 +96,18 @@ class Analysis:
     def _fixed_point(
         self, of_alternative: Callable[[Sequence[Named], Found], frozenset[int]]
     ) -> dict[str, frozenset[int]]:
-        found: dict[str, frozenset[int]] = dict.fromkeys(self.rules, frozenset())
-        changed = True
-        while changed:
-            changed = False
+        kinds_of_rule: dict[str, frozenset[int]] = dict.fromkeys(self.rules, frozenset())
+        is_changing = True
+        while is_changing:
+            is_changing = False
             for rule in self.rules.values():
-                kinds = frozenset().union(*(of_alternative(each.items, found) for each in rule.alternatives))
-                if kinds != found[rule.name]:
-                    found[rule.name] = kinds
-                    changed = True
-        return found
+                kinds = frozenset().union(
+                    *(of_alternative(each.items, kinds_of_rule) for each in rule.alternatives)
+                )
+                if kinds != kinds_of_rule[rule.name]:
+                    kinds_of_rule[rule.name] = kinds
+                    is_changing = True
+        return kinds_of_rule
 
     def _first_of_item(self, item: Item, found: Found) -> frozenset[int]:
         match item:
@@ -127,21 +129,21 @@ class Analysis:
 
     def _first_of_alternative(self, items: Sequence[Named], found: Found) -> frozenset[int]:
         kinds: frozenset[int] = frozenset()
-        allowed: frozenset[int] | None = None
-        for named in items:
-            item = named.item
+        admissible: frozenset[int] | None = None
+        for entry in items:
+            item = entry.item
             if isinstance(item, Look) and item.positive and not kinds:
-                looked = self._first_of_item(item.item, found)
-                allowed = looked if allowed is None else allowed & looked
+                lookahead = self._first_of_item(item.item, found)
+                admissible = lookahead if admissible is None else admissible & lookahead
             kinds |= self._first_of_item(item, found)
             if not self.may_be_empty(item):
                 break
-        return kinds if allowed is None else kinds & allowed
+        return kinds if admissible is None else kinds & admissible
 
     def _last_of_alternative(self, items: Sequence[Named], found: Found) -> frozenset[int]:
         kinds: frozenset[int] = frozenset()
-        for named in reversed(items):
-            item = named.item
+        for entry in reversed(items):
+            item = entry.item
             match item:
                 case Look() | Cut():
                     continue
@@ -189,15 +191,15 @@ class Analysis:
 
     def leftmost(self, rule: Rule) -> set[str]:
         """The rules that may be tried at the place where ``rule`` is tried."""
-        found: set[str] = set()
+        names: set[str] = set()
         for alternative in rule.alternatives:
-            for named in alternative.items:
-                for item in self.items_of(Alternative((named,), None)):
+            for entry in alternative.items:
+                for item in self.items_of(Alternative((entry,), None)):
                     if isinstance(item, Reference):
-                        found.add(item.rule)
-                if not self.may_be_empty(named.item):
+                        names.add(item.rule)
+                if not self.may_be_empty(entry.item):
                     break
-        return found
+        return names
 
     # The ladder.
 
@@ -328,16 +330,16 @@ class Analysis:
         A rule that tries two alternatives at one place, both of which can contain the rule again, takes exponential
         time on nested text unless what it found is kept.
         """
-        chosen: dict[str, frozenset[int] | None] = {
+        tokens_of_rule: dict[str, frozenset[int] | None] = {
             rule.name: None for rule in self.rules.values() if rule.memo
         }
         for rule in self.rules.values():
-            if rule.name in chosen:
+            if rule.name in tokens_of_rule:
                 continue
-            kinds = self._retried(rule, frozenset(chosen))
+            kinds = self._retried(rule, frozenset(tokens_of_rule))
             if kinds:
-                chosen[rule.name] = kinds & self.first[rule.name]
-        return chosen
+                tokens_of_rule[rule.name] = kinds & self.first[rule.name]
+        return tokens_of_rule
 
     def _retried(self, rule: Rule, stops: frozenset[str]) -> frozenset[int]:
         # The alternatives after a left operand are tried at another place than those before it.
@@ -367,13 +369,13 @@ class Analysis:
                 groups.append([body])
         for index, group in enumerate(groups):
             for later in groups[index + 1 :]:
-                shared = self.overlap(group[0], later[0])
+                common = self.overlap(group[0], later[0])
                 if (
-                    shared
+                    common
                     and any(self._reaches(body, name, stops, to_cut=True) for body in group)
                     and any(self._reaches(body, name, stops, to_cut=False) for body in later)
                 ):
-                    kinds |= shared
+                    kinds |= common
         for group in groups:
             if len(group) > 1:
                 deeper = self._retried_among(name, [body[1:] for body in group], stops, start)
@@ -384,37 +386,37 @@ class Analysis:
     def _reaches(self, items: Sequence[Named], target: str, stops: frozenset[str], *, to_cut: bool) -> bool:
         """Return whether ``items`` can contain ``target``; with ``to_cut``, before a failure would end the choice."""
         roots = []
-        for named in items:
-            if to_cut and isinstance(named.item, Cut):
+        for entry in items:
+            if to_cut and isinstance(entry.item, Cut):
                 break
             roots += [
                 item.rule
-                for item in self.items_of(Alternative((named,), None))
+                for item in self.items_of(Alternative((entry,), None))
                 if isinstance(item, Reference)
             ]
-        seen: set[str] = set()
+        rules_done: set[str] = set()
         while roots:
             rule = roots.pop()
             if rule == target:
                 return True
-            if rule in seen or rule in stops:
+            if rule in rules_done or rule in stops:
                 continue
-            seen.add(rule)
+            rules_done.add(rule)
             for alternative in self.rules[rule].alternatives:
                 roots += [item.rule for item in self.items_of(alternative) if isinstance(item, Reference)]
         return False
 
     def reachable(self) -> set[str]:
         """The rules that the start rule needs."""
-        seen: set[str] = set()
+        names: set[str] = set()
         roots = [self.grammar.start]
         while roots:
             rule = roots.pop()
-            if rule not in seen:
-                seen.add(rule)
+            if rule not in names:
+                names.add(rule)
                 for alternative in self.rules[rule].alternatives:
                     roots += [item.rule for item in self.items_of(alternative) if isinstance(item, Reference)]
-        return seen
+        return names
 
 
 def same_item(left: Named, right: Named) -> bool:

@@ -67,14 +67,14 @@ def _check_twins(rule: Rule) -> None:
 def _check_left_recursion(analysis: Analysis) -> None:
     leftmost = {name: analysis.leftmost(rule) for name, rule in analysis.rules.items()}
     for name, direct in leftmost.items():
-        seen: set[str] = set()
+        rules_done: set[str] = set()
         roots = list(direct - {name})
         while roots:
             rule = roots.pop()
             if rule == name:
                 raise GrammarError(f"rule {name!r} is left-recursive through other rules")
-            if rule not in seen:
-                seen.add(rule)
+            if rule not in rules_done:
+                rules_done.add(rule)
                 roots += leftmost[rule] - {rule}
         rule_object = analysis.rules[name]
         if name in direct and not analysis.is_left_recursive(rule_object):
@@ -96,15 +96,15 @@ def _starts_with(alternative: Alternative, rule: str) -> bool:
 
 def value_item(alternative: Alternative, rule: str) -> Named:
     """The item whose value is that of an alternative without an action."""
-    named = [each for each in alternative.items if each.name is not None]
+    items_with_names = [each for each in alternative.items if each.name is not None]
     bearing = [each for each in alternative.items if not isinstance(each.item, Look | Cut)]
-    chosen = named or bearing
-    if len(chosen) != 1:
+    candidates = items_with_names or bearing
+    if len(candidates) != 1:
         raise GrammarError(f"rule {rule!r}: {describe(alternative)} needs an action")
-    item = chosen[0].item
+    item = candidates[0].item
     if isinstance(item, Optional):
         raise GrammarError(f"rule {rule!r}: the value of {describe(alternative)} may be None")
-    return chosen[0]
+    return candidates[0]
 
 
 def describe(alternative: Alternative) -> str:

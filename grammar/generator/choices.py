@@ -144,8 +144,10 @@ class ChoiceWriter(ItemWriter):
                     if isinstance(item, Reference) and self.is_last_resort(group, first, later, mode):
                         self.line(f"return parse_{item.rule}()")
                         return
-                    needed = self.needed_ahead(group)
-                    with self.block(f"if ahead({needed}):") if needed is not None else nullcontext():
+                    kinds_ahead = self.needed_ahead(group)
+                    with (
+                        self.block(f"if ahead({kinds_ahead}):") if kinds_ahead is not None else nullcontext()
+                    ):
                         self.step(group, mode)
                     if mark is not None:
                         self.reset(mark)
@@ -298,24 +300,24 @@ class ChoiceWriter(ItemWriter):
         """All items of an alternative are matched: make its value."""
         alternative = branch.alternative
         if alternative.action is None:
-            chosen = value_item(alternative, mode.rule)
-            index = next(i for i, named in enumerate(alternative.items) if named is chosen)
+            item_of_value = value_item(alternative, mode.rule)
+            index = next(i for i, entry in enumerate(alternative.items) if entry is item_of_value)
             self.used(branch, mode)
             self.result(str(branch.variables[index]), mode)
             return
         names = {
-            named.name: str(variable)
-            for named, variable in zip(alternative.items, branch.variables, strict=True)
-            if named.name is not None
+            entry.name: str(variable)
+            for entry, variable in zip(alternative.items, branch.variables, strict=True)
+            if entry.name is not None
         }
         if mode.operand is not None:
             names[mode.operand] = f"v_{mode.operand}"
-        translated = self.translator.translate(alternative.action, names, mode.rule)
-        if translated.guard is not None:
-            with self.block(f"if {translated.guard}:"):
-                self.make(branch, translated, mode)
+        translation = self.translator.translate(alternative.action, names, mode.rule)
+        if translation.guard is not None:
+            with self.block(f"if {translation.guard}:"):
+                self.make(branch, translation, mode)
         else:
-            self.make(branch, translated, mode)
+            self.make(branch, translation, mode)
 
     def make(self, branch: Branch, translated: Translated, mode: Mode) -> None:
         end = "e"
@@ -363,8 +365,8 @@ class ChoiceWriter(ItemWriter):
             return
         values = [
             str(variable)
-            for named, variable in zip(branch.alternative.items, branch.variables, strict=True)
-            if is_varied(named.item)
+            for entry, variable in zip(branch.alternative.items, branch.variables, strict=True)
+            if is_varied(entry.item)
         ]
         number = self.number_of(mode.rule, branch.alternative, has_operand=mode.operand is not None)
         self.line(f"p = p.after({', '.join([repr(mode.rule), str(number), *values])})")

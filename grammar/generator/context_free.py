@@ -29,12 +29,12 @@ __all__ = ["emit_context_free"]
 def emit_context_free(grammar_path: Path, header: str) -> str:
     """The text of the module ``context_free``; raises `GrammarError` if a rule is missing, or none uses it."""
     demands = grammar_path.with_name("demands.gram")
-    added = demands.read_text(encoding="utf-8") if demands.is_file() else ""
+    additions = demands.read_text(encoding="utf-8") if demands.is_file() else ""
     grammar = _with_alternatives(
-        read_grammar_text(grammar_path.read_text(encoding="utf-8") + added, replacing=True)
+        read_grammar_text(grammar_path.read_text(encoding="utf-8") + additions, replacing=True)
     )
-    used = _reachable(grammar)
-    if idle := set(re.findall(r"^(\w+?)(?:__\w+)?:", added, re.MULTILINE)) - used:
+    rule_names = _reachable(grammar)
+    if idle := set(re.findall(r"^(\w+?)(?:__\w+)?:", additions, re.MULTILINE)) - rule_names:
         raise GrammarError(f"demands.gram: no rule uses {', '.join(sorted(idle))}")
     lines = [
         header.rstrip(),
@@ -47,7 +47,7 @@ def emit_context_free(grammar_path: Path, header: str) -> str:
     lines += (
         f"        {rule.name!r}: {tuple(rows_of(grammar, rule))!r},"
         for rule in grammar.rules.values()
-        if rule.name in used and not rule.lifted
+        if rule.name in rule_names and not rule.lifted
     )
     lines += ["    }", ")", '"""The alternatives of each rule."""', "", f"START = {grammar.start!r}", ""]
     return "\n".join(lines)
@@ -59,10 +59,12 @@ def _with_alternatives(grammar: Grammar) -> Grammar:
     for name in [each for each in rules if "__" in each]:
         new, (target, word) = rules.pop(name), name.split("__")
         rule = rules.get(target)
-        kept = () if rule is None else tuple(each for each in rule.alternatives if _first_word(each) != word)
-        if rule is None or len(kept) == len(rule.alternatives):
+        remaining = (
+            () if rule is None else tuple(each for each in rule.alternatives if _first_word(each) != word)
+        )
+        if rule is None or len(remaining) == len(rule.alternatives):
             raise GrammarError(f"demands.gram: there is nothing for {name!r} to replace")
-        rules[target] = replace(rule, alternatives=(*kept, *new.alternatives))
+        rules[target] = replace(rule, alternatives=(*remaining, *new.alternatives))
     return replace(grammar, rules=rules)
 
 
@@ -72,19 +74,19 @@ def _first_word(alternative: Alternative) -> str | None:
 
 
 def _reachable(grammar: Grammar) -> set[str]:
-    seen: set[str] = set()
+    names: set[str] = set()
     roots = [grammar.start]
     while roots:
         name = roots.pop()
-        if name in seen:
+        if name in names:
             continue
-        seen.add(name)
+        names.add(name)
         if name not in grammar.rules:
             raise GrammarError(f"demands.gram: there is no rule {name!r}")
         for alternative in grammar.rules[name].alternatives:
-            for named in alternative.items:
-                roots += _references(named.item)
-    return seen
+            for entry in alternative.items:
+                roots += _references(entry.item)
+    return names
 
 
 def _references(item: Item) -> Iterator[str]:

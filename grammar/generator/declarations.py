@@ -44,14 +44,14 @@ def check_declarations(analysis: Analysis) -> None:
     precedence = Precedence(analysis)
     for form in (*precedence.forms, *precedence.specifiers):
         if form.node in _TABLES and form.operator is not None:
-            what, module, declared = _TABLES[form.node]
+            what, module, declarations = _TABLES[form.node]
             text = " ".join(form.words)
-            if form.operator not in declared:
+            if form.operator not in declarations:
                 raise GrammarError(
                     f"rule {form.rule!r}: the {what} {form.operator!r} (`{text} ...`) is not declared: "
                     f"add it to scenic/language/{module}.py"
                 )
-            _check_count(what, form.operator, declared[form.operator], len(form.slots) + len(form.absent))
+            _check_count(what, form.operator, declarations[form.operator], len(form.slots) + len(form.absent))
     for rule, node in _statements(analysis.grammar):
         if node not in STATEMENTS:
             raise GrammarError(

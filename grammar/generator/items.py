@@ -104,24 +104,24 @@ class ItemWriter(Writer):
         if isinstance(inner, Reference):
             rule = self.analysis.rules[inner.rule]
             tokens = [
-                [named.item for named in alternative.items if isinstance(named.item, Token | TokenChoice)]
+                [entry.item for entry in alternative.items if isinstance(entry.item, Token | TokenChoice)]
                 for alternative in rule.alternatives
             ]
             if all(
-                len(found) == len(alternative.items)
-                for found, alternative in zip(tokens, rule.alternatives, strict=True)
+                len(row) == len(alternative.items)
+                for row, alternative in zip(tokens, rule.alternatives, strict=True)
             ):
                 tests = [
                     " and ".join(
                         self.kinds(
                             self.analysis.kinds_of(token), f"kinds[p + {offset}]" if offset else "kinds[p]"
                         )
-                        for offset, token in enumerate(found)
+                        for offset, token in enumerate(row)
                     )
-                    for found in tokens
+                    for row in tokens
                 ]
-                if len({len(found) for found in tokens}) == 1 and len(tokens[0]) == 1:
-                    kinds = frozenset().union(*(self.analysis.kinds_of(found[0]) for found in tokens))
+                if len({len(row) for row in tokens}) == 1 and len(tokens[0]) == 1:
+                    kinds = frozenset().union(*(self.analysis.kinds_of(row[0]) for row in tokens))
                     tests = [self.kinds(kinds, "kinds[p]")]
                 test = " or ".join(f"({each})" for each in tests) if len(tests) > 1 else tests[0]
                 with self.block(f"if {test}:" if item.positive else f"if not ({test}):"):

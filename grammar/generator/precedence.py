@@ -171,13 +171,13 @@ class Precedence:
         self.ladders: dict[str, list[tuple[str, int]]] = {}
         self._levels: dict[str, Level] = {}
         self._atoms: set[str] = set()
-        placed = [
+        levels = [
             place
             for ladder, root in ROOTS.items()
             if root in self.rules
             for place in self._number(ladder, root)
         ]
-        self.forms = [form for rule, level in placed for form in self._forms(rule, level)]
+        self.forms = [form for rule, level in levels for form in self._forms(rule, level)]
         self.specifiers = list(self._forms(SPECIFIER, Level(SPECIFIER, 0))) if SPECIFIER in self.rules else []
 
     # Levels.
@@ -219,11 +219,11 @@ class Precedence:
     def _number(self, ladder: str, root: str) -> list[tuple[str, Level]]:
         """Give the rules of a ladder their levels; returns the rules with operators, branches included."""
         chain = self._chain(root)
-        shared = self._levels.get(chain[-1])
+        common_level = self._levels.get(chain[-1])
         # Each rule beside its distance from the ladder's loosest level.
         places: list[tuple[str, int]] = []
         distance = -1
-        for index, rule in enumerate(chain if shared is None else chain[:-1]):
+        for index, rule in enumerate(chain if common_level is None else chain[:-1]):
             distance += 1
             places.append((rule, distance))
             is_last = index + 1 == len(chain)
@@ -235,16 +235,16 @@ class Precedence:
                 elif branch not in self._levels and not self._belongs(branch, rule):
                     distance += 1
                 places.append((branch, distance))
-        if shared is None:
+        if common_level is None:
             self._atoms.add(chain[-1])
-        loosest = 1 if shared is None else shared.number - distance - 1
-        placed = [(rule, Level(ladder, loosest + distance)) for rule, distance in places]
+        loosest = 1 if common_level is None else common_level.number - distance - 1
+        levels = [(rule, Level(ladder, loosest + distance)) for rule, distance in places]
         numbers: dict[int, str] = {}
-        for rule, level in placed:
+        for rule, level in levels:
             self._levels.setdefault(rule, level)
             numbers.setdefault(level.number, rule)
         self.ladders[ladder] = [(rule, number) for number, rule in numbers.items()]
-        return placed
+        return levels
 
     def _belongs(self, branch: str, rule: str) -> bool:
         """Return whether a branch of ``rule`` ends in an operand of ``rule``, or only puts something in brackets."""
@@ -337,7 +337,7 @@ class Precedence:
         if not isinstance(item, Reference) or item.rule in self._levels:
             return False
         for alternative in self.rules[item.rule].alternatives:
-            items = [named.item for named in alternative.items if not isinstance(named.item, Look)]
+            items = [entry.item for entry in alternative.items if not isinstance(entry.item, Look)]
             if not isinstance(items[0], Token | TokenChoice) or not any(
                 isinstance(each, Reference) and self._slot(each.rule) is not None for each in items
             ):

@@ -57,9 +57,9 @@ def read_grammar_text(text: str, *, digest: str = "", replacing: bool = False) -
     settings: dict[str, list[str]] = {}
     for name, value in metas:
         settings.setdefault(name, []).append(value or "")
-    unknown = settings.keys() - {"start", "recover"}
-    if unknown or len(settings.get("start", [])) != 1:
-        raise GrammarError(f"expected one `@start` and any `@recover`; unknown: {sorted(unknown)}")
+    unknown_settings = settings.keys() - {"start", "recover"}
+    if unknown_settings or len(settings.get("start", [])) != 1:
+        raise GrammarError(f"expected one `@start` and any `@recover`; unknown: {sorted(unknown_settings)}")
     if replacing:
         rules = list({rule.name: rule for rule in rules}.values())
     return _Reader(any_kinds=replacing).grammar(rules, settings, digest)

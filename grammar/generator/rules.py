@@ -17,19 +17,19 @@ class RuleWriter(ChoiceWriter):
         """Emit the functions of a rule."""
         self.counter = 0
         step = self.analysis.steps.get(rule.name)
-        memoised = self.analysis.memoised
+        memo_kinds = self.analysis.memoised
         if step is not None:
             self.loop(rule.name, step.tails, step.variable, repeated=step.repeated, plain=self.plain(step))
             self.step_rule(rule, step)
         elif self.analysis.is_left_recursive(rule):
             self.left_recursive(rule)
-        elif rule.name in memoised:
+        elif rule.name in memo_kinds:
             with self.function(f"fresh_{rule.name}"):
                 self.body(rule)
             with self.function(f"parse_{rule.name}"):
                 self.line("s = p")
-                self.memo(rule.name, f"fresh_{rule.name}", memoised[rule.name])
-                if memoised[rule.name] is not None:
+                self.memo(rule.name, f"fresh_{rule.name}", memo_kinds[rule.name])
+                if memo_kinds[rule.name] is not None:
                     self.line(f"return fresh_{rule.name}()")
         else:
             with self.function(f"parse_{rule.name}"):
@@ -136,9 +136,9 @@ class RuleWriter(ChoiceWriter):
         name = rule.name
         analysis = self.analysis
         prefixes = [Branch(each, start="s") for each in step.prefixes]
-        memoised = analysis.memoised.get(name)
+        memo_kinds = analysis.memoised.get(name)
         general = f"parse_{name}"
-        if memoised is not None:
+        if memo_kinds is not None:
             general = f"general_{name}"
             with self.function(general):
                 self.line("s = p")
@@ -147,8 +147,8 @@ class RuleWriter(ChoiceWriter):
             self.line("s = p")
             if self.fast and analysis.bottom(name) != name:
                 self.short_cut(name)
-            if memoised is not None:
-                self.memo(name, general, memoised)
+            if memo_kinds is not None:
+                self.memo(name, general, memo_kinds)
                 self.line(f"return {general}()")
             else:
                 self.general(step, prefixes)
@@ -182,10 +182,10 @@ class RuleWriter(ChoiceWriter):
                 limit = level
                 for kind in sorted(self.analysis.continuations(each)):
                     table.setdefault(kind, []).append((level, each))
-        for number, known in enumerate(self.tables):
+        for number, earlier_table in enumerate(self.tables):
             cut = {
                 kind: entries
-                for kind, all_entries in known.items()
+                for kind, all_entries in earlier_table.items()
                 if (entries := [entry for entry in all_entries if entry[0] <= limit])
             }
             if cut == table:
@@ -224,14 +224,14 @@ class RuleWriter(ChoiceWriter):
             self.line(f"r = parse_{step.operand}()")
             return
         assert name.action is not None
-        translated = self.translator.translate(name.action, {str(name.items[0].name): "s"}, rule.name)
-        if translated.node is None:
+        translation = self.translator.translate(name.action, {str(name.items[0].name): "s"}, rule.name)
+        if translation.node is None:
             raise GrammarError(f"rule {rule.name!r}: a name should become a node")
         with self.block(f"if kinds[s] == {NAME}:"):
             self.line("p = s + 1")
-            self.line(f"r = new({translated.node[0]})")
+            self.line(f"r = new({translation.node[0]})")
             self.line(
-                f"r.__dict__ = {{{translated.node[1]}, 'lineno': lines[s], 'col_offset': columns[s], "
+                f"r.__dict__ = {{{translation.node[1]}, 'lineno': lines[s], 'col_offset': columns[s], "
                 "'end_lineno': end_lines[s], 'end_col_offset': end_columns[s]}"
             )
         with self.block("else:"):

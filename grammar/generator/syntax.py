@@ -79,22 +79,22 @@ def _fields(grammar: Grammar, alternative: Alternative) -> tuple[tuple[str, str,
     """The fields of the node, each from an item of the row (by its index) or a constant; ``None`` if an action computes more."""
     if alternative.action is None:
         return None
-    made = ast.parse(alternative.action.strip(), mode="eval").body
-    if isinstance(made, ast.BoolOp) and isinstance(made.op, ast.And):
+    call = ast.parse(alternative.action.strip(), mode="eval").body
+    if isinstance(call, ast.BoolOp) and isinstance(call.op, ast.And):
         # Before the node stand conditions, which refuse texts.
-        made = made.values[-1]
+        call = call.values[-1]
     if not (
-        isinstance(made, ast.Call) and isinstance(made.func, ast.Name) and made.func.id in node_classes()
+        isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in node_classes()
     ):
         return None
     places, index = {}, 0
-    for named in alternative.items:
-        count = len(tuple(_item(grammar, named.item)))
-        if named.name is not None and count == 1:
-            places[named.name] = index
+    for entry in alternative.items:
+        count = len(tuple(_item(grammar, entry.item)))
+        if entry.name is not None and count == 1:
+            places[entry.name] = index
         index += count
     fields: list[tuple[str, str, object]] = []
-    for keyword in made.keywords:
+    for keyword in call.keywords:
         match keyword:
             case ast.keyword(arg=str(field), value=ast.Name(id=name)) if name in places:
                 fields.append((field, "item", places[name]))

@@ -98,20 +98,20 @@ def _ladder_of(analysis: Analysis) -> list[str]:
 def _starting_words(analysis: Analysis) -> set[str]:
     """The first words of statements that are not expressions."""
     words: set[str] = set()
-    seen: set[str] = set()
+    names: set[str] = set()
     roots = ["statement"] if "statement" in analysis.rules else []
     while roots:
         name = roots.pop()
-        if name in seen or name in analysis.steps:
+        if name in names or name in analysis.steps:
             continue
-        seen.add(name)
+        names.add(name)
         for alternative in analysis.rules[name].alternatives:
-            for named in alternative.items:
-                for item in analysis.items_of(Alternative((named,), None)):
+            for entry in alternative.items:
+                for item in analysis.items_of(Alternative((entry,), None)):
                     if isinstance(item, Token) and item.literal and item.text.isidentifier():
                         words.add(item.text)
                     elif isinstance(item, Reference):
                         roots.append(item.rule)
-                if not analysis.may_be_empty(named.item):
+                if not analysis.may_be_empty(entry.item):
                     break
     return words

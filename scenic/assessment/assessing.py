@@ -47,7 +47,7 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
     elif estimates:
         tries = max(1, candidates // _SHOWN)
         scenes = scenario.stream(_SHOWN, seed=seed, approximate=_SHOWN, max_attempts=tries)
-    found = [scene for scene in scenes if isinstance(scene, Scene)]
+    accepted_scenes = [scene for scene in scenes if isinstance(scene, Scene)]
     draws = scenario.draw_names
     values = tuple(
         ValueRow(
@@ -61,11 +61,11 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
     return Assessment(
         scenario.filename,
         values,
-        tuple(_whereabouts(scenario, found)),
+        tuple(_whereabouts(scenario, accepted_scenes)),
         domain.volume,
         estimates,
         tuple(impossible),
-        found[0].approximation if found else None,
+        accepted_scenes[0].approximation if accepted_scenes else None,
         () if impossible else findings(decision_of(scenario.outline), scenario.outline.checks),
     )
 

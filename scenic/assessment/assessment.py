@@ -121,9 +121,9 @@ class Assessment:
             return [f"no scene exists: {', '.join(self.impossible)}"]
         lines = [f"analysis removes {1 - self.kept:.4g} of all combinations of draws"]
         if self.approximation is not None:
-            tried = max(part.candidates for part in self.components)
+            candidate_count = max(part.candidates for part in self.components)
             lines.append(
-                f"none of {tried} candidates met every requirement; `--approximate` finds scenes all the same"
+                f"none of {candidate_count} candidates met every requirement; `--approximate` finds scenes all the same"
             )
         if self.acceptance:
             lines.append(
@@ -133,8 +133,8 @@ class Assessment:
                 f"log-probability of the scenario: {self.log_probability:.3f} (standard error {self.error:.3f})"
             )
         else:
-            tried = max(part.candidates for part in self.components)
-            lines.append(f"none of {tried} candidates met every requirement")
+            candidate_count = max(part.candidates for part in self.components)
+            lines.append(f"none of {candidate_count} candidates met every requirement")
         if len(self.components) > 1:
             alone = max(1 / part.acceptance if part.accepted else math.inf for part in self.components)
             lines.append(

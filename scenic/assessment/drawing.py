@@ -121,9 +121,9 @@ def _marks(places: Sequence[Whereabouts]) -> Iterator[_Mark]:
     """Yield the marks to draw, in order."""
     parts = [part for item in places for part in (item.lower, item.upper, item.seen)]
     corners = np.concatenate([np.empty((0, 3)), *parts])
-    known = np.where(np.isfinite(corners), corners, np.nan)
-    least = np.array([np.nanmin(column) if np.isfinite(column).any() else 0.0 for column in known.T])
-    most = np.array([np.nanmax(column) if np.isfinite(column).any() else 0.0 for column in known.T])
+    finite_corners = np.where(np.isfinite(corners), corners, np.nan)
+    least = np.array([np.nanmin(column) if np.isfinite(column).any() else 0.0 for column in finite_corners.T])
+    most = np.array([np.nanmax(column) if np.isfinite(column).any() else 0.0 for column in finite_corners.T])
     scale = _PANEL / max(float((most - least).max()), 1.0)
     middle = (least + most) / 2
     for number, (title, across, up) in enumerate(_VIEWS):

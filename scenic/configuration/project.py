@@ -80,19 +80,19 @@ class Configurations:
         if self._fixed is not None:
             return self._fixed
         folder = os.path.abspath(folder)
-        passed = []
+        folders = []
         while folder not in self._by_folder:
-            passed.append(folder)
+            folders.append(folder)
             path = os.path.join(folder, FILE)
-            found = read_configuration(_short(path), required=False) if os.path.isfile(path) else None
+            configuration = read_configuration(_short(path), required=False) if os.path.isfile(path) else None
             above = os.path.dirname(folder)
-            if found is not None or above == folder:
-                self._by_folder[folder] = found or PLAIN
+            if configuration is not None or above == folder:
+                self._by_folder[folder] = configuration or PLAIN
             else:
                 folder = above
-        found = self._by_folder[folder]
-        self._by_folder.update(dict.fromkeys(passed, found))
-        return found
+        configuration = self._by_folder[folder]
+        self._by_folder.update(dict.fromkeys(folders, configuration))
+        return configuration
 
     def of_file(self, path: str) -> Configuration:
         """The configuration of a file."""
@@ -200,12 +200,12 @@ class _Reader:
     def read(self, table: Mapping[str, object]) -> Configuration:
         for key in table:
             if key not in _KEYS:
-                meant = nearest(key.replace("_", "-"), _KEYS) or (
+                similar_key = nearest(key.replace("_", "-"), _KEYS) or (
                     key.replace("_", "-") if key.replace("_", "-") in _KEYS else None
                 )
                 advice = (
-                    f"did you mean `{meant}`?"
-                    if meant
+                    f"did you mean `{similar_key}`?"
+                    if similar_key
                     else f"the keys are {', '.join(f'`{each}`' for each in _KEYS)}"
                 )
                 self._report(f"unknown key `{key}` in `[tool.scenic]`", advice, key)
@@ -213,9 +213,9 @@ class _Reader:
         rules = Rules(select, self._selectors(table, "ignore"), severity=tuple(self._severities(table)))
         exclude = tuple(text for text in self._strings(table, "exclude") if self._is_pattern(text, "exclude"))
         ignores = tuple(self._per_file(table))
-        given = self._strings(table, "python-path") if "python-path" in table else ()
+        paths = self._strings(table, "python-path") if "python-path" in table else ()
         python_path = tuple(
-            os.path.normpath(os.path.join(self._folder, os.path.expanduser(path))) for path in given
+            os.path.normpath(os.path.join(self._folder, os.path.expanduser(path))) for path in paths
         )
         return Configuration(self._folder, rules, exclude, ignores, python_path, tuple(self._problems))
 
@@ -275,17 +275,17 @@ class _Reader:
                 advice = f"to silence it, list `{code}` in `ignore`"
                 self._report("`off` is no severity", advice, "severity", code, value=name)
             else:
-                shown = f"`{name}`" if isinstance(name, str) else _kind(name)
-                meant = (
+                name_shown = f"`{name}`" if isinstance(name, str) else _kind(name)
+                suggestion = (
                     nearest(name, names, limit=2) or _prefixed(name, names) if isinstance(name, str) else None
                 )
                 advice = (
-                    f"did you mean `{meant}`?"
-                    if meant
+                    f"did you mean `{suggestion}`?"
+                    if suggestion
                     else "it is one of `error`, `warning` and `information`"
                 )
                 value = name if isinstance(name, str) else None
-                self._report(f"{shown} is no severity", advice, "severity", code, value=value)
+                self._report(f"{name_shown} is no severity", advice, "severity", code, value=value)
 
     def _per_file(self, table: Mapping[str, object]) -> Iterator[tuple[str, tuple[str, ...]]]:
         key = "per-file-ignores"

@@ -21,19 +21,19 @@ def place_in_toml(source: Source, keys: Sequence[str], value: str | None = None)
 
     Found by looking at lines; ``None`` if it is written in a way that is not found so. For people only.
     """
-    wanted = tuple(keys)
+    key_path = tuple(keys)
     lines = source.lines
     for number, path, spans, end in _keys(lines):
         common = len(path)
-        if path[: len(wanted)] == wanted:
-            key = spans[len(wanted) - 1]
+        if path[: len(key_path)] == key_path:
+            key = spans[len(key_path) - 1]
             where = Span(number, key[0], number, key[1])
-            if value is None or common > len(wanted):
+            if value is None or common > len(key_path):
                 return where
             return _quoted(lines, number, end, value) or where
-        if wanted[:common] == path:
+        if key_path[:common] == path:
             # The rest of the keys stands in a table that is written as the value of this one.
-            inner = _inner(lines, number, end, wanted[common])
+            inner = _inner(lines, number, end, key_path[common])
             if inner is not None:
                 return (value is not None and _quoted(lines, inner.line, inner.end_column, value)) or inner
     return None
@@ -44,10 +44,10 @@ def _keys(lines: Sequence[str]) -> Iterator[tuple[int, tuple[str, ...], list[tup
     table: tuple[str, ...] = ()
     for number, line in enumerate(lines, 1):
         header = re.fullmatch(_HEADER, line)
-        found = header or re.match(_ENTRY, line)
-        if found is None:
+        match = header or re.match(_ENTRY, line)
+        if match is None:
             continue
-        parts = list(re.compile(_KEY).finditer(line, found.start(1), found.end(1)))
+        parts = list(re.compile(_KEY).finditer(line, match.start(1), match.end(1)))
         names = tuple(part[0].strip("\"'") for part in parts)
         spans = [part.span() for part in parts]
         if header is not None:
@@ -55,7 +55,7 @@ def _keys(lines: Sequence[str]) -> Iterator[tuple[int, tuple[str, ...], list[tup
             yield number, table, spans, len(line)
         else:
             # The parts of the table's name stand elsewhere; those of the key are what is looked for.
-            yield number, (*table, *names), [*[spans[0]] * len(table), *spans], found.end()
+            yield number, (*table, *names), [*[spans[0]] * len(table), *spans], match.end()
 
 
 def _ends(line: str) -> bool:

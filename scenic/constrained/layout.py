@@ -43,14 +43,14 @@ def lay_out(rules: Rules, start: str) -> Laid:
     """The rules that ``start`` needs, with everything between their tokens."""
     layout = _Layout(rules)
     first = Variant(start)
-    laid: dict[Variant, tuple[TextRow, ...]] = {}
+    rows_of_variant: dict[Variant, tuple[TextRow, ...]] = {}
     pending = [first]
     while pending:
         variant = pending.pop()
-        if variant not in laid:
-            laid[variant] = layout.rows_of(variant)
-            pending += (item.variant for item in within(laid[variant]) if isinstance(item, Use))
-    return Laid(first, laid, _nested(laid))
+        if variant not in rows_of_variant:
+            rows_of_variant[variant] = layout.rows_of(variant)
+            pending += (item.variant for item in within(rows_of_variant[variant]) if isinstance(item, Use))
+    return Laid(first, rows_of_variant, _nested(rows_of_variant))
 
 
 def factored(rows: tuple[TextRow, ...]) -> tuple[TextRow, ...]:
@@ -71,19 +71,20 @@ def _one_of(rows: tuple[TextRow, ...]) -> TextRow:
 
 
 def _nested(laid: Mapping[Variant, tuple[TextRow, ...]]) -> frozenset[Variant]:
-    nested: set[Variant] = set()
+    nested_variants: set[Variant] = set()
     size = -1
-    while size != len(nested):
-        size = len(nested)
-        nested |= {
+    while size != len(nested_variants):
+        size = len(nested_variants)
+        nested_variants |= {
             variant
             for variant, rows in laid.items()
             if any(
-                isinstance(item, Line) or (isinstance(item, Use) and (item.deeper or item.variant in nested))
+                isinstance(item, Line)
+                or (isinstance(item, Use) and (item.deeper or item.variant in nested_variants))
                 for item in within(rows)
             )
         }
-    return frozenset(nested)
+    return frozenset(nested_variants)
 
 
 @dataclass(slots=True)
@@ -136,13 +137,13 @@ class _Layout:
             # Whether a blank comes before the second item depends on the first one.
             ways = ((*row[0].row, *row[1:]), row[1:])
             return _one_of(tuple(self._row(each, place.copy()) for each in ways))
-        laid: list[TextItem] = []
+        items: list[TextItem] = []
         for item in row:
-            laid += self._placed(item, place, bare=bare)
+            items += self._placed(item, place, bare=bare)
             last = self._edges.of_item(item)[1]
             place.before = place.before | last if isinstance(item, syntax.Optional) else last
             bare = False
-        return tuple(laid)
+        return tuple(items)
 
     def _placed(self, item: syntax.Item, place: _Place, *, bare: bool) -> TextRow:
         """An item after what is before it."""
@@ -163,12 +164,12 @@ class _Layout:
             case TokenKind("DEDENT"):
                 place.deeper -= 1
                 return ()
-        laid = self._spaced(item, place, bare=bare)
+        items = self._spaced(item, place, bare=bare)
         if item in _OPENERS:
             place.brackets += 1
         elif item in _CLOSERS:
             place.brackets -= 1
-        return laid
+        return items
 
     def _repeated(self, row: syntax.Row, further: syntax.Row, place: _Place) -> TextRow:
         once = self._row(row, place.copy())

@@ -155,8 +155,8 @@ def _flattened(name: str, loops: Mapping[str, _Loop], raw: Rules) -> Row:
     steps = [name]
     tails: list[Row] = []
     while True:
-        base, own = loops[steps[-1]]
-        for tail in own:
+        base, own_tails = loops[steps[-1]]
+        for tail in own_tails:
             match tail:
                 case (Reference(rule=rule),):
                     tails += raw[rule]

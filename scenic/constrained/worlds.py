@@ -59,8 +59,8 @@ def read_world(name: str) -> World:
         if symbol.kind is SymbolKind.BEHAVIOR:
             behaviors.add(public)
         elif symbol.kind is SymbolKind.CLASS:
-            described = class_of_symbol(project, symbol)
-            if described is not None and described.is_scenic:
+            world_class = class_of_symbol(project, symbol)
+            if world_class is not None and world_class.is_scenic:
                 classes.add(public)
     return World(
         module,
@@ -81,15 +81,15 @@ _CALL: Final = Reference("behavior_call")
 
 def restricted(rules: Rules, world: World) -> Rules:
     """The rules with names of a world where classes, behaviors, blueprints and the model stand."""
-    changed = dict(rules)
-    changed["behavior_call"] = (
+    new_rules = dict(rules)
+    new_rules["behavior_call"] = (
         (TokenKind("BEHAVIOR"), Optional((Word("("), Optional((Reference("arguments"),)), Word(")")))),
     )
-    weighted = (_CALL, Word(":"), Reference("expression"))
+    weighted_call = (_CALL, Word(":"), Reference("expression"))
     comma = (Word(","),)
-    changed["run"] = ((_CALL,), (Word("{"), ListOf(weighted, comma), Word("}")))
-    changed["behavior_value"] = ((_CALL,), (Word("None"),), _uniform(_CALL))
-    changed["new_expression"] = tuple(
+    new_rules["run"] = ((_CALL,), (Word("{"), ListOf(weighted_call, comma), Word("}")))
+    new_rules["behavior_value"] = ((_CALL,), (Word("None"),), _uniform(_CALL))
+    new_rules["new_expression"] = tuple(
         tuple(TokenKind("OBJECT_CLASS") if item == Reference("name_load") else item for item in row)
         for row in rules["new_expression"]
     )
@@ -99,17 +99,17 @@ def restricted(rules: Rules, world: World) -> Rules:
     )
     if world.blueprints:
         properties += ((Word("with"), Word("blueprint"), Reference("blueprint_value")),)
-        changed["blueprint_value"] = ((TokenKind("BLUEPRINT"),), _uniform(TokenKind("BLUEPRINT")))
-    changed["specifier"] = (
+        new_rules["blueprint_value"] = ((TokenKind("BLUEPRINT"),), _uniform(TokenKind("BLUEPRINT")))
+    new_rules["specifier"] = (
         *properties,
         *(row for row in rules["specifier"] if row[0] != Word("with")),
     )
-    changed["do_statement"] = tuple(tuple(map(_run, row)) for row in rules["do_statement"])
-    changed["soft_statement"] = tuple(
+    new_rules["do_statement"] = tuple(tuple(map(_run, row)) for row in rules["do_statement"])
+    new_rules["soft_statement"] = tuple(
         (Word("model"), TokenKind("MODEL")) if row[0] == Word("model") else row
         for row in rules["soft_statement"]
     )
-    return changed
+    return new_rules
 
 
 def _uniform(item: Item) -> Row:
@@ -125,16 +125,16 @@ def _run(item: Item) -> Item:
 def restricted_tokens(world: World) -> Tokens:
     """The kinds of tokens that `restricted` rules have."""
     general = tokens()
-    own = ((TokenKind("OWN"),),)
+    own_class = ((TokenKind("OWN"),),)
     definitions: dict[str, TextItem] = {
         **general.definitions,
         "OWN": TextChoice(((Word(OWN), TextMany((CharacterClass("[A-Za-z0-9_]"),))),)),
-        "OBJECT_CLASS": TextChoice((*((Word(name),) for name in world.classes), *own)),
-        "BEHAVIOR": TextChoice((*((Word(name),) for name in world.behaviors), *own)),
+        "OBJECT_CLASS": TextChoice((*((Word(name),) for name in world.classes), *own_class)),
+        "BEHAVIOR": TextChoice((*((Word(name),) for name in world.behaviors), *own_class)),
         "MODEL": TextChoice(((Word(world.module),),)),
     }
     if world.blueprints:
-        quoted = (f"{quote}{name}{quote}" for name in world.blueprints for quote in "\"'")
-        definitions["BLUEPRINT"] = TextChoice(tuple((Word(text),) for text in quoted))
-    taken = {"behavior", "blueprint"} if world.blueprints else {"behavior"}
-    return Tokens(definitions, {**general.names, "PROPERTY": general.names["NAME"] | taken})
+        literals = (f"{quote}{name}{quote}" for name in world.blueprints for quote in "\"'")
+        definitions["BLUEPRINT"] = TextChoice(tuple((Word(text),) for text in literals))
+    reserved_words = {"behavior", "blueprint"} if world.blueprints else {"behavior"}
+    return Tokens(definitions, {**general.names, "PROPERTY": general.names["NAME"] | reserved_words})

@@ -95,7 +95,7 @@ class _Writer(ABC):
         """The definitions of all rules that a text needs, each once or once for each level."""
         dead = self._dead()
         pending = [(self._laid.start, 0)]
-        seen = set(pending)
+        variants_done = set(pending)
         while pending:
             variant, self._level = pending.pop()
             rows = tuple(row for row in self._laid.rules[variant] if self._is_alive(row, dead))
@@ -103,8 +103,8 @@ class _Writer(ABC):
             for item in within(rows):
                 if isinstance(item, Use):
                     level = self._level + item.deeper if item.variant in self._laid.nested else 0
-                    if (item.variant, level) not in seen:
-                        seen.add((item.variant, level))
+                    if (item.variant, level) not in variants_done:
+                        variants_done.add((item.variant, level))
                         pending.append((item.variant, level))
         self._level = 0
 

@@ -92,7 +92,7 @@ class Settled:
 
         There are none where some may change or are not known, or where none is drawn.
         """
-        own: dict[str, Any] = {}
+        names_of_code: dict[str, Any] = {}
         arguments: set[str] = set()
         is_drawn = False
         for part in walk(test):
@@ -112,18 +112,18 @@ class Settled:
                         return []
                     arguments.add(part.id)
                 elif self._is_known(part.id, binding):
-                    own[part.id] = self._value(part.id, binding)
+                    names_of_code[part.id] = self._value(part.id, binding)
                 elif binding is not None or part.id in self._scope or part.id not in LIFTED_FUNCTIONS:
                     return []
         uses: list[Mapping[str, Any]] = self._uses(code) if arguments else [{}]
-        found = []
+        rows = []
         for use in uses:
             if not all(name in use and _is_settled(use[name]) for name in arguments):
                 return []
-            found.append({**own, **{name: use[name] for name in arguments}})
-        is_drawn |= any(isinstance(value, RandomBase) for each in found for value in each.values())
-        is_plain = all(_operates_on_values(test, each) for each in found)
-        return found if is_drawn and is_plain else []
+            rows.append({**names_of_code, **{name: use[name] for name in arguments}})
+        is_drawn |= any(isinstance(value, RandomBase) for each in rows for value in each.values())
+        is_plain = all(_operates_on_values(test, each) for each in rows)
+        return rows if is_drawn and is_plain else []
 
     # Names
 
@@ -132,8 +132,8 @@ class Settled:
         if name in self._rebound:
             return False
         if binding is not None and self._top is not None and binding.scope.node is self._top:
-            composed = {part for item in self._top.compose or () for part in walk(item)}
-            if name in self._stored or not composed.isdisjoint(binding.sites):
+            parts_of_compose = {part for item in self._top.compose or () for part in walk(item)}
+            if name in self._stored or not parts_of_compose.isdisjoint(binding.sites):
                 return False
         elif binding is not None and binding.scope is not self._resolution.module:
             return False
@@ -193,8 +193,8 @@ class Settled:
             items = [item.monitor for item in self._program.declared.monitors]
         if not all(isinstance(item, Behavior | Monitor) for item in items):
             return []
-        found: list[Invocable] = [item for item in items if isinstance(item, kinds[0])]
-        return [item._arguments.arguments for item in found]
+        invocations: list[Invocable] = [item for item in items if isinstance(item, kinds[0])]
+        return [item._arguments.arguments for item in invocations]
 
     def _functions(self) -> set[ast.AST]:
         """The functions that are read by code of simulations alone: none of them is called while scenes are looked for."""
@@ -205,16 +205,17 @@ class Settled:
             for part in walk(self._tree)
             if isinstance(part, ast.FunctionDef)
         }
-        found: set[ast.AST] = {part for part, around in owners.items() if around}
+        candidates: set[ast.AST] = {part for part, around in owners.items() if around}
         while True:
-            kept: set[ast.AST] = {
+            remaining: set[ast.AST] = {
                 part
                 for part, around in owners.items()
-                if part in found and all(owner in found or isinstance(owner, _DYNAMIC) for owner in around)
+                if part in candidates
+                and all(owner in candidates or isinstance(owner, _DYNAMIC) for owner in around)
             }
-            if kept == found:
-                return found
-            found = kept
+            if remaining == candidates:
+                return candidates
+            candidates = remaining
 
 
 _DYNAMIC: Final = (scenic.BehaviorDef, scenic.MonitorDef, scenic.ScenarioDef)

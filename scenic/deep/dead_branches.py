@@ -77,20 +77,24 @@ def prove_branches(
     """
     source = Source(text, filename)
     tree = parse(source.text, filename=filename).tree
-    settled = Settled(tree, program)
-    found: list[_Branch] = []
+    constant_values = Settled(tree, program)
+    dead_branches: list[_Branch] = []
     dead: set[_Path] = set()
-    for code, body in settled.code():
+    for code, body in constant_values.code():
         for branch in _branches(body):
-            told = [settled.readings(test, code) for test, _ in branch.path]
-            if not told[-1] or any(branch.path[:end] in dead for end in range(len(told))):
+            values_of_tests = [constant_values.readings(test, code) for test, _ in branch.path]
+            if not values_of_tests[-1] or any(
+                branch.path[:end] in dead for end in range(len(values_of_tests))
+            ):
                 continue
-            uses = max(map(len, told))
-            if all(_is_dead(branch, told, use, program, source, roots, facts) for use in range(uses)):
-                found.append(branch)
+            uses = max(map(len, values_of_tests))
+            if all(
+                _is_dead(branch, values_of_tests, use, program, source, roots, facts) for use in range(uses)
+            ):
+                dead_branches.append(branch)
                 dead.add(branch.path)
-    found.sort(key=lambda branch: (branch.test.lineno, branch.test.col_offset))
-    return tuple(_diagnostic(branch, filename) for branch in found)
+    dead_branches.sort(key=lambda branch: (branch.test.lineno, branch.test.col_offset))
+    return tuple(_diagnostic(branch, filename) for branch in dead_branches)
 
 
 def _branches(body: Sequence[ast.stmt]) -> Iterator[_Branch]:
@@ -101,27 +105,27 @@ def _branches(body: Sequence[ast.stmt]) -> Iterator[_Branch]:
         if isinstance(part, _INNER):
             continue
         if isinstance(part, ast.If | ast.While | ast.IfExp):
-            taken, passed = (*path, (part.test, True)), (*path, (part.test, False))
+            path_if_true, path_if_false = (*path, (part.test, True)), (*path, (part.test, False))
             inside, otherwise = (
                 ([part.body], [part.orelse]) if isinstance(part, ast.IfExp) else (part.body, part.orelse)
             )
             if isinstance(part, ast.If):
-                yield _Branch(taken, _Way.BRANCH)
+                yield _Branch(path_if_true, _Way.BRANCH)
                 is_elif = len(otherwise) == 1 and isinstance(otherwise[0], ast.If)
                 if otherwise and not is_elif:
-                    yield _Branch(passed, _Way.ELSE)
+                    yield _Branch(path_if_false, _Way.ELSE)
             elif isinstance(part, ast.While):
-                yield _Branch(taken, _Way.LOOP)
+                yield _Branch(path_if_true, _Way.LOOP)
             else:
-                yield _Branch(taken, _Way.VALUE)
-                yield _Branch(passed, _Way.OTHER_VALUE)
-            stack += [(item, passed) for item in reversed(otherwise)]
-            stack += [(item, taken) for item in reversed(inside)]
+                yield _Branch(path_if_true, _Way.VALUE)
+                yield _Branch(path_if_false, _Way.OTHER_VALUE)
+            stack += [(item, path_if_false) for item in reversed(otherwise)]
+            stack += [(item, path_if_true) for item in reversed(inside)]
             stack.append((part.test, path))
         elif isinstance(part, scenic.Interrupt):
-            taken = (*path, (part.condition, True))
-            yield _Branch(taken, _Way.INTERRUPT)
-            stack += [(item, taken) for item in reversed(part.body)]
+            path_if_true = (*path, (part.condition, True))
+            yield _Branch(path_if_true, _Way.INTERRUPT)
+            stack += [(item, path_if_true) for item in reversed(part.body)]
             stack.append((part.condition, path))
         else:
             stack += [(item, path) for item in reversed(parts(part))]
@@ -150,14 +154,14 @@ def _condition(
     test: ast.expr, holds: bool, values: Mapping[str, object], program: Program, source: Source
 ) -> Node:
     """The node of a condition over values of a program, or of its negation."""
-    written = f"({_over_parameters(test, values, source)})"
-    compiled = compile_text(f"require {written if holds else f'not {written}'}\n", filename=_FILENAME)
-    assert compiled.code is not None
-    given = {_PREFIX + name: value for name, value in values.items()}
-    beside = Program(context=program.context, parameters={**program.parameters, **given})
+    text = f"({_over_parameters(test, values, source)})"
+    compilation = compile_text(f"require {text if holds else f'not {text}'}\n", filename=_FILENAME)
+    assert compilation.code is not None
+    parameters = {_PREFIX + name: value for name, value in values.items()}
+    beside = Program(context=program.context, parameters={**program.parameters, **parameters})
     token = current.set(program.context)
     try:
-        Loader(_NoModules(), program.context, beside).run(compiled.code, _FILENAME)
+        Loader(_NoModules(), program.context, beside).run(compilation.code, _FILENAME)
     finally:
         current.reset(token)
     return beside.requirements[0].condition

@@ -34,21 +34,21 @@ def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
     except ScenicSyntaxError as error:
         return error.diagnostics
     except Exception as error:
-        found = diagnose(error)
-        if found is None:
+        diagnostic = diagnose(error)
+        if diagnostic is None:
             raise
-        return (found,)
+        return (diagnostic,)
     graph, facts = scenario.outline.graph, conditions(scenario.outline)
-    proven = prove(graph, facts)
+    findings = prove(graph, facts)
     decision = decision_of(scenario.outline)
-    if all(item.severity is not Severity.ERROR for item in proven):
-        proven += contradiction(decision, scenario.outline.checks)
+    if all(item.severity is not Severity.ERROR for item in findings):
+        findings += contradiction(decision, scenario.outline.checks)
     temporal = [item.formula for item in scenario.requirements if item.formula and item.probability == 1]
-    proven += prove_in_time(temporal, {item.span for item in proven if item.severity is Severity.ERROR})
-    if all(item.severity is not Severity.ERROR for item in proven):
+    findings += prove_in_time(temporal, {item.span for item in findings if item.severity is Severity.ERROR})
+    if all(item.severity is not Severity.ERROR for item in findings):
         domain = contract(graph, facts).domain.with_finite(narrowed_values(decision))
-        proven += prove_dead(graph, domain)
-        proven += prove_branches(scenario.text, filename, scenario.program, graph.nodes, facts)
+        findings += prove_dead(graph, domain)
+        findings += prove_branches(scenario.text, filename, scenario.program, graph.nodes, facts)
     return tuple(
         Diagnostic(
             item.code,
@@ -59,5 +59,5 @@ def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
             item.help,
             item.labels,
         )
-        for item in proven
+        for item in findings
     )

@@ -97,7 +97,7 @@ _OF_INSTANCES: Final = """
 
 
 def _read(table: str) -> Mapping[str, Member]:
-    found = {}
+    members = {}
     for text in table.replace("\n", " ").split(","):
         match = re.fullmatch(r"(\w+)(?:\(([\w ]*)\))?(?:: (\w+))?", " ".join(text.split()))
         if match is None:
@@ -105,8 +105,8 @@ def _read(table: str) -> Mapping[str, Member]:
         name, parameters, result = match.groups()
         types = _TYPES.get(result or "any", ())
         takes = tuple(_TYPES[each] for each in (parameters or "").split())
-        found[name] = Member(name, parameters is not None, types[0] if types else None, takes)
-    return MappingProxyType(found)
+        members[name] = Member(name, parameters is not None, types[0] if types else None, takes)
+    return MappingProxyType(members)
 
 
 MEMBERS: Final[Mapping[str, Mapping[str, Member]]] = MappingProxyType(

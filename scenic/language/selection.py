@@ -69,15 +69,17 @@ class Rules:
         """Return the diagnostics that are shown, with the severity that the selection gives them."""
         if self == _PLAIN:
             return tuple(diagnostics)
-        shown = []
+        selection = []
         for each in diagnostics:
             if is_lasting(each):
-                shown.append(each)
+                selection.append(each)
             elif self.shows(each.code):
                 length = longest_match(each.code, (selector for selector, _ in self.severity))
                 severity = dict(self.severity).get(each.code[:length]) if length > 0 else None
-                shown.append(each if severity in (None, each.severity) else replace(each, severity=severity))
-        return tuple(shown)
+                selection.append(
+                    each if severity in (None, each.severity) else replace(each, severity=severity)
+                )
+        return tuple(selection)
 
     def overridden(self, select: Sequence[str], ignore: Sequence[str]) -> "Rules":
         """These rules below a choice that is made nearer to the user.

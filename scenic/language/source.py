@@ -140,12 +140,12 @@ def _in_folders(folder: Path, name: str) -> Path | None:
             return None
         current = waiting.pop(0)
         try:
-            found = sorted(item for item in current.iterdir() if not item.name.startswith("."))
-            folders = [item for item in found if item.is_dir() and not item.is_symlink()]
+            entries = sorted(item for item in current.iterdir() if not item.name.startswith("."))
+            folders = [item for item in entries if item.is_dir() and not item.is_symlink()]
         except OSError:  # without permission to look
             continue
         here = current / name
-        if here in found and here not in folders:
+        if here in entries and here not in folders:
             return here
         waiting += folders
     return None

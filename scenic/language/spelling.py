@@ -71,14 +71,14 @@ def nearest(name: str, candidates: Iterable[str], *, limit: int | None = None) -
     messages do not vary.
     """
     reach = len(name) // 3 if limit is None else limit
-    found = None
+    best = None
     for candidate in sorted(candidates, key=lambda each: (each[:1].isupper() != name[:1].isupper(), each)):
         edits = distance(name.lower(), candidate.lower(), limit=reach)
         if edits <= reach and candidate != name:
-            found, reach = candidate, edits - 1
+            best, reach = candidate, edits - 1
             if reach < 0:
                 break
-    return found
+    return best
 
 
 _WORD: Final = re.compile(r"[A-Z]?[a-z0-9]+|[A-Z]+(?![a-z])")

@@ -50,14 +50,14 @@ class Programs:
     def fix(self, text: str, filename: str) -> dict[str, Any]:
         """The program after its certain repairs."""
         path = self.place(filename)
-        repaired = repair(
+        repair_result = repair(
             self.accept(text),
             filename=path,
             shown=lambda found: found,
             surroundings_of=surroundings_in(Project([self.folder])),
         )
-        checked = self._checked(repaired.diagnostics, path, filename)
-        return {"text": repaired.text, "repairs": repaired.count, **checked}
+        check_result = self._checked(repair_result.diagnostics, path, filename)
+        return {"text": repair_result.text, "repairs": repair_result.count, **check_result}
 
     def format(self, text: str) -> dict[str, Any]:
         """The program in the usual style."""

@@ -43,18 +43,18 @@ _KINDS: Final[Mapping[str, NameKind]] = {
 
 def reference_text(topic: str) -> str | None:
     """The text about a topic or an element of the language; ``None`` if there is none."""
-    wanted = " ".join(topic.lower().replace("_", " ").split()).strip("`")
-    if not wanted:
+    words = " ".join(topic.lower().replace("_", " ").split()).strip("`")
+    if not words:
         return "\n".join(f"- {name}" for name in TOPICS)
-    for known in (wanted, f"{wanted}s"):
-        entries = dict(_topic(known))
+    for topic_name in (words, f"{words}s"):
+        entries = dict(_topic(topic_name))
         if entries:
-            return f"# {known.capitalize()}\n\n" + "\n\n".join(entries.values())
+            return f"# {topic_name.capitalize()}\n\n" + "\n\n".join(entries.values())
     everything = {name.lower(): text for each in TOPICS for name, text in _topic(each)}
-    if wanted in everything:
-        return everything[wanted]
-    found = [text for name, text in everything.items() if wanted in name.split()]
-    return "\n\n".join(found) or None
+    if words in everything:
+        return everything[words]
+    matches = [text for name, text in everything.items() if words in name.split()]
+    return "\n\n".join(matches) or None
 
 
 def similar_topic(topic: str) -> str | None:
@@ -71,8 +71,10 @@ def _topic(topic: str) -> Iterator[tuple[str, str]]:
             yield statement.title, f"## {statement.title}\n{text}"
     elif topic == "specifiers":
         for specifier in SPECIFIERS.values():
-            given = ", ".join(f"{each.property} (priority {each.priority})" for each in specifier.specifies)
-            more = f"\nGives {given}." if given else ""
+            properties = ", ".join(
+                f"{each.property} (priority {each.priority})" for each in specifier.specifies
+            )
+            more = f"\nGives {properties}." if properties else ""
             yield (
                 specifier.name,
                 f"## {specifier.name}\n{_forms(specifier.forms)}\n{specifier.documentation}{more}",
@@ -88,15 +90,15 @@ def _topic(topic: str) -> Iterator[tuple[str, str]]:
         for name, temporal in TEMPORAL_OPERATORS.items():
             yield name, f"## {name}\n{_forms(temporal.forms)}\n{temporal.documentation}"
     elif topic == "classes":
-        for name, declared in CLASSES.items():
-            rows = [f"- `{item.name}`: {item.type}. {item.documentation}" for item in declared.properties]
-            yield name, f"## {name}\n{declared.documentation}\n" + "\n".join(rows)
+        for name, declaration in CLASSES.items():
+            rows = [f"- `{item.name}`: {item.type}. {item.documentation}" for item in declaration.properties]
+            yield name, f"## {name}\n{declaration.documentation}\n" + "\n".join(rows)
     elif topic == "diagnostics":
         yield from ((code, f"- {code}: {title}") for code, title in CODES.items())
     elif topic in _KINDS:
-        for name, provided in NAMES.items():
-            if provided.kind is _KINDS[topic]:
-                yield name, f"## {name}\n`{provided.signature}`\n{provided.documentation}"
+        for name, declared_name in NAMES.items():
+            if declared_name.kind is _KINDS[topic]:
+                yield name, f"## {name}\n`{declared_name.signature}`\n{declared_name.documentation}"
 
 
 def _forms(forms: Sequence[str]) -> str:
@@ -123,15 +125,15 @@ _WEIGHTS: Final = (("topic", 5), ("section", 2), ("program", 2), ("text", 1))
 def search_examples(query: str, count: int = 5) -> list[dict[str, str]]:
     """The examples that match the words of a query best; none if no word occurs."""
     words = {word.lower() for word in re.findall(r"\w+", query) if len(word) > 1}
-    scored = []
+    scores = []
     for number, snippet in enumerate(snippets()):
         score = 0
         for field, weight in _WEIGHTS:
             present = set(re.findall(r"\w+", snippet[field].lower()))
             score += weight * len(words & present)
         if score:
-            scored.append((-score, len(snippet["program"]), number))
+            scores.append((-score, len(snippet["program"]), number))
     return [
         {name: snippets()[number][name] for name in ("section", "page", "text", "program")}
-        for *_, number in sorted(scored)[:count]
+        for *_, number in sorted(scores)[:count]
     ]

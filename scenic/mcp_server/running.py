@@ -38,27 +38,27 @@ async def run_command(
     # -P: a module in the present folder must not take the place of one of ours.
     command = [sys.executable, "-P", "-m", "scenic.cli.main", *arguments]
     with (
-        tempfile.TemporaryFile() as given,
+        tempfile.TemporaryFile() as input_file,
         tempfile.TemporaryFile() as output,
         tempfile.TemporaryFile() as errors,
     ):
-        given.write(text.encode("utf-8", "surrogatepass"))
-        given.seek(0)
+        input_file.write(text.encode("utf-8", "surrogatepass"))
+        input_file.seek(0)
         process = await anyio.open_process(
-            command, stdin=given, stdout=output, stderr=errors, cwd=folder, start_new_session=True
+            command, stdin=input_file, stdout=output, stderr=errors, cwd=folder, start_new_session=True
         )
         try:
-            begun = told = anyio.current_time()
+            start_time = last_report = anyio.current_time()
             while process.returncode is None:
                 await anyio.sleep(_INTERVAL)
                 now = anyio.current_time()
-                if now - begun > seconds:
+                if now - start_time > seconds:
                     raise RunLimitError(f"the program took longer than {seconds:g} seconds")
                 if any(os.fstat(each.fileno()).st_size > _LARGEST for each in (output, errors)):
                     raise RunLimitError(f"the program writes more than {_LARGEST >> 20} MB")
-                if now - told > _STEP:
-                    told = now
-                    await progress(now - begun, seconds)
+                if now - last_report > _STEP:
+                    last_report = now
+                    await progress(now - start_time, seconds)
         finally:
             with anyio.CancelScope(shield=True):
                 _end(process.pid)

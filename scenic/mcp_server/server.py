@@ -51,10 +51,10 @@ _Result = TypeVar("_Result")
 def build_server(folder: str, *, run: bool = False) -> MCPServer:
     """The server for the programs of a folder; with ``run`` it has tools that run programs."""
     try:
-        installed = version("scenic-lang")
+        package_version = version("scenic-lang")
     except PackageNotFoundError:
-        installed = ""
-    server = MCPServer("scenic", title="Scenic", instructions=_INSTRUCTIONS, version=installed)
+        package_version = ""
+    server = MCPServer("scenic", title="Scenic", instructions=_INSTRUCTIONS, version=package_version)
     programs = Programs(folder)
     _add_checking(server, programs)
     _add_reference(server, programs)
@@ -169,10 +169,10 @@ class _Runs:
         arguments = ["try", "-", "--json", "--stdin-filename", name, "--seconds", str(seconds), *more]
         _, output, errors = await self.command(arguments, text, 3 * seconds)
         try:
-            found: dict[str, Any] = json.loads(output)
+            report: dict[str, Any] = json.loads(output)
         except ValueError:
             raise ToolError(errors.strip()[-2000:] or "the program ended without an answer") from None
-        return found
+        return report
 
 
 def _bounded(seconds: float) -> float:
@@ -270,10 +270,10 @@ def _add_simulating(server: MCPServer, programs: Programs) -> None:
         arguments = ["analyze", "-", "--json", "-n", "2000", *(["--2d"] if mode_2d else [])]
         code, output, errors = await runs.command(arguments, text, 60.0)
         try:
-            found: dict[str, Any] = json.loads(output)
+            report: dict[str, Any] = json.loads(output)
         except ValueError:
             raise ToolError(errors.strip()[-2000:] or f"the analysis ended with code {code}") from None
-        return found
+        return report
 
 
 def _result(data: dict[str, Any], pictures: list[bytes]) -> CallToolResult:

@@ -98,8 +98,8 @@ class _Answer:
     def during(self, phase: str) -> Iterator[None]:
         """Measure a phase, and turn what it raises and warns of into diagnostics."""
         self.phase = phase
-        begun = time.perf_counter()
-        with warnings.catch_warnings(record=True) as caught:
+        start_time = time.perf_counter()
+        with warnings.catch_warnings(record=True) as python_warnings:
             warnings.simplefilter("ignore")
             warnings.simplefilter("always", ScenicWarning)
             try:
@@ -109,16 +109,20 @@ class _Answer:
             except MemoryError as error:
                 self.diagnostics.append(_too_large(error))
             except Exception as error:
-                found = diagnose(error)
-                if found is None:
+                diagnostic = diagnose(error)
+                if diagnostic is None:
                     raise
-                self.diagnostics.append(found)
+                self.diagnostics.append(diagnostic)
             finally:
-                self.time[phase] = round(time.perf_counter() - begun, _PLACES)
+                self.time[phase] = round(time.perf_counter() - start_time, _PLACES)
         # The check may have found what the program warns of, with a repair.
-        known = {(each.code, each.span, each.message) for each in self.diagnostics}
-        warned = [each.message.diagnostic() for each in caught if isinstance(each.message, ScenicWarning)]
-        self.diagnostics += [each for each in warned if (each.code, each.span, each.message) not in known]
+        keys = {(each.code, each.span, each.message) for each in self.diagnostics}
+        warning_diagnostics = [
+            each.message.diagnostic() for each in python_warnings if isinstance(each.message, ScenicWarning)
+        ]
+        self.diagnostics += [
+            each for each in warning_diagnostics if (each.code, each.span, each.message) not in keys
+        ]
 
     @property
     def has_failed(self) -> bool:
@@ -127,13 +131,13 @@ class _Answer:
         )
 
     def data(self) -> dict[str, Any]:
-        named = [replace(each, filename=each.filename or self.filename) for each in self.diagnostics]
+        diagnostics = [replace(each, filename=each.filename or self.filename) for each in self.diagnostics]
         return {
             "version": VERSION,
             "file": self.filename,
             "phase": self.phase,
             "ok": not self.has_failed,
-            "diagnostics": [_explained(each) for each in dict.fromkeys(named)],
+            "diagnostics": [_explained(each) for each in dict.fromkeys(diagnostics)],
             "draws": self.draws,
             **self.content,
             "time": self.time,
@@ -159,28 +163,30 @@ def answer(trial: Trial, *, project: Project | None = None) -> dict[str, Any]:
 
     ``project`` keeps what is known of modules between programs of one folder.
     """
-    made = _Answer(trial)
+    result = _Answer(trial)
     folder = os.path.dirname(os.path.abspath(trial.filename))
-    with made.during("parse"):
-        made.diagnostics += parse(trial.text, filename=trial.filename).diagnostics
-    syntax = made.has_failed
-    with made.during("check"):
+    with result.during("parse"):
+        result.diagnostics += parse(trial.text, filename=trial.filename).diagnostics
+    syntax = result.has_failed
+    with result.during("check"):
         surroundings_of = surroundings_in(project or Project([folder]))
-        made.diagnostics[:] = check_text(trial.text, filename=trial.filename, surroundings_of=surroundings_of)
-    if made.has_failed:
-        made.phase = "parse" if syntax else "check"
-        return made.data()
-    with made.during("load"):
-        loaded = _loaded(trial)
-        made.draws = _draws(loaded)
-        made.content["map"] = _map(loaded)
-    if not made.has_failed:
-        with made.during("sample"):
-            _sample(loaded, trial, made)
-    if not made.has_failed and trial.steps:
-        with made.during("simulate"):
-            _simulate(loaded, trial, made)
-    return made.data()
+        result.diagnostics[:] = check_text(
+            trial.text, filename=trial.filename, surroundings_of=surroundings_of
+        )
+    if result.has_failed:
+        result.phase = "parse" if syntax else "check"
+        return result.data()
+    with result.during("load"):
+        scenario = _loaded(trial)
+        result.draws = _draws(scenario)
+        result.content["map"] = _map(scenario)
+    if not result.has_failed:
+        with result.during("sample"):
+            _sample(scenario, trial, result)
+    if not result.has_failed and trial.steps:
+        with result.during("simulate"):
+            _simulate(scenario, trial, result)
+    return result.data()
 
 
 def _loaded(trial: Trial) -> "Scenario":

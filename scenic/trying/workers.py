@@ -121,7 +121,7 @@ def _serve(connection: Connection, other: Connection) -> None:
         os.setsid()
     threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    home, inherited = os.getcwd(), _address_space()
+    home, memory_before = os.getcwd(), _address_space()
     with tempfile.TemporaryFile() as output:
         for number in (1, 2):
             os.dup2(output.fileno(), number)
@@ -133,7 +133,7 @@ def _serve(connection: Connection, other: Connection) -> None:
                 trial: Trial = connection.recv()
             except (EOFError, OSError):
                 return
-            _limit("RLIMIT_AS", inherited + trial.limits.memory)
+            _limit("RLIMIT_AS", memory_before + trial.limits.memory)
             # What a program prints is a file, which must not fill the disk.
             _limit("RLIMIT_FSIZE", _LARGEST_FILE)
             output.seek(0)
@@ -157,19 +157,19 @@ def _answered(trial: Trial, output: IO[bytes]) -> dict[str, Any]:
 
     try:
         with within_seconds(trial.limits.seconds):
-            found = answer(trial)
+            result = answer(trial)
     except Exception as error:  # noqa: BLE001 - a batch goes on after a fault of ours
         problem = Diagnostic(
             "SC999",
             f"internal error: {type(error).__name__}: {error}",
             help="this is a fault of scenic, not of your program; please report it with the program",
         )
-        found = failed_answer(trial, PHASES[2], problem)
+        result = failed_answer(trial, PHASES[2], problem)
     sys.stdout.flush()
     sys.stderr.flush()
     output.seek(0)
     text = output.read(4 * _LONGEST_OUTPUT).decode(errors="replace")[:_LONGEST_OUTPUT]
-    return {**found, "output": text}
+    return {**result, "output": text}
 
 
 def _address_space() -> int:

@@ -53,22 +53,22 @@ def explanation(code: str) -> Explanation:
     if code not in CODES:
         raise KeyError(code)
     text = resources.files(__name__).joinpath(f"{code}.md").read_text(encoding="utf-8")
-    found = _PAGE.fullmatch(text)
-    if found is None or found["code"] != code:
+    page = _PAGE.fullmatch(text)
+    if page is None or page["code"] != code:
         raise ValueError(f"the page of {code} has not the form of a page")
     return Explanation(
         code,
-        found["title"],
+        page["title"],
         text,
-        found["language"],
-        found["reason"],
-        found["example"],
-        int(found["line"]) if found["line"] else None,
-        int(found["column"]) if found["column"] else None,
-        Severity(found["severity"]),
-        found["message"],
-        found["help"],
-        found["repair"],
+        page["language"],
+        page["reason"],
+        page["example"],
+        int(page["line"]) if page["line"] else None,
+        int(page["column"]) if page["column"] else None,
+        Severity(page["severity"]),
+        page["message"],
+        page["help"],
+        page["repair"],
     )
 
 

@@ -44,20 +44,20 @@ def request(targets: Iterable[object], scale: object) -> None:
 
 def apply_noise(program: Program) -> None:
     """Mutate all instances with a mutation scale, when the program has ended; requirements then apply to the mutated instances."""
-    mutated = False
+    has_mutations = False
     context = current.get()
     for instance in program.instances:
         scale = instance.__dict__["mutationScale"]
         if is_random(scale) or scale != 0:
             if context is not None:
                 context.concerns, _ = program.places.get(id(instance), (None, None))
-            mutated |= _mutate(instance, scale)
+            has_mutations |= _mutate(instance, scale)
     if context is not None:
         context.concerns = None
         complete(context)
-    if mutated and context is not None:
+    if has_mutations and context is not None:
         see_mutated(context)
-    if mutated:
+    if has_mutations:
         program.requirements[:] = [requirement.rebuilt() for requirement in program.requirements]
 
 
@@ -70,8 +70,8 @@ def mutate_now(instance: Point) -> None:
         if type(mutator) in BUILT_IN:
             update(instance, mutator.noisy(instance, scale))
         else:
-            changed, go_on = applied(mutator, _copy(instance))
-            _settle(instance, changed)
+            noisy_copy, go_on = applied(mutator, _copy(instance))
+            _settle(instance, noisy_copy)
             if not go_on:
                 break
 

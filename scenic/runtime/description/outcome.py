@@ -84,13 +84,13 @@ class Program:
     def originals(self) -> Originals:
         """The containers that simulations share; made for the first one."""
         if self._originals is None:
-            named = [
+            public_values = [
                 value
                 for scope in self.scopes
                 for name, value in scope.items()
                 if not (name.startswith("__") and name.endswith("__"))
             ]
-            self._originals = Originals([*named, *self.reachable()])
+            self._originals = Originals([*public_values, *self.reachable()])
             self.names.contents = self._originals.contents
         return self._originals
 

@@ -235,9 +235,9 @@ class Dynamics:
         check_duration(after, "after", 0, span)
         check_target(to, span)
         key = label_of(name) or ("record" if span is None else f"record{span.line}")
-        kept = Kept(concrete, captured)
+        closure = Kept(concrete, captured)
         self._declared.records.append(
-            RecordUse(kept, moment, key, every, after, to, span, self._module.filename)
+            RecordUse(closure, moment, key, every, after, to, span, self._module.filename)
         )
 
     @property

@@ -89,7 +89,7 @@ def _values(target: object, specifiers: Sequence[Specifier], *, mode_2d: bool) -
     if not isinstance(target, Object):
         raise ScenicTypeError(f"`override`: expected an object, not {describe(target)}", span=here())
     properties = type(target).scenic_properties
-    known = target.__dict__
+    attributes = target.__dict__
     values: dict[str, Any] = {}
     for step in resolution_of(type(target), specifiers, mode_2d=mode_2d).steps:
         if step.default is not None:
@@ -97,7 +97,7 @@ def _values(target: object, specifiers: Sequence[Specifier], *, mode_2d: bool) -
         specifier = step.specifier(specifiers)
         for name in step.names:
             entry = properties.get(name)
-            if entry is None and name not in known:
+            if entry is None and name not in attributes:
                 raise SpecifierError(
                     f"there is no property {name!r} to override",
                     span=specifier.span,
@@ -108,6 +108,8 @@ def _values(target: object, specifiers: Sequence[Specifier], *, mode_2d: bool) -
                     f"property {name!r} is dynamic and cannot be overridden: the simulator decides it",
                     span=specifier.span,
                 )
-        offered = specifier.evaluate(target)
-        values.update((name, normalised(name, settle(offered[name], target))) for name in step.names)
+        values_of_specifier = specifier.evaluate(target)
+        values.update(
+            (name, normalised(name, settle(values_of_specifier[name], target))) for name in step.names
+        )
     return values

@@ -64,11 +64,11 @@ class _Pattern(Recorder):
     def __init__(self, pattern: str | os.PathLike[str], /, **options: Any) -> None:
         extension = Path(pattern).suffix.lower()
         if extension not in self.writers:
-            known = ", ".join(sorted(name for name in self.writers if name))
+            endings = ", ".join(sorted(name for name in self.writers if name))
             raise ScenicValueError(
                 f"nothing can be recorded to files of extension {extension or '(none)'!r}",
                 span=here(),
-                help=f"use one of {known}",
+                help=f"use one of {endings}",
             )
         self.pattern = os.fspath(pattern)
         self.options = options

@@ -100,13 +100,13 @@ def _as_it_is(value: Any, made: dict[int, Any]) -> Any:
         return made[id(value)]
     if cls is tuple:
         return tuple(_as_it_is(item, made) for item in value)
-    copied = made[id(value)] = copy(value)
+    twin = made[id(value)] = copy(value)
     if cls in (list, deque):
-        for index, item in enumerate(copied):
-            copied[index] = _as_it_is(item, made)
+        for index, item in enumerate(twin):
+            twin[index] = _as_it_is(item, made)
     elif cls is dict:
-        copied.update((key, _as_it_is(item, made)) for key, item in value.items())
-    return copied
+        twin.update((key, _as_it_is(item, made)) for key, item in value.items())
+    return twin
 
 
 def check_duration(duration: tuple[Any, str] | None, what: str, least: float, span: Span | None) -> None:
@@ -115,8 +115,10 @@ def check_duration(duration: tuple[Any, str] | None, what: str, least: float, sp
         return
     value, unit = duration
     if not is_number(value) or isinstance(value, bool) or (unit == "steps" and value != int(value)):
-        wanted = "a whole number of steps" if unit == "steps" else "a number of seconds"
-        raise ScenicTypeError(f"`record ... {what}`: expected {wanted}, not {describe(value)}", span=span)
+        expectation = "a whole number of steps" if unit == "steps" else "a number of seconds"
+        raise ScenicTypeError(
+            f"`record ... {what}`: expected {expectation}, not {describe(value)}", span=span
+        )
     if value < least or (least == 0 and what == "every" and value == 0):
         raise ScenicValueError(
             f"`record ... {what}` must be {'more than 0' if what == 'every' else 'at least 0'}, not {value:g}",

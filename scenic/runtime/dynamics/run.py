@@ -404,21 +404,23 @@ class Run:
         reasons: dict[ScenarioActivation, str] = {}
         end: str | None = None
         for scenario in list(self.scenarios):
-            ended = []
+            finished_monitors = []
             # What a monitor asks for while it runs is a monitor of this step, too.
             for monitor in scenario.monitors:
                 with self.within(scenario):
                     output = monitor.resume()
                 if output is None:
-                    ended.append(monitor)
+                    finished_monitors.append(monitor)
                 elif isinstance(output, Termination):
                     # Of several requests the last one gives the reason.
                     if output.simulation:
                         end = output.reason
                     else:
                         reasons[scenario] = output.reason
-            if ended:
-                scenario.monitors = [monitor for monitor in scenario.monitors if monitor not in ended]
+            if finished_monitors:
+                scenario.monitors = [
+                    monitor for monitor in scenario.monitors if monitor not in finished_monitors
+                ]
         if end is not None:
             self._remember("terminatedByMonitor", end)
         for scenario, reason in reasons.items():
@@ -440,7 +442,7 @@ class Run:
         self._new_agents = []
         for agent in simulation.agents:
             agent.__dict__["lastActions"] = ()
-        chosen: dict[int, tuple[Any, ...]] = {}
+        actions_of: dict[int, tuple[Any, ...]] = {}
         schedule = list(simulation.scheduleForAgents())
         if sorted(map(id, schedule)) != sorted(map(id, simulation.agents)):
             raise RuntimeError("the simulator's schedule does not hold all agents, and nothing else")
@@ -450,13 +452,13 @@ class Run:
                 return None
             # Agents that decide later may look at it.
             agent.__dict__["lastActions"] = tuple(actions)
-            chosen[id(agent)] = actions
+            actions_of[id(agent)] = actions
         # In the order of the agents, whatever the schedule was.
         # Agents whose behavior was taken back, as the override that gave it ended, are none any more.
         return {
-            agent: chosen[id(agent)]
+            agent: actions_of[id(agent)]
             for agent in simulation.agents
-            if id(agent) in chosen and (chosen[id(agent)] or agent.behavior is not None)
+            if id(agent) in actions_of and (actions_of[id(agent)] or agent.behavior is not None)
         }
 
     def _turn(self, agent: Any) -> tuple[Any, ...] | None:

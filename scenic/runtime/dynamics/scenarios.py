@@ -163,10 +163,10 @@ class ScenarioActivation(Guarded):
             if self.invariants and self.direct and (self._resumed or self._compose is None):
                 try:
                     self.check_invariants()
-                except InvariantViolation as found:
+                except InvariantViolation as error:
                     if self._compose is None:
                         raise
-                    violation = found
+                    violation = error
             if self._compose is not None:
                 self._resumed = True
                 try:

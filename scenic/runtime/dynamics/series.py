@@ -75,19 +75,19 @@ class Arrays:
 
     def add(self, step: int, value: object) -> None:
         """Go on by a value, of the same shape as the others."""
-        found = as_array(value)
+        array = as_array(value)
         if self._kind is None:
-            self._shape, self._kind = found.shape, found.dtype
-        elif found.shape != self._shape:
+            self._shape, self._kind = array.shape, array.dtype
+        elif array.shape != self._shape:
             raise ScenicValueError(
-                f"values of one shape can be recorded as an array, not one of {found.shape} after {self._shape}",
+                f"values of one shape can be recorded as an array, not one of {array.shape} after {self._shape}",
                 help="record to a .jsonl file",
             )
-        wanted = np.result_type(self._kind, found.dtype)
+        common_kind = np.result_type(self._kind, array.dtype)
         with naming(self._path):
-            if wanted != self._kind:
-                self._convert(wanted)
-            self._stream.write(np.ascontiguousarray(found, dtype=wanted).tobytes())
+            if common_kind != self._kind:
+                self._convert(common_kind)
+            self._stream.write(np.ascontiguousarray(array, dtype=common_kind).tobytes())
         self._steps.append(step)
 
     def _convert(self, wanted: np.dtype[Any]) -> None:

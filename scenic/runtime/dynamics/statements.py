@@ -85,26 +85,26 @@ def begin(owner: Running, target: object) -> Running:
         hint = None
     if in_compose and isinstance(target, ModularScenario):
         return owner.run.activation(target, owner)
-    wanted = Monitor if owner.instance._kind == "monitor" else Behavior
-    if not in_compose and isinstance(target, Behavior | wanted):
+    kind = Monitor if owner.instance._kind == "monitor" else Behavior
+    if not in_compose and isinstance(target, Behavior | kind):
         return Activation(owner.run, target, owner.agent, owner.scenario)
-    expected = "a scenario" if in_compose else "a behavior"
-    raise ScenicTypeError(f"`do`: expected {expected}, not {describe(target)}", span=here(), help=hint)
+    expectation = "a scenario" if in_compose else "a behavior"
+    raise ScenicTypeError(f"`do`: expected {expectation}, not {describe(target)}", span=here(), help=hint)
 
 
 def do(owner: Running, targets: Sequence[object], limit: object = None, unit: str | None = None) -> Steps:
     """``do``, with ``for`` or ``until``."""
     stop = _stop_test(owner, limit, unit)
-    started: list[Running] = []
+    activations: list[Running] = []
     try:
         # What is over at once is not even set up; a condition may read what only the set-up will make.
         over = owner.run.holds(limit) if unit == "until" else stop is not None and stop()
         if not over:
             for target in targets:
                 sub = begin(owner, target)
-                started.append(sub)
+                activations.append(sub)
                 sub.start()
-        waiting = started
+        waiting = activations
         while waiting:
             if len(waiting) == 1:
                 output = waiting[0].resume()
@@ -112,24 +112,24 @@ def do(owner: Running, targets: Sequence[object], limit: object = None, unit: st
                     break
             else:
                 outputs = [(sub, sub.resume()) for sub in waiting]
-                waiting = [sub for sub, taken in outputs if taken is not None]
+                waiting = [sub for sub, actions in outputs if actions is not None]
                 if not waiting:
                     break
-                output = _joined([taken for _, taken in outputs if taken is not None])
+                output = _joined([actions for _, actions in outputs if actions is not None])
             owner.direct = False
             yield output
             if stop is not None and stop():
                 break
     except Exception:
         # What went wrong is told, not what did not come true for it.
-        for sub in started:
+        for sub in activations:
             try:
                 sub.stop()
             except RejectSimulationException as unmet:
                 owner.run.unmet = owner.run.unmet or unmet
         raise
     finally:
-        for sub in started:
+        for sub in activations:
             sub.stop()
     owner.check_invariants()
 
@@ -217,25 +217,25 @@ def interruptible(
     after_handler = False
     try:
         while True:
-            selected = -1
+            clause = -1
             for index in order:
                 if blocks[index] is not None or run.holds(conditions[index]):
-                    selected = index
+                    clause = index
                     break
-            if selected < 0:
+            if clause < 0:
                 block = main = body() if main is None else main
-            elif blocks[selected] is None:
-                block = blocks[selected] = clauses[selected][1]()
+            elif blocks[clause] is None:
+                block = blocks[clause] = clauses[clause][1]()
             else:
-                block = blocks[selected]
+                block = blocks[clause]
             if isinstance(block, GeneratorType):
                 violation: InvariantViolation | None = None
-                if after_handler and selected in waiting:
+                if after_handler and clause in waiting:
                     # A handler may have broken in this step what the block that it preempted relies on.
                     try:
                         owner.check_invariants()
-                    except InvariantViolation as found:
-                        violation = found
+                    except InvariantViolation as error:
+                        violation = error
                 try:
                     output = (
                         next(cast("Iterator[Yielded]", block))
@@ -245,16 +245,16 @@ def interruptible(
                 except StopIteration as end:
                     outcome = end.value
                 else:
-                    (waiting.add if owner.direct else waiting.discard)(selected)
+                    (waiting.add if owner.direct else waiting.discard)(clause)
                     after_handler = False
                     yield output
                     continue
             else:
                 outcome = block  # A block in which nothing takes time has run to its end.
-            if outcome is not None or selected < 0:
+            if outcome is not None or clause < 0:
                 return outcome  # type: ignore[no-any-return] # blocks return outcomes
-            blocks[selected] = None
-            waiting.discard(selected)
+            blocks[clause] = None
+            waiting.discard(clause)
             after_handler = True
     finally:
         for block in (*blocks, main):

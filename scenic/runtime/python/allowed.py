@@ -50,11 +50,11 @@ def allowed(function: Callable[..., object], combinations: Iterable[Sequence[obj
 
     """
     try:
-        known = frozenset(tuple(each) for each in combinations)
+        rows = frozenset(tuple(each) for each in combinations)
     except TypeError as error:
         raise InvalidScenarioError(
             f"the combinations that are allowed must be sequences of hashable values: {error}"
         ) from None
-    if len({len(each) for each in known}) > 1:
+    if len({len(each) for each in rows}) > 1:
         raise InvalidScenarioError("the combinations that are allowed have different numbers of values")
-    return Relation(function, known)
+    return Relation(function, rows)

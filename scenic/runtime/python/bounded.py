@@ -60,7 +60,7 @@ def bounds_of_call(
     reading = getattr(function, _MARK, None)
     if reading is None:
         return None
-    ends = np.array([_ends(found) for found in _readings(reading, [known(item) for item in args])])
+    ends = np.array([_ends(interval) for interval in _readings(reading, [known(item) for item in args])])
     return outward(ends[:, 0], ends[:, 1], _ULPS)
 
 
@@ -76,10 +76,10 @@ def bounds_of_region(kind: type, parameters: Sequence[Bounds | None]) -> Bounds 
     if reading is None:
         return None
     rows = []
-    for found in _readings(reading, parameters):
-        if not isinstance(found, tuple | list) or len(found) != 3:
-            raise _no_interval(found, "three intervals, of x, y and z")
-        rows.append([_ends(interval) for interval in found])
+    for intervals in _readings(reading, parameters):
+        if not isinstance(intervals, tuple | list) or len(intervals) != 3:
+            raise _no_interval(intervals, "three intervals, of x, y and z")
+        rows.append([_ends(interval) for interval in intervals])
     ends = np.array(rows)
     return outward(ends[..., 0], ends[..., 1], _ULPS)
 

@@ -117,16 +117,16 @@ def _drawn_now(law: Distribution) -> Any:
 
 def _numbers(call: Call, *columns: Column) -> Column:
     numbers = np.full(call.lanes, np.nan)
-    failed = np.zeros(call.lanes, dtype=np.bool_)
+    faulty_lanes = np.zeros(call.lanes, dtype=np.bool_)
     first: Exception | None = None
     for lane, value in enumerate(evaluated(call, columns, np.nan)):
         try:
             numbers[lane] = float(value)
         except (TypeError, ValueError, OverflowError):
-            failed[lane] = True
+            faulty_lanes[lane] = True
             first = wrong_type(SCALAR, value, "`sampleGiven`") if first is None else first
     if first is not None:
-        call.fault(failed, first)
+        call.fault(faulty_lanes, first)
     return numbers
 
 

@@ -27,9 +27,9 @@ def forget_stranger(name: str, folder: Path) -> None:
     Modules on Python's usual path stay: they are the same for every program.
     """
     top = name.partition(".")[0]
-    loaded = sys.modules.get(top)
-    origin = getattr(getattr(loaded, "__spec__", None), "origin", None)
-    if loaded is None or origin in (None, "built-in", "frozen"):
+    module = sys.modules.get(top)
+    origin = getattr(getattr(module, "__spec__", None), "origin", None)
+    if module is None or origin in (None, "built-in", "frozen"):
         return
     spec = PathFinder.find_spec(top, [str(folder.absolute())])
     if spec is None or spec.origin is None or spec.origin == origin:

@@ -70,20 +70,22 @@ def later(
 
     ``names`` are global names as functions in reach shall see them; as they are now by default.
     """
-    seen = Globals() if names is None else names
-    own = key(here(), next_address())
+    global_names = Globals() if names is None else names
+    key_of_call = key(here(), next_address())
     context = current.get()
     reads: list[Any] = [function, *args, *keywords.values()]
-    reached = list(reachable(reads, seen))
-    looks = context is not None and mention(reached, *_OBJECT_READERS)
+    reachable_values = list(reachable(reads, global_names))
+    looks = context is not None and mention(reachable_values, *_OBJECT_READERS)
     if context is not None and looks:
         context.record.looks = True
-        reached = list(reachable([*reads, *context.objects], seen))
-    operands = (own, *nodes_of(reached))
+        reachable_values = list(reachable([*reads, *context.objects], global_names))
+    operands = (key_of_call, *nodes_of(reachable_values))
     habit = _Habit()
-    habit.draws = mention(reached, *_STATE_READERS)
-    instances = tuple(value for value in reached if isinstance(value, Instance))
-    code = OpaqueCode(instances, function, tuple(args), keywords, operands, seen, context, looks, habit)
+    habit.draws = mention(reachable_values, *_STATE_READERS)
+    instances = tuple(value for value in reachable_values if isinstance(value, Instance))
+    code = OpaqueCode(
+        instances, function, tuple(args), keywords, operands, global_names, context, looks, habit
+    )
     node = make_node(operation, operands, code, here())
     if instances and context is not None and context.is_symbolic:
         context.record.calls.append((node, instances))
@@ -151,8 +153,8 @@ def together(
     plain = calls.plain()
     if plain is None or calls.code.habit.draws:
         return None
-    found: Column | None = calls.made(lambda calls: compute(calls, plain[1]), again=False)
-    return found
+    column: Column | None = calls.made(lambda calls: compute(calls, plain[1]), again=False)
+    return column
 
 
 class Calls:
@@ -234,7 +236,8 @@ class Calls:
                 seed_globals(seeds[lane])
             try:
                 args = [
-                    item if fixed else sample.value(item) for item, fixed in zip(code.args, same, strict=True)
+                    item if is_same else sample.value(item)
+                    for item, is_same in zip(code.args, same, strict=True)
                 ]
                 keywords = {name: sample.value(item) for name, item in code.keywords.items()}
                 function = code.function if always_function else sample.value(code.function)
@@ -326,11 +329,11 @@ def _told_bounds(code: OpaqueCode, *operands: Bounds | None) -> Bounds | None:
     """Return the bounds that the program declares for the results of some code (`scenic.bounded`), or ``None``."""
     if code.keywords:
         return None
-    known = dict(zip(code.operands, operands, strict=False))
+    bounds_by_node = dict(zip(code.operands, operands, strict=False))
 
     def bounds_of(item: Any) -> Bounds | None:
         if isinstance(item, Random):
-            return of_constant(item.node) if item.node.is_constant else known.get(item.node)
+            return of_constant(item.node) if item.node.is_constant else bounds_by_node.get(item.node)
         return Bounds.exactly(float(item)) if isinstance(item, int | float) else None
 
     return bounds_of_call(code.function, code.args, bounds_of)

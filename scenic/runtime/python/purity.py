@@ -113,8 +113,8 @@ def _is_harmless(
         return False
     if instruction.opname in _LOADS:
         name = instruction.argval
-        own = names.get("__builtins__", builtins)
-        builtin = own if isinstance(own, dict) else vars(own)
+        builtins_of_code = names.get("__builtins__", builtins)
+        builtin = builtins_of_code if isinstance(builtins_of_code, dict) else vars(builtins_of_code)
         value = names.get(name, builtin.get(name))
         if value is math or isinstance(value, _DATA) or is_frozen(value) or isinstance(value, EnumType):
             return True

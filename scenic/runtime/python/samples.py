@@ -85,17 +85,17 @@ class Globals:
         names = function.__globals__
         if PRELUDE not in names:
             return []
-        found: dict[str, Any] = {}
+        values_by_name: dict[str, Any] = {}
         for name in self.in_code(function.__code__):
             key = (id(names), name)
             if key not in self._values and name in names:
                 value = names[name]
                 self._values[key] = value.snapshot() if name == PRELUDE else value
             if key in self._values:
-                found[name] = self._values[key]
+                values_by_name[name] = self._values[key]
             elif name not in names["__builtins__"]:
                 self.lacks = True
-        return list(found.items())
+        return list(values_by_name.items())
 
     def in_code(self, code: CodeType) -> Iterator[str]:
         """The global names that code, or code nested in it, may read or write."""
@@ -159,19 +159,21 @@ class Globals:
 
     def placement(self, instance: Instance) -> Placement:
         """The known values of the properties that are read of every object."""
-        known = self._placements.get(id(instance))
-        if known is None:
+        entry = self._placements.get(id(instance))
+        if entry is None:
             values = {name: instance.__dict__.get(name) for name in PLACEMENT}
-            fixed = {name: value for name, value in values.items() if isinstance(value, int | float | Vector)}
-            drawn = [
+            definite_values = {
+                name: value for name, value in values.items() if isinstance(value, int | float | Vector)
+            }
+            random_names = [
                 value
                 for value in values.values()
                 if isinstance(value, Random) and not value.node.kind.is_boxed
             ]
-            is_whole = len(fixed) + len(drawn) == len(PLACEMENT)
+            is_whole = len(definite_values) + len(random_names) == len(PLACEMENT)
             nodes = tuple(as_node(value) for value in values.values()) if is_whole else ()
-            known = self._placements[id(instance)] = (instance, (fixed, nodes))
-        return known[1]
+            entry = self._placements[id(instance)] = (instance, (definite_values, nodes))
+        return entry[1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -248,16 +250,16 @@ def mentions(code: CodeType, word: str) -> bool:
 
 def reachable(values: Iterable[object], names: Globals) -> Iterator[Any]:
     """Everything that the values are made of as far as sampling goes, themselves included, each once."""
-    seen: dict[int, Any] = {}
+    values_by_identity: dict[int, Any] = {}
     stack = list(values)[::-1]
     while stack:
         value = stack.pop()
-        if type(value) in _PLAIN or id(value) in seen or isinstance(value, _NUMBERS_AND_TEXT):
+        if type(value) in _PLAIN or id(value) in values_by_identity or isinstance(value, _NUMBERS_AND_TEXT):
             continue
-        seen[id(value)] = value  # Kept alive, so that identities stay unique.
+        values_by_identity[id(value)] = value  # Kept alive, so that identities stay unique.
         yield value
         if isinstance(value, Random):
-            stack.extend(_boxed_constants(value.node, seen))
+            stack.extend(_boxed_constants(value.node, values_by_identity))
         else:
             stack.extend(reversed(list(parts(value, names))))
 
@@ -429,21 +431,21 @@ class Sample:
         One value gives one object, however often it is asked for, so that identity survives sampling.
         """
         if isinstance(value, Random):
-            drawn = self._lanes.read(self._lane, value.node)  # one object, too
-            return self.value(drawn) if value.node.kind.is_boxed else drawn
+            constituent = self._lanes.read(self._lane, value.node)  # one object, too
+            return self.value(constituent) if value.node.kind.is_boxed else constituent
         if type(value) in _PLAIN or isinstance(value, _NUMBERS_AND_TEXT):
             return value
-        known = self._memo.get(id(value), _MISSING)
-        if known is _MISSING:
+        earlier_copy = self._memo.get(id(value), _MISSING)
+        if earlier_copy is _MISSING:
             if isinstance(value, Instance):
                 return self._instance(value)
-            sampled = self._sampled(value)
-            known = self._memo.get(id(value), _MISSING)
-            if known is not _MISSING:
-                return known  # what was kept while it was made leads back to itself
-            known = self._memo[id(value)] = sampled
+            new_value = self._sampled(value)
+            earlier_copy = self._memo.get(id(value), _MISSING)
+            if earlier_copy is not _MISSING:
+                return earlier_copy  # what was kept while it was made leads back to itself
+            earlier_copy = self._memo[id(value)] = new_value
             self._alive[id(value)] = value
-        return known
+        return earlier_copy
 
     def member(self, member: object, owner: type) -> Any:
         """A member of a class of objects, which may read other members."""
@@ -477,9 +479,13 @@ class Sample:
             stays = all(new is old for new, old in zip(items, base.__iter__(value), strict=True))
             if cls is base:
                 return value if stays else base(items)
-            kind, held = self.value(cls), getattr(value, "__dict__", {})
-            attributes = {name: self.value(item) for name, item in held.items()}
-            if kind is cls and stays and all(attributes[name] is item for name, item in held.items()):
+            kind, attributes_before = self.value(cls), getattr(value, "__dict__", {})
+            attributes = {name: self.value(item) for name, item in attributes_before.items()}
+            if (
+                kind is cls
+                and stays
+                and all(attributes[name] is item for name, item in attributes_before.items())
+            ):
                 return value
             copy = base.__new__(kind, items)
             if attributes:
@@ -488,9 +494,9 @@ class Sample:
         if cls in CONTAINERS:
             return self._container(value, kind_of_container(cls), cls)
         if isinstance(value, partial):
-            given = map(self.value, (value.func, *value.args))
+            arguments = map(self.value, (value.func, *value.args))
             keywords = {name: self.value(item) for name, item in value.keywords.items()}
-            copy = partial.__new__(self.value(cls), *given, **keywords)
+            copy = partial.__new__(self.value(cls), *arguments, **keywords)
             vars(copy).update({name: self.value(item) for name, item in vars(value).items()})
             return copy
         if isinstance(value, ModuleType) and PRELUDE in vars(value):
@@ -505,8 +511,8 @@ class Sample:
             return MethodType(self.value(value.__func__), self.value(value.__self__))
         if isinstance(value, BuiltinMethodType):
             holder = value.__self__
-            own = self.value(holder) if type(holder) in CONTAINERS else holder
-            return value if own is holder else getattr(own, value.__name__)
+            owner = self.value(holder) if type(holder) in CONTAINERS else holder
+            return value if owner is holder else getattr(owner, value.__name__)
         if isinstance(value, type):
             return self._class(value) if self._names.owns(value) and not self._stays(value) else value
         if hasattr(value, "sampled") and hasattr(value, "random_parts"):
@@ -532,13 +538,13 @@ class Sample:
         if kind is defaultdict:
             copy.default_factory = self.value(container.default_factory)
         look_up = self._names.contents
-        held = contents_of(container) if look_up is None else look_up(container)
+        contents = contents_of(container) if look_up is None else look_up(container)
         if issubclass(kind, dict):
-            kind.update(copy, [(self.value(key), self.value(item)) for key, item in held])
+            kind.update(copy, [(self.value(key), self.value(item)) for key, item in contents])
         elif kind is set:
-            set.update(copy, map(self.value, held))
+            set.update(copy, map(self.value, contents))
         else:
-            kind.extend(copy, map(self.value, held))
+            kind.extend(copy, map(self.value, contents))
         return copy
 
     def _instance(self, instance: Instance) -> Instance:
@@ -551,12 +557,12 @@ class Sample:
         copy: Any = object.__new__(type(instance))
         copy._source = instance
         copy._sample = self
-        fixed, nodes = self._names.placement(instance)
+        definite_values, nodes = self._names.placement(instance)
         if nodes and self._whole:
             rows = self._lanes.tuples(nodes)
             put(copy, rows[self._lane if len(rows) > 1 else 0])
         else:
-            copy.__dict__.update(fixed)
+            copy.__dict__.update(definite_values)
         self._memo[id(instance)] = copy  # which keeps the instance alive
         return copy  # type: ignore[no-any-return] # of the class of the instance
 
@@ -594,10 +600,10 @@ class Sample:
         (function,) = map(copy, functions_of(value))
         if isinstance(value, CACHED):
             return lru_cache(**value.cache_parameters())(function)
-        made = type(value)(function)
+        copy_of_value = type(value)(function)
         if isinstance(value, cached_property):
-            made.attrname = value.attrname
-        return made
+            copy_of_value.attrname = value.attrname
+        return copy_of_value
 
     def _object(self, instance: object) -> Any:
         """The instance of a plain Python class of the program."""
@@ -610,8 +616,10 @@ class Sample:
         else:
             copy = self._empty(instance, cls)
             self.remember(instance, copy)
-        held = getattr(copy, "__dict__", {})
-        held.update({name: self.value(item) for name, item in getattr(instance, "__dict__", {}).items()})
+        attributes = getattr(copy, "__dict__", {})
+        attributes.update(
+            {name: self.value(item) for name, item in getattr(instance, "__dict__", {}).items()}
+        )
         for name in slots(cls):
             if hasattr(instance, name):
                 object.__setattr__(copy, name, self.value(getattr(instance, name)))
@@ -629,8 +637,8 @@ class Sample:
 
     def _function(self, function: FunctionType) -> FunctionType:
         """The function over sampled globals, closure and defaults."""
-        own = PRELUDE in function.__globals__
-        scope = self._scope(function) if own else function.__globals__
+        is_own_code = PRELUDE in function.__globals__
+        scope = self._scope(function) if is_own_code else function.__globals__
         stays = self._stays(function)
         cells = (
             (function.__closure__ or ()) if stays else tuple(CellType() for _ in function.__closure__ or ())
@@ -646,7 +654,7 @@ class Sample:
             copy.__kwdefaults__ = function.__kwdefaults__
             copy.__dict__.update(function.__dict__)
             return copy
-        if own:
+        if is_own_code:
             self._fill(function, scope)
         for new, old in zip(cells, function.__closure__ or (), strict=True):
             try:

@@ -78,17 +78,17 @@ class Originals:
 def _shareable(roots: list[Any]) -> Iterator[Any]:
     """The containers in reach that are the same in every sample, and so is all that they hold."""
     names = Globals()
-    found = list(reachable(roots, names))
-    moving = {id(item) for item in found if _moves(item, names)}
-    inside = {id(item): list(parts(item, names)) for item in found if id(item) not in moving}
+    values = list(reachable(roots, names))
+    moving = {id(item) for item in values if _moves(item, names)}
+    inside = {id(item): list(parts(item, names)) for item in values if id(item) not in moving}
     # What is found is found after something that holds it, so that few passes suffice.
     before = -1
     while before != len(moving):
         before = len(moving)
-        for item in reversed(found):
+        for item in reversed(values):
             if id(item) not in moving and any(id(part) in moving for part in inside[id(item)]):
                 moving.add(id(item))
-    for item in found:
+    for item in values:
         if id(item) not in moving and (type(item) is np.ndarray or kind_of_container(type(item)) is not None):
             yield item
 
@@ -112,14 +112,14 @@ def _contents(container: object) -> _Contents:
 
 def _fill(container: object, contents: _Contents) -> None:
     """Put contents back in place."""
-    held, attributes = contents
+    content, attributes = contents
     if type(container) is np.ndarray:
-        if container.flags.writeable and container.shape == held.shape:
-            container[...] = held
+        if container.flags.writeable and container.shape == content.shape:
+            container[...] = content
         return
     kind = kind_of_container(type(container))
     kind.clear(container)
-    (kind.extend if kind in (list, deque) else kind.update)(container, held)
+    (kind.extend if kind in (list, deque) else kind.update)(container, content)
     if hasattr(container, "__dict__"):
         vars(container).clear()
         vars(container).update(attributes)

@@ -17,18 +17,18 @@ class Carrier:
 
     def sampled(self, sample: Any) -> Any:
         """The same of sampled values; itself where they are those that it has."""
-        made = shallow.copy(self)
-        sample.remember(self, made)  # Its parts may lead back to it.
+        twin = shallow.copy(self)
+        sample.remember(self, twin)  # Its parts may lead back to it.
         cls = sample.value(type(self))
-        held = _held(self)
-        values = {name: sample.value(item) for name, item in held.items()}
-        if cls is type(self) and all(values[name] is item for name, item in held.items()):
+        attributes = _held(self)
+        values = {name: sample.value(item) for name, item in attributes.items()}
+        if cls is type(self) and all(values[name] is item for name, item in attributes.items()):
             sample.remember(self, self)
             return self
-        object.__setattr__(made, "__class__", cls)
+        object.__setattr__(twin, "__class__", cls)
         for name, item in values.items():
-            object.__setattr__(made, name, item)
-        return made
+            object.__setattr__(twin, name, item)
+        return twin
 
 
 def _held(carrier: Carrier) -> dict[str, Any]:

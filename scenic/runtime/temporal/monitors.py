@@ -131,34 +131,34 @@ def _once(
     part: Normal, evaluate: Callable[[int], bool], known: dict[Normal, "_Clauses | Exception"]
 ) -> _Clauses:
     """Progress an obligation by one state, at most once for all clauses that share it."""
-    found = known.get(part)
-    if found is None:
+    clauses = known.get(part)
+    if clauses is None:
         try:
-            found = _progressed(part, evaluate)
+            clauses = _progressed(part, evaluate)
         except Exception as error:  # noqa: BLE001 - it may not count
-            found = error
-        known[part] = found
-    if isinstance(found, Exception):
-        raise found
-    return found
+            clauses = error
+        known[part] = clauses
+    if isinstance(clauses, Exception):
+        raise clauses
+    return clauses
 
 
 def _progressed(part: Normal, evaluate: Callable[[int], bool]) -> _Clauses:
     """Return the obligations that remain after one more state, in disjunctive clauses."""
     match part:
-        case Literal(index, wanted):
-            return _TRUE if evaluate(index) is wanted else _FALSE
+        case Literal(index, truth):
+            return _TRUE if evaluate(index) is truth else _FALSE
         case Junction(conjunction, parts):
             return _decided(conjunction, [partial(_progressed, each, evaluate) for each in parts])
         case Next(weak, later):
             return frozenset([frozenset([(weak, later)])])
-        case Until(weak, held, goal):
+        case Until(weak, condition, goal):
             again: _Clauses = frozenset([frozenset([(weak, part)])])
 
             def go_on() -> _Clauses:
-                if held is None:
+                if condition is None:
                     return again
-                return _decided(not weak, [lambda: _progressed(held, evaluate), lambda: again])
+                return _decided(not weak, [lambda: _progressed(condition, evaluate), lambda: again])
 
             return _decided(weak, [lambda: _progressed(goal, evaluate), go_on])
 

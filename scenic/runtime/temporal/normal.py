@@ -71,8 +71,8 @@ class _Pool:
                 return self._until(not wanted, None, self.make(operand, wanted))
             case "always", (operand,):
                 return self._until(wanted, None, self.make(operand, wanted))
-            case "until", (held, goal):
-                return self._until(not wanted, self.make(held, wanted), self.make(goal, wanted))
+            case "until", (condition, goal):
+                return self._until(not wanted, self.make(condition, wanted), self.make(goal, wanted))
         raise AssertionError(formula)
 
     def _junction(self, conjunction: bool, parts: tuple[Normal, ...]) -> Normal:

@@ -44,16 +44,16 @@ class Robustness:
 
         NaN says that an atom has no value there; neither it nor its negation holds then.
         """
-        known: dict[Normal, _Clauses] = {}
+        clauses_of: dict[Normal, _Clauses] = {}
         if self._start is not None:
-            self._left = _progressed(self._start, margin, known)
+            self._left = _progressed(self._start, margin, clauses_of)
             self._start = None
             return
         left: _Clauses = {}
         for obligations, value in self._left.items():
             clause: _Clauses = {_NOW: value}
             for _, part in obligations:
-                clause = _lower(clause, _progressed(part, margin, known))
+                clause = _lower(clause, _progressed(part, margin, clauses_of))
             left = _higher(left, clause)
         self._left = left
 
@@ -76,9 +76,9 @@ def _progressed(part: Normal, margin: Callable[[int], float], known: dict[Normal
 
 def _made(part: Normal, margin: Callable[[int], float], known: dict[Normal, _Clauses]) -> _Clauses:
     match part:
-        case Literal(index, wanted):
+        case Literal(index, truth):
             value = margin(index)
-            return {} if math.isnan(value) else {_NOW: value if wanted else -value}
+            return {} if math.isnan(value) else {_NOW: value if truth else -value}
         case Junction(conjunction, parts):
             join = _lower if conjunction else _higher
             first, *others = (_progressed(each, margin, known) for each in parts)
@@ -87,11 +87,11 @@ def _made(part: Normal, margin: Callable[[int], float], known: dict[Normal, _Cla
             return first
         case Next(weak, later):
             return {frozenset([(weak, later)]): math.inf}
-        case Until(weak, held, goal):
+        case Until(weak, condition, goal):
             again: _Clauses = {frozenset([(weak, part)]): math.inf}
             inner, outer = (_higher, _lower) if weak else (_lower, _higher)
-            if held is not None:
-                again = inner(_progressed(held, margin, known), again)
+            if condition is not None:
+                again = inner(_progressed(condition, margin, known), again)
             return outer(_progressed(goal, margin, known), again)
 
 
