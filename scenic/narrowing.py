@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.analysis.contraction import Pruning, contract, independent
+from scenic.analysis.contraction import Pruning, independent
 from scenic.analysis.facts import Fact
 from scenic.analysis.finite.deciding import Decision, decide
 from scenic.analysis.screening import seldom_met
 from scenic.graph.node import Node
+from scenic.narrowing_store import contract_once
 from scenic.runtime.regions.unturned import unturned
 from scenic.runtime.sampling.checks import NodeCheck
 from scenic.runtime.sampling.planning import Outline
@@ -70,7 +71,7 @@ def _narrowed(outlined: Outline, met: Mapping[Node, NDArray[np.bool_]], settled:
     masks = {
         there.node: met[here.node] for here, there in zip(facts, framed, strict=True) if here.node in met
     }
-    return contract(outlined.graph, framed, masks)
+    return contract_once(outlined.graph, framed, masks)
 
 
 def _in_own_frames(facts: Sequence[Fact]) -> list[Fact]:

@@ -188,7 +188,7 @@ def independent(conditions: Sequence[Fact]) -> list[list[Fact]]:
     leader: dict[Node, int] = {}
     groups: dict[int, list[Fact]] = {}
     for number, condition in enumerate(conditions):
-        axes = [node for node in _read([condition.node]) if node.is_axis]
+        axes = [node for node in nodes_below([condition.node]) if node.is_axis]
         joined = sorted({leader[axis] for axis in axes if axis in leader})
         mine = joined[0] if joined else number
         for other in joined[1:]:
@@ -248,7 +248,7 @@ def _moved(before: Boxes, after: Boxes, alive: Mask) -> bool:
     return bool((new < (1 - PROGRESS) * old).any())
 
 
-def _read(conditions: Sequence[Node]) -> list[Node]:
+def nodes_below(conditions: Sequence[Node]) -> list[Node]:
     """The nodes below some conditions that readings of bounds look at, operands first."""
     order: dict[Node, None] = {}
     stack = [(node, 0) for node in reversed(conditions)]
@@ -291,7 +291,7 @@ class _Network:
 
     def __init__(self, graph: Graph, conditions: Sequence[Fact], work: int = MOST_WORK) -> None:
         self.conditions = [condition.node for condition in conditions]
-        self.order = _read(self.conditions)
+        self.order = nodes_below(self.conditions)
         self.axes = {node: graph.axes[node] for node in self.order if node.is_axis}
         self.inner = [node for node in self.order if not node.is_axis and not node.is_constant]
         self.evaluated = _evaluated(self.conditions)

@@ -447,7 +447,7 @@ def test_a_paving_that_is_as_good_as_its_hull_is_replaced_by_that():
         domain = prune(graph, items)
         assert domain.boxes > 1
         assert len(domain.parts) == 1
-        axis = graph.axes[next(node for node in contraction._read([narrow.node]) if node.is_axis)]
+        axis = graph.axes[next(node for node in contraction.nodes_below([narrow.node]) if node.is_axis)]
         assert interval(domain, axis) == pytest.approx((0.4, 0.6), abs=0.02)
         assert domain.volume < 0.3 * 0.25
 

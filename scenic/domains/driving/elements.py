@@ -95,6 +95,12 @@ class NetworkElement(Frozen, Surface):
         self._z = 0.0
         self.has_orientation = True
 
+    @property
+    def content_digest(self) -> bytes | None:
+        """The digest of the element for `scenic.analysis.identity`; ``None`` where that of its network is not known."""
+        network = self.network.content_digest
+        return None if network is None else network + self.uid.encode()
+
     @cached_property
     def orientation(self) -> RegionField:  # made when somebody needs it
         """The direction of traffic within the element."""

@@ -33,11 +33,19 @@ class Levels:
         elevation: the surfaces of the roads.
         polygons: areas, shapely's.
         roads: the number of the road of each area.
+        content_digest: the digest of all that they follow from, where it is known (`scenic.analysis.identity`).
 
     """
 
-    def __init__(self, elevation: Elevation, polygons: Sequence[object], roads: Sequence[int]) -> None:
+    def __init__(
+        self,
+        elevation: Elevation,
+        polygons: Sequence[object],
+        roads: Sequence[int],
+        content_digest: bytes | None = None,
+    ) -> None:
         self.elevation = elevation
+        self.content_digest = content_digest
         self._polygons = np.array(polygons, dtype=object)
         self._roads = np.array(roads, dtype=np.intp)
 

@@ -157,10 +157,10 @@ def _found(content: bytes, filename: str, options: MapOptions, cls: type[RoadNet
 
     key = hashlib.sha256(_code() + options.key() + content).digest()
     arrays = kept(KIND, key, build, read=options.useCache, write=options.writeCache)
-    if built:
-        return built[0]
     try:
-        return restored(arrays, filename, options.tolerance, cls)
+        network = built[0] if built else restored(arrays, filename, options.tolerance, cls)
+        network.origin = key
+        return network
     except (LookupError, TypeError, ValueError):
         # The file is whole, but not one that this version wrote.
         return _build(content, filename, options, cls)

@@ -80,8 +80,15 @@ class RoadNetwork(Frozen):
         """Polygons that close gaps between the ends of linked lanes."""
         self._elevation = Elevation(())
         self.is_elevated = False
+        self.origin: bytes | None = None
+        """The digest of all that the network follows from, where that is known."""
         self._finders: dict[Any, Finder] = {}
         self._nested_finders: dict[str, NestedFinder] = {}
+
+    @property
+    def content_digest(self) -> bytes | None:
+        """The digest of the network for `scenic.analysis.identity`; ``None`` where it is not known."""
+        return None if self.origin is None else self.origin + bytes([self.is_elevated])
 
     # What there is
 
@@ -237,7 +244,8 @@ class RoadNetwork(Frozen):
             for element in (*self.allRoads, *self.sidewalks, *self.shoulders)
         ]
         known = [(polygon, self.road_number(uid)) for polygon, uid in areas if uid in self._elevation.numbers]
-        return Levels(self._elevation, *map(list, zip(*known, strict=True)) if known else ([], []))
+        polygons, roads = map(list, zip(*known, strict=True)) if known else ([], [])
+        return Levels(self._elevation, polygons, roads, self.content_digest)
 
     @property
     def _levels_in_space(self) -> Levels | None:

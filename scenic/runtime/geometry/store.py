@@ -58,22 +58,31 @@ def kept(
         write: keep the result for later runs.
 
     """
-    folder = store_folder()
-    if folder is None:
-        return compute()
-    path = folder / f"{_key(kind, content)}{_SUFFIX}"
-    found = _read(path) if read else None
+    found = find(kind, content) if read else None
     if found is None:
         found = compute()
         if write:
-            _write(path, found)
+            keep(kind, content, found)
     return found
+
+
+def find(kind: str, content: bytes) -> Arrays | None:
+    """Arrays that an earlier run left; the arguments are those of `kept`."""
+    path = _path(kind, content)
+    return None if path is None else _read(path)
+
+
+def keep(kind: str, content: bytes, arrays: Arrays) -> None:
+    """Leave arrays for later runs; the arguments are those of `kept`."""
+    path = _path(kind, content)
+    if path is not None:
+        _write(path, arrays)
 
 
 def is_kept(kind: str, content: bytes) -> bool:
     """Return whether an earlier run left what `kept` would otherwise compute."""
-    folder = store_folder()
-    return folder is not None and (folder / f"{_key(kind, content)}{_SUFFIX}").exists()
+    path = _path(kind, content)
+    return path is not None and path.exists()
 
 
 def store_folder() -> Path | None:
@@ -96,8 +105,11 @@ def programs_folder() -> Path | None:
     return None if folder is None else folder / _PROGRAMS
 
 
-def _key(kind: str, content: bytes) -> str:
-    return hashlib.sha256(kind.encode() + b"\0" + content).hexdigest()
+def _path(kind: str, content: bytes) -> Path | None:
+    """The file for some content; ``None`` if the store is turned off."""
+    folder = store_folder()
+    key = hashlib.sha256(kind.encode() + b"\0" + content).hexdigest()
+    return None if folder is None else folder / f"{key}{_SUFFIX}"
 
 
 def _read(path: Path) -> Arrays | None:
