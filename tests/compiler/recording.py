@@ -10,6 +10,7 @@ from typing import Any
 from scenic.compiler.compile import compile_text
 from scenic.compiler.tracebacks import SOURCE_NAME, TracedPlace, locate
 from scenic.language.source import Source
+from scenic.runtime.description.conditions import picked
 
 COMPARISONS: dict[str, Callable[[Any, Any], Any]] = {
     "<": operator.lt,
@@ -126,11 +127,35 @@ class Recorder:
         self._note("require")
         self.required.append((bool(condition), probability, name))
 
-    def condition(self, symbolic: Any, concrete: Any, captured: Sequence[Any], margin: Any = None) -> Any:
+    def condition(
+        self,
+        symbolic: Any,
+        concrete: Any,
+        captured: Sequence[Any],
+        margin: Any = None,
+        indices: Any = None,
+    ) -> Any:
         self._note("condition")
         value = concrete(*captured)
         self.readings.append((value if symbolic is None else symbolic(*captured), value))
+        if indices is not None:
+            self.readings.append((concrete(*picked(captured, indices)), value))
         return value
+
+    def perhaps(self, test: Any, make: Callable[[], list[Any]]) -> list[Any]:
+        return make() if test else []
+
+    def number_of(self, length: Any, values: list[Any]) -> Any:
+        return length(values)
+
+    def occurrences(self, values: Any, value: Any) -> Any:
+        return values.count(value)
+
+    def items_of(self, container: Any, view: str) -> Any:
+        return list(getattr(container, view)())
+
+    def ascending(self, function: Any, values: Any) -> Any:
+        return values == function(values)
 
     def conjunction(self, *parts: Any) -> Any:
         return all(parts)

@@ -11,7 +11,7 @@ with random values could be silently wrong; calling it with sampled ones never i
 
 import ast
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 from typing import Final
 
 from scenic.compiler import tree as scenic
@@ -112,10 +112,53 @@ class Conditions:
             )
         except _OpaqueError:
             builder = start_of(ast.Constant(None), node)
-        options = {"awaits": True} if any(map(self._is_awaited, _in_order(node))) else {}
+        options: dict[str, object] = {}
+        if any(map(self._is_awaited, _in_order(node))):
+            options["awaits"] = True
+        indices = self._indices(node, parameters)
+        if indices is not None:
+            options["indices"] = indices
         return prelude_call(
             "condition", [builder, *self.kept(node), *self._margin(node)], node, options=options
         )
+
+    def _indices(self, node: ast.expr, parameters: Sequence[ast.Name]) -> ast.expr | None:
+        """A function of the names of a leaf that tells which items of containers it reads, if it reads but some of them.
+
+        The function gives pairs: the place of a name among the parameters, and the indices. A name counts if the leaf only looks
+        items up in it, by indices that are made of names and constants.
+        """
+        bound = {
+            part.id for part in walk(node) if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
+        }
+        bound |= {part.arg for part in walk(node) if isinstance(part, ast.arg)}
+        places = {part.id: place for place, part in enumerate(parameters) if part.id not in bound}
+        lookups: dict[str, list[ast.expr]] = {}
+        whole: set[str] = set()
+        stack: list[ast.AST] = [node]
+        while stack:
+            part = stack.pop()
+            match part:
+                case ast.Subscript(value=ast.Name(id=container), slice=index, ctx=ast.Load()) if _is_plain(
+                    index, places
+                ):
+                    lookups.setdefault(container, []).append(index)
+                    stack.append(index)
+                case ast.Name(id=container):
+                    whole.add(container)
+                case _:
+                    stack.extend(ast.iter_child_nodes(part))
+        found = [
+            tuple_(
+                [constant(places[container], node), tuple_([self._captured(one) for one in indices], node)],
+                node,
+            )
+            for container, indices in lookups.items()
+            if container in places and container not in whole
+        ]
+        if not found:
+            return None
+        return lambda_([(part.id, part) for part in parameters], tuple_(found, node), node)
 
     def _margin(self, node: ast.expr) -> list[ast.expr]:
         """For a comparison or the like, a function of the same names that gives by how much it holds."""
@@ -219,6 +262,20 @@ def assigns(node: ast.expr) -> bool:
     return any(isinstance(part, ast.NamedExpr) for part in walk(node))
 
 
+def _is_plain(index: ast.expr, names: Container[str]) -> bool:
+    """Return whether an index is made of constants and some names by arithmetic."""
+    match index:
+        case ast.Constant():
+            return True
+        case ast.Name(id=identifier):
+            return identifier in names
+        case ast.BinOp(op=operator, left=left, right=right):
+            return isinstance(operator, _ARITHMETIC) and _is_plain(left, names) and _is_plain(right, names)
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return _is_plain(operand, names)
+    return False
+
+
 def _is_temporal(node: ast.expr) -> bool:
     """Return whether a condition is about more than one state."""
     return any(isinstance(part, scenic.Temporal) and part.operator != "implies" for part in walk(node))
@@ -290,7 +347,7 @@ class _Symbolic:
             case ast.Call():
                 return self._call(node)
             case ast.ListComp():
-                return self._unrolled(node)
+                return self._unrolled(node, "given")
             case scenic.New():
                 return self._new(node)
             case scenic.Operation(operator=operator, operands=operands):
@@ -325,6 +382,15 @@ class _Symbolic:
             if any(self._resolution.binding(each) is not None for each in functions):
                 raise _OpaqueError  # The program's own functions of these names.
             return prelude_call("differ", [*functions, *self._all([values, count])], node)
+        match node:
+            case ast.Compare(
+                left=left,
+                ops=[ast.Eq()],
+                comparators=[ast.Call(func=ast.Name(id="sorted") as callee, args=[values], keywords=[])],
+            ) if ast.dump(left) == ast.dump(values):
+                if self._resolution.binding(callee) is not None:
+                    raise _OpaqueError  # The program's own function of this name.
+                return prelude_call("ascending", [callee, self.expression(left)], node)
         left = self.expression(node.left)
         pairs: list[ast.expr] = []
         begin: ast.expr = node.left
@@ -342,15 +408,18 @@ class _Symbolic:
             left, begin = following, comparator
         return pairs[0] if len(pairs) == 1 else prelude_call("all_of", pairs, node)
 
-    def _unrolled(self, node: ast.ListComp | ast.GeneratorExp) -> ast.expr:
-        """The elements of a comprehension: calls of the prelude with what it iterates over, and a function of an element."""
+    def _unrolled(self, node: ast.ListComp | ast.GeneratorExp, test_function: str) -> ast.expr:
+        """The elements of a comprehension: calls of the prelude with what it iterates over, and a function of an element.
+
+        ``test_function`` of the prelude makes the elements behind an ``if``.
+        """
         body: ast.expr = at(ast.List([self.expression(node.elt)], ast.Load()), node.elt)
         for generator in reversed(node.generators):
             if generator.is_async:
                 raise _OpaqueError
             names = _target_names(generator.target)
             for test in reversed(generator.ifs):
-                body = prelude_call("given", [self.expression(test), lambda_([], body, body)], test)
+                body = prelude_call(test_function, [self.expression(test), lambda_([], body, body)], test)
             each = lambda_([(part.id, part) for part in names], body, body)
             spread = constant(isinstance(generator.target, ast.Tuple), generator.target)
             body = prelude_call("each", [self._iterated(generator.iter), each, spread], generator.iter)
@@ -411,12 +480,21 @@ class _Symbolic:
             if self._resolution.binding(callee) is not None:
                 raise _OpaqueError  # The program's own function of this name.
             argument = (
-                self._unrolled(elements)
-                if isinstance(elements, ast.GeneratorExp)
+                self._unrolled(elements, "perhaps")
+                if isinstance(elements, ast.GeneratorExp | ast.ListComp)
                 else self.expression(elements)
             )
             return prelude_call("over", [constant(callee.id, callee), callee, argument], node)
         match node.func:
+            case ast.Name(id="len") as callee if (counted := _counted(node)) is not None:
+                if self._resolution.binding(callee) is not None:
+                    raise _OpaqueError  # The program's own function of this name.
+                elements = self._unrolled(counted, "perhaps")
+                return prelude_call("number_of", [callee, elements], node)
+            case ast.Attribute(value=value, attr="count") if len(node.args) == 1:
+                return prelude_call("occurrences", self._all([value, node.args[0]]), node)
+            case ast.Attribute(value=value, attr="values" | "keys" | "items" as view) if not node.args:
+                return prelude_call("items_of", [self.expression(value), constant(view, node)], node)
             case ast.Name(id=function) if function in CONVERSIONS:
                 return prelude_call("convert", [constant(function, node.func), *self._all(node.args)], node)
             case ast.Name(id=function) as callee if function in LIFTED_FUNCTIONS:
@@ -457,6 +535,14 @@ def _over_elements(node: ast.Call) -> tuple[ast.Name, ast.expr] | None:
             return callee, elements
         case ast.Call(func=ast.Name(id="min" | "max") as callee, args=[ast.GeneratorExp() as elements]):
             return callee, elements
+    return None
+
+
+def _counted(node: ast.Call) -> ast.ListComp | None:
+    """The comprehension of ``len([x for x in values if condition])``, whose elements are names or constants."""
+    match node.args:
+        case [ast.ListComp(elt=ast.Name() | ast.Constant()) as counted]:
+            return counted
     return None
 
 

@@ -25,6 +25,9 @@ from scenic.runtime.values.values import as_node, is_answered_by_code
 
 Build = Callable[[], Node]
 
+Indices = Callable[..., Sequence[tuple[int, Sequence[object]]]]
+"""A function of the names of a leaf that tells of which of them, by number, only some items are read, and which."""
+
 _OF_TRUTH = ("__bool__", "__len__")
 
 
@@ -113,8 +116,12 @@ def leaf(
     captured: Sequence[object],
     *,
     awaits: bool = False,
+    indices: Indices | None = None,
 ) -> Callable[[], Node]:
-    """A function that builds the node of one leaf of a condition; if the leaf ``awaits`` names, again when the program has ended."""
+    """A function that builds the node of one leaf of a condition; if the leaf ``awaits`` names, again when the program has ended.
+
+    ``indices`` tells which items it reads of what is captured, where it does not read all.
+    """
     names: Globals | None = None
 
     def build() -> Node:
@@ -137,13 +144,32 @@ def leaf(
         # The names that functions in reach have at the `require` statement count.
         # Those that have no value yet are read again when the program has ended.
         names = Globals() if names is None or awaits else names.completed() if names.lacks else names
-        node = later(OPAQUE, concrete, captured, names=names)
+        items = captured if indices is None else picked(captured, indices)
+        node = later(OPAQUE, concrete, items, names=names)
         context = current.get()
         if names.lacks and context is not None:
             context.record.awaits = True
         return node
 
     return build
+
+
+def picked(captured: Sequence[object], indices: Indices) -> Sequence[object]:
+    """Keep those items of captured containers that a leaf reads, as dictionaries, so that it does not depend on the others."""
+    result = list(captured)
+    context = current.get()
+    with suppress(Exception):  # whatever is wrong with an index goes wrong again, with its place, on a sample
+        for place, each in indices(*captured):
+            container: Any = captured[place]
+            is_list = type(container) in (list, tuple)
+            if not (is_list or type(container) is dict):
+                continue
+            if all(type(index) is int or (type(index) is str and not is_list) for index in each):
+                result[place] = {index: container[index] for index in each}
+                if context is not None and type(container) is not tuple:
+                    items = container if is_list else container.values()
+                    context.record.unrolled.append((items, tuple(items)))
+    return result
 
 
 def truth(value: object) -> Node:

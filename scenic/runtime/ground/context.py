@@ -8,7 +8,7 @@ import os
 import sys
 import warnings
 from collections import Counter
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Collection, Hashable, Sequence
 from contextvars import ContextVar
 from dataclasses import field
 from pathlib import Path
@@ -86,8 +86,8 @@ class Record:
     """The nodes of calls that are made on samples, each with the instances that it sees."""
     externals: dict[int, Choosable] = field(default_factory=dict)
     """Values that an external sampler may choose, by address."""
-    unrolled: list[tuple[Sequence[Any], tuple[Any, ...]]] = field(default_factory=list)
-    """Sequences that conditions were unrolled over, with the elements that they had."""
+    unrolled: list[tuple[Collection[Any], tuple[Any, ...]]] = field(default_factory=list)
+    """Sequences, or values of dictionaries, that conditions were unrolled over, with the elements that they had."""
     emptied: list[Emptied] = field(default_factory=list)
     """Filters that left nothing."""
     files: dict[Path, None] = field(default_factory=dict)

@@ -388,15 +388,20 @@ class Prelude(Symbolic, Dynamics):
         margin: Callable[..., Any] | None = None,
         *,
         awaits: bool = False,
+        indices: conditions.Indices | None = None,
     ) -> Condition:
         """A leaf of a condition; see `scenic.runtime.description.conditions`.
 
-        One that ``awaits`` reads names that the module sets later.
+        One that ``awaits`` reads names that the module sets later. ``indices`` tells which items it reads of what is captured.
         """
         closure = Kept(concrete, captured, margin)
         symbolic_context = self._context.is_symbolic
         self._context.record.awaits |= awaits
-        build = conditions.leaf(symbolic, concrete, captured, awaits=awaits) if symbolic_context else None
+        build = (
+            conditions.leaf(symbolic, concrete, captured, awaits=awaits, indices=indices)
+            if symbolic_context
+            else None
+        )
         return Condition(closure, build)
 
     def conjunction(self, *parts: Condition) -> Condition:

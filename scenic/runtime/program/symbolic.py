@@ -131,6 +131,28 @@ class Symbolic:
         """The values behind an ``if`` of a comprehension."""
         return unrolling.given(test, make)
 
+    def perhaps(self, test: object, make: Callable[[], list[Any]]) -> list[Any]:
+        """The values behind an ``if`` of a comprehension that `over` or `number_of` reads."""
+        return unrolling.perhaps(test, make)
+
+    def number_of(self, length: object, values: list[Any]) -> Any:
+        """``len([...])`` of a comprehension; ``length`` is what the program has under the name."""
+        self.provided("len", length)
+        return unrolling.number_of(values)
+
+    def occurrences(self, values: object, value: object) -> Any:
+        """``values.count(value)`` of a list or tuple."""
+        return unrolling.occurrences(values, value)
+
+    def items_of(self, container: object, view: str) -> list[Any]:
+        """``container.values()``, ``keys()`` or ``items()`` of a dictionary."""
+        return unrolling.items_of(container, view)
+
+    def ascending(self, function: object, values: object) -> Any:
+        """``values == sorted(values)``; ``function`` is what the program has under the name ``sorted``."""
+        self.provided("sorted", function)
+        return unrolling.ascending(values)
+
     def over(self, name: str, function: object, values: object) -> Any:
         """``all``, ``any``, ``sum``, ``min`` or ``max`` of fixed sequences."""
         self.provided(name, function)

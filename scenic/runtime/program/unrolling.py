@@ -7,18 +7,23 @@ for each of them while the program is loaded; that gives the values that Python 
 
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import Any, Final
 
+from scenic.graph.construction import make_node
 from scenic.graph.kinds import Kind
+from scenic.graph.node import Node
+from scenic.graph.operations import TABLE
 from scenic.runtime.description.conditions import NotSymbolicError, connect, truth
-from scenic.runtime.ground.context import current
+from scenic.runtime.ground.context import current, here
 from scenic.runtime.values.values import as_node, as_value, is_choice_of_frozen, operate
 
 MOST: Final = 1000
 """Elements that are unrolled: more would make the graph large."""
 
 _EXTREMES: Final = {"min": "minimum", "max": "maximum"}
+_WITH_NEUTRAL_ELEMENT: Final = ("sum", "all", "any")
+"""Functions for which an element that is not there may count as one that changes nothing."""
 _COMPENSATES: Final = sys.version_info >= (3, 12)
 """True if Python's ``sum`` compensates rounding, and so differs from adding floats in turn."""
 
@@ -45,9 +50,83 @@ def given(test: object, make: Callable[[], list[Any]]) -> list[Any]:
     return make() if node.value else []
 
 
+class _Perhaps:
+    """An element of a comprehension that is there where a condition holds.
+
+    Args:
+        test: the condition.
+        value: the element, which may be another such.
+
+    """
+
+    def __init__(self, test: Node, value: Any) -> None:
+        self._test = test
+        self._value = value
+
+    def otherwise(self, convert: Callable[[Any], Node], default: object) -> Node:
+        """The node of the element, as ``convert`` makes it, or of ``default`` where the element is not there."""
+        value = self._value
+        inner = value.otherwise(convert, default) if isinstance(value, _Perhaps) else convert(value)
+        return make_node(TABLE["if"], [self._test, inner, as_node(default)], span=here())
+
+    def counted(self) -> "_Perhaps":
+        """One in place of the element."""
+        return _Perhaps(self._test, self._value.counted() if isinstance(self._value, _Perhaps) else 1)
+
+
+def perhaps(test: object, make: Callable[[], list[Any]]) -> list[Any]:
+    """The result of ``make``, each element of which is there only where a condition holds."""
+    node = truth(test)
+    if node.is_constant:
+        return make() if node.value else []
+    return [_Perhaps(node, value) for value in make()]
+
+
+def number_of(values: list[Any]) -> Any:
+    """The number of elements of a comprehension that are there."""
+    return over("sum", [value.counted() if isinstance(value, _Perhaps) else 1 for value in values])
+
+
+def occurrences(values: object, value: object) -> Any:
+    """``values.count(value)`` of a fixed list or tuple."""
+    if type(values) not in (list, tuple):
+        raise NotSymbolicError
+    elements = _fixed(values)
+    _require_plain_equality([*elements, value])
+    return over("sum", [operate("equal", element, value) for element in elements])
+
+
+def items_of(container: object, view: str) -> list[Any]:
+    """``values()``, ``keys()`` or ``items()`` of a dictionary, noting what the program may still change."""
+    if type(container) is not dict:
+        raise NotSymbolicError
+    context = current.get()
+    if context is not None:
+        for items in (container.keys(), container.values()):
+            context.record.unrolled.append((items, tuple(items)))
+    return list(_few(getattr(container, view)()))
+
+
+def ascending(values: object) -> Any:
+    """``values == sorted(values)`` of a fixed list of numbers."""
+    if type(values) is not list:
+        raise NotSymbolicError
+    elements = _fixed(values)
+    if not all(as_node(element).kind.is_number for element in elements):
+        raise NotSymbolicError
+    return over("all", [operate("less or equal", one, other) for one, other in pairwise(elements)])
+
+
 def over(name: str, values: object) -> Any:
     """``all``, ``any``, ``sum``, ``min`` or ``max`` of the elements of a fixed sequence."""
     elements = _fixed(values)
+    if name in _WITH_NEUTRAL_ELEMENT:
+        convert: Callable[[Any], Node] = as_node if name == "sum" else truth
+        default: object = 0 if name == "sum" else name == "all"
+        elements = [
+            as_value(value.otherwise(convert, default)) if isinstance(value, _Perhaps) else value
+            for value in elements
+        ]
     if name in ("all", "any"):
         nodes = [truth(value) for value in elements]
         if not nodes:
@@ -75,10 +154,15 @@ def differ(values: object, count: object) -> Any:
     elements = _fixed(values)
     if type(count) is not int or count != len(elements) or count * (count - 1) // 2 > MOST:
         raise NotSymbolicError
-    nodes = [as_node(value) for value in elements]
-    if not all(node.kind.is_number for node in nodes) and not all(map(is_choice_of_frozen, nodes)):
-        raise NotSymbolicError  # Whether others are equal is for their own methods to say.
+    _require_plain_equality(elements)
     return over("all", [operate("not equal", one, other) for one, other in combinations(elements, 2)])
+
+
+def _require_plain_equality(values: Sequence[object]) -> None:
+    """Refuse values of whose equality their own methods have to tell."""
+    nodes = [as_node(value) for value in values]
+    if not all(node.kind.is_number for node in nodes) and not all(map(is_choice_of_frozen, nodes)):
+        raise NotSymbolicError
 
 
 def _fixed(sequence: Any) -> list[Any]:
@@ -99,4 +183,15 @@ def _few(items: Iterable[object]) -> Iterable[Any]:
         yield item
 
 
-__all__ = ["differ", "each", "given", "iterated", "over"]
+__all__ = [
+    "ascending",
+    "differ",
+    "each",
+    "given",
+    "items_of",
+    "iterated",
+    "number_of",
+    "occurrences",
+    "over",
+    "perhaps",
+]

@@ -13,6 +13,7 @@ pair = (others[0], ego)
 limits, either = (3, 4, 5), Uniform(others, pair)
 x, n, m = Range(-3, 3), DiscreteRange(0, 4), DiscreteRange(2, 9)
 colour, other = Uniform('red', 'blue'), Uniform('blue', 'red', 'black')
+counts, numbers = {'a': n, 'b': m}, [n, m, 7]
 def same(value):
     return value
 class Spot(Point):
@@ -38,6 +39,18 @@ UNROLLED = (
     "all(all(abs(o.position.x - p.position.x) < 8 for p in pair) for o in others)",
     "any([x > 1, n > 2])",
     "all([])",
+    "all(o.position.x < 5 for o in others if o.position.y > 1)",
+    "any([o.position.x > 3 for o in others if o.position.y > 1 if o.position.x < 7])",
+    "all(1 / (k - 1) < 1 for k in numbers if k != 1)",
+    "sum(1 for o in others if o.position.x > 0) == 2",
+    "sum(k for k in numbers if k % 2 if k > 2) > 6",
+    "len([o for o in others if o.position.x > 0 if o.position.y > -5]) >= 1",
+    "numbers.count(n) == 1",
+    "[colour, other, 'red'].count('red') == 2",
+    "numbers == sorted(numbers)",
+    "sum(counts.values()) > 6",
+    "len(set(counts.values())) == 2",
+    "all(name == 'a' or value > 3 for name, value in counts.items())",
     "len(set([n, m, 7])) == 3",
     "colour is not other",
     "ego.position.x > 0 and any(o.position.x > i for i in range(3) for o in pair)",
@@ -53,7 +66,10 @@ UNROLLED = (
 
 OPAQUE = (
     "all(same(o.position.x) < 5 for o in others)",
-    "all(o.position.x < 5 for o in others if o.position.y > 1)",
+    "[o for o in others if o.position.y > 1] != []",
+    "max(o.position.x for o in (ego, *others) if o.position.y > -9) > 0",
+    "[(n, 1), (m, 2)].count((n, 1)) == 1",
+    "[n, m] == sorted([n, m], reverse=True)",
     "all(i < 3 for i in range(n))",
     "any(o.position.x > 3 for o in either)",
     "sum(len(str(o.position.x)) for o in pair) > 10",
@@ -138,3 +154,42 @@ def test_a_fault_behind_the_first_false_element_does_not_count() -> None:
         program.sample(20, seed=0)
     program = scenario("x = Range(-1, 1)\nego = new Object\nrequire any([x < 0, 1 / (x + abs(x)) > 0])\n")
     assert len(program.sample(20, seed=0)) == 20
+
+
+ITEMS = (
+    ("same(numbers[0]) < numbers[2]", 1),
+    ("same(counts['b']) - counts['b'] == 0", 1),
+    ("same(rows[0])[i - 1] > 1", 2),
+    ("same(numbers[-1]) == 7", 0),
+    ("same(numbers[i]) > 3 and same(numbers[i - 1]) > 1", 1),
+    ("same(numbers[0]) < len(numbers)", 2),
+    ("same([numbers[i] for i in range(2)])[0] > 1", 2),
+    ("same(numbers[n % 2]) > 1", 2),
+)
+"""Conditions that call a function of the program, and on how many of two draws each call depends."""
+
+
+@pytest.mark.parametrize(("condition", "draws"), ITEMS)
+def test_code_depends_on_the_items_that_it_reads(condition: str, draws: int) -> None:
+    text = f"{OBJECTS}rows, i = [[n, m], [7]], 1\n"
+    program = scenario(f"{text}require {condition}\n")
+    calls = [
+        node for check in program.outline.checks for node in Graph(check.nodes).nodes if node.runs_python
+    ]
+    below = [{item for item in Graph([call]).nodes if item.is_axis} for call in calls]
+    assert max(map(len, below)) == draws
+    slow = scenario(f"{text}{opaque(condition)}")
+    unpruned = program.within(slow.domain)
+    found = [(fingerprint(item), item.attempts) for item in unpruned.sample(6, seed=2)]
+    assert found == [(fingerprint(item), item.attempts) for item in slow.sample(6, seed=2)]
+
+
+def test_items_that_are_replaced_later_count() -> None:
+    text = (
+        "def same(value):\n    return value\n"
+        "things, names = [Range(0, 9), 1], {'a': Range(0, 9)}\n"
+        "require same(things[0]) > 5\nrequire same(names['a']) > 5\n"
+        "things[0], names['a'] = Range(0, 9), Range(0, 9)\nparam v = (things[0], names['a'])\n"
+    )
+    for scene in scenario(text).sample(10, seed=0):
+        assert all(value > 5 for value in scene.params["v"])
