@@ -1,4 +1,4 @@
-"""Products of vectors as rows ``(n, 3)``, with the sums written out, so that no row depends on its batch."""
+"""Products of vectors ``(..., 3)``, with the sums written out, so that no row depends on its batch."""
 
 import numpy as np
 
@@ -6,23 +6,23 @@ from scenic.runtime.geometry.poses import Floats
 
 
 def dot(a: Floats, b: Floats) -> Floats:
-    """Inner products, ``(n,)``."""
-    result: Floats = a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2]
+    """Inner products, ``(...)``."""
+    result: Floats = a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1] + a[..., 2] * b[..., 2]
     return result
 
 
 def length(a: Floats) -> Floats:
-    """Lengths, ``(n,)``."""
+    """Lengths, ``(...)``."""
     return np.sqrt(dot(a, a))
 
 
 def cross(a: Floats, b: Floats) -> Floats:
-    """Cross products, ``(n, 3)``."""
+    """Cross products, ``(..., 3)``."""
     return np.stack(
         [
-            a[:, 1] * b[:, 2] - a[:, 2] * b[:, 1],
-            a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2],
-            a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0],
+            a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1],
+            a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2],
+            a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0],
         ],
-        axis=1,
+        axis=-1,
     )

@@ -8,7 +8,12 @@ from scenic.graph import quaternions
 from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError
-from scenic.runtime.geometry.meshes.stable_poses import stable_poses
+from scenic.runtime.geometry.meshes.stable_poses import (
+    Footing,
+    ellipsoid_footing,
+    hull_footing,
+    resting_poses,
+)
 from scenic.runtime.ground.context import here
 from scenic.runtime.shapes.shapes import Shape
 from scenic.runtime.values.values import apply, per_option, to_scalar, to_vector, uniform
@@ -36,30 +41,22 @@ def resting_pose(shape: object, width: object, length: object, height: object) -
                 span=here(),
                 help="choose among shapes: `with shape Uniform(MeshShape(...), MeshShape(...))`",
             )
-        return apply(_POSE, draw, *sizes, payload=option.mesh)
+        is_ellipsoid = option.source.kind == "spheroid" and option.source.initial_rotation is None
+        return apply(_POSE, draw, *sizes, payload=(option.mesh, is_ellipsoid))
 
     return to_vector(per_option(shape, of_option))
 
 
 def _pose(call: Call, draw: Column, width: Column, length: Column, height: Column) -> Column:
     draw, width, length, height = np.broadcast_arrays(draw, width, length, height)
-    # As complex numbers, of which pairs of ratios are sorted fast.
-    ratios = np.round((length / width).ravel(), _DIGITS) + 1j * np.round((height / width).ravel(), _DIGITS)
-    result = np.empty((3, draw.size))
-    alike = len(ratios) > 0 and bool((ratios == ratios[0]).all())
-    kinds, members = (ratios[:1], None) if alike else np.unique(ratios, return_inverse=True)
-    for number, ratio in enumerate(kinds.tolist()):
-        along, upward = ratio.real, ratio.imag
-        lanes = slice(None) if members is None else np.flatnonzero(members == number)
-        if not (along > 0 and upward > 0):  # no size: refused elsewhere
-            result[:, lanes] = 0.0
-            continue
-        poses = stable_poses(call.payload, along, upward)
-        numbers = np.minimum(
-            np.searchsorted(poses.shares, draw.ravel()[lanes], side="right"), len(poses.shares) - 1
-        )
-        result[:, lanes] = poses.pitches[numbers], poses.rolls[numbers], poses.lifts[numbers]
+    sizes = np.stack([np.ones(width.size), (length / width).ravel(), (height / width).ravel()], axis=1)
+    proper = (sizes > 0).all(axis=1) & np.isfinite(sizes).all(axis=1)  # others are refused elsewhere
+    sizes = np.round(np.where(proper[:, np.newaxis], sizes, 1.0), _DIGITS)
+    mesh, is_ellipsoid = call.payload
+    footing = mesh.derived(ellipsoid_footing if is_ellipsoid else hull_footing)
+    result = resting_poses(footing, sizes, draw.ravel())
     result[2] *= width.ravel()
+    result[:, ~proper] = 0.0
     return quaternions.components_last(result.reshape(3, *draw.shape))
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.poses import Booleans, Floats, Poses
 from scenic.runtime.geometry.ragged import rows
+from scenic.runtime.geometry.vectors import cross, dot
 
 MOST_PLANES: Final = 32
 """Planes up to which a solid is treated as a polytope."""
@@ -33,18 +34,6 @@ class Edges(NamedTuple):
     starts: Floats
     ends: Floats
     valid: Booleans
-
-
-def dot(a: Floats, b: Floats) -> Floats:
-    """Inner products of vectors ``(..., 3)``, with the sum written out, so that no entry depends on the others."""
-    result: Floats = a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1] + a[..., 2] * b[..., 2]
-    return result
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    """Cross products of vectors ``(..., 3)``."""
-    (ax, ay, az), (bx, by, bz) = np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)
-    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
 
 
 def half_spaces(mesh: Mesh, poses: Poses) -> Floats | None:
@@ -87,7 +76,7 @@ def edges(planes: Floats) -> Edges:
 
 def _clipped(planes: Floats, one: Floats, two: Floats) -> Edges:
     n, m = one[..., :3], two[..., :3]
-    along = _cross(n, m)
+    along = cross(n, m)
     square = dot(along, along)
     proper = square > _PARALLEL
     safe = np.where(proper, square, 1.0)

@@ -1,10 +1,14 @@
 """Poses in which a thrown solid comes to rest on a plane, with their probabilities.
 
 A solid rests on a face of its convex hull above which its centre of mass is. The probability of a face is the share of orientations
-from which the solid, let go without speed, ends on the face (K. Goldberg and others, "Part pose statistics", 1999), as trimesh
-computes it.
+from which the solid, let go without speed, ends on the face (K. Goldberg and others, "Part pose statistics", 1999): it falls on the face
+below its centre of mass, and rolls from face to face, each time over the edge about which the centre of mass sinks fastest.
+
+The faces of a hull, their corners and their neighbours do not depend on the size of a solid, since a stretched hull is the hull of the
+stretched solid. So they are computed once for each mesh, and all else for many sizes together.
 """
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, Final
 
@@ -12,72 +16,208 @@ import numpy as np
 
 from scenic.dataclass import dataclass
 from scenic.runtime.geometry.meshes.mesh import Mesh
-from scenic.runtime.geometry.poses import Floats
+from scenic.runtime.geometry.poses import Floats, Indices
+from scenic.runtime.geometry.ragged import rows
+from scenic.runtime.geometry.vectors import cross, dot, length
 
-__all__ = ["StablePoses", "stable_poses"]
+__all__ = ["Footing", "ellipsoid_footing", "hull_footing", "resting_poses"]
 
 _FIRM: Final = np.radians(3.0)
 """Poses that a smaller tilt would end are left out, if others are left."""
 
-_MOST: Final = 256
-"""Poses that are kept, the likeliest ones: a fine sphere has thousands."""
+_FLAT: Final = 1e-6
+"""Difference of the planes of two neighbouring faces below which they are one face."""
+
+_SAME: Final = 1e-9
+"""Part of an axis by which another axis of an ellipsoid may be longer and count as equal."""
+
+_CHUNK: Final = 1 << 18
+"""Combinations of size and edge looked at together."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class StablePoses:
-    """The stable poses of a solid of one size.
+class Footing:
+    """What a unit solid can stand on.
 
     Attributes:
-        shares: cumulative probabilities ``(p,)``; the last is 1.
-        pitches: angles about X ``(p,)``, radians, before a rotation about the vertical.
-        rolls: angles about Y ``(p,)``, radians, before the pitch.
-        lifts: heights of the middle of the solid's box above the plane ``(p,)``, in units of its width.
+        normals: of the faces, unit vectors ``(f, 3)`` outwards.
+        corners: of the convex hull, ``(h, 3)``.
+        weight: numbers that are looked at for one size.
+        shares: computes the probabilities ``(n, f)`` of the faces at sizes ``(n, 3)``.
 
     """
 
-    shares: Floats
-    pitches: Floats
-    rolls: Floats
-    lifts: Floats
+    normals: Floats
+    corners: Floats
+    weight: int
+    shares: Callable[[Floats], Floats]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Hull:
+    """The convex hull of a unit solid by its plane faces; triangles and edges are in the order of their faces.
+
+    Attributes:
+        depths: of the centre of mass below the faces, ``(f,)``.
+        normals: of the faces, unit vectors ``(f, 3)`` outwards.
+        triangles: into which the faces are cut, ``(t, 3, 3)``, seen from the centre of mass.
+        first_triangles: number of the first triangle of each face, ``(f,)``.
+        starts: of the edges ``(e, 3)``, likewise; the face is on their left, seen from outside.
+        ends: of the edges ``(e, 3)``, likewise.
+        first_edges: number of the first edge of each face, ``(f,)``.
+        owners: face of each edge ``(e,)``.
+        neighbours: face beyond each edge ``(e,)``.
+
+    """
+
+    depths: Floats
+    normals: Floats
+    triangles: Floats
+    first_triangles: Indices
+    starts: Floats
+    ends: Floats
+    first_edges: Indices
+    owners: Indices
+    neighbours: Indices
+
+    def shares(self, sizes: Floats) -> Floats:
+        """Probabilities ``(n, f)`` of the faces at sizes ``(n, 3)``."""
+        scales = sizes[:, np.newaxis]
+        beyond = _beyond(self, scales)
+        # The farthest that the centre of mass is outside an edge of each face, negative inside.
+        farthest = np.maximum.reduceat(beyond, self.first_edges, axis=1)
+        heights = self.depths / length(self.normals / scales)
+        margins = np.arctan2(-farthest, heights)
+        best = margins.max(axis=1, keepdims=True)
+        lane, edge = np.nonzero(beyond == farthest[:, self.owners])
+        target = np.tile(np.arange(len(self.normals)), (len(sizes), 1))
+        target[lane, self.owners[edge]] = self.neighbours[edge]
+        stands = (margins >= 0) | (margins == best)
+        target = np.where(stands, np.arange(len(self.normals)), target)
+        for _ in range(len(self.normals).bit_length()):  # twice as many rolls each time
+            target = np.take_along_axis(target, target, axis=1)
+        landed = np.add.reduceat(
+            _solid_angles(self.triangles * scales[:, np.newaxis]), self.first_triangles, axis=1
+        )
+        shares = np.zeros_like(landed)
+        np.add.at(shares, (np.arange(len(sizes))[:, np.newaxis], target), landed)
+        shares[margins < np.minimum(_FIRM, best)] = 0.0
+        shares /= shares.sum(axis=1, keepdims=True)
+        return shares
+
+
+def _beyond(hull: _Hull, scales: Floats) -> Floats:
+    """Distances ``(n, e)`` by which the centre of mass is outside the edges, seen along the normals of their faces."""
+    starts, along = hull.starts * scales, (hull.ends - hull.starts) * scales
+    outwards = cross(along, hull.normals[hull.owners] / scales)
+    return -dot(starts, outwards) / length(outwards)
+
+
+def _solid_angles(triangles: Floats) -> Floats:
+    """Solid angles of triangles ``(..., 3, 3)`` seen from the origin (A. van Oosterom and J. Strackee, 1983)."""
+    a, b, c = np.moveaxis(triangles, -2, 0)
+    la, lb, lc = length(a), length(b), length(c)
+    angles: Floats = 2 * np.arctan2(
+        np.abs(dot(a, cross(b, c))), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
+    )
+    return angles
+
+
+def hull_footing(mesh: Mesh) -> Footing:
+    """The faces of the convex hull of a unit solid of one density."""
+    from scipy.spatial import ConvexHull  # slow to import
+
+    hull: Any = ConvexHull(mesh.vertices)
+    middle = _centre_of_mass(mesh)
+    points, corners = mesh.vertices - middle, mesh.vertices[hull.vertices]
+    face, planes = _faces(hull)
+    a, b, c = np.moveaxis(points[hull.simplices], 1, 0)
+    inwards = dot(cross(b - a, c - a), hull.equations[:, :3])[:, np.newaxis] < 0
+    simplices = np.where(inwards, hull.simplices[:, ::-1], hull.simplices)
+    beyond = face[np.where(inwards, hull.neighbors[:, ::-1], hull.neighbors)].ravel()  # opposite each corner
+    owners = np.repeat(face, 3)
+    rim = np.flatnonzero(owners != beyond)
+    rim = rim[np.argsort(owners[rim], kind="stable")]
+    order = np.argsort(face, kind="stable")
+    numbers = np.arange(len(planes))
+    faces = _Hull(
+        depths=-(dot(planes[:, :3], middle) + planes[:, 3]),
+        normals=planes[:, :3],
+        triangles=points[simplices[order]],
+        first_triangles=np.searchsorted(face[order], numbers),
+        starts=points[simplices[:, [1, 2, 0]].ravel()[rim]],
+        ends=points[simplices[:, [2, 0, 1]].ravel()[rim]],
+        first_edges=np.searchsorted(owners[rim], numbers),
+        owners=owners[rim],
+        neighbours=beyond[rim],
+    )
+    return Footing(faces.normals, corners, len(rim), faces.shares)
+
+
+def _faces(hull: Any) -> tuple[Indices, Floats]:
+    """The plane face of each triangle of a hull of SciPy, and the planes ``(f, 4)`` of the faces, in an order that only they decide."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    planes, count = hull.equations, len(hull.equations)
+    one, other = np.repeat(np.arange(count), 3), hull.neighbors.ravel()
+    flat = np.flatnonzero((np.abs(planes[one] - planes[other]) < _FLAT).all(axis=1))
+    links = coo_array((np.ones(len(flat)), (one[flat], other[flat])), shape=(count, count))
+    _, group = connected_components(links, directed=False)
+    found, first = np.unique(group, return_index=True)
+    places = np.lexsort(np.round(planes[first], 9).T)
+    numbers = np.empty(len(found), np.intp)
+    numbers[places] = np.arange(len(found))
+    return numbers[group], planes[first[places]]
+
+
+def _centre_of_mass(mesh: Mesh) -> Floats:
+    """The centre of mass ``(3,)`` of a solid of one density, from the tetrahedra between the origin and its faces."""
+    a, b, c = np.moveaxis(mesh.triangles, 1, 0)
+    volumes = dot(a, cross(b, c))
+    centre: Floats = (volumes[:, np.newaxis] * (a + b + c)).sum(axis=0) / (4 * volumes.sum())
+    return centre
+
+
+def ellipsoid_footing(mesh: Mesh) -> Footing:
+    """The vertices of a unit solid inscribed in the ball of diameter 1, which stands for that: stretched, it rests on its shortest axis.
+
+    Where two or three axes are equal, any direction among them is as good. The vertices are those points of the ellipsoid that the
+    solid has, too; those on the shortest axes have the same probability.
+    """
+    normals = mesh.vertices / length(mesh.vertices)[:, np.newaxis]
+    off_axis = np.abs(normals) > _SAME
+
+    def shares(sizes: Floats) -> Floats:
+        longer = sizes > sizes.min(axis=1, keepdims=True) * (1 + _SAME)
+        stands = ~(off_axis & longer[:, np.newaxis]).any(axis=2)
+        return stands / stands.sum(axis=1, keepdims=True)
+
+    return Footing(normals, mesh.vertices, len(normals), shares)
+
+
+def resting_poses(footing: Footing, sizes: Floats, draws: Floats) -> Floats:
+    """Stable poses ``(3, n)`` of a solid at sizes ``(n, 3)``, chosen by draws ``(n,)`` from 0 to 1.
+
+    Rows are the angle about X after that about Y (radians), the angle about Y, and the height of the middle of the solid's box (metres).
+    """
+    result = np.empty((3, len(sizes)))
+    for some in rows(len(sizes), footing.weight, _CHUNK):
+        size = sizes[some]
+        alike = len(size) > 0 and bool((size == size[0]).all())
+        limits = (
+            _limits(footing, tuple(size[0].tolist())) if alike else np.cumsum(footing.shares(size), axis=1)
+        )
+        chosen = (limits <= draws[some, np.newaxis] * limits[:, -1:]).sum(axis=1)
+        down = footing.normals[np.minimum(chosen, len(footing.normals) - 1)] / size
+        down /= length(down)[:, np.newaxis]
+        result[0, some] = np.arcsin(np.clip(-down[:, 1], -1, 1))
+        result[1, some] = np.arctan2(down[:, 0], -down[:, 2])
+        result[2, some] = dot(footing.corners * size[:, np.newaxis], down[:, np.newaxis]).max(axis=1)
+    return result
 
 
 @lru_cache(maxsize=512)
-def stable_poses(mesh: Mesh, length: float, height: float) -> StablePoses:
-    """The stable poses of a unit mesh at width 1 and the given length and height, of one density."""
-    import trimesh  # slow to import
-
-    solid: Any = trimesh.Trimesh(mesh.vertices * (1.0, length, height), np.asarray(mesh.faces), process=False)
-    matrices, shares = trimesh.poses.compute_stable_poses(solid)
-    points = solid.convex_hull.vertices
-    middle = np.asarray(solid.center_mass)
-    firm = np.array([_margin(matrix[:3, :3], points, middle) for matrix in matrices])
-    kept = np.flatnonzero(firm >= min(_FIRM, firm.max()))
-    kept = kept[np.argsort(-shares[kept], kind="stable")][:_MOST]
-    turns = matrices[kept, :3, :3]
-    pitches = np.arcsin(np.clip(turns[:, 2, 1], -1, 1))
-    rolls = np.arctan2(-turns[:, 2, 0], turns[:, 2, 2])
-    # The lowest row of the rotation by pitch and roll: heights of points above the middle of the box.
-    rows = np.stack(
-        [-np.cos(pitches) * np.sin(rolls), np.sin(pitches), np.cos(pitches) * np.cos(rolls)], axis=-1
-    )
-    lifts = -(rows @ points.T).min(axis=1)
-    cumulative = np.cumsum(shares[kept])
-    cumulative /= cumulative[-1]
-    return StablePoses(cumulative, pitches, rolls, lifts)
-
-
-def _margin(turn: Floats, points: Floats, middle: Floats) -> float:
-    """The least tilt, in radians, after which a solid in a pose falls over."""
-    from scipy.spatial import ConvexHull, QhullError  # slow to import
-
-    places = points @ turn.T
-    low = places[:, 2].min()
-    feet = places[places[:, 2] < low + 1e-6 * np.ptp(places)][:, :2]
-    centre = turn @ middle
-    try:
-        edges = ConvexHull(feet).equations
-    except QhullError:  # it stands on an edge or a point
-        return 0.0
-    # Distances to the edges of the support, negative inside.
-    inside = -float((edges[:, :2] @ centre[:2] + edges[:, 2]).max())
-    return float(np.arctan2(inside, centre[2] - low))
+def _limits(footing: Footing, size: tuple[float, ...]) -> Floats:
+    """Cumulative probabilities ``(1, f)`` of the faces at one size."""
+    return np.cumsum(footing.shares(np.array([size])), axis=1)

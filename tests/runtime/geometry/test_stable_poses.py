@@ -1,0 +1,66 @@
+"""Poses in which thrown solids come to rest."""
+
+from collections import defaultdict
+from collections.abc import Iterable
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from scenic.runtime.geometry.meshes import primitives, stable_poses
+from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.stable_poses import ellipsoid_footing, hull_footing, resting_poses
+
+
+def by_direction(normals: Iterable[np.ndarray], shares: Iterable[float]) -> dict[tuple[float, ...], float]:
+    """The probabilities of downward directions, rounded."""
+    sums: dict[tuple[float, ...], float] = defaultdict(float)
+    for normal, share in zip(normals, shares, strict=True):
+        sums[tuple(np.round(normal, 2) + 0.0)] += share
+    return sums
+
+
+@settings(max_examples=40)
+@given(number=st.integers(0, 2**32 - 1), count=st.integers(4, 30))
+def test_shares_are_those_of_the_toppling_graph(number: int, count: int) -> None:
+    """Trimesh computes the same shares, face by face, of hulls of random points that are stretched."""
+    rng = np.random.default_rng(number)
+    hull = trimesh.convex.convex_hull(rng.normal(size=(count, 3)))
+    mesh, _, _ = Mesh(hull.vertices, hull.faces).normalized()
+    size = np.array([1.0, *rng.uniform(0.5, 2, 2)])
+    matrices, theirs = trimesh.poses.compute_stable_poses(
+        trimesh.Trimesh(mesh.vertices * size, mesh.faces, process=False)
+    )
+    footing = mesh.derived(hull_footing)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(stable_poses, "_FIRM", -np.pi)  # trimesh keeps poses that are not firm
+        ours = footing.shares(size[np.newaxis])[0]
+    stands = ours > 1e-9
+    down = footing.normals[stands] / size
+    down /= np.linalg.norm(down, axis=1, keepdims=True)
+    one, other = by_direction(down, ours[stands]), by_direction(-matrices[:, 2, :3], theirs)
+    difference = sum(abs(one[key] - other[key]) for key in {*one, *other}) / 2
+    assert difference < 0.02  # two faces may tie
+
+
+def test_sizes_together_and_alone_agree_in_every_bit() -> None:
+    rng = np.random.default_rng(1)
+    sizes, draws = rng.uniform(0.5, 2, (40, 3)), rng.random(40)
+    footing = primitives.cylinder().derived(hull_footing)
+    together = resting_poses(footing, sizes, draws)
+    alone = [resting_poses(footing, sizes[i : i + 1], draws[i : i + 1]) for i in range(40)]
+    assert (together == np.concatenate(alone, axis=1)).all()
+
+
+@pytest.mark.parametrize(
+    ("size", "count"), [((1, 1.2, 0.8), 2), ((1, 1.2, 1.2), 2), ((1, 1.2, 1), 40), ((1, 1, 1), 642)]
+)
+def test_an_ellipsoid_rests_on_its_shortest_axes(size: tuple[float, float, float], count: int) -> None:
+    footing = primitives.spheroid().derived(ellipsoid_footing)
+    shares = footing.shares(np.array([size]))[0]
+    assert np.count_nonzero(shares) == pytest.approx(count, abs=0 if count in (2, 642) else 16)
+    draws = np.random.default_rng(0).random(50)
+    poses = resting_poses(footing, np.tile(size, (50, 1)), draws)
+    assert poses[2] == pytest.approx(min(size) / 2)
