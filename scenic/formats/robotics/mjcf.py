@@ -5,7 +5,7 @@ One file has its meshes inline; files of a data set name the meshes of a shared 
 
 import math
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -139,21 +139,17 @@ class _Writer:
             "sphere": {"type": "sphere", "size": numbers((width / 2,))},
             "cylinder": {"type": "cylinder", "size": numbers((width / 2, height / 2))},
         }
-        if solid.form in forms:
-            ET.SubElement(
-                body, "geom", {"name": solid.name, **forms[solid.form], **surface, **weight, **looks}
-            )
-            return
-        whole = {"type": "mesh", "mesh": self._mesh(solid), **weight, **looks}
-        pieces = self._pieces(solid) if solid.collides else ()
+        form = forms.get(solid.form) or {"type": "mesh", "mesh": self._mesh(solid)}
+        whole = {"name": solid.name, **form, **weight, **looks}
+        pieces = list(self._pieces(solid)) if solid.collides else []
         if not pieces:
-            ET.SubElement(body, "geom", {"name": solid.name, **whole, **surface})
+            ET.SubElement(body, "geom", {**whole, **surface})
             return
         # The whole is seen and has the inertia; its pieces touch others.
-        ET.SubElement(body, "geom", {"name": solid.name, **whole, "contype": "0", "conaffinity": "0"})
+        ET.SubElement(body, "geom", {**whole, "contype": "0", "conaffinity": "0"})
         for number, piece in enumerate(pieces):
-            form = {"name": f"{solid.name} piece {number}", "type": "mesh", "mesh": piece, "mass": "0"}
-            ET.SubElement(body, "geom", {**form, "group": _NOT_DRAWN, **surface})
+            name = {"name": f"{solid.name} piece {number}"}
+            ET.SubElement(body, "geom", {**name, **piece, "mass": "0", "group": _NOT_DRAWN, **surface})
 
     def _surface(self, solid: Solid) -> dict[str, str]:
         found: dict[str, str] = {} if solid.is_static else {"priority": "1"}
@@ -186,14 +182,15 @@ class _Writer:
             path, solid.size, content, solid.mesh if solid.texture is None else None, "exact"
         )
 
-    def _pieces(self, solid: Solid) -> list[str]:
-        """The names of the assets of the convex parts of a solid's mesh; none if its hull is as good."""
-        names = []
-        for number, points in enumerate(solid.mesh.derived(convex_parts)):
-            path = f"{FOLDER}/{mesh_name(solid.mesh)}_{number}.obj"
-            content = b"" if self._inline else obj_text(*hull(points))
-            names.append(self._declare(path, solid.size, content, points, "convex"))
-        return names
+    def _pieces(self, solid: Solid) -> Iterator[dict[str, str]]:
+        """The forms that touch others; none if the form itself is as good."""
+        if solid.form == "cylinder":
+            yield {"type": "cylinder", "size": numbers((solid.touching_radius, solid.size[2] / 2))}
+        if solid.form in ("mesh", "cone"):
+            for number, points in enumerate(solid.mesh.derived(convex_parts)):
+                path = f"{FOLDER}/{mesh_name(solid.mesh)}_{number}.obj"
+                content = b"" if self._inline else obj_text(*hull(points))
+                yield {"type": "mesh", "mesh": self._declare(path, solid.size, content, points, "convex")}
 
     def _declare(self, path: str, size: tuple[float, ...], content: bytes, source: Any, inertia: str) -> str:
         stem = path.rpartition("/")[2].removesuffix(".obj")

@@ -179,18 +179,18 @@ class _Writer:
         """The geometries that others touch: the form itself, or convex parts of a mesh."""
         pieces = solid.mesh.derived(convex_parts) if solid.form in ("mesh", "cone") else ()
         if not pieces:
-            yield self._form(solid, convex=True)
+            yield self._form(solid, touches=True)
         for number, points in enumerate(pieces):
             path = f"{FOLDER}/{mesh_name(solid.mesh)}_{number}.obj"
             self._assets[path] = obj_text(*hull(points))
             yield _mesh_geometry(path, solid, convex=True)
 
-    def _form(self, solid: Solid, *, convex: bool = False) -> ET.Element:
+    def _form(self, solid: Solid, *, touches: bool = False) -> ET.Element:
         width, _, height = solid.size
         if solid.form in ("mesh", "cone"):
             path, content = mesh_file(solid)
             self._assets[path] = content
-            return _mesh_geometry(path, solid, convex=convex)
+            return _mesh_geometry(path, solid, convex=touches)
         geometry = ET.Element("geometry")
         form = ET.SubElement(geometry, solid.form)
         if solid.form == "box":
@@ -198,7 +198,8 @@ class _Writer:
         elif solid.form == "sphere":
             _texts(form, radius=repr(width / 2))
         else:
-            _texts(form, radius=repr(width / 2), length=repr(height))
+            radius = solid.touching_radius if touches else width / 2
+            _texts(form, radius=repr(radius), length=repr(height))
         return geometry
 
     # URDF

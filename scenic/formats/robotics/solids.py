@@ -20,6 +20,7 @@ from scenic.formats.sensors import Viewpoint, sensor_viewpoint
 from scenic.formats.textures import ImageTexture, placed_errors, texture_of
 from scenic.language.errors import Located
 from scenic.runtime.elements.sensors import CameraSensor
+from scenic.runtime.geometry.meshes.primitives import round_share
 
 __all__ = ["DENSITY", "Inertia", "Solid", "SolidError", "identifiers", "solids_of"]
 
@@ -88,6 +89,12 @@ class Solid:
     def mesh(self) -> Any:
         """The mesh in the unit box."""
         return self.thing.shape.mesh
+
+    @property
+    def touching_radius(self) -> float:
+        """Radius of the cylinder or cone that touches others, metres: the widest within the mesh, by which collisions are decided."""
+        share: float = self.mesh.derived(round_share)
+        return share * self.size[0] / 2
 
     @property
     def class_name(self) -> str:

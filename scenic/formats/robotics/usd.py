@@ -173,13 +173,18 @@ class _Writer:
             UsdGeom.Imageable(geometry).CreateVisibilityAttr(UsdGeom.Tokens.invisible)
         self._appearance(geometry, solid)
         if solid.collides:
+            touching = geometry
+            if solid.form in ("cylinder", "cone"):
+                touching = self._round(f"{path}/collision", solid, solid.touching_radius)
+                UsdGeom.Imageable(touching).CreatePurposeAttr(UsdGeom.Tokens.guide)
             if self._inline or solid.form != "mesh":  # shared meshes touch already
-                _touching(geometry, solid)
-            self._friction(geometry, solid)
+                _touching(touching, solid)
+            self._friction(touching, solid)
         for camera, label in zip(
             solid.cameras, identifiers(camera.name for camera in solid.cameras), strict=True
         ):
-            self._camera(solid, camera, f"{path}/{'camera' if label == 'geometry' else label}", Gf)
+            taken = label in ("geometry", "collision")
+            self._camera(solid, camera, f"{path}/{'camera_' if taken else ''}{label}", Gf)
 
     def _mass(self, prim: object, solid: Solid) -> None:
         from pxr import Gf, UsdPhysics
@@ -215,14 +220,21 @@ class _Writer:
                 sphere.CreateExtentAttr(extent)
                 return sphere.GetPrim()
             case "cylinder" | "cone":
-                kind = UsdGeom.Cylinder if solid.form == "cylinder" else UsdGeom.Cone
-                form = kind.Define(self._stage, path)
-                form.CreateRadiusAttr(width / 2)
-                form.CreateHeightAttr(height)
-                form.CreateAxisAttr(UsdGeom.Tokens.z)
-                form.CreateExtentAttr(extent)
-                return form.GetPrim()
+                return self._round(path, solid, width / 2)
         return self._mesh(solid, path)
+
+    def _round(self, path: str, solid: Solid, radius: float) -> Any:
+        """The prim of a cylinder or cone of a radius."""
+        from pxr import Gf, UsdGeom
+
+        half = Gf.Vec3f(radius, radius, solid.size[2] / 2)
+        kind = UsdGeom.Cylinder if solid.form == "cylinder" else UsdGeom.Cone
+        form = kind.Define(self._stage, path)
+        form.CreateRadiusAttr(radius)
+        form.CreateHeightAttr(solid.size[2])
+        form.CreateAxisAttr(UsdGeom.Tokens.z)
+        form.CreateExtentAttr([-half, half])
+        return form.GetPrim()
 
     def _mesh(self, solid: Solid, path: str) -> Any:
         """The prim of a mesh: defined here, or an instance of the shared one."""

@@ -9,7 +9,6 @@ from scenic.graph.kinds import Column, Kind
 from scenic.graph.operation import Call, Operation, always
 from scenic.language.errors import ScenicTypeError
 from scenic.runtime.geometry.meshes.stable_poses import (
-    Footing,
     ellipsoid_footing,
     hull_footing,
     resting_poses,
@@ -49,14 +48,14 @@ def resting_pose(shape: object, width: object, length: object, height: object) -
 
 def _pose(call: Call, draw: Column, width: Column, length: Column, height: Column) -> Column:
     draw, width, length, height = np.broadcast_arrays(draw, width, length, height)
-    sizes = np.stack([np.ones(width.size), (length / width).ravel(), (height / width).ravel()], axis=1)
-    proper = (sizes > 0).all(axis=1) & np.isfinite(sizes).all(axis=1)  # others are refused elsewhere
-    sizes = np.round(np.where(proper[:, np.newaxis], sizes, 1.0), _DIGITS)
+    ratios = np.stack([np.ones(width.shape), length / width, height / width], axis=-1).reshape(-1, 3)
+    proper = np.all((ratios > 0) & np.isfinite(ratios), axis=1, keepdims=True)  # others are refused elsewhere
+    sizes = np.where(proper, ratios.astype(np.float64), 1.0).round(_DIGITS)
     mesh, is_ellipsoid = call.payload
     footing = mesh.derived(ellipsoid_footing if is_ellipsoid else hull_footing)
     result = resting_poses(footing, sizes, draw.ravel())
     result[2] *= width.ravel()
-    result[:, ~proper] = 0.0
+    result *= proper.T
     return quaternions.components_last(result.reshape(3, *draw.shape))
 
 

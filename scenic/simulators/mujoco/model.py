@@ -1,7 +1,8 @@
 """Objects as bodies of a MuJoCo model.
 
 Boxes, ellipsoids and round cylinders are MuJoCo's own geoms, all other shapes meshes, which have the inertia of the whole mesh
-and touch others with its convex parts. The frame of a body is that of the object: its middle, its front along +Y.
+and touch others with its convex parts. Of a cylinder, what is within our prism touches others: so things that do not collide in a
+scene do not touch in its simulation. The frame of a body is that of the object: its middle, its front along +Y.
 """
 
 import math
@@ -14,6 +15,7 @@ import numpy as np
 from scenic.dataclass import dataclass
 from scenic.language.errors import SimulationCreationError
 from scenic.runtime.geometry.meshes.convex_parts import convex_parts
+from scenic.runtime.geometry.meshes.primitives import round_share
 from scenic.simulators.cameras import carried
 from scenic.simulators.commands import model_of
 from scenic.simulators.mujoco.jointed import attach
@@ -218,20 +220,29 @@ class Builder:
                 kind = kinds.mjGEOM_SPHERE if half[0] == half[1] == half[2] else kinds.mjGEOM_ELLIPSOID
                 return body.add_geom(name=part.name, type=kind, size=half, **common)
             if source.kind == "cylinder" and half[0] == half[1] and _is_round(source):
-                sizes = [half[0], half[2], 0]
-                return body.add_geom(name=part.name, type=kinds.mjGEOM_CYLINDER, size=sizes, **common)
-        whole = {**common, "type": kinds.mjGEOM_MESH, "meshname": self._mesh(thing, size)}
-        pieces = self._pieces(thing, size) if getattr(thing, "collides", True) else ()
-        if not pieces:
+                inner = thing.shape.mesh.derived(round_share) * half[0]
+                form, touching = (
+                    {"type": kinds.mjGEOM_CYLINDER, "size": [radius, half[2], 0]}
+                    for radius in (half[0], inner)
+                )
+                return self._whole(body, part, {**common, **form}, [touching])
+        meshes = self._pieces(thing, size)
+        return self._whole(
+            body,
+            part,
+            {**common, "type": kinds.mjGEOM_MESH, "meshname": self._mesh(thing, size)},
+            [{"type": kinds.mjGEOM_MESH, "meshname": name} for name in meshes],
+        )
+
+    def _whole(self, body: Any, part: Part, whole: dict[str, Any], pieces: list[dict[str, Any]]) -> Any:
+        """A geom that is seen and has the inertia; its pieces touch others in its place, if there are any."""
+        if not pieces or not getattr(part.thing, "collides", True):
             return body.add_geom(name=part.name, **whole)
-        for number, name in enumerate(pieces):
-            piece = f"{part.name} piece {number}"
-            part.geoms.append(piece)
-            weightless = {key: value for key, value in common.items() if key not in ("mass", "density")}
-            body.add_geom(
-                name=piece, type=kinds.mjGEOM_MESH, meshname=name, mass=0, group=_NOT_DRAWN, **weightless
-            )
-        # It is seen and has the inertia; its pieces touch.
+        weightless = {key: value for key, value in whole.items() if key not in ("mass", "density")}
+        for number, piece in enumerate(pieces):
+            name = f"{part.name} piece {number}"
+            part.geoms.append(name)
+            body.add_geom(name=name, **{**weightless, **piece}, mass=0, group=_NOT_DRAWN)
         return body.add_geom(name=part.name, **{**whole, "contype": 0, "conaffinity": 0})
 
     def _pieces(self, thing: Any, size: tuple[float, ...]) -> tuple[str, ...]:

@@ -75,3 +75,19 @@ def test_an_object_may_be_called_ground(tmp_path: Path) -> None:
     (scene,) = scenario.sample(1, seed=1)
     model = mujoco.MjModel.from_xml_path(str(written(tmp_path, scene, inline=True)))
     assert {model.body(number).name for number in range(model.nbody)} == {"world", "ground", "ego"}
+
+
+def test_cylinders_that_do_not_collide_do_not_touch(tmp_path: Path) -> None:
+    """Sides of our prisms that face each other are nearer than round cylinders of their width could be."""
+    scenario = scenic.scenarioFromString(
+        "for x in (0, 0.992):\n    new Object at (x, 0, 5), with shape CylinderShape(), facing 7.5 deg\n"
+    )
+    (scene,) = scenario.sample(1, seed=1)
+    model = mujoco.MjModel.from_xml_path(str(written(tmp_path, scene, inline=True)))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    assert data.ncon == 0
+    assert sorted(model.geom_size[1:, 0]) == pytest.approx([0.5 * np.cos(np.pi / 24)] * 2 + [0.5] * 2)
+    assert model.body_mass[1] == pytest.approx(solids_of(scene)[0].inertia.mass)
+    simulated = MujocoSimulator(gravity=0).simulate(scene, maxSteps=2)
+    assert np.abs(np.subtract(simulated.trajectory[0], simulated.trajectory[-1])).max() == 0

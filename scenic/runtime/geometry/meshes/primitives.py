@@ -68,6 +68,15 @@ def cone() -> Mesh:
     return _unit(vertices, faces)
 
 
+def round_share(mesh: Mesh) -> float:
+    """The width of the widest round cylinder or cone that lies within a unit prism or pyramid, as part of its width."""
+    planes = mesh.hull.planes
+    across = np.hypot(planes[:, 0], planes[:, 1])
+    sides = across > 1e-9
+    # Distances from the axis at the bottom.
+    return float(2 * ((0.5 * planes[sides, 2] - planes[sides, 3]) / across[sides]).min())
+
+
 @cache
 def spheroid() -> Mesh:
     """The icosahedron subdivided three times onto the sphere: 642 vertices, 1280 faces."""

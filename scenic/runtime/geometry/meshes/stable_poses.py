@@ -191,7 +191,8 @@ def ellipsoid_footing(mesh: Mesh) -> Footing:
     def shares(sizes: Floats) -> Floats:
         longer = sizes > sizes.min(axis=1, keepdims=True) * (1 + _SAME)
         stands = ~(off_axis & longer[:, np.newaxis]).any(axis=2)
-        return stands / stands.sum(axis=1, keepdims=True)
+        equal: Floats = stands / stands.sum(axis=1, keepdims=True)
+        return equal
 
     return Footing(normals, mesh.vertices, len(normals), shares)
 
