@@ -31,13 +31,16 @@ _FLAT: Final = 1e-6
 _SAME: Final = 1e-9
 """Part of an axis by which another axis of an ellipsoid may be longer and count as equal."""
 
+_FEW: Final = 16
+"""Sizes up to which probabilities are kept for the next time."""
+
 _CHUNK: Final = 1 << 18
 """Combinations of size and edge looked at together."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Footing:
-    """What a unit solid can stand on.
+    """The faces on which a unit solid can stand, or directions for them.
 
     Attributes:
         normals: of the faces, unit vectors ``(f, 3)`` outwards.
@@ -164,10 +167,10 @@ def _faces(hull: Any) -> tuple[Indices, Floats]:
     flat = np.flatnonzero((np.abs(planes[one] - planes[other]) < _FLAT).all(axis=1))
     links = coo_array((np.ones(len(flat)), (one[flat], other[flat])), shape=(count, count))
     _, group = connected_components(links, directed=False)
-    found, first = np.unique(group, return_index=True)
+    groups, first = np.unique(group, return_index=True)
     places = np.lexsort(np.round(planes[first], 9).T)
-    numbers = np.empty(len(found), np.intp)
-    numbers[places] = np.arange(len(found))
+    numbers = np.empty(len(groups), np.intp)
+    numbers[places] = np.arange(len(groups))
     return numbers[group], planes[first[places]]
 
 
@@ -202,23 +205,44 @@ def resting_poses(footing: Footing, sizes: Floats, draws: Floats) -> Floats:
 
     Rows are the angle about X after that about Y (radians), the angle about Y, and the height of the middle of the solid's box (metres).
     """
+    # As complex numbers, of which pairs are sorted fast.
+    ratios = sizes[:, 1] / sizes[:, 0] + 1j * (sizes[:, 2] / sizes[:, 0])
+    _, first, kind = np.unique(ratios, return_index=True, return_inverse=True)
     result = np.empty((3, len(sizes)))
+    if len(first) <= _FEW:
+        for number, size in enumerate(sizes[first].tolist()):
+            lanes = np.flatnonzero(kind == number)
+            limits, poses = _known(footing, tuple(size))
+            result[:, lanes] = poses[:, np.searchsorted(limits, draws[lanes], side="right")]
+        return result
     for some in rows(len(sizes), footing.weight, _CHUNK):
-        size = sizes[some]
-        alike = len(size) > 0 and bool((size == size[0]).all())
-        limits = (
-            _limits(footing, tuple(size[0].tolist())) if alike else np.cumsum(footing.shares(size), axis=1)
-        )
-        chosen = (limits <= draws[some, np.newaxis] * limits[:, -1:]).sum(axis=1)
-        down = footing.normals[np.minimum(chosen, len(footing.normals) - 1)] / size
-        down /= length(down)[:, np.newaxis]
-        result[0, some] = np.arcsin(np.clip(-down[:, 1], -1, 1))
-        result[1, some] = np.arctan2(down[:, 0], -down[:, 2])
-        result[2, some] = dot(footing.corners * size[:, np.newaxis], down[:, np.newaxis]).max(axis=1)
+        limits = _limits(footing, sizes[some])
+        faces = (limits <= draws[some, np.newaxis]).sum(axis=1)
+        result[:, some] = _poses(footing, sizes[some], faces)
     return result
 
 
 @lru_cache(maxsize=512)
-def _limits(footing: Footing, size: tuple[float, ...]) -> Floats:
-    """Cumulative probabilities ``(1, f)`` of the faces at one size."""
-    return np.cumsum(footing.shares(np.array([size])), axis=1)
+def _known(footing: Footing, size: tuple[float, ...]) -> tuple[Floats, Floats]:
+    """Cumulative probabilities ``(p,)`` and poses ``(3, p)`` of the faces on which a solid of one size may rest."""
+    limits = _limits(footing, np.array([size]))[0]
+    faces = np.flatnonzero(np.diff(limits, prepend=0.0))
+    poses = [
+        _poses(footing, np.tile(size, (len(faces[part]), 1)), faces[part])
+        for part in rows(len(faces), footing.weight, _CHUNK)
+    ]
+    return limits[faces], np.concatenate(poses, axis=1)
+
+
+def _limits(footing: Footing, sizes: Floats) -> Floats:
+    """Cumulative probabilities ``(n, f)`` of the faces at sizes ``(n, 3)``; the last that is possible has 1."""
+    sums = np.cumsum(footing.shares(sizes), axis=1)
+    return np.where(sums == sums[:, -1:], 1.0, sums)
+
+
+def _poses(footing: Footing, sizes: Floats, faces: Indices) -> Floats:
+    """The poses ``(3, n)`` of a solid that rests on these faces, as `resting_poses` has them."""
+    down = footing.normals[faces] / sizes
+    down /= length(down)[:, np.newaxis]
+    lifts = dot(footing.corners * sizes[:, np.newaxis], down[:, np.newaxis]).max(axis=1)
+    return np.stack([np.arcsin(np.clip(-down[:, 1], -1, 1)), np.arctan2(down[:, 0], -down[:, 2]), lifts])
