@@ -12,6 +12,7 @@ from scenic.runtime.geometry.contact.narrowphase import Solids, meshes_intersect
 from scenic.runtime.geometry.meshes import facetree, primitives
 from scenic.runtime.geometry.meshes.booleans import difference
 from scenic.runtime.geometry.meshes.mesh import Mesh
+from scenic.runtime.geometry.meshes.stable_poses import hull_footing, resting_poses
 from scenic.runtime.geometry.poses import Poses
 from tests.amounts import amount
 
@@ -192,9 +193,9 @@ def test_cells_are_made_once_they_pay():
     solids = Solids([table(), primitives.cone()], patience=1e-9)
     a, b = random_poses(200, 17, spread=0.6), random_poses(200, 18, spread=0.6)
     zeros = np.zeros(200, dtype=np.intp)
-    assert solids.prove(zeros, a, zeros + 1, b)[1].all()
+    before = np.count_nonzero(solids.prove(zeros, a, zeros + 1, b)[1])
     exact = solids.intersect(zeros, a, zeros + 1, b)
-    assert not solids.prove(zeros, a, zeros + 1, b)[1].all()
+    assert np.count_nonzero(solids.prove(zeros, a, zeros + 1, b)[1]) < 0.7 * before
     np.testing.assert_array_equal(solids.intersect(zeros, a, zeros + 1, b), exact)
 
 
@@ -233,6 +234,23 @@ def test_relative_maps():
     x, y, z = relative_map(a, b).columns(tuple(points[:, i, None] for i in range(3)))
     world = a.to_world(np.broadcast_to(points, (30, 5, 3)))
     np.testing.assert_allclose(np.stack([x.T, y.T, z.T], axis=-1), b.to_unit(world), atol=1e-12)
+
+
+def test_what_lies_on_a_box_is_seen_to_be_beyond_its_top():
+    """A cylinder on its side has a box of its own that reaches into what it lies on."""
+    pitches, rolls, lifts = resting_poses(
+        primitives.cylinder().derived(hull_footing), np.ones((40, 3)), np.linspace(0, 1, 40)
+    )
+    turns = quaternions.from_euler(np.full(40, 0.3), pitches, rolls)
+    lying = Poses(np.c_[np.full((40, 2), 0.2), 1 + lifts + 5e-5], turns, np.ones((40, 3)))
+    plate = Poses.fixed((0, 0, 0), size=(4, 4, 2))
+    solids = Solids([primitives.cylinder(), primitives.box()], patience=np.inf)
+    zeros = np.zeros(40, dtype=np.intp)
+    for first, a, second, b in ((zeros, lying, zeros + 1, plate), (zeros + 1, plate, zeros, lying)):
+        together, left = solids.prove(first, a, second, b)
+        assert not together.any()
+        assert not left.any()
+        assert not solids.touch(first, a, second, b).any()
 
 
 def test_resting_gap():

@@ -1,6 +1,7 @@
 """Contacts of posed solids, decided on their meshes.
 
-Steps from cheap to dear, each on what the ones before leave open: oriented boxes apart; points of one solid found
+Steps from cheap to dear, each on what the ones before leave open: oriented boxes apart; one solid beyond a face of
+the other's box; points of one solid found
 in solid cells of the other; boxes that cover one solid found in empty cells of the other; surfaces that touch; one
 solid wholly inside the other. What a step says of an entry depends on that entry alone, and a proof from cells
 never says anything else than the exact test.
@@ -31,6 +32,12 @@ _STAGES: Final = (slice(3), slice(3, 16), None, slice(16, None))
 
 _MOST_LEAVES: Final = 1 << 16
 """Pairs of near leaves of an entry up to which each is looked at; for more of them the trees are descended together."""
+
+_MOST_CORNERS: Final = 1 << 12
+"""Vertices of a mesh up to which its hull is compared with the faces of boxes."""
+
+_APART: Final = 1e-9
+"""Distance beyond a face, in units of the box, above which a solid counts as beyond it: the exact test says the same there."""
 
 _CHUNK: Final = 1 << 17
 """Combinations of entry and probing point looked at together."""
@@ -64,6 +71,14 @@ class Solids:
         self.are_boxes: Final = np.array([mesh.is_box for mesh in meshes])
         self._spent = 0.0
         self._patience = patience
+
+    @cached_property
+    def _corners(self) -> tuple[Floats | None, ...]:
+        """The corners of the meshes' hulls; none of boxes, of which all is known, and of large meshes, whose hulls are dear."""
+        return tuple(
+            None if mesh.is_box or len(mesh.vertices) > _MOST_CORNERS else mesh.outermost
+            for mesh in self.meshes
+        )
 
     @cached_property
     def _forest(self) -> Forest:
@@ -122,15 +137,13 @@ class Solids:
     ) -> tuple[Booleans, Booleans]:
         """The masks of entries that are proved to share a point ``(n,)``, and of those that remain open ``(n,)``; at least one entry.
 
-        The cells that it takes are made once exact tests have taken as long: until then all remain open.
+        Cells are made once exact tests have taken as long as that takes: until then, they prove nothing.
         """
         count = len(first)
-        if not self._can_prove:
-            return np.zeros(count, dtype=np.bool_), np.ones(count, dtype=np.bool_)
         pairs = _Pairs.of(first, first_poses, second, second_poses)
         together = np.zeros(count, dtype=np.bool_)
-        left = np.arange(count)
-        for stage in _STAGES:
+        left = np.flatnonzero(~_either(self._beyond_a_face(*pairs.ways)))
+        for stage in _STAGES if self._can_prove else ():
             if not len(left):
                 break
             done = self._stage(stage, pairs.take(left))
@@ -139,6 +152,26 @@ class Solids:
         remains = np.zeros(count, dtype=np.bool_)
         remains[left] = True
         return together, remains
+
+    def _beyond_a_face(self, moving: Indices, still: Indices, maps: AffineMaps) -> Booleans:
+        """Return a mask ``(n,)`` of the pairs whose moving solid lies beyond a face of the still one's box, the likeliest face.
+
+        So does nearly all that stands or lies on a table.
+        """
+        result = np.zeros(len(moving), dtype=np.bool_)
+        for number in distinct(moving).tolist():
+            points = self._corners[number]
+            if points is None:
+                continue
+            which = np.flatnonzero(moving == number)
+            map_ = maps.take(which)
+            gaps = np.abs(map_.offset) - 0.5 * np.abs(map_.matrix).sum(axis=1)
+            axis, each = gaps.argmax(axis=0), np.arange(len(which))
+            offset = map_.offset[axis, each]
+            x, y, z = np.where(offset < 0, -1.0, 1.0) * map_.matrix[axis, :, each].T
+            nearest = (points[:, :1] * x + points[:, 1:2] * y + points[:, 2:] * z).min(axis=0)
+            result[which] = np.abs(offset) + nearest > 0.5 + _APART
+        return result
 
     def _stage(self, points: slice | None, pairs: "_Pairs") -> Booleans:
         """Return a mask ``(n,)`` of the pairs that a stage decides."""

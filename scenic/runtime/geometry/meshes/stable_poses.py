@@ -32,7 +32,7 @@ _SAME: Final = 1e-9
 """Part of an axis by which another axis of an ellipsoid may be longer and count as equal."""
 
 _FEW: Final = 16
-"""Sizes up to which probabilities are kept for the next time."""
+"""Poses at a size that at least one lane of so many has are kept for the next time."""
 
 _CHUNK: Final = 1 << 18
 """Combinations of size and edge looked at together."""
@@ -205,17 +205,19 @@ def resting_poses(footing: Footing, sizes: Floats, draws: Floats) -> Floats:
 
     Rows are the angle about X after that about Y (radians), the angle about Y, and the height of the middle of the solid's box (metres).
     """
-    # As complex numbers, of which pairs are sorted fast.
-    ratios = sizes[:, 1] / sizes[:, 0] + 1j * (sizes[:, 2] / sizes[:, 0])
-    _, first, kind = np.unique(ratios, return_index=True, return_inverse=True)
     result = np.empty((3, len(sizes)))
-    if len(first) <= _FEW:
-        for number, size in enumerate(sizes[first].tolist()):
-            lanes = np.flatnonzero(kind == number)
-            limits, poses = _known(footing, tuple(size))
-            result[:, lanes] = poses[:, np.searchsorted(limits, draws[lanes], side="right")]
-        return result
-    for some in rows(len(sizes), footing.weight, _CHUNK):
+    left = np.arange(len(sizes))
+    while len(left):
+        size = sizes[left[0]]
+        alike = (sizes[left, 1] == size[1]) & (sizes[left, 2] == size[2]) & (sizes[left, 0] == size[0])
+        lanes = left[alike]
+        if _FEW * len(lanes) < len(left):
+            break
+        limits, poses = _known(footing, tuple(size.tolist()))
+        result[:, lanes] = poses.take(np.searchsorted(limits, draws[lanes], side="right"), axis=1)
+        left = left[~alike]
+    for part in rows(len(left), footing.weight, _CHUNK):
+        some = left[part]
         limits = _limits(footing, sizes[some])
         faces = (limits <= draws[some, np.newaxis]).sum(axis=1)
         result[:, some] = _poses(footing, sizes[some], faces)
@@ -226,7 +228,7 @@ def resting_poses(footing: Footing, sizes: Floats, draws: Floats) -> Floats:
 def _known(footing: Footing, size: tuple[float, ...]) -> tuple[Floats, Floats]:
     """Cumulative probabilities ``(p,)`` and poses ``(3, p)`` of the faces on which a solid of one size may rest."""
     limits = _limits(footing, np.array([size]))[0]
-    faces = np.flatnonzero(np.diff(limits, prepend=0.0))
+    faces = np.unique(limits, return_index=True)[1]
     poses = [
         _poses(footing, np.tile(size, (len(faces[part]), 1)), faces[part])
         for part in rows(len(faces), footing.weight, _CHUNK)
@@ -235,9 +237,9 @@ def _known(footing: Footing, size: tuple[float, ...]) -> tuple[Floats, Floats]:
 
 
 def _limits(footing: Footing, sizes: Floats) -> Floats:
-    """Cumulative probabilities ``(n, f)`` of the faces at sizes ``(n, 3)``; the last that is possible has 1."""
+    """Cumulative probabilities ``(n, f)`` of the faces at sizes ``(n, 3)``; the last that is possible has infinity, above any draw."""
     sums = np.cumsum(footing.shares(sizes), axis=1)
-    return np.where(sums == sums[:, -1:], 1.0, sums)
+    return np.where(sums == sums[:, -1:], np.inf, sums)
 
 
 def _poses(footing: Footing, sizes: Floats, faces: Indices) -> Floats:
