@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -108,6 +109,8 @@ def test_a_run_that_ends_otherwise_is_told(monkeypatch: pytest.MonkeyPatch, proj
     assert result.found_by is None
     assert "nowhere" in result.error
     monkeypatch.setattr(faults, "FAULTS", (broken,))
+    monkeypatch.setattr(faults, "try_fault", lambda _fault, **_options: result)
+    monkeypatch.setattr(faults, "copied", nullcontext)
     assert faults.main(["--only", "broken", "--seconds", "1"]) == 1
 
 
@@ -157,6 +160,7 @@ def test_too_few_found_is_a_failure(monkeypatch: pytest.MonkeyPatch):
         return Result(planted, 1.0, outcomes.get(planted.name, "p"), "x")
 
     monkeypatch.setattr(faults, "try_fault", tried)
+    monkeypatch.setattr(faults, "copied", nullcontext)
     assert faults.main([]) == 1, "something is found without a fault"
     outcomes["none"] = None
     assert faults.main([]) == 0

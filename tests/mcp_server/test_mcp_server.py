@@ -123,7 +123,9 @@ def test_resources_and_prompts(tmp_path: Path) -> None:
 def test_programs_run_over_stdio(tmp_path: Path) -> None:
     """Pictures, progress, printing programs, cancellation, and no process left behind."""
     program = "print('{')\nego = new Object at (Range(0, 9), 0)\n"
-    endless = f"import os\nopen({str(tmp_path / 'pid')!r}, 'w').write(str(os.getpid()))\nwhile True: pass\n"
+    endless = (
+        f"import os, time\nopen({str(tmp_path / 'pid')!r}, 'w').write(str(os.getpid()))\ntime.sleep(1000)\n"
+    )
 
     async def talk() -> None:
         async with Client(over_stdio(tmp_path)) as client:
@@ -140,12 +142,17 @@ def test_programs_run_over_stdio(tmp_path: Path) -> None:
                 schema = tools[name].output_schema
                 assert schema is not None
                 jsonschema.validate(answer, schema)
-            with anyio.move_on_after(8):
-                await client.call_tool("try", {"text": endless, "seconds": 100})
+            with anyio.fail_after(60):
+                async with anyio.create_task_group() as group:
+                    group.start_soon(client.call_tool, "try", {"text": endless, "seconds": 100})
+                    while not (tmp_path / "pid").exists() or not (tmp_path / "pid").read_text():
+                        await anyio.sleep(0.1)
+                    group.cancel_scope.cancel()
             with anyio.fail_after(10):
                 while Path(f"/proc/{(tmp_path / 'pid').read_text()}").exists():
                     await anyio.sleep(0.1)
             assert not (await client.call_tool("check", {"text": "ego = new Object\n"})).is_error
+            await _simulated_and_analyzed(client, tools)
 
     steps: list[float] = []
 
@@ -218,42 +225,33 @@ BAD_RUNS = [
 """Programs that do harm where they can, and the codes of their answers."""
 
 
-def test_simulations_and_analyses(tmp_path: Path) -> None:
-    """The tools that take long, over standard input and output, with pictures and progress."""
-
-    async def talk() -> None:
-        async with Client(over_stdio(tmp_path)) as client:
-            tools = {each.name: each for each in (await client.list_tools()).tools}
-            for tool in tools.values():
-                jsonschema.Draft202012Validator.check_schema(tool.input_schema)
-                assert tool.annotations is not None
-                assert tool.annotations.read_only_hint == (tool.name in READING)
-            arguments = {"text": MOVING, "steps": 5, "picture": True, "mode_2d": False}
-            simulated = await client.call_tool("simulate", arguments, progress_callback=progress)
-            assert [each.type for each in simulated.content] == ["text", "image"]
-            answer = simulated.structured_content
-            jsonschema.validate(answer, tools["simulate"].output_schema or {})
-            assert (answer["phase"], answer["ok"], answer["simulation"]["steps"]) == ("simulate", True, 5)
-            assert [each["verdict"] for each in answer["simulation"]["requirements"]] == [
-                "TRUE",
-                "PRESUMABLY_TRUE",
-            ]
-            analyzed = (await client.call_tool("analyze", {"text": MOVING})).structured_content
-            assert analyzed["values"][0]["before"] == [0, 9]
-            assert analyzed["values"][0]["after"] == pytest.approx([3, 9])
-            wrong = await client.call_tool("analyze", {"text": "ego = new Objct\n"})
-            assert wrong.is_error
-            assert "SC203" in str(wrong.content)
-            outside = await client.call_tool("try", {"text": MOVING, "filename": "../outside.scenic"})
-            assert outside.is_error
-
+async def _simulated_and_analyzed(client: Client, tools: dict[str, Any]) -> None:
+    """The tools that take long, with a picture and progress."""
     steps: list[float] = []
 
     async def progress(done: float, _total: float | None, _message: str | None) -> None:
         steps.append(done)
 
-    anyio.run(talk)
+    for tool in tools.values():
+        jsonschema.Draft202012Validator.check_schema(tool.input_schema)
+        assert tool.annotations is not None
+        assert tool.annotations.read_only_hint == (tool.name in READING)
+    arguments = {"text": MOVING, "steps": 5, "picture": True, "mode_2d": False}
+    simulated = await client.call_tool("simulate", arguments, progress_callback=progress)
+    assert [each.type for each in simulated.content] == ["text", "image"]
     assert steps == sorted(steps)
+    answer = simulated.structured_content
+    jsonschema.validate(answer, tools["simulate"].output_schema or {})
+    assert (answer["phase"], answer["ok"], answer["simulation"]["steps"]) == ("simulate", True, 5)
+    assert [each["verdict"] for each in answer["simulation"]["requirements"]] == ["TRUE", "PRESUMABLY_TRUE"]
+    analyzed = (await client.call_tool("analyze", {"text": MOVING})).structured_content
+    assert analyzed["values"][0]["before"] == [0, 9]
+    assert analyzed["values"][0]["after"] == pytest.approx([3, 9])
+    wrong = await client.call_tool("analyze", {"text": "ego = new Objct\n"})
+    assert wrong.is_error
+    assert "SC203" in str(wrong.content)
+    outside = await client.call_tool("try", {"text": MOVING, "filename": "../outside.scenic"})
+    assert outside.is_error
 
 
 def test_harm_is_limited(tmp_path: Path) -> None:

@@ -21,8 +21,8 @@ from scenic.ide.formatting import format_text  # noqa: E402
 from scenic.language.source import Source  # noqa: E402
 from tests.compiler import python_trees  # noqa: E402
 
-LONGEST = 40_000
-"""Characters of the longest module that is read; WebAssembly takes several times as long as a processor."""
+LONGEST = int(sys.argv[1])
+"""Characters of the longest module that is read, from the command; WebAssembly takes several times as long as a processor."""
 
 GRAMMAR = (3, 12)
 """The version whose grammar Scenic's is an extension of."""
