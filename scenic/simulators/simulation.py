@@ -537,7 +537,8 @@ class Simulation(ABC):
         for name in names:
             value, old = values[name], attributes[name]
             if value is not old:
-                attributes[name] = self._checked(obj, name, old, value)
+                is_as_before = type(value) is type(old) and type(old) in _SIMPLE
+                attributes[name] = value if is_as_before else self._checked(obj, name, old, value)
         finals = self._finals[cls]
         inputs = tuple([attributes[name] for name in finals.inputs])
         if inputs != self._inputs.get(id(obj)):
@@ -550,8 +551,6 @@ class Simulation(ABC):
 
     def _checked(self, obj: object, name: str, old: Any, value: Any) -> Any:
         """The value as the object stores it; raises ``RuntimeError`` for one of another type than before."""
-        if type(value) is type(old) and type(old) in _SIMPLE:
-            return value
         kind, old_kind = kind_of(value), kind_of(old)
         if (
             old_kind.is_number

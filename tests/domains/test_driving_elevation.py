@@ -217,6 +217,22 @@ def test_a_bridge_and_the_road_below_are_two_places(tmp_path):
         assert element.distances(points) == pytest.approx(np.hypot(element.beside(points), above))
 
 
+@pytest.mark.parametrize(("height", "is_in_the_way"), [(6.75, False), (0.75, True)])
+def test_who_stands_on_a_bridge_is_not_in_the_way_below_it(tmp_path, height, is_in_the_way):
+    found = scenario(
+        tmp_path,
+        bridge(),
+        "model scenic.simulators.newtonian.driving_model\nfrom scenic.domains.driving.measures import bumper_gap\n"
+        "ego = new Car at (10, -1.75, 0.75), facing -90 deg, with speed 10, with behavior FollowLaneBehavior(10, follow_gap=1.5)\n"
+        f"other = new Car at (50, -1.75, {height}), facing -90 deg\n"
+        "record initial bumper_gap(ego, other) as gap\n",
+    )
+    done = found.getSimulator().simulate(found.sample(1, seed=1)[0], maxSteps=60)
+    speeds = np.diff([state.positions[0].x for state in done.trajectory]) * 10
+    assert (speeds.min() < 2) == is_in_the_way
+    assert done.result.records["gap"] == pytest.approx(35.5 if is_in_the_way else math.inf, abs=1e-3)
+
+
 def test_following_the_direction_of_traffic_goes_uphill(tmp_path):
     text = straight(100.0, rest=heights(cubic("elevation", (0.0, 0.0, 0.1, 0.0, 0.0))))
     found = scenario(

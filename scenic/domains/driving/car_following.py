@@ -1,20 +1,25 @@
 """Distances that drivers keep: the intelligent driver model, and who is ahead on a path."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
 from scenic.domains.driving.paths import Path
 
-__all__ = ["Gap", "Leader", "following_acceleration", "leader_on"]
+__all__ = ["Course", "Gap", "Leader", "Traffic", "following_acceleration", "leader_on"]
 
 _HORIZON: Final = 120.0
 """Metres ahead in which others count."""
 _BESIDE: Final = 0.3
 """Metres between the sides of two cars below which one is in the other's way."""
+_STRIDE: Final = 4
+"""Points of a path from one that is looked at to the next one."""
+_REACH: Final = 12.0
+"""Metres from such a point within which the middle of a long vehicle that reaches the path lies."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +59,45 @@ class Leader:
         return max(0.0, float(vy * math.cos(heading) - vx * math.sin(heading)))
 
 
+class Traffic:
+    """The places of all objects of a simulation at one step, as columns that all drivers read.
+
+    Attributes:
+        items: the objects.
+        places: their middles as complex numbers ``(n,)``.
+
+    """
+
+    __slots__ = ("items", "places")
+
+    def __init__(self, items: Sequence[Any]) -> None:
+        self.items = items
+        self.places = np.array([complex(x, y) for x, y, *_ in (item.position for item in items)], complex)
+
+
+class Course:
+    """Points of a path from an index on, every few of them, by which drivers find who is near to it."""
+
+    __slots__ = ("_begin", "_path", "_points")
+
+    def __init__(self, path: Path, begin: int) -> None:
+        self._path, self._begin = path, begin
+        x, y = path.stretch(begin, len(path.along))[::_STRIDE].T
+        self._points = x + 1j * y
+
+    def ahead(self, along: float, index: int) -> tuple[NDArray[np.complex128], int, int]:
+        """The points from an index to metres along the path.
+
+        Returns:
+            The points as complex numbers, and the indices of the first and the last one in the path.
+
+        """
+        path, first = self._path, max(index - self._begin, 0) // _STRIDE
+        last = path.index_at(along, index)
+        points = self._points[first : (last - self._begin) // _STRIDE + 2]
+        return points, self._begin + first * _STRIDE, last
+
+
 def following_acceleration(
     speed: float, distance: float, ahead: float, gap: Gap, acceleration: float, deceleration: float
 ) -> float:
@@ -77,45 +121,47 @@ def following_acceleration(
     return acceleration * (1 - (wanted / max(distance, 0.1)) ** 2)
 
 
-def leader_on(path: Path, index: int, agent: Any, others: Iterable[Any]) -> Leader | None:
-    """The first of some objects that is on a path ahead of a car.
+def leader_on(path: Path, index: int, agent: Any, traffic: Traffic, course: Course) -> Leader | None:
+    """The first object that is on a path ahead of a car, at the height of the path.
 
     Args:
         path: of the car.
         index: of the point of the path at which the car is.
         agent: the car.
-        others: the objects.
+        traffic: where everybody is.
+        course: of the path.
 
     """
     x, y, *_ = agent.position
-    near = []
-    for other in others:
+    near = np.flatnonzero(np.abs(traffic.places - complex(x, y)) < _HORIZON)
+    if not len(near):
+        return None
+    along = path.along
+    points, begin, end = course.ahead(along[index] + _HORIZON, index)
+    if not len(points):
+        return None
+    away = np.abs(points - traffic.places[near][:, None])
+    nearest = away.argmin(axis=1)
+    beside = away[np.arange(len(near)), nearest] < _REACH
+    best: Leader | None = None
+    for number, point in zip(near[beside].tolist(), nearest[beside].tolist(), strict=True):
+        other = traffic.items[number]
         if other is agent:
             continue
         a, b, *_ = other.position
-        if abs(a - x) < _HORIZON and abs(b - y) < _HORIZON:
-            near.append((a, b, other))
-    if not near:
-        return None
-    along = path.along
-    last = path.index_at(along[index] + _HORIZON, index) + 1
-    points = path.stretch(index, last + 1)
-    places = np.array([item[:2] for item in near])
-    away = np.abs(points[None] - places[:, None]).max(axis=2)
-    nearest = away.argmin(axis=1)
-    best: Leader | None = None
-    for number, (a, b, other) in enumerate(near):
-        point = index + int(nearest[number])
-        if away[number, nearest[number]] > 6.0:
-            continue
-        point, share, side = path.locate(a, b, point)
+        point, share, side = path.locate(a, b, min(begin + _STRIDE * point, end))
         place = along[point] + share * (along[point + 1] - along[point])
-        ahead = place - along[index]
-        if ahead <= 0 or (best is not None and place >= best.along):
+        if place <= along[index] or (best is not None and place >= best.along):
             continue
         turned = other.heading - path.headings[point]
         sine, cosine = abs(math.sin(turned)), abs(math.cos(turned))
         half = (other.length * sine + other.width * cosine) / 2
-        if abs(side) < half + agent.width / 2 + _BESIDE:
+        if abs(side) < half + agent.width / 2 + _BESIDE and _is_level(path, point, other):
             best = Leader(other, place, (other.length * cosine + other.width * sine) / 2)
     return best
+
+
+def _is_level(path: Path, point: int, other: Any) -> bool:
+    """Return whether an object is at the height of a path, and not on a bridge above it or on a road below it."""
+    lane = path.lane_at(point)
+    return lane is None or bool(lane.network.is_level(lane, other.position))

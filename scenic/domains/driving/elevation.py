@@ -100,6 +100,9 @@ class Elevation:
     def heights(self, roads: Indices, places: Floats) -> Floats:
         """Heights ``(n,)`` in metres of the surfaces of roads ``(n,)`` at places ``(n, 2)``, on the road or beside it."""
         s, t, _, _ = self._lines.project(roads, places)
+        return self._heights(roads, s, t)
+
+    def _heights(self, roads: Indices, s: Floats, t: Floats) -> Floats:
         return (
             self._profile.values(roads, s)
             + t * self._lean(roads, s, t)[0]
@@ -108,7 +111,14 @@ class Elevation:
 
     def gradients(self, roads: Indices, places: Floats) -> Floats:
         """By how much surfaces rise towards east and north, ``(n, 2)``; see `heights`."""
-        s, t, heading, bend = self._lines.project(roads, places)
+        return self._gradients(roads, *self._lines.project(roads, places))
+
+    def heights_and_gradients(self, roads: Indices, places: Floats) -> tuple[Floats, Floats]:
+        """`heights` and `gradients` at once."""
+        projected = self._lines.project(roads, places)
+        return self._heights(roads, *projected[:2]), self._gradients(roads, *projected)
+
+    def _gradients(self, roads: Indices, s: Floats, t: Floats, heading: Floats, bend: Floats) -> Floats:
         lean, change = self._lean(roads, s, t)
         _, along, across = self._shapes.heights(roads, s, t)
         lean = lean + across
@@ -119,11 +129,7 @@ class Elevation:
 
     def frames(self, roads: Indices, places: Floats, headings: Floats) -> Floats:
         """Orientations ``(n, 4)`` of things that stand on surfaces and face headings ``(n,)``, anticlockwise from north."""
-        gradient = self.gradients(roads, places)
-        cos, sin = np.cos(headings), np.sin(headings)
-        pitch = np.arctan(gradient[:, 1] * cos - gradient[:, 0] * sin)
-        roll = -np.arctan((gradient[:, 0] * cos + gradient[:, 1] * sin) * np.cos(pitch))
-        return quaternions.from_euler(headings, pitch, roll)
+        return frames_on(self.gradients(roads, places), headings)
 
     def _lean(self, roads: Indices, s: Floats, t: Floats) -> tuple[Floats, Floats]:
         """The slope across the road on the side where a point is, towards the left, and how it changes along the road."""
@@ -301,6 +307,14 @@ class _Lines:
             (self._x[index], self._x[index + 1], length * np.cos(first), length * np.cos(last)),
             (self._y[index], self._y[index + 1], length * np.sin(first), length * np.sin(last)),
         )
+
+
+def frames_on(gradients: Floats, headings: Floats) -> Floats:
+    """Orientations ``(n, 4)`` of things on slopes ``(n, 2)`` towards east and north that face headings ``(n,)``."""
+    cos, sin = np.cos(headings), np.sin(headings)
+    pitch = np.arctan(gradients[:, 1] * cos - gradients[:, 0] * sin)
+    roll = -np.arctan((gradients[:, 0] * cos + gradients[:, 1] * sin) * np.cos(pitch))
+    return quaternions.from_euler(headings, pitch, roll)
 
 
 def _hermite(curve: Any, share: Floats) -> tuple[Any, Any, Any]:

@@ -6,7 +6,14 @@ from copy import deepcopy
 from typing import Any, Final
 
 from scenic.domains.driving.actions import RegulatedControlAction, SetSteerAction, Steers
-from scenic.domains.driving.car_following import Gap, Leader, following_acceleration, leader_on
+from scenic.domains.driving.car_following import (
+    Course,
+    Gap,
+    Leader,
+    Traffic,
+    following_acceleration,
+    leader_on,
+)
 from scenic.domains.driving.paths import Path
 from scenic.domains.driving.planning import speeds_of
 from scenic.domains.driving.running_traffic import ADVICE, running_traffic
@@ -68,6 +75,7 @@ class Driver:
         self._gap = gap
         self._leader: Leader | None = None
         self._only: Any = None
+        self._course: Course | None = None
         self._look = 0.0
         steering, self._acceleration = _applied(agent)
         self._past = steering
@@ -135,6 +143,7 @@ class Driver:
             junctions=junctions,
         )
         self._look = 0.0
+        self._course = None
 
     @property
     def along(self) -> float:
@@ -251,8 +260,10 @@ class Driver:
         now = simulation.currentTime * simulation.timestep
         if now >= self._look:
             self._look = now + _LOOKS
-            others = simulation.objects if self._only is None else (self._only,)
-            self._leader = leader_on(path, self._index, agent, others)
+            if self._course is None:
+                self._course = Course(path, self._index)
+            traffic = simulation.traffic if self._only is None else Traffic((self._only,))
+            self._leader = leader_on(path, self._index, agent, traffic, self._course)
         leader = self._leader
         if leader is None:
             return math.inf

@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.domains.driving.elevation import Elevation
+from scenic.domains.driving.elevation import Elevation, frames_on
 from scenic.graph import quaternions
 
 __all__ = ["Ground", "Levels"]
@@ -22,6 +22,8 @@ _LEVEL: Final = 1.0
 """Metres within which two surfaces are equally near to a point."""
 _ROOM: Final = 4.5
 """Metres above or below a surface within which things belong to it."""
+_BELOW, _ABOVE = 1.6, 2.4
+"""Metres below and above a road, which others pass at `_STOREY` at least, within which the middle of a thing on it lies."""
 _SHARED: Final = 0.1
 """Square metres that two areas share at least where they lie above each other."""
 
@@ -105,6 +107,27 @@ class Levels:
         """Pairs of roads of which one passes above the other, each in both orders."""
         return self._stacks[0]
 
+    @cached_property
+    def has_storeys(self) -> bool:
+        """Return whether some road passes above another one."""
+        return self._stacks[1] is not None
+
+    def is_on(self, element: Any, point: Any) -> bool:
+        """Return whether a thing over an element belongs to it, and not to a road that passes above or below.
+
+        Args:
+            element: of the road network.
+            point: the middle of the thing.
+
+        """
+        if not self.has_storeys:
+            return True
+        x, y, z = point
+        if not self.stacked(np.array([[x, y]]))[0]:
+            return True
+        height = element.elevationAt(point)
+        return height is None or -_BELOW < z - height < _ABOVE
+
     def stacked(self, places: Floats) -> Mask:
         """Return a mask of the places ``(n, 2)`` at which roads lie above each other."""
         import shapely
@@ -139,6 +162,22 @@ class Levels:
         there, roads = self._nearest(points)
         frames[there] = self.elevation.frames(roads, points[there, :2], headings[there])
         return frames
+
+    def settled(self, points: Floats, headings: Floats) -> tuple[Floats, Floats]:
+        """`heights` and `frames` at once: heights ``(n,)`` and orientations ``(n, 4)``."""
+        import shapely
+
+        owner, area = self._tree.query(shapely.points(points[:, :2]), predicate="intersects")
+        roads = self._roads[area]
+        above, gradients = self.elevation.heights_and_gradients(roads, points[owner, :2])
+        order = np.lexsort((np.abs(points[owner, 2] - above), owner))
+        first = order[np.flatnonzero(np.diff(owner[order], prepend=-1))]
+        there = owner[first]
+        heights = np.full(len(points), np.nan)
+        heights[there] = above[first]
+        slopes = np.zeros((len(points), 2))
+        slopes[there] = gradients[first]
+        return heights, frames_on(slopes, headings)
 
     def _nearest(self, points: Floats) -> tuple[Indices, Indices]:
         """Return the indices of the points ``(n, 3)`` that lie on some road, and for each the road nearest in height."""

@@ -46,17 +46,15 @@ def _along_lane(car: Any, other: Any) -> tuple[float, float, float] | None:
     lane = car._lane
     if lane is None:
         return None
-    lines = [lane.line]
-    after = lane
+    lanes = [lane]
     for _ in range(6):
-        maneuvers = [item for item in after.maneuvers if item.type.name == "STRAIGHT"]
+        maneuvers = [item for item in lanes[-1].maneuvers if item.type.name == "STRAIGHT"]
         if not maneuvers:
             break
         if maneuvers[0].connectingLane is not None:
-            lines.append(maneuvers[0].connectingLane.line)
-        after = maneuvers[0].endLane
-        lines.append(after.line)
-    line = shapely.LineString(np.concatenate(lines))
+            lanes.append(maneuvers[0].connectingLane)
+        lanes.append(maneuvers[0].endLane)
+    line = shapely.LineString(np.concatenate([item.line for item in lanes]))
     spots = [shapely.Point(item.position[0], item.position[1]) for item in (car, other)]
     own, place = (float(line.project(spot)) for spot in spots)
     headings = []
@@ -69,6 +67,8 @@ def _along_lane(car: Any, other: Any) -> tuple[float, float, float] | None:
     aside = abs(spots[1].distance(line))
     if place <= own or aside > (_extent(other, -ey, ex) + _extent(car, -dy, dx)):
         return None
+    if not all(lane.network.is_level(item, other.position) for item in lanes):
+        return None  # on a bridge, or below one
     gap = place - own - _extent(car, dx, dy) - _extent(other, ex, ey)
     speeds = (
         car.velocity[0] * dx + car.velocity[1] * dy,

@@ -251,6 +251,10 @@ class RoadNetwork(Frozen):
     def _levels_in_space(self) -> Levels | None:
         return self.levels if self.is_elevated else None
 
+    def is_level(self, element: NetworkElement, point: object) -> bool:
+        """Return whether a thing over an element is at its height, and not on a bridge above it or on a road below it."""
+        return not self.is_elevated or self.levels.is_on(element, point)
+
     def road_number(self, uid: str | None) -> int:
         """The number of a road in `levels`."""
         return self._elevation.numbers[uid or ""]

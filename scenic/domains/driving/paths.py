@@ -277,11 +277,9 @@ class Path:
     def index_at(self, along: float, index: int) -> int:
         """The index of the last point at or before a place metres along the path, looked for from a point of the path on."""
         lengths, last = self.along, len(self.along) - 2
-        while index < last and lengths[index + 1] <= along:
-            index += 1
-        while index > 0 and lengths[index] > along:
-            index -= 1
-        return index
+        if lengths[index] <= along:
+            return min(bisect_right(lengths, along, index) - 1, last)
+        return max(bisect_right(lengths, along, 0, index) - 1, 0)
 
     def place(self, along: float, index: int = 0) -> tuple[float, float]:
         """The coordinates of a place metres along the path; beyond the ends the path goes on straight."""

@@ -200,7 +200,10 @@ class RulesDriver(LaneDriver):
         reach = 1.3 * speed * speed / (2 * self.comfort.deceleration) + 2 * speed + 12.0
         remaining = []
         found: float | None = None
-        for halt in self._halts:
+        for number, halt in enumerate(self._halts):
+            if halt.along - front > reach:
+                remaining += self._halts[number:]  # farther on
+                break
             if own - agent.length / 2 > halt.end:
                 if halt.maneuver is not None:
                     self._simulation.right_of_way.leave(agent, halt.maneuver)
@@ -211,7 +214,7 @@ class RulesDriver(LaneDriver):
                     # Whoever is in it already, as at the beginning, is in the way of others.
                     self._simulation.right_of_way.hold(agent, halt.maneuver)
                 continue
-            if found is not None or halt.along - front > reach:
+            if found is not None:
                 continue
             if self._must_halt(halt, speed, halt.along - front, now):
                 found = halt.along
@@ -311,10 +314,8 @@ class RulesDriver(LaneDriver):
 
         line = shapely.linestrings(maneuver.connectingLane.line)  # type: ignore[union-attr] # of intersections
         intersection = maneuver.intersection
-        for other in self._simulation.objects:
-            if other is self._agent or not getattr(other, "isVehicle", False):
-                continue
-            if self._simulation.obeys_rules(other):
+        for other in self._simulation.vehicles:
+            if other is self._agent or self._simulation.obeys_rules(other):
                 continue
             x, y, *_ = other.position
             if not _near(self._agent, other, 60.0):
@@ -335,9 +336,7 @@ class RulesDriver(LaneDriver):
         import shapely
 
         polygon = halt.crossing.polygon
-        for other in self._simulation.objects:
-            if not getattr(other, "isPedestrian", False):
-                continue
+        for other in self._simulation.pedestrians:
             x, y, *_ = other.position
             vx, vy, *_ = other.velocity
             here = shapely.distance(polygon, shapely.Point(x, y))

@@ -4,6 +4,7 @@ import math
 from functools import cached_property
 from typing import Any, ClassVar
 
+from scenic.domains.driving.car_following import Traffic
 from scenic.domains.driving.controllers import PIDLateralController, PIDLongitudinalController
 from scenic.domains.driving.network import RoadNetwork
 from scenic.domains.driving.right_of_way import RightOfWay
@@ -48,6 +49,37 @@ class DrivingSimulation(Simulation):
     def right_of_way(self) -> RightOfWay:
         """The ways through intersections that cars have taken."""
         return RightOfWay()
+
+    @property
+    def traffic(self) -> Traffic:
+        """The places of the objects at the present step."""
+        known = self._present
+        if known is None or known[0] != self.currentTime or len(known[1].items) != len(self.objects):
+            known = self._present = self.currentTime, Traffic(tuple(self.objects))
+        return known[1]
+
+    _present: tuple[int, Traffic] | None = None
+
+    @property
+    def pedestrians(self) -> tuple[Any, ...]:
+        """The objects that walk."""
+        return self._of_kinds[1]
+
+    @property
+    def vehicles(self) -> tuple[Any, ...]:
+        """The objects that drive."""
+        return self._of_kinds[2]
+
+    @property
+    def _of_kinds(self) -> tuple[int, tuple[Any, ...], tuple[Any, ...]]:
+        kinds = self._kinds
+        if kinds is None or kinds[0] != len(self.objects):
+            walking = tuple(item for item in self.objects if getattr(item, "isPedestrian", False))
+            driving = tuple(item for item in self.objects if getattr(item, "isVehicle", False))
+            kinds = self._kinds = len(self.objects), walking, driving
+        return kinds
+
+    _kinds: tuple[int, tuple[Any, ...], tuple[Any, ...]] | None = None
 
     @cached_property
     def drivers(self) -> dict[int, Any]:

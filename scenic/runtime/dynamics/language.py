@@ -168,8 +168,10 @@ class Dynamics:
 
         In the set-up of a scenario it stays lazy: it may be about an object that is made there.
         """
+        if not is_lazy(value):
+            return value
         run = self._run
-        if run is None or run.may_create or not is_lazy(value):
+        if run is None or run.may_create:
             return value
         instance = next(
             (item for item in (run.agent, run.current.ego, self._module.ego) if item is not None), None

@@ -444,7 +444,8 @@ class Run:
             agent.__dict__["lastActions"] = ()
         actions_of: dict[int, tuple[Any, ...]] = {}
         schedule = list(simulation.scheduleForAgents())
-        if sorted(map(id, schedule)) != sorted(map(id, simulation.agents)):
+        agents = simulation.agents
+        if schedule != agents and sorted(map(id, schedule)) != sorted(map(id, agents)):
             raise RuntimeError("the simulator's schedule does not hold all agents, and nothing else")
         for agent in schedule:
             actions = self._turn(agent)

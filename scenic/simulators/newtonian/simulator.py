@@ -32,7 +32,19 @@ _UPRIGHT: Final = Orientation()
 class State:
     """An object of the simulation on plain numbers: metres, m/s, radians, and radians a second."""
 
-    __slots__ = ("above", "frame", "heading", "is_car", "length", "position", "rate", "speed", "velocity")
+    __slots__ = (
+        "above",
+        "frame",
+        "heading",
+        "is_car",
+        "length",
+        "parent",
+        "parent_yaw",
+        "position",
+        "rate",
+        "speed",
+        "velocity",
+    )
 
     def __init__(self, obj: Any) -> None:
         self.position: tuple[float, float, float] = tuple(obj.position)
@@ -43,6 +55,10 @@ class State:
         self.frame: Sequence[float] | None = None
         """Its orientation, where that is more than its heading: on a road that is not level."""
         self.is_car = isinstance(obj, Driven)
+        self.parent: Any = None
+        """The frame of its own angles, as it was met last."""
+        self.parent_yaw: float | None = None
+        """By how much that is turned; ``None`` if it is upright."""
         self.length = float(obj.length)
         self.rate = 0.0
         x, y, _ = self.velocity
@@ -148,11 +164,15 @@ class NewtonianSimulation(DrivingSimulation):
         attributes = obj.__dict__
         yaw = state.heading
         parent = attributes["parentOrientation"]
-        if parent is not _UPRIGHT and parent != _UPRIGHT:
-            yaw = (yaw - parent.yaw + math.pi) % (2 * math.pi) - math.pi
+        if parent is not state.parent:
+            state.parent, state.parent_yaw = parent, parent.yaw if parent != _UPRIGHT else None
+        if state.parent_yaw is not None:
+            yaw = (yaw - state.parent_yaw + math.pi) % (2 * math.pi) - math.pi
         angles: dict[str, float] = {}
         if state.frame is not None:
-            local = operate("compose", operate("inverse", parent), Orientation.of(tuple(state.frame)))
+            local = Orientation.of(state.frame)
+            if state.parent_yaw is not None:
+                local = operate("compose", operate("inverse", parent), local)
             yaw, angles["pitch"], angles["roll"] = local.eulerAngles
         x, y, z = state.velocity
         values: dict[str, Any] = {

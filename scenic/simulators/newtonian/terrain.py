@@ -41,11 +41,10 @@ class Terrain:
     def settle(self, states: Sequence["State"]) -> None:
         """Put objects that have moved in the plane back on the road: at their height above it, and cars with its slope."""
         new = np.array([state.position for state in states])
-        heights = self._levels.heights(new)
+        heights, frames = self._levels.settled(new, np.array([state.heading for state in states]))
         # Off the road, nobody knows a height: what leaves it goes on level.
         resting_heights = heights + np.array([state.above for state in states])
         new[:, 2] = np.where(np.isfinite(heights), resting_heights, new[:, 2])
-        frames = self._levels.frames(new, np.array([state.heading for state in states]))
         for state, place, frame in zip(states, new.tolist(), frames.tolist(), strict=True):
             state.position = (place[0], place[1], place[2])
             if state.is_car:
