@@ -184,7 +184,23 @@ def _show(row: "SimulationRow") -> int:
         margin = item["robustness"]
         by = f", robustness {margin:.4g}" if isinstance(margin, float) else ""
         print(f"  {item['label']}: {verdict}{by}")
+    _show_notes(row.about)
     return CLEAN
+
+
+_NOTES: Final = 5
+"""Notes of a simulation that are printed; its file contains all."""
+
+
+def _show_notes(about: Mapping[str, Any]) -> None:
+    """Print what was noted of objects, such as why a car stands."""
+    notes = about.get("notes", ())
+    for note in notes[:_NOTES]:
+        thing = about["objects"][note["object"]]
+        name = thing["name"] or f"{thing['class']} {note['object']}"
+        print(f"  {name} at {note['step'] * about['timestep']:.1f} s: {note['text']}")
+    if len(notes) > _NOTES:
+        print(f"  and {len(notes) - _NOTES} more notes, which files of --format json contain")
 
 
 def _show_params(row: "SimulationRow") -> None:

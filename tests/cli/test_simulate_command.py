@@ -35,6 +35,13 @@ behavior B():
 ego = new Object at (Range(-1, 1), 0), with behavior B
 """
 SPINNING = "behavior B():\n    while True:\n        pass\n    take 1\nego = new Object with behavior B\n"
+NOTING = """
+behavior B():
+    for number in range(7):
+        simulation().note(self, f'note {number}')
+        wait
+ego = new Object with behavior B
+"""
 SLOW = """
 import time
 behavior B():
@@ -53,6 +60,7 @@ def folder(tmp_path: Path) -> Path:
         "raising": RAISING,
         "spinning": SPINNING,
         "slow": SLOW,
+        "noting": NOTING,
     }
     for name, text in programs.items():
         (tmp_path / f"{name}.scenic").write_text(text)
@@ -133,6 +141,14 @@ def test_what_rejected_simulations_is_counted(folder: Path) -> None:
     assert sorted(line.rpartition(":")[0].strip() for line in reasons) == [
         "requirement on line 3 is violated",
         "violated precondition of C on line 6",
+    ]
+
+
+def test_what_is_noted_of_objects_is_shown(folder: Path) -> None:
+    done = run(folder, "noting.scenic", "--time", 8)
+    assert done.stdout.splitlines()[1:] == [
+        *(f"  ego at 0.{number} s: note {number}" for number in range(5)),
+        "  and 2 more notes, which files of --format json contain",
     ]
 
 

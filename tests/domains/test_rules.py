@@ -226,6 +226,16 @@ def test_it_is_noted_why_a_car_stands(folder: Path) -> None:
     assert course_document(done, k=0, tries=1)["notes"] == [{"step": step, "object": 0, "text": text}]
 
 
+def test_it_is_noted_behind_whom_a_car_stands(folder: Path) -> None:
+    text = (
+        "ego = new Car at (80, 1.75), facing 90 deg, with behavior {}\nnew Car at (60, 1.75), facing 90 deg\n"
+    )
+    for behavior in ("DriveByRulesBehavior()", "FollowLaneBehavior(10, follow_gap=1)"):
+        done = simulated(folder, text.format(behavior), "light", 700, "{'states': {'7': 'red'}}")
+        ((_, number, words),) = done.notes
+        assert (number, words.split(", ", 1)[1]) == (0, "behind Car 1, which is in its way")
+
+
 def test_it_is_noted_where_the_network_ends(folder: Path) -> None:
     text = "ego = new Car at (-60, 1.75), facing 90 deg, with behavior FollowLaneBehavior(15)\n"
     done = simulated(folder, text, "cross", 200)

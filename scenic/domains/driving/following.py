@@ -39,6 +39,10 @@ _HARD: Final = 1.8
 """Times the comfortable deceleration from which a driver brakes without regard for jolts."""
 _ON: Final = 0.3
 """Metres from its path within which a car is on it."""
+_LONG: Final = 60.0
+"""Seconds after which it is noted why a car stands."""
+_STILL: Final = 0.3
+"""Speed (m/s) below which a car stands."""
 _LOOKS: Final = 0.3
 """Seconds between two looks for who is ahead."""
 
@@ -91,6 +95,9 @@ class Driver:
         self._speeds: list[float] = []
         self._accelerations: list[float] = []
         self._time = self._simulation.currentTime
+        self.waiting = math.inf
+        """The time (s) since which the car stands; infinite while it moves."""
+        self._has_noted = False
 
     def lane_now(self) -> Any:
         """The lane along which the car is driven; ``None`` if it is not on its path, or has been driven by something else."""
@@ -247,8 +254,31 @@ class Driver:
         acceleration = min(acceleration, 1.2 * comfort.acceleration)
         if wanted < 0.02 and speed < 0.3:
             acceleration = min(acceleration, -1.0)
+        self._watch_standing(speed)
         self._acceleration = max(acceleration, -speed / timestep)
         return float(self._simulation.pedal_for(agent, acceleration))
+
+    def _watch_standing(self, speed: float) -> None:
+        """Note once why a car stands for long."""
+        if speed >= _STILL:
+            self.waiting, self._has_noted = math.inf, False
+            return
+        now = self._simulation.currentTime * self._simulation.timestep
+        if self.waiting == math.inf:
+            self.waiting = now
+        elif now - self.waiting > _LONG and not self._has_noted:
+            self._has_noted = True
+            reason = self.reason_to_stand()
+            if reason is not None:
+                self._simulation.note(self._agent, f"stands since {self.waiting:.1f} s, {reason}")
+
+    def reason_to_stand(self) -> str | None:
+        """The reason for which the car stands; ``None`` if nothing holds it."""
+        leader = self._leader
+        if leader is None or self._gap is None:
+            return None
+        number = next(index for index, item in enumerate(self._simulation.objects) if item is leader.item)
+        return f"behind {type(leader.item).__name__} {number}, which is in its way"
 
     def extra_acceleration(self, speed: float, own: float) -> float:
         """The largest acceleration (m/s^2) that further rules allow at metres along the path; infinite for no rules."""

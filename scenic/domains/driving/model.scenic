@@ -254,6 +254,7 @@ class Pedestrian(DrivingObject):
     viewAngle: 90 deg
     width: 0.75
     length: 0.75
+    height: 1.75
     color: [0, 0.5, 1]
     appearance: 'pedestrian'
     mass: 65

@@ -36,8 +36,6 @@ _YELLOW: Final = 2.6
 """Seconds after which a light that has turned yellow may be red."""
 _CHECKS: Final = 0.2
 """Seconds between two looks at rules."""
-_LONG: Final = 60.0
-"""Seconds after which it is noted why a car stands."""
 _ON: Final = 1.5
 """Metres from a crossing within which a pedestrian counts as on it."""
 
@@ -99,7 +97,6 @@ class RulesDriver(LaneDriver):
                 )
         self._halts: list[_Halt] = []
         self._marks = 0
-        self._waiting = math.inf
         self._next_check = 0.0
         self._bound = math.inf
         kept = None if "gaps" in self._ignored else gap or Gap()
@@ -185,21 +182,16 @@ class RulesDriver(LaneDriver):
         )
 
     _line: float | None = None
-    _has_noted = False
+    _halted_at: _Halt | None = None
 
     def _first_line(self, speed: float, own: float, now: float) -> float | None:
         """Metres along the path to the first line at which the car has to halt now; ``None`` if it may go on."""
         agent = self._agent
         front = own + agent.length / 2
-        stands = speed < 0.3
-        if not stands:
-            self._waiting = math.inf
-            self._has_noted = False
-        elif self._waiting == math.inf:
-            self._waiting = now
         reach = 1.3 * speed * speed / (2 * self.comfort.deceleration) + 2 * speed + 12.0
         remaining = []
         found: float | None = None
+        self._halted_at = None
         for number, halt in enumerate(self._halts):
             if halt.along - front > reach:
                 remaining += self._halts[number:]  # farther on
@@ -218,15 +210,15 @@ class RulesDriver(LaneDriver):
                 continue
             if self._must_halt(halt, speed, halt.along - front, now):
                 found = halt.along
-                if now - self._waiting > _LONG and not self._has_noted:
-                    self._has_noted = True
-                    simulation = self._simulation
-                    simulation.note(agent, f"stands since {self._waiting:.1f} s, {self._reason(halt)}")
+                self._halted_at = halt
         self._halts = remaining
         return found
 
-    def _reason(self, halt: _Halt) -> str:
-        """The reason for which the car halts at a line."""
+    def reason_to_stand(self) -> str | None:
+        """The reason for which the car stands: at a line, or behind somebody; ``None`` if nothing holds it."""
+        halt, behind = self._halted_at, super().reason_to_stand()
+        if halt is None or (behind is not None and self._leader.along < halt.along):  # type: ignore[union-attr] # there is one
+            return behind
         if halt.crossing is not None:
             return f"for pedestrians on {halt.crossing.uid}"
         for signal in halt.signals:
@@ -270,7 +262,7 @@ class RulesDriver(LaneDriver):
         self, maneuver: Maneuver, speed: float, distance: float, now: float, *, must_wait: bool
     ) -> Claim:
         eta = max(distance, 0.0) / max(speed, 1.5)
-        claim = Claim(self._agent, maneuver, eta, self._waiting, now, must_wait)
+        claim = Claim(self._agent, maneuver, eta, self.waiting, now, must_wait)
         self._simulation.right_of_way.announce(claim)
         return claim
 

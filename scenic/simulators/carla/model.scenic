@@ -150,6 +150,12 @@ class Pedestrian(CarlaActor, Pedestrian, Walks):
     defaultHeight: 1.5
     carlaController: None
 
+    def setWalkingDirection(self, heading):
+        simulation().walk(self, heading=heading)
+
+    def setWalkingSpeed(self, speed):
+        simulation().walk(self, speed=speed)
+
 
 class Prop(CarlaActor):
     """Something that stands or lies on the road."""

@@ -200,6 +200,7 @@ class CarlaSimulation(DrivingSimulation):
             self._controls[id(obj)] = self._carla.VehicleControl()
         elif getattr(obj, "isPedestrian", False):
             self._controls[id(obj)] = self._carla.WalkerControl()
+            self.walk(obj, heading=obj.heading, speed=0.0)
 
     def _location(self, obj: Any) -> Any:
         x, y, z = obj.position
@@ -237,6 +238,14 @@ class CarlaSimulation(DrivingSimulation):
                 control.direction = self._carla.Vector3D(x=x / speed, y=-y / speed, z=z / speed)
         else:
             self._actors[id(obj)].set_target_velocity(self._carla.Vector3D(x=x, y=-y, z=z))
+
+    def walk(self, obj: object, *, heading: float | None = None, speed: float | None = None) -> None:
+        """Set the direction (radians, anticlockwise from north) or the speed (m/s) of a walker; the other one stays."""
+        control = self._controls[id(obj)]
+        if heading is not None:
+            control.direction = self._carla.Vector3D(x=-math.sin(heading), y=-math.cos(heading), z=0.0)
+        if speed is not None:
+            control.speed = speed
 
     def set_angular_velocity(self, obj: object, velocity: Any) -> None:
         """Set an actor's angular velocity (radians a second)."""
