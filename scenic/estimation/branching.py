@@ -102,7 +102,7 @@ def split(
     while moves is not None:
         outcomes = []
         for row, move in zip(make(number, moves), moves, strict=False):
-            value = None if row["values"] is None else min(map(float, row["values"])) - threshold
+            value = None if row["values"] is None else _distance(row, threshold)
             step = Step(row["run"], move.step, move.share)
             point = Lineage(row["run"]) if move.parent is None else move.parent.child(step)
             outcomes.append(Outcome(point, value))
@@ -114,6 +114,13 @@ def split(
             moves = making.send(outcomes)
         except StopIteration:
             return
+
+
+def _distance(row: _Row, threshold: float) -> float:
+    """By how much a run is off a failure."""
+    if "distances" in row:
+        return min(map(float, row["distances"]))
+    return min(map(float, row["values"])) - threshold
 
 
 def rare_of(rows: Sequence[_Row], seed: int, budget: int, threshold: float) -> Rare:

@@ -31,7 +31,7 @@ from scenic.runtime.ground.arguments import check_seconds, whole_number
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS
 from scenic.statistics.sequences import is_checked
-from scenic.statistics.splitting import REPETITIONS, Move, Splitting
+from scenic.statistics.splitting import Move, Splitting
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -141,7 +141,7 @@ class Runs:
             simulations = Simulations(self.scenario, self.simulator, running)
         return Evaluation(
             self.scenario, simulations, self.objectives, Space(()), self.seed, self.threshold,
-            most_attempts=None if self.guide is None else 1,
+            most_attempts=None if self.guide is None else 1, wants_distances=self.budget is not None,
         )  # fmt: skip
 
 
@@ -384,7 +384,7 @@ def _estimate_from(
     else:
         reason = f"the {asked.runs} runs that it may take are made" if is_whole else ""
     if rare is not None:
-        is_done = rare.is_known and len(rare.logarithms) == REPETITIONS
+        is_done = rare.is_known and len(rare.logarithms) == len(rare.repetitions)
         reason = "all repetitions are finished" if is_done else reason
         enough = is_done or (rare.is_flat and is_whole)
     if weighted is not None:

@@ -95,6 +95,7 @@ class Evaluation:
         folder: where counterexamples are kept, if anywhere.
         watcher: called with the simulation of each of them, in this process.
         most_attempts: candidates tried for one point; by default as many as its remaining draws may need.
+        wants_distances: whether rows have ``distances`` to a failure where these differ from the values.
 
     """
 
@@ -107,6 +108,7 @@ class Evaluation:
     folder: Path | None = None
     watcher: Watcher | None = None
     most_attempts: int | None = None
+    wants_distances: bool = False
 
     @property
     def attempts(self) -> int:
@@ -146,7 +148,11 @@ class Evaluation:
             values = [item.of_scene(result) for item in self.objectives]
             if min(values) <= self.threshold and self.folder is not None:
                 self._keep_scene(result, self._folder_of(run))
-            yield self._row(run, values, result.attempts)
+            row = self._row(run, values, result.attempts)
+            if self.wants_distances:
+                distances = [item.distance_of_scene(result, self.threshold) for item in self.objectives]
+                self._add_distances(row, values, distances)
+            yield row
 
     def static(self, task: Task) -> Iterator[dict[str, Any]]:
         """The row of one scene."""
@@ -206,6 +212,12 @@ class Evaluation:
                 }
             values = [item.of_simulation(simulation.result, scene.params) for item in self.objectives]
             row = self._row(task.run, values, scene.attempts)
+            if self.wants_distances:
+                distances = [
+                    item.distance_of_simulation(simulation.result, scene.params, self.threshold)
+                    for item in self.objectives
+                ]
+                self._add_distances(row, values, distances)
             about = course_document(simulation, k=task.run, tries=1)
             row["requirements"] = {
                 item["label"]: {"verdict": item["verdict"], "robustness": _plain(item["robustness"])}
@@ -237,6 +249,13 @@ class Evaluation:
             "values": [number(value) for value in values],
             "attempts": attempts,
         }
+
+    def _add_distances(
+        self, row: dict[str, Any], values: Sequence[float], distances: Sequence[float]
+    ) -> None:
+        """Add the distances to a failure where they are not the values less the threshold."""
+        if any(far != value - self.threshold for far, value in zip(distances, values, strict=True)):
+            row["distances"] = [number(far) for far in distances]
 
     def _folder_of(self, run: int) -> Path:
         assert self.folder is not None

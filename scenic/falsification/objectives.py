@@ -1,5 +1,6 @@
 """Objectives of a search: robustness of requirements, records, expressions, functions."""
 
+import ast
 import math
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
@@ -9,6 +10,7 @@ from scenic.dataclass import dataclass
 from scenic.language.errors import Located
 from scenic.language.spelling import nearest
 from scenic.runtime.scenes.scene import Scene
+from scenic.runtime.temporal.robustness import joint_margin
 
 __all__ = ["Objective", "ObjectiveError"]
 
@@ -29,6 +31,8 @@ _NAMES: Final[Mapping[str, Any]] = MappingProxyType(
         "len": len,
         "round": round,
         "sorted": sorted,
+        "range": range,
+        "zip": zip,
         "any": any,
         "all": all,
         "float": float,
@@ -72,9 +76,8 @@ class Objective:
             return _number(self.function(result), self.label)
         if self.is_verdict:
             requirements = (item for item in result.requirements if self.name is None or self._means(item))
-            return min(
-                (_by_verdict(item) for item in requirements if item.verdict is not None), default=math.inf
-            )
+            values = (_by_verdict(item, item.robustness) for item in requirements if item.verdict is not None)
+            return min(values, default=math.inf)
         records = {name: _values(value) for name, value in result.records.items()}
         if self.expression is not None:
             return self._evaluated({**params, **records})
@@ -98,6 +101,34 @@ class Objective:
             )
         names = [*(item.label for item in outcomes), *records]
         raise _unknown(self.name, names, "is neither a requirement nor recorded", "record ... as {}")
+
+    def distance_of_simulation(self, result: Any, params: Mapping[str, object], threshold: float) -> float:
+        """By how much a simulation is off a failure, where failures need several parts to fail at once.
+
+        It is 0 or less exactly where the value is at most ``threshold``. Parts are those of an ``or`` in a requirement, and of an expression
+        ``max(...)``.
+        """
+        if self.is_verdict and threshold == 0:
+            requirements = (item for item in result.requirements if self.name is None or self._means(item))
+            distances = (_by_verdict(item, item.joint) for item in requirements if item.verdict is not None)
+            return min(distances, default=math.inf)
+        value = self.of_simulation(result, params)
+        records = {name: _values(record) for name, record in result.records.items()}
+        return self._distance(value, {**params, **records}, threshold)
+
+    def distance_of_scene(self, scene: Scene, threshold: float) -> float:
+        """By how much a scene is off a failure; see `distance_of_simulation`."""
+        names = {**scene.params, "ego": scene.egoObject, "objects": scene.objects}
+        return self._distance(self.of_scene(scene), names, threshold)
+
+    def _distance(self, value: float, names: Mapping[str, object], threshold: float) -> float:
+        distance = value - threshold
+        parts = None if self.expression is None else _parts_of(self.expression)
+        if parts is None or not 0 < distance < math.inf:
+            return distance
+        numbers = eval(compile(parts, "<objective>", "eval"), {"__builtins__": {}, **_NAMES, **names})
+        joint = joint_margin([float(part) - threshold for part in numbers])
+        return joint if joint > 0 else distance
 
     def _means(self, outcome: Any) -> bool:
         """Return whether the objective names a requirement."""
@@ -135,9 +166,21 @@ class Objective:
             ) from error
 
 
-def _by_verdict(outcome: Any) -> float:
-    """The robustness of a requirement, with the sign of its verdict also where it is 0 or unknown."""
-    value = math.nan if outcome.robustness is None else float(outcome.robustness)
+def _parts_of(expression: str) -> ast.Expression | None:
+    """An expression for the parts of a maximum; ``None`` if an expression is something else."""
+    match ast.parse(expression, mode="eval").body:
+        case ast.Call(func=ast.Name(id="max"), args=[series], keywords=[]) if not isinstance(
+            series, ast.Starred
+        ):
+            return ast.Expression(series)
+        case ast.Call(func=ast.Name(id="max"), args=parts, keywords=[]):
+            return ast.fix_missing_locations(ast.Expression(ast.Tuple(parts, ast.Load())))
+    return None
+
+
+def _by_verdict(outcome: Any, robustness: float | None) -> float:
+    """A robustness of a requirement, with the sign of its verdict also where it is 0 or unknown."""
+    value = math.nan if robustness is None else float(robustness)
     if outcome.verdict:
         return max(value, _LEAST) if value == value else math.inf
     return min(value, 0.0) if value == value else -math.inf

@@ -5,11 +5,17 @@ others are replaced by runs that descend from these, by moves which leave the la
 "Estimation of small failure probabilities in high dimensions by subset simulation", 2001; Cérou and Guyader, "Adaptive multilevel
 splitting for rare event analysis", 2007). A move is a step of preconditioned Crank and Nicolson after a map of the unit cube to normals, of
 all coordinates or of a random block of them; its length follows the share of moves that are accepted (Papaioannou et al., "MCMC algorithms
-for subset simulation", 2015). The whole is repeated; the interval comes from the spread of the repetitions.
+for subset simulation", 2015).
+
+Several repetitions are narrowed side by side, and the interval comes from their spread. Each has members of its own, which meet those of no
+other; the level is the same for all. With levels that are chosen beforehand the product of the shares is an unbiased estimate in each
+repetition, however badly moves mix, since each kept run gets equally many descendants on average (Cérou, Del Moral, Furon and Guyader,
+"Sequential Monte Carlo for rare event estimation", 2012). A level that is the quantile of a population has a bias in proportion to one over
+its size: so it is the quantile of all repetitions together, and not of each one. That holds for any value that is 0 or less exactly for failures.
 """
 
 import math
-from collections.abc import Generator, Hashable, Sequence
+from collections.abc import Callable, Generator, Hashable, Sequence
 from dataclasses import field
 from typing import Final, Generic, TypeVar
 
@@ -21,7 +27,7 @@ from scenic.statistics.intervals import Interval
 __all__ = ["Move", "Outcome", "Repetition", "Splitting", "repeated_interval", "repeated_probability"]
 
 REPETITIONS: Final = 5
-"""Number of independent repetitions, from whose spread the interval is made."""
+"""Number of repetitions, from whose spread the interval is made; fewer if the budget is small."""
 
 _KEPT: Final = 0.1
 """Share of the population that goes on to the next level."""
@@ -30,7 +36,16 @@ _PILOT: Final = 100
 """Runs in each level of the first repetition, which only shows how many levels there are."""
 
 _LEAST: Final = 50
-"""Runs in each level, at least."""
+"""Runs in the first population of a repetition, at least."""
+
+_FEWEST: Final = 20
+"""Runs in a later level of a repetition, at least."""
+
+_SURVIVING: Final = 0.02
+"""Share of each repetition that goes on, at least, if others are nearer to a failure."""
+
+_RESERVE: Final = 0.25
+"""Levels for which there is budget left beside those that are expected."""
 
 _FLAT: Final = 0.9
 """Share of the population on one level from which there is no progress."""
@@ -41,8 +56,14 @@ _DISTINCT: Final = 0.5
 _MORE: Final = 1.5
 """Levels there may be, for each of a pilot that was stuck."""
 
+_MOST_AHEAD: Final = 3.0
+"""Levels that values let expect, at most, for each that the pilot lets expect."""
+
 _ACCEPTED: Final = 0.44
 """Share of accepted moves to aim at."""
+
+_BLOCKS: Final = 0.2
+"""Share of moves of blocks."""
 
 _BADLY: Final = 0.05
 """Share of accepted moves below which a level mixes badly."""
@@ -133,7 +154,7 @@ class Splitting(Generic[_Point]):
     Args:
         seed: of the order of members and the blocks; moves themselves are made by the caller.
         budget: number of runs, all repetitions together; it is not exceeded.
-        repetitions: number of repetitions after the pilot.
+        repetitions: number of repetitions after the pilot, where the budget suffices for so many.
 
     """
 
@@ -150,168 +171,240 @@ class Splitting(Generic[_Point]):
 
     def runs(self) -> _Making[_Point]:
         """The runs to be made, some at a time; each time the outcomes of all of them are sent back, in order."""
-        yield from self._repeat(self.pilot, _PILOT, 0)
+        yield from self._narrow([self.pilot], 0, lambda _level: _PILOT)
         pilot = self.pilot
         if self.is_out_of_budget or pilot.is_flat or not pilot.runs:
             return
-        # A pilot that was stuck has not seen all levels.
-        per_member = pilot.runs / _PILOT * (_MORE if pilot.is_stuck else 1)
-        for number in range(1, self._count + 1):
-            repetition = Repetition()
-            size = int(self._left / (self._count + 1 - number) / per_member)
-            if size < _LEAST:
+        ahead = _Ahead(pilot)
+        first_cost = 1 + (1 - _KEPT) * max(0.0, ahead.levels(None) - 0.5 + _RESERVE)
+        count = min(self._count, int(self._left / first_cost / _LEAST))
+        if count == 0 or (count == 1 and self._count > 1):
+            self.is_out_of_budget = True
+            return
+        self.repetitions = [Repetition() for _ in range(count)]
+
+        def size(level: float | None) -> int:
+            cost = (
+                first_cost
+                if level is None
+                else (1 - _KEPT) * (max(1.0, ahead.levels(level) + 0.5) + _RESERVE)
+            )
+            return int(self._left / count / cost)
+
+        yield from self._narrow(self.repetitions, 1, size)
+
+    def _narrow(
+        self, repetitions: Sequence[Repetition], number: int, sizes: Callable[[float | None], int]
+    ) -> _Making[_Point]:
+        """Narrow some repetitions, of which the first has a number, level by level.
+
+        Args:
+            repetitions: what becomes of them.
+            number: number of the first of them.
+            sizes: the size of the population of each repetition below a level, or of the first population.
+
+        """
+        size = sizes(None)
+        populations: list[list[_Member[_Point]]] = [[] for _ in repetitions]
+        yield from self._first(repetitions, size, number, populations)
+        while all(len(members) >= size for members in populations):
+            failed = [sum(member.value <= 0 for member in members) for members in populations]
+            if min(failed) > 0 and sum(failed) >= _KEPT * size * len(populations):
+                if number:
+                    yield from self._enlarge(repetitions, populations, size, number)
+                for repetition, members in zip(repetitions, populations, strict=True):
+                    failures = [member.ancestor for member in members if member.value <= 0]
+                    logarithm = repetition.shares[-1] if repetition.shares else 0.0
+                    repetition.log_probability = logarithm + math.log(len(failures) / len(members))
+                    repetition.ancestors = len(set(failures))
+                return
+            level = _next_level(populations, size)
+            kept = [[member for member in members if member.value <= level] for members in populations]
+            if sum(map(len, kept)) > _FLAT * size * len(kept) or len(repetitions[0].levels) == _MOST_LEVELS:
+                # Equal values of different runs show nothing to follow, those of the same run only that moves do not leave it.
+                points = {member.point for members in kept for member in members}
+                is_stuck = len(points) < _DISTINCT * size * len(kept)
+                for repetition in repetitions:
+                    repetition.is_stuck, repetition.is_flat = is_stuck, not is_stuck
+                return
+            for repetition, members in zip(repetitions, kept, strict=True):
+                repetition.levels.append(level)
+                before = repetition.shares[-1] if repetition.shares else 0.0
+                repetition.shares.append(before + math.log(len(members) / size))
+            size = sizes(level)
+            if size < _FEWEST:
                 self.is_out_of_budget = True
                 return
-            self.repetitions.append(repetition)
-            yield from self._repeat(repetition, size, number)
-            if self.is_out_of_budget:
-                return
-            per_member = max(per_member, repetition.runs / size)
-
-    def _repeat(self, repetition: Repetition, size: int, number: int) -> _Making[_Point]:
-        members: list[_Member[_Point]] = []
-        yield from self._first(repetition, size, number, members)
-        if len(members) < size:
-            return
-        logarithm, kernel = 0.0, self._kernel
-        while True:
-            failed = sum(member.value <= 0 for member in members)
-            if failed >= _KEPT * size:
-                repetition.log_probability = logarithm + math.log(failed / size)
-                repetition.ancestors = len({member.ancestor for member in members if member.value <= 0})
-                return
-            values = sorted(member.value for member in members)
-            level = values[max(1, int(_KEPT * size)) - 1]
-            kept = [member for member in members if member.value <= level]
-            if len(kept) > _FLAT * size or len(repetition.levels) == _MOST_LEVELS:
-                # Equal values of different runs show nothing to follow, those of the same run only that moves do not leave it.
-                is_stuck = len({member.point for member in kept}) < _DISTINCT * size
-                repetition.is_stuck, repetition.is_flat = is_stuck, not is_stuck
-                return
-            logarithm += math.log(len(kept) / size)
-            repetition.levels.append(level)
-            repetition.shares.append(logarithm)
-            order = self._generator.permutation(len(kept))
-            members = [kept[place] for place in order]
-            kernel.begin(len(repetition.levels))
-            yield from self._descend(repetition, members, size, level, number, kernel)
-            if len(members) < size:
-                return
-            repetition.accepted.append(kernel.accepted)
+            populations = [
+                [members[place] for place in self._generator.permutation(len(members))[:size]]
+                for members in kept
+            ]
+            self._kernel.begin(len(repetitions[0].levels))
+            yield from self._descend(repetitions, populations, populations, size, number)
+            for repetition in repetitions:
+                repetition.accepted.append(self._kernel.accepted)
 
     def _first(
-        self, repetition: Repetition, size: int, number: int, members: list[_Member[_Point]]
+        self,
+        repetitions: Sequence[Repetition],
+        size: int,
+        number: int,
+        populations: Sequence[list[_Member[_Point]]],
     ) -> _Making[_Point]:
-        """Make the first population; there is less of it if the budget ends."""
-        asked = 0
-        while len(members) < size and asked < _TRIES * size:
-            count = min(size - len(members), self._left)
-            if count == 0:
+        """Make the first populations; there is less of them if the budget ends."""
+        asked, total = 0, size * len(repetitions)
+        while asked < _TRIES * total:
+            places = [place for place, members in enumerate(populations) for _ in range(size - len(members))]
+            if not places:
+                return
+            places = places[: self._left]
+            if not places:
                 self.is_out_of_budget = True
                 return
-            outcomes = yield [Move(None, repetition=number)] * count
-            asked += count
-            self._spend(repetition, sum(outcome.value is not None for outcome in outcomes))
-            for outcome in outcomes:
+            outcomes = yield [Move(None, repetition=number + place) for place in places]
+            asked += len(places)
+            for place, outcome in zip(places, outcomes, strict=True):
                 if outcome.value is not None:
+                    members = populations[place]
                     members.append(_Member(outcome.point, outcome.value, len(members)))
                     self.first_values.append(outcome.value)
+                    self._spend(repetitions[place])
 
-    def _spend(self, repetition: Repetition, count: int) -> None:
-        self._left -= count
-        repetition.runs += count
+    def _enlarge(
+        self,
+        repetitions: Sequence[Repetition],
+        populations: Sequence[list[_Member[_Point]]],
+        size: int,
+        number: int,
+    ) -> _Making[_Point]:
+        """Make the last populations larger by what is left of the budget."""
+        extra = self._left // len(populations)
+        if extra and repetitions[0].levels:
+            chains = [members[-max(1, int(_KEPT * size)) :] for members in populations]
+            yield from self._descend(repetitions, populations, chains, size + extra, number)
+
+    def _spend(self, repetition: Repetition) -> None:
+        self._left -= 1
+        repetition.runs += 1
 
     def _descend(
         self,
-        repetition: Repetition,
-        members: list[_Member[_Point]],
+        repetitions: Sequence[Repetition],
+        populations: Sequence[list[_Member[_Point]]],
+        starts: Sequence[Sequence[_Member[_Point]]],
         size: int,
-        level: float,
         number: int,
-        kernel: "_Kernel",
     ) -> _Making[_Point]:
-        """Fill the population up by chains that start at its members, all of them a step at a time."""
-        chains = list(members)
-        while len(members) < size:
-            chains = chains[: size - len(members)]
-            if len(chains) > self._left:
+        """Fill populations up by chains that start at some members, all of them a step at a time."""
+        chains = [list(members) for members in starts]
+        level = repetitions[0].levels[-1]
+        while any(len(members) < size for members in populations):
+            for place, members in enumerate(populations):
+                chains[place] = chains[place][: size - len(members)]
+            places = [place for place, some in enumerate(chains) for _ in some]
+            if len(places) > self._left:
                 self.is_out_of_budget = True
                 return
-            in_blocks = kernel.choose(len(chains))
-            moves = [
-                Move(member.point, *kernel.step(in_block), repetition=number, level=len(repetition.levels))
-                for member, in_block in zip(chains, in_blocks, strict=True)
+            before = [member for some in chains for member in some]
+            in_blocks = self._kernel.choose(len(before))
+            outcomes = yield [
+                Move(
+                    member.point,
+                    *self._kernel.step(in_block),
+                    repetition=number + place,
+                    level=len(repetitions[place].levels),
+                )
+                for place, member, in_block in zip(places, before, in_blocks, strict=True)
             ]
-            outcomes = yield moves
-            self._spend(repetition, len(outcomes))
-            moved = [
+            after = [
                 _Member(outcome.point, outcome.value, member.ancestor)
                 if outcome.value is not None and outcome.value <= level
                 else member
-                for member, outcome in zip(chains, outcomes, strict=True)
+                for member, outcome in zip(before, outcomes, strict=True)
             ]
-            kernel.learn(in_blocks, chains, moved)
-            chains = moved
-            members += moved
+            self._kernel.learn(in_blocks, [old is not new for old, new in zip(before, after, strict=True)])
+            chains = [[] for _ in populations]
+            for place, member in zip(places, after, strict=True):
+                chains[place].append(member)
+                populations[place].append(member)
+                self._spend(repetitions[place])
+
+
+def _next_level(populations: Sequence[Sequence[_Member[_Point]]], size: int) -> float:
+    """The value of the tenth of all members, but so that none of the repetitions dies out."""
+    together = sorted(member.value for members in populations for member in members)
+    level = together[max(1, int(_KEPT * len(together))) - 1]
+    least = max(1, int(_SURVIVING * size)) - 1
+    return max(level, *(sorted(member.value for member in members)[least] for members in populations))
+
+
+class _Ahead:
+    """The number of levels that are still to come, by those of a pilot, and by the progress of the values."""
+
+    def __init__(self, pilot: Repetition) -> None:
+        self._levels = [*pilot.levels, 0.0]
+        shares = pilot.shares or [math.log(_KEPT)]
+        # A pilot that was stuck has not seen all levels.
+        end = pilot.log_probability if pilot.log_probability is not None else shares[-1] * _MORE
+        self._shares = [*pilot.shares, end]
+        self._before = math.inf
+
+    def levels(self, level: float | None) -> float:
+        """The number of levels below a level, the next in the course of levels, or of all of them."""
+        passed = 0.0
+        if level is not None and level < self._levels[0]:
+            falling = [-value for value in self._levels]
+            passed = float(np.interp(-level, falling, self._shares))
+        ahead = max(0.0, (self._shares[-1] - passed) / math.log(_KEPT))
+        if level is not None:
+            if math.isfinite(self._before) and self._before > level:
+                by_values = level / (self._before - level)
+                ahead = max(ahead, min(by_values, _MOST_AHEAD * max(1.0, ahead)))
+            self._before = level
+        return ahead
 
 
 class _Kernel:
-    """The choice among moves of all coordinates and of blocks, and the lengths of both; both follow the moves so far."""
+    """The choice among moves of all coordinates and of blocks, and the lengths of both, which follow the moves so far."""
 
     def __init__(self, generator: np.random.Generator) -> None:
         self._generator = generator
         self._steps = [0.6, 0.9]
-        self._jumps = [0.0, 0.0]
-        self._tried = [0, 0]
+        self._tried = 0
         self._accepted = 0
-        self._share = 0.5
-        self._level = 0
-        self._learned: dict[int, tuple[list[float], float]] = {}
-        """Lengths of steps, and the share of moves of blocks, by level."""
+        self._learned: dict[int, list[float]] = {}
+        """Lengths of steps by level."""
 
     def begin(self, level: int) -> None:
         """A new level begins; steps are at first those at which an earlier repetition has arrived there, else at the level before."""
-        self._jumps, self._tried, self._accepted = [0.0, 0.0], [0, 0], 0
-        self._steps, self._share = self._learned.setdefault(level, (list(self._steps), self._share))
-        self._level = level
+        self._tried = self._accepted = 0
+        self._steps = self._learned.setdefault(level, list(self._steps))
 
     @property
     def accepted(self) -> float:
         """The share of accepted moves at this level."""
-        return self._accepted / max(1, sum(self._tried))
+        return self._accepted / max(1, self._tried)
 
     def choose(self, count: int) -> list[bool]:
-        """Choose the moves that are of blocks; the kind of moves that changes values more comes more often."""
-        if min(self._tried) >= _LEAST // 5:
-            every, block = (jump / tried for jump, tried in zip(self._jumps, self._tried, strict=True))
-            self._share = min(0.9, max(0.1, block / (every + block))) if every + block else 0.5
-        return [bool(number < self._share) for number in self._generator.random(count)]
+        """Choose the moves that are of blocks."""
+        return [bool(number < _BLOCKS) for number in self._generator.random(count)]
 
     def step(self, in_block: bool) -> tuple[float, float]:
         """The length of a step, and the chance of each coordinate to move."""
         return self._steps[in_block], float(self._generator.random()) if in_block else 1.0
 
-    def learn(
-        self, in_blocks: Sequence[bool], before: Sequence[_Member[_Point]], after: Sequence[_Member[_Point]]
-    ) -> None:
-        """Take note of moves that were made."""
+    def learn(self, in_blocks: Sequence[bool], accepted: Sequence[bool]) -> None:
+        """Take note of moves that were made, whether of blocks, and whether they were accepted."""
+        self._tried += len(accepted)
+        self._accepted += sum(accepted)
         for kind in (False, True):
-            pairs = [
-                (old, new)
-                for old, new, in_block in zip(before, after, in_blocks, strict=True)
-                if in_block is kind
+            outcomes = [
+                is_good for is_good, in_block in zip(accepted, in_blocks, strict=True) if in_block is kind
             ]
-            if not pairs:
-                continue
-            accepted = sum(old is not new for old, new in pairs)
-            self._accepted += accepted
-            self._tried[kind] += len(pairs)
-            jumps = (old.value - new.value for old, new in pairs if old is not new)
-            self._jumps[kind] += sum(jump**2 for jump in jumps if math.isfinite(jump))
-            gain = 0.5 * min(1.0, len(pairs) / 30)
-            longer = math.exp(gain * (accepted / len(pairs) - _ACCEPTED))
-            self._steps[kind] = min(0.999, self._steps[kind] * longer)
-        self._learned[self._level] = (self._steps, self._share)
+            if outcomes:
+                gain = 0.5 * min(1.0, len(outcomes) / 30)
+                longer = math.exp(gain * (sum(outcomes) / len(outcomes) - _ACCEPTED))
+                self._steps[kind] = min(0.999, self._steps[kind] * longer)
 
 
 def repeated_probability(log_probabilities: Sequence[float]) -> float:

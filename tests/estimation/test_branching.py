@@ -64,6 +64,36 @@ def test_a_rare_failure_has_an_interval(tmp_path: Path) -> None:
     assert made.departures == []
 
 
+def test_parts_of_a_failure_count_together() -> None:
+    """Seven uniform numbers are in order with probability 1/5040; each step down is a part."""
+    text = "xs = [Range(0, 1) for i in range(7)]\nparam xs = xs\nego = new Object"
+    result = split(text, minimize="max(x - y for x, y in zip(xs, xs[1:]))", budget=3000)
+    assert result.interval.low < 1 / math.factorial(7) < result.interval.high < 1e-3
+    for row in result.rows:
+        (value,) = row["values"]
+        (distance,) = row.get("distances", row["values"])
+        assert distance >= value > 0 or distance == value
+    assert sum("distances" in row for row in result.rows) > 1000
+
+
+def test_parts_of_a_requirement_count_together() -> None:
+    text = BRAKE.split("require")[0] + "\nrequire always (ego.position.y < 3 or lead.position.y < 22) as both"
+    result = scenic.estimate(
+        scenic.scenarioFromString(text),
+        "kinematic",
+        rare=True,
+        budget=250,
+        seed=1,
+        timestep=0.1,
+        max_steps=12,
+    )
+    assert any("distances" in row for row in result.rows)
+    for row in result.rows:
+        (value,), (distance,) = row["values"], row.get("distances", row["values"])
+        assert (float(distance) <= 0) is (float(value) <= 0)
+        assert float(distance) >= float(value)
+
+
 def test_levels_are_of_scenes_that_meet_the_requirements() -> None:
     result = split(CORNER, objective="depth", budget=3000)
     low, high = result.interval

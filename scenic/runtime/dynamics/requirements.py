@@ -1,10 +1,12 @@
 """Requirements that a running simulation follows, with their verdicts and by how much they hold."""
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from scenic.language.errors import RejectSimulationException, StuckBehaviorError, StuckBehaviorWarning
 from scenic.runtime.description.declarations import Required
+from scenic.runtime.temporal.formulas import Atom, Formula
 from scenic.runtime.temporal.monitors import Monitor, Verdict
 from scenic.runtime.temporal.robustness import Robustness
 
@@ -17,18 +19,25 @@ __all__ = ["Followed", "Outcome"]
 class Outcome:
     """The outcome of a requirement in one simulation.
 
-    ``robustness`` is by how much it held or failed, where that was asked for: positive if it held.
+    ``robustness`` is by how much it held or failed, where that was asked for: positive if it held. ``joint`` is the same where the parts of
+    an ``or`` count together (`scenic.runtime.temporal.robustness.joint_margin`).
     """
 
-    __slots__ = ("label", "line", "robustness", "verdict")
+    __slots__ = ("joint", "label", "line", "robustness", "verdict")
 
     def __init__(
-        self, label: str, line: int | None, verdict: Verdict | None, robustness: float | None
+        self,
+        label: str,
+        line: int | None,
+        verdict: Verdict | None,
+        robustness: float | None,
+        joint: float | None = None,
     ) -> None:
         self.label = label
         self.line = line
         self.verdict = verdict
         self.robustness = robustness
+        self.joint = joint
 
     def __repr__(self) -> str:
         verdict = "not evaluated" if self.verdict is None else self.verdict.name.lower().replace("_", " ")
@@ -38,12 +47,14 @@ class Outcome:
 class Followed:
     """One requirement along the steps of its scenario."""
 
-    __slots__ = ("_monitor", "_outcome", "_required", "_robustness", "_run")
+    __slots__ = ("_joint", "_monitor", "_outcome", "_required", "_robustness", "_run")
 
     def __init__(self, requirement: Required, run: "Run") -> None:
         self._required = requirement
         self._monitor = Monitor(requirement.formula)
         self._robustness = Robustness(requirement.formula) if run.wants_robustness else None
+        has_joint = run.wants_robustness and _has_parts(requirement.formula)
+        self._joint = Robustness(requirement.formula, is_joint=True) if has_joint else None
         self._run = run
         self._outcome: Outcome | None = None
         run.followed.append(self)
@@ -54,7 +65,10 @@ class Followed:
         with run.condition():
             verdict = self._monitor.add(self._holds)
             if self._robustness is not None:
-                self._robustness.add(self._margin)
+                margins = _Margins(self._margin)
+                self._robustness.add(margins.__getitem__)
+                if self._joint is not None:
+                    self._joint.add(margins.__getitem__)
         if verdict is Verdict.FALSE and not run.keeps_violations:
             raise RejectSimulationException(f"{self._words} is violated")
 
@@ -81,7 +95,7 @@ class Followed:
             raise RejectSimulationException(f"{self._words} does not hold at the end{late}")
         self._outcome = self.outcome
         # A simulation may start very many scenarios.
-        del self._monitor, self._required, self._robustness, self._run
+        del self._joint, self._monitor, self._required, self._robustness, self._run
 
     @property
     def _words(self) -> str:
@@ -95,9 +109,29 @@ class Followed:
         if self._outcome is not None:
             return self._outcome
         value = None if self._robustness is None else self._robustness.value
+        joint = value if self._joint is None else self._joint.value
         span = self._required.span
         line = None if span is None else span.line
-        return Outcome(self._required.label, line, self._monitor.verdict, value)
+        return Outcome(self._required.label, line, self._monitor.verdict, value, joint)
+
+
+def _has_parts(formula: Formula) -> bool:
+    """Return whether a formula joins others."""
+    if isinstance(formula, Atom):
+        return False
+    return formula.operator in ("and", "or", "implies") or any(map(_has_parts, formula.operands))
+
+
+class _Margins(dict[int, float]):
+    """The margins of atoms in one state, by number; each is computed when it is first needed."""
+
+    def __init__(self, margin_of: Callable[[int], float]) -> None:
+        super().__init__()
+        self._margin_of = margin_of
+
+    def __missing__(self, index: int) -> float:
+        value = self[index] = self._margin_of(index)
+        return value
 
 
 def margin(atom: Any) -> float:

@@ -11,18 +11,39 @@ is kept is bounded by the formula, as in a `Monitor`, of which this is the readi
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from functools import reduce
 from typing import Final, TypeAlias
 
 from scenic.runtime.temporal.formulas import Formula
 from scenic.runtime.temporal.normal import Junction, Literal, Next, Normal, Obligation, Until, normal
 
-__all__ = ["Robustness"]
+__all__ = ["Robustness", "joint_margin"]
 
 _Clauses: TypeAlias = Mapping[frozenset[Obligation], float]
 """A maximum over clauses, each the minimum of its number and of its obligations."""
 
 _NOW: Final[frozenset[Obligation]] = frozenset()
+
+_EXPONENT: Final = 2 / 3
+"""Exponent of the norm of margins above 0."""
+
+_Join: TypeAlias = Callable[[Sequence[float]], float]
+"""The margin of an ``or`` by those of its parts, in one state."""
+
+
+def joint_margin(parts: Sequence[float]) -> float:
+    """By how much at least one of some parts holds, where all of them are on the way to a failure.
+
+    The largest margin says by how much `or` holds, and the others do not matter to it. But all of them have to fall to 0 or less until
+    nothing holds. So where one holds, this is a norm of the margins above 0, of an exponent between counting them (0) and adding them (1): it
+    falls with any of them. It is 0 or less exactly where the largest margin is, and has the same unit.
+    """
+    largest = max(parts)
+    if not 0 < largest < math.inf:
+        return largest
+    total = math.fsum(part**_EXPONENT for part in parts if part > 0)
+    return max(largest, math.pow(total, 1 / _EXPONENT))
 
 
 class Robustness:
@@ -30,14 +51,16 @@ class Robustness:
 
     Args:
         formula: what is to hold from the first state on.
+        is_joint: whether the parts of an `or` in one state count together (`joint_margin`), rather than the largest alone.
 
     """
 
-    __slots__ = ("_left", "_start")
+    __slots__ = ("_join", "_left", "_start")
 
-    def __init__(self, formula: Formula) -> None:
+    def __init__(self, formula: Formula, *, is_joint: bool = False) -> None:
         self._start: Normal | None = normal(formula)
         self._left: _Clauses = {}
+        self._join: _Join = joint_margin if is_joint else max
 
     def add(self, margin: Callable[[int], float]) -> None:
         """Go on by a state, in which ``margin`` gives by how much atoms hold, by their number.
@@ -46,14 +69,14 @@ class Robustness:
         """
         clauses_of: dict[Normal, _Clauses] = {}
         if self._start is not None:
-            self._left = _progressed(self._start, margin, clauses_of)
+            self._left = _progressed(self._start, margin, self._join, clauses_of)
             self._start = None
             return
         left: _Clauses = {}
         for obligations, value in self._left.items():
             clause: _Clauses = {_NOW: value}
             for _, part in obligations:
-                clause = _lower(clause, _progressed(part, margin, clauses_of))
+                clause = _lower(clause, _progressed(part, margin, self._join, clauses_of))
             left = _higher(left, clause)
         self._left = left
 
@@ -66,33 +89,37 @@ class Robustness:
         return max(ended, default=-math.inf)
 
 
-def _progressed(part: Normal, margin: Callable[[int], float], known: dict[Normal, _Clauses]) -> _Clauses:
+def _progressed(
+    part: Normal, margin: Callable[[int], float], join: _Join, known: dict[Normal, _Clauses]
+) -> _Clauses:
     """The robustness of a part at a state, in terms of what comes after it."""
     found = known.get(part)
     if found is None:
-        found = known[part] = _made(part, margin, known)
+        found = known[part] = _made(part, margin, join, known)
     return found
 
 
-def _made(part: Normal, margin: Callable[[int], float], known: dict[Normal, _Clauses]) -> _Clauses:
+def _made(
+    part: Normal, margin: Callable[[int], float], join: _Join, known: dict[Normal, _Clauses]
+) -> _Clauses:
     match part:
         case Literal(index, truth):
             value = margin(index)
             return {} if math.isnan(value) else {_NOW: value if truth else -value}
         case Junction(conjunction, parts):
-            join = _lower if conjunction else _higher
-            first, *others = (_progressed(each, margin, known) for each in parts)
-            for other in others:
-                first = join(first, other)
-            return first
+            each = [_progressed(item, margin, join, known) for item in parts]
+            if not conjunction and all(clauses.keys() <= {_NOW} for clauses in each):
+                margins = [value for clauses in each for value in clauses.values()]
+                return {_NOW: join(margins)} if margins else {}
+            return reduce(_lower if conjunction else _higher, each)
         case Next(weak, later):
             return {frozenset([(weak, later)]): math.inf}
         case Until(weak, condition, goal):
             again: _Clauses = {frozenset([(weak, part)]): math.inf}
             inner, outer = (_higher, _lower) if weak else (_lower, _higher)
             if condition is not None:
-                again = inner(_progressed(condition, margin, known), again)
-            return outer(_progressed(goal, margin, known), again)
+                again = inner(_progressed(condition, margin, join, known), again)
+            return outer(_progressed(goal, margin, join, known), again)
 
 
 def _higher(left: _Clauses, right: _Clauses) -> _Clauses:

@@ -13,7 +13,7 @@ from fuzz.traces import Formula as Tree
 from fuzz.traces import verdict
 from scenic.runtime.temporal.formulas import Atom, Compound, Formula, is_temporal
 from scenic.runtime.temporal.monitors import Monitor, Verdict
-from scenic.runtime.temporal.robustness import Robustness
+from scenic.runtime.temporal.robustness import Robustness, joint_margin
 from tests.amounts import amount
 
 ATOMS = "abc"
@@ -57,8 +57,8 @@ def of_package(tree: Tree, trace: list[frozenset[str]]) -> bool:
     return bool(monitor.evaluate().value > 2)
 
 
-def robustness(form: Formula, trace: Sequence[Sequence[float]]) -> float:
-    followed = Robustness(form)
+def robustness(form: Formula, trace: Sequence[Sequence[float]], *, is_joint: bool = False) -> float:
+    followed = Robustness(form, is_joint=is_joint)
     for state in trace:
         followed.add(lambda index, state=state: state[index])  # type: ignore[misc]
     assert followed.value is not None
@@ -240,6 +240,28 @@ def test_robustness_is_that_of_the_definition() -> None:
             [rng.choice([-math.inf, -2.0, -1.0, 1.0, 2.0, 3.0, math.inf]) for _ in ATOMS] for _ in states
         ]
         assert robustness(formula(tree), trace) == by_definition(tree, trace)[0], (tree, trace)
+
+
+def test_joint_robustness_has_the_sign_of_robustness() -> None:
+    for tree, _ in pairs(amount(200, 2000), 11):
+        rng = random.Random(str(tree))
+        values = [[rng.uniform(-1, 1) for _ in ATOMS] for _ in range(3)]
+        plain = robustness(formula(tree), values)
+        joint = robustness(formula(tree), values, is_joint=True)
+        assert joint >= plain > 0 or joint == plain
+
+
+def test_joint_margins_fall_with_each_part() -> None:
+    assert joint_margin([3.0]) == joint_margin([-1.0, 3.0]) == 3.0
+    assert joint_margin([-1.0, 0.0]) == 0.0
+    assert joint_margin([1.0, math.inf]) == math.inf
+    assert joint_margin([5e-324, -1.0]) > 0
+    falling = [joint_margin([4.0, part]) for part in (3.0, 2.0, 1.0, 0.5, 0.0)]
+    assert falling == sorted(falling, reverse=True)
+    assert len(set(falling)) == 5
+    assert joint_margin([2.0, 4.0]) == pytest.approx(2 * joint_margin([1.0, 2.0]))
+    either = Compound("always", (Compound("or", (Atom(0), Atom(1))),))
+    assert robustness(either, [[3, 2], [2, 2]], is_joint=True) == pytest.approx(joint_margin([2, 2]))
 
 
 def test_robustness_of_obligations_that_both_sides_share_is_that_of_the_definition() -> None:
