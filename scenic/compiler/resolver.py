@@ -7,6 +7,7 @@ running the program. It uses an explicit stack, so that no depth of nesting is t
 import ast
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
@@ -20,6 +21,8 @@ from scenic.compiler.scopes import (
     Scope,
     ScopeKind,
 )
+from scenic.compiler.semantics.modules import Module
+from scenic.compiler.semantics.names import Names
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.compiler.traversal import FIELDS, parts, walk
 from scenic.language.garbage import no_garbage_collection
@@ -53,14 +56,15 @@ def resolve_within(
     """
     with no_garbage_collection():
         bound = bind(tree) if resolution is None else resolution
-        wildcard, surroundings = bound.wildcard, None
-        if surroundings_of is not None:
-            surroundings = surroundings_of(tree, source, bound)
-            wildcard = bound.rebinding or not surroundings.complete
+        module = Module(source, tree, bound, is_scenic=True, broken=bool(bound.nodes(scenic.ErrorStatement)))
+        surroundings = None if surroundings_of is None else surroundings_of(module)
+        wildcard = bound.wildcard
+        if surroundings is not None:
+            wildcard = bound.rebinding or not Names(module, surroundings.modules).complete
         if any(_brings_names(source.line(node.lineno)) for node, _ in bound.nodes(scenic.ErrorStatement)):
             wildcard = True
         bound = bound.with_findings(wildcard=wildcard)
-        context = CheckContext(tree, source, bound, surroundings, typing=typing)
+        context = CheckContext(replace(module, resolution=bound), surroundings, typing=typing)
         diagnostics = check(context, go_on)
     return bound.with_findings(diagnostics, wildcard=wildcard), context
 

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Final
 
 import scenic
-from scenic.compiler.semantics.meanings import class_of_symbol
+from scenic.compiler.semantics.classes import Classes
 from scenic.compiler.semantics.symbols import SymbolKind, symbol_of_exported
 from scenic.compiler.syntax import Item, ListOf, Optional, Reference, Row, TokenKind, Word
 from scenic.constrained.items import CharacterClass, TextChoice, TextItem, TextMany
@@ -59,7 +59,7 @@ def read_world(name: str) -> World:
         if symbol.kind is SymbolKind.BEHAVIOR:
             behaviors.add(public)
         elif symbol.kind is SymbolKind.CLASS:
-            world_class = class_of_symbol(project, symbol)
+            world_class = Classes(project).of_symbol(symbol)
             if world_class is not None and world_class.is_scenic:
                 classes.add(public)
     return World(

@@ -13,7 +13,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.generated import WORDS
 from scenic.compiler.loader import SUFFIXES
 from scenic.compiler.scopes import Binding, BindingKind, ScopeKind
-from scenic.compiler.semantics.meanings import Class, Member, class_of_symbol, meaning
+from scenic.compiler.semantics.classes import Class, Classes, Member
 from scenic.compiler.semantics.modules import Exported, FoundModule, Module, ModuleKind
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_binding, symbol_of_exported
 from scenic.compiler.tokens import FSTRING_END, FSTRING_MIDDLE, FSTRING_START, STRING
@@ -297,7 +297,7 @@ def _of_kind(
             fits = each.kind is CompletionKind.MONITOR
         elif each.kind is CompletionKind.CLASS:
             symbol = _symbol_named(project, module, snapshot, each.label, [str(line), str(column)])
-            cls = None if symbol is None else class_of_symbol(project, symbol)
+            cls = Classes(project).of_symbol(symbol)
             fits = cls is not None and cls.member(method) is not None
         else:
             fits = False
@@ -486,7 +486,7 @@ def _is_scenic(
     if item.key[:1] == ("provided",):
         return item.label in CLASSES
     symbol = _symbol_named(project, module, snapshot, item.label, [str(line), str(column)])
-    cls = None if symbol is None else class_of_symbol(project, symbol)
+    cls = Classes(project).of_symbol(symbol)
     return cls is not None and (cls.is_scenic or not cls.complete)
 
 
@@ -514,8 +514,7 @@ def _class_made(
     if index + 1 >= len(before):
         return None
     found = expression(project, snapshot, before[index + 1], line, column)
-    symbol = None if found is None else meaning(project, *found)
-    return None if symbol is None else class_of_symbol(project, symbol)
+    return None if found is None else found[0].class_of_symbol(found[0].meaning(found[1]))
 
 
 def _properties(
@@ -524,8 +523,8 @@ def _properties(
     cls = _class_made(project, snapshot, before, line, column)
     given = {word for place, word in enumerate(before) if place and before[place - 1] == "with"}
     if cls is None:
-        cls = class_of_symbol(project, Symbol("Object", SymbolKind.CLASS))
-    for member in () if cls is None else cls.properties:
+        cls = Classes(project).of_symbol(Symbol("Object", SymbolKind.CLASS))
+    for member in () if cls is None else cls.properties.values():
         if member.name in given or "final" in member.attributes:
             continue
         yield _property(snapshot, member, member.name)
@@ -545,9 +544,8 @@ def _inherited(project: Project, snapshot: Snapshot, line: int, column: int) -> 
     known: dict[str, Member] = {}
     for base in (header["bases"] or "Object").split(","):
         found = expression(project, snapshot, base.strip(), line, column)
-        symbol = None if found is None else meaning(project, *found)
-        cls = None if symbol is None else class_of_symbol(project, symbol)
-        for member in () if cls is None or not cls.is_scenic else cls.properties:
+        cls = None if found is None else found[0].class_of_symbol(found[0].meaning(found[1]))
+        for member in () if cls is None or not cls.is_scenic else cls.properties.values():
             known.setdefault(member.name, member)
     for member in known.values():
         if member.name in own or "final" in member.attributes:
@@ -643,7 +641,7 @@ def _arguments(
                 found = expression(project, snapshot, f"{text}()", line, column) if text else None
                 if found is None or not isinstance(found[1], ast.Call):
                     return
-                signature = call_signature(project, found[0], found[1])
+                signature = call_signature(found[0], found[1])
                 given = {before[at - 1] for at, word in enumerate(before) if word == "=" and at > index}
                 for parameter in () if signature is None else signature.parameters:
                     if not parameter.prefix and not parameter.positional_only and parameter.name not in given:
@@ -655,7 +653,7 @@ def _arguments(
 def _document_member(project: Project, filename: str, owner: str, name: str) -> str | None:
     module = project.module(filename)
     symbol: Any = None if module is None else _symbol_named(project, module, None, owner, ())
-    cls = None if symbol is None else class_of_symbol(project, symbol)
+    cls = Classes(project).of_symbol(symbol)
     member = None if cls is None else cls.member(name)
     if member is None or member.symbol is None:
         return documentation.of_property(name)

@@ -6,7 +6,8 @@ import inspect
 import os
 from typing import Final
 
-from scenic.compiler.semantics.meanings import class_of, class_of_symbol
+from scenic.compiler.semantics.classes import Classes
+from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.signatures import signature_of
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind
 from scenic.ide import documentation
@@ -38,7 +39,7 @@ def describe(project: Project, symbol: Symbol) -> str:
     elif (
         symbol.kind is SymbolKind.VARIABLE and symbol.module is not None and isinstance(symbol.node, ast.Name)
     ):
-        cls = class_of(project, symbol.module, symbol.node)
+        cls = Model(symbol.module, project).class_of(symbol.node)
         if cls is not None:
             summary = (cls.documentation or "").split("\n")[0]
             parts.append(f"`{cls.name}`: {summary}" if summary else f"`{cls.name}`")
@@ -62,7 +63,7 @@ def header(project: Project, symbol: Symbol) -> str:
     if symbol.kind is SymbolKind.MODULE:
         return f"module {symbol.name}"
     if symbol.kind is SymbolKind.CLASS:
-        cls = class_of_symbol(project, symbol)
+        cls = Classes(project).of_symbol(symbol)
         bases = ", ".join(base.name for base in cls.bases) if cls is not None else ""
         return f"class {symbol.name}({bases})" if bases else f"class {symbol.name}"
     if word is not None:
@@ -102,7 +103,7 @@ def _text(symbol: Symbol) -> str:
 
 def _members(project: Project, symbol: Symbol) -> list[str]:
     """The properties of a class that it does not inherit from the language, with their defaults."""
-    cls = class_of_symbol(project, symbol)
-    own = [each for each in cls.properties if each.symbol is not None] if cls is not None else []
+    cls = Classes(project).of_symbol(symbol)
+    own = [each for each in cls.properties.values() if each.symbol is not None] if cls is not None else []
     lines = [f"- `{each.name}`: {each.default}" for each in own[:_MOST_MEMBERS]]
     return ["\n".join(lines)] if lines else []

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from scenic.compiler.parser import parse
 from scenic.compiler.scopes import Reference
-from scenic.compiler.semantics.modules import Module
+from scenic.compiler.semantics.model import Model
 from scenic.ide.snapshot import Snapshot
 from scenic.project.index import Project
 
@@ -41,8 +41,8 @@ def operand_before(tokens: Sequence[str]) -> str:
 
 def expression(
     project: Project, snapshot: Snapshot, text: str, line: int, column: int
-) -> tuple[Module, ast.expr] | None:
-    """An expression with its names bound as at a place, and a module for queries about it."""
+) -> tuple[Model, ast.expr] | None:
+    """An expression with its names bound as at a place, and a model for questions about it."""
     module = project.module(snapshot.filename)
     parsed = parse(text)
     if module is None or parsed.diagnostics or len(parsed.tree.body) != 1:
@@ -58,4 +58,4 @@ def expression(
     }
     resolution = module.resolution
     resolution = replace(resolution, references={**resolution.references, **found})
-    return replace(module, resolution=resolution), statement.value
+    return Model(replace(module, resolution=resolution), project), statement.value

@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.semantics.meanings import class_of_symbol, meaning
+from scenic.compiler.semantics.classes import Classes
+from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.modules import Module
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_binding
 from scenic.compiler.traversal import parts, walk
@@ -90,8 +91,9 @@ def callees(project: Project, symbol: Symbol) -> tuple[CallSite, ...]:
     if module is None or node is None:
         return ()
     found: dict[Symbol, list[Span]] = {}
+    model = Model(module, project)
     for call in _calls(node):
-        target = meaning(project, module, call)
+        target = model.meaning(call)
         if target is not None and target.kind in _CALLABLE and not target.is_builtin:
             span = (
                 module.attribute_span(call) if isinstance(call, ast.Attribute) else module.source.span(call)
@@ -102,7 +104,7 @@ def callees(project: Project, symbol: Symbol) -> tuple[CallSite, ...]:
 
 def supertypes(project: Project, symbol: Symbol) -> tuple[Symbol, ...]:
     """The classes that a class names as its bases, as far as files define them."""
-    cls = class_of_symbol(project, symbol)
+    cls = Classes(project).of_symbol(symbol)
     return () if cls is None else tuple(base for base in cls.bases if not base.is_builtin)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Final
 
 from scenic.compiler import tree as scenic
+from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.modules import Module
 from scenic.compiler.tokens import NAME
 from scenic.dataclass import dataclass
@@ -82,7 +83,7 @@ def _defined(project: Project, snapshot: Snapshot, span: Span) -> str | None:
         return None
     if found.name in TRACKED and isinstance(found.node, ast.Name):
         return _tracked(module, found.name)
-    symbol = symbol_of(project, module, found)
+    symbol = symbol_of(Model(module, project), found)
     return None if symbol is None else descriptions.describe(project, symbol)
 
 

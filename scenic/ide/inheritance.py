@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from scenic.compiler.semantics.meanings import Class, class_of_symbol
+from scenic.compiler.semantics.classes import Class, Classes
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbols_of
 from scenic.dataclass import dataclass
 from scenic.project.index import Project
@@ -34,7 +34,7 @@ def family(project: Project, symbol: Symbol) -> Family:
     seen = {owner}
     pending = [owner]
     while pending:
-        cls = class_of_symbol(project, pending.pop())
+        cls = Classes(project).of_symbol(pending.pop())
         if cls is None:
             continue
         member = own_member(cls, symbol.name)
@@ -43,7 +43,7 @@ def family(project: Project, symbol: Symbol) -> Family:
             found.setdefault(member, member)
             related += subclasses(project, cls.symbol, deep=True)
         for each in related:
-            known = class_of_symbol(project, each)
+            known = Classes(project).of_symbol(each)
             if each in seen or known is None or known.member(symbol.name) is None:
                 continue
             seen.add(each)
@@ -85,7 +85,7 @@ def is_derived(project: Project, symbol: Symbol, base: Symbol, *, deep: bool) ->
     seen: set[Symbol] = set()
     pending = [symbol]
     while pending:
-        cls = class_of_symbol(project, pending.pop())
+        cls = Classes(project).of_symbol(pending.pop())
         for each in () if cls is None else cls.bases:
             if each == base:
                 return True

@@ -5,6 +5,7 @@ import os
 from collections.abc import Iterator
 from typing import Final
 
+from scenic.compiler.semantics.model import Model
 from scenic.compiler.traversal import walk
 from scenic.dataclass import dataclass
 from scenic.ide.places import span_of
@@ -44,10 +45,11 @@ def links(project: Project, snapshot: Snapshot) -> tuple[Link, ...]:
 def _modules(project: Project, snapshot: Snapshot) -> Iterator[Link]:
     """The modules that are imported: each word of a dotted name leads to its own part of it."""
     module = project.module(snapshot.filename)
+    model = None if module is None else Model(module, project)
     for each in () if module is None else occurrences(module):
-        if each.index is None or module is None:
+        if each.index is None or model is None:
             continue
-        symbol = symbol_of(project, module, each)
+        symbol = symbol_of(model, each)
         if symbol is not None and symbol.filename is not None and os.path.isfile(symbol.filename):
             yield Link(each.span, symbol.filename)
 

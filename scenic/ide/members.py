@@ -2,9 +2,8 @@
 
 from collections.abc import Iterator
 
+from scenic.compiler.semantics.classes import Member
 from scenic.compiler.semantics.kinds import ValueKind
-from scenic.compiler.semantics.meanings import Member, class_of, class_of_symbol, meaning, module_behind
-from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_exported
 from scenic.ide.expressions import expression, operand_before
 from scenic.ide.parameters import settings
@@ -26,12 +25,12 @@ def members(
     found = expression(project, snapshot, text, line, column) if text else None
     if found is None:
         return
-    module, node = found
+    model, node = found
     if text == "globalParameters":
-        for setting in settings(project, module):
+        for setting in settings(project, model.module):
             yield Completion(setting.name, CompletionKind.PARAMETER, setting.name, 1, setting.value)
         return
-    home = module_behind(project, module, node)
+    home = model.module_behind(node)
     if home is not None:
         exports = project.exports_of(home)
         for name in sorted(exports.public & exports.names.keys()):
@@ -39,16 +38,14 @@ def members(
             place = ("name", brought.filename or "", brought.name)
             yield Completion(name, kind_of_symbol(brought), name, 1, brought.kind.value, key=place)
         return
-    symbol = meaning(project, module, node)
-    owner = (
-        symbol if symbol is not None and symbol.kind is SymbolKind.CLASS else class_of(project, module, node)
-    )
+    symbol = model.meaning(node)
+    owner = symbol if symbol is not None and symbol.kind is SymbolKind.CLASS else model.class_of(node)
     kind = None
     if owner is None or owner.name in NAMES:
-        kind = Model(module.tree, module.resolution).kind_of(node)
+        kind = model.kind_of(node)
         if owner is None and (_is_instance(kind) or text == "self"):
             owner = Symbol("Object", SymbolKind.CLASS)  # Of whatever class, it is an object.
-    cls = None if owner is None else class_of_symbol(project, owner)
+    cls = model.class_of_symbol(owner)
     if cls is not None and cls.members:
         yield from (_of_class(snapshot, member) for member in cls.members)
     elif kind is not None:

@@ -11,7 +11,8 @@ from unicodedata import normalize
 from scenic.compiler import tree as scenic
 from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.scopes import Binding, Resolution, ScopeKind
-from scenic.compiler.semantics.meanings import class_of, class_of_symbol
+from scenic.compiler.semantics.classes import Classes
+from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.modules import Module
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_binding
 from scenic.dataclass import dataclass
@@ -88,7 +89,7 @@ def definitions(project: Project, snapshot: Snapshot, line: int, column: int) ->
         name, origin = parameter
         set_here = [each for each in settings(project, module) if each.name == name]
         return tuple(Target(each.filename, each.span, each.extent, origin) for each in set_here)
-    symbol = None if module is None or found is None else symbol_of(project, module, found)
+    symbol = None if module is None or found is None else symbol_of(Model(module, project), found)
     if symbol is None or found is None or symbol.is_builtin:
         return _ego(module, found) or _provided(snapshot, line, column)
     return _targets(symbol, found.span)
@@ -123,7 +124,7 @@ def _provided(snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
 def moniker(project: Project, snapshot: Snapshot, line: int, column: int) -> Moniker | None:
     """The moniker of the name at a place; ``None`` if the language provides it."""
     module, found = _occurrence(project, snapshot, line, column)
-    symbol = None if module is None or found is None else symbol_of(project, module, found)
+    symbol = None if module is None or found is None else symbol_of(Model(module, project), found)
     if module is None or symbol is None or symbol.filename is None:
         return None
     homes = [root for root in project.finder.roots if symbol.filename.startswith(os.path.join(root, ""))]
@@ -159,9 +160,9 @@ def type_definitions(project: Project, snapshot: Snapshot, line: int, column: in
         return ()
     symbol: Symbol | None = None
     if isinstance(found.node, ast.expr):
-        symbol = class_of(project, module, found.node)
+        symbol = Model(module, project).class_of(found.node)
     if symbol is None:
-        meant = symbol_of(project, module, found)
+        meant = symbol_of(Model(module, project), found)
         symbol = meant if meant is not None and meant.kind is SymbolKind.CLASS else None
     return () if symbol is None else _targets(symbol, found.span)
 
@@ -169,7 +170,7 @@ def type_definitions(project: Project, snapshot: Snapshot, line: int, column: in
 def implementations(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
     """The classes derived from the class at a place, or what they define under the name of the member at a place."""
     module, found = _occurrence(project, snapshot, line, column)
-    symbol = None if module is None or found is None else symbol_of(project, module, found)
+    symbol = None if module is None or found is None else symbol_of(Model(module, project), found)
     if symbol is None or found is None:
         return ()
     if symbol.kind is SymbolKind.CLASS:
@@ -182,7 +183,7 @@ def implementations(project: Project, snapshot: Snapshot, line: int, column: int
     if symbol.kind in members and symbol.container is not None:
         owner = owner_of(symbol)
         for each in () if owner is None else subclasses(project, owner, deep=True):
-            cls = class_of_symbol(project, each)
+            cls = Classes(project).of_symbol(each)
             member = None if cls is None else own_member(cls, symbol.name)
             if member is not None:
                 targets += _targets(member, found.span)
@@ -205,7 +206,7 @@ def usages(
     module, found = _occurrence(project, snapshot, line, column)
     if module is None or found is None:
         return
-    symbol = symbol_of(project, module, found)
+    symbol = symbol_of(Model(module, project), found)
     places: Iterable[Location]
     if symbol is None or symbol.is_builtin:
         places = (
@@ -221,7 +222,7 @@ def highlights(project: Project, snapshot: Snapshot, line: int, column: int) -> 
     module, found = _occurrence(project, snapshot, line, column)
     if module is None or found is None:
         return ()
-    symbol = symbol_of(project, module, found)
+    symbol = symbol_of(Model(module, project), found)
     wanted = () if symbol is None or symbol.is_builtin else family(project, symbol).definitions
     return tuple(Highlight(each.span, each.defines) for each in _same(project, module, found, *wanted))
 
@@ -231,7 +232,7 @@ def linked(project: Project, snapshot: Snapshot, line: int, column: int) -> tupl
     module, found = _occurrence(project, snapshot, line, column)
     if module is None or found is None:
         return ()
-    symbol = symbol_of(project, module, found)
+    symbol = symbol_of(Model(module, project), found)
     if symbol is None or symbol.binding is None or symbol.container is None:
         return ()
     if symbol.kind not in (SymbolKind.VARIABLE, SymbolKind.PARAMETER) or symbol.filename != module.filename:
@@ -250,7 +251,7 @@ def prepare_rename(project: Project, snapshot: Snapshot, line: int, column: int)
         return None
     if _alias(module, found) is not None:
         return found.span, found.name  # Whatever it means: the name is the program's own.
-    symbol = symbol_of(project, module, found)
+    symbol = symbol_of(Model(module, project), found)
     if found.name in RESERVED or found.name in TRACKED or (symbol is not None and symbol.is_builtin):
         raise RenameError(f"`{found.name}` belongs to the language and cannot be renamed")
     if symbol is None:
@@ -295,7 +296,7 @@ def rename(
             for each in same
             if each.name == found.name and not isinstance(each.node, ast.Attribute)
         )
-    symbol = symbol_of(project, module, found)
+    symbol = symbol_of(Model(module, project), found)
     assert symbol is not None
     binding = symbol.binding
     names = (symbol.module or module).resolution
@@ -356,7 +357,7 @@ def _refuse_clash(project: Project, members: Sequence[Symbol], name: str) -> Non
     """Raise `RenameError` if a class that defines one of the members has one of another name already."""
     for each in members:
         owner = owner_of(each)
-        cls = None if owner is None else class_of_symbol(project, owner)
+        cls = None if owner is None else Classes(project).of_symbol(owner)
         if cls is not None and cls.member(name) is not None:
             raise RenameError(f"`{cls.symbol.name}` has a `{name}` already")
 
@@ -385,14 +386,15 @@ def _same(project: Project, module: Module, found: Occurrence, *related: Symbol)
 
     Without a meaning, those that are the same.
     """
-    symbol = symbol_of(project, module, found)
+    model = Model(module, project)
+    symbol = symbol_of(model, found)
     names = {found.name} | ({symbol.name} if symbol is not None else set())
     aliased = {alias.asname for alias in module.import_of if alias.asname}
     same = [each for each in occurrences(module) if each.name in names or each.name in aliased]
     if symbol is None:
         return [each for each in same if each.name == found.name and type(each.node) is type(found.node)]
     wanted = {symbol, *related}
-    return [each for each in same if symbol_of(project, module, each) in wanted]
+    return [each for each in same if symbol_of(model, each) in wanted]
 
 
 def _targets(symbol: Symbol, origin: Span) -> tuple[Target, ...]:

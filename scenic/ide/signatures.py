@@ -41,7 +41,7 @@ def signature_help(project: Project, snapshot: Snapshot, line: int, column: int)
     found = expression(project, snapshot, f"{text}()", line, column)
     if found is None or not isinstance(found[1], ast.Call):
         return None
-    signature = call_signature(project, found[0], found[1])
+    signature = call_signature(found[0], found[1])
     return None if signature is None else _help(signature, index, name)
 
 

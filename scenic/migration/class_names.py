@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import field
 from typing import Final
 
-from scenic.compiler.semantics.meanings import is_of_library
+from scenic.compiler.semantics.classes import is_of_library
 from scenic.compiler.semantics.modules import FoundModule, ModuleKind
 from scenic.compiler.tokens import NAME
 from scenic.dataclass import dataclass

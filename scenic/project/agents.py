@@ -9,14 +9,11 @@ from types import MappingProxyType
 from typing import Final
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.scopes import Resolution
-from scenic.compiler.semantics.meanings import LIBRARY, class_of, class_of_symbol, meaning
-from scenic.compiler.semantics.modules import Exported, Module
+from scenic.compiler.semantics.classes import LIBRARY
+from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind
 from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic
-from scenic.language.source import Source
-from scenic.project.index import Project
 
 __all__ = ["agent_findings"]
 
@@ -36,25 +33,19 @@ _ADVICE: Final[Mapping[str, str]] = MappingProxyType(
 )
 
 
-def agent_findings(
-    project: Project,
-    tree: ast.Module,
-    source: Source,
-    resolution: Resolution,
-    brought: Mapping[str, Exported],
-) -> Iterator[Diagnostic]:
-    """Reports objects whose behaviors take actions of the driving domain that they cannot take; ``brought`` are the names of imports."""
-    if "behavior" not in source.text or not any(name in brought for name in _NEEDS):
+def agent_findings(model: Model) -> Iterator[Diagnostic]:
+    """Reports objects whose behaviors take actions of the driving domain that they cannot take."""
+    source = model.module.source
+    if "behavior" not in source.text or not any(name in model.brought for name in _NEEDS):
         return
-    module = Module(source, tree, resolution, is_scenic=True, broken=False)
-    for cls, value in _given(tree):
-        agent = meaning(project, module, cls)
+    for cls, value in _given(model.tree):
+        agent = model.meaning(cls)
         call = value.func if isinstance(value, ast.Call) else value
-        behavior = meaning(project, module, call) if isinstance(call, ast.Name | ast.Attribute) else None
+        behavior = model.meaning(call) if isinstance(call, ast.Name | ast.Attribute) else None
         if agent is None or behavior is None or behavior.kind is not SymbolKind.BEHAVIOR:
             continue
-        able = _abilities(project, agent)
-        needed = _needs(project, behavior, 0)
+        able = _abilities(model, agent)
+        needed = _needs(model, behavior, 0)
         # A behavior for several kinds of agents asks which one it has.
         if able is None or len(needed) != 1 or needed.keys() <= able or not all(needed.values()):
             continue
@@ -78,13 +69,13 @@ def _given(tree: ast.Module) -> Iterator[tuple[ast.expr, ast.expr]]:
                         yield node.cls, value
 
 
-def _abilities(project: Project, agent: Symbol) -> frozenset[str] | None:
+def _abilities(model: Model, agent: Symbol) -> frozenset[str] | None:
     """The abilities of the instances of a class; ``None`` where that is not known."""
     able: set[str] = set()
     waiting, seen = [agent], set[Symbol]()
     while waiting:
         symbol = waiting.pop()
-        known = class_of_symbol(project, symbol)
+        known = model.class_of_symbol(symbol)
         if known is None or not known.complete:
             return None
         # A class that extends one of the same name is another symbol in another file.
@@ -99,40 +90,41 @@ def _abilities(project: Project, agent: Symbol) -> frozenset[str] | None:
     return frozenset(able)
 
 
-def _needs(project: Project, behavior: Symbol, depth: int) -> dict[str, bool]:
+def _needs(model: Model, behavior: Symbol, depth: int) -> dict[str, bool]:
     """The abilities that agents of a behavior need, and whether that is so whatever the behavior asks with ``if``."""
     module, node = behavior.module, behavior.node
     if module is None or not isinstance(node, scenic.BehaviorDef) or depth > _DEEPEST:
         return {}
+    home = model.beside(module)
     guarded = {id(part) for branch in walk(node) if isinstance(branch, ast.If) for part in walk(branch)}
     needs: dict[str, bool] = {}
     for part in walk(node):
         inner: dict[str, bool] = {}
         if isinstance(part, scenic.Take):
             for action in part.actions:
-                cls = class_of(project, module, action)
-                need = None if cls is None else _need_of_action(project, cls)
+                cls = home.class_of(action)
+                need = None if cls is None else _need_of_action(model, cls)
                 if need is not None:
                     inner[need] = True
         elif isinstance(part, scenic.Do | scenic.DoChoose):
             for target in part.targets:
-                run = _behavior_of(project, module, target)
+                run = _behavior_of(home, target)
                 if run is not None and run != behavior:
-                    inner |= _needs(project, run, depth + 1)
+                    inner |= _needs(model, run, depth + 1)
         for need, always in inner.items():
             needs[need] = needs.get(need, False) or (always and id(part) not in guarded)
     return needs
 
 
-def _behavior_of(project: Project, module: Module, target: ast.expr) -> Symbol | None:
+def _behavior_of(model: Model, target: ast.expr) -> Symbol | None:
     call = target.func if isinstance(target, ast.Call) else target
     if not isinstance(call, ast.Name | ast.Attribute):
         return None
-    found = meaning(project, module, call)
+    found = model.meaning(call)
     return found if found is not None and found.kind is SymbolKind.BEHAVIOR else None
 
 
-def _need_of_action(project: Project, action: Symbol) -> str | None:
+def _need_of_action(model: Model, action: Symbol) -> str | None:
     waiting = [action]
     for _ in range(_DEEPEST):
         if not waiting:
@@ -140,6 +132,6 @@ def _need_of_action(project: Project, action: Symbol) -> str | None:
         cls = waiting.pop()
         if cls.name in _NEEDS and cls.filename is not None and cls.filename.startswith(LIBRARY):
             return _NEEDS[cls.name]
-        known = class_of_symbol(project, cls)
+        known = model.class_of_symbol(cls)
         waiting += () if known is None else known.bases
     return None

@@ -8,13 +8,13 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.places import header_span, word_span
-from scenic.compiler.scopes import BindingKind, Resolution
+from scenic.compiler.scopes import BindingKind
 from scenic.compiler.semantics.modules import Exported, Exports, FoundModule, ModuleKind
+from scenic.compiler.semantics.names import Names
 from scenic.compiler.traversal import position
 from scenic.established import MODULES as ESTABLISHED
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
 from scenic.language.libraries import FAMILIES, LIBRARIES, how_to_get
-from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.language.spelling import is_slip, nearest
 from scenic.project.index import Project
@@ -33,23 +33,15 @@ _GUARDS: Final = (ast.Try, ast.TryStar, scenic.TryInterrupt)
 class Imports:
     """The imports of a program, in its project. If ``verbose``, those of which nothing is known are reported."""
 
-    def __init__(
-        self, project: Project, tree: ast.Module, source: Source, resolution: Resolution, verbose: bool
-    ) -> None:
+    def __init__(self, project: Project, names: Names, verbose: bool) -> None:
         self._project = project
-        self._tree = tree
-        self._source = source
-        self._resolution = resolution
+        self._names = names
+        self._source = names.module.source
+        self._resolution = names.resolution
         self._verbose = verbose
         self._suggested = 0
 
     # What they mean
-
-    @cached_property
-    def stars(self) -> tuple[ast.ImportFrom | scenic.Model, ...]:
-        """The star imports and models, in order."""
-        found = [node for node in self._froms if any(alias.name == "*" for alias in node.names)]
-        return tuple(sorted([*found, *self._models], key=position))
 
     @cached_property
     def _froms(self) -> tuple[ast.ImportFrom, ...]:
@@ -86,12 +78,7 @@ class Imports:
 
     def member(self, alias: ast.alias) -> Exported | FoundModule | None:
         """The definition that ``from m import name`` brings."""
-        statement = self._statements.get(alias)
-        if statement is None:
-            return None
-        return self._project.member(
-            self.found(statement), alias.name, importer=self._source.filename, level=statement.level
-        )
+        return self._names.imported(alias) if alias in self._statements else None
 
     def is_missing(self, alias: ast.alias) -> bool:
         """Return whether the module does not exist, or is not known to have the name."""
@@ -115,41 +102,6 @@ class Imports:
             beginning, names = alias.name, self._project.exports_of(self.found(statement)).names
         return any(name.startswith(beginning) for name in names)
 
-    def attribute(self, node: ast.Attribute) -> Exported | FoundModule | None:
-        """The meaning of ``m.name``, where ``m`` is a module that the program imports."""
-        home = self._module(node.value)
-        if home is None:
-            return None
-        return self._project.member(home, node.attr, importer=self._source.filename)
-
-    def _module(self, node: ast.expr) -> FoundModule | None:
-        """The module that an expression means; ``None`` if it is none, or may be something else."""
-        if isinstance(node, ast.Attribute):
-            found = self.attribute(node)
-            return found if isinstance(found, FoundModule) else None
-        if not isinstance(node, ast.Name) or self._resolution.reflective:
-            return None
-        binding = self._resolution.binding(node)
-        if (
-            binding is None
-            or not binding.sites
-            or not all(isinstance(each, ast.alias) for each in binding.sites)
-        ):
-            return None
-        targets = [self._imported_module(site) for site in binding.sites]
-        first = targets[0]
-        if first is None or any(each is None or each.filename != first.filename for each in targets):
-            return None
-        return first
-
-    def _imported_module(self, alias: Any) -> FoundModule | None:
-        statement = self._statements.get(alias)
-        if statement is not None:
-            member = self.member(alias)
-            return member if isinstance(member, FoundModule) else None
-        name = alias.name if alias.asname else alias.name.partition(".")[0]
-        return self._project.find(name, importer=self._source.filename)
-
     # What is wrong with them
 
     def findings(self) -> Iterator[Diagnostic]:
@@ -169,7 +121,7 @@ class Imports:
         yield from self._attribute_findings()
 
     def _module_findings(self, found: FoundModule, node: Any, name: str, level: int) -> Iterator[Diagnostic]:
-        star = isinstance(node, scenic.Model) or node in self.stars
+        star = isinstance(node, scenic.Model) or node in self._names.module.stars
         if not found.is_missing:
             exports = self._project.exports_of(found) if star and self._verbose else None
             for unseen in () if exports is None else exports.unseen:
@@ -259,7 +211,7 @@ class Imports:
             for binding in self._resolution.names.values()
             if binding.kinds <= {BindingKind.MODULE, BindingKind.IMPORTED}
         }
-        if not imported:
+        if not imported or self._resolution.reflective:
             return
         for node, _ in self._resolution.nodes(ast.Attribute):
             base = node.value
@@ -267,11 +219,15 @@ class Imports:
                 base = base.value
             if not (isinstance(base, ast.Name) and base.id in imported and isinstance(node.ctx, ast.Load)):
                 continue
-            home = self._module(node.value)
+            home = self._names.module_behind(node.value)
             if home is None or home.is_missing or home.kind is ModuleKind.NAMESPACE:
                 continue
             exports = self._project.exports_of(home)
-            if node.attr in exports.names or node.attr.startswith("__") or self.attribute(node) is not None:
+            if (
+                node.attr in exports.names
+                or node.attr.startswith("__")
+                or self._names.attribute_of_module(node) is not None
+            ):
                 continue
             if f"{home.name}.{node.attr}" in ESTABLISHED:
                 continue

@@ -12,55 +12,28 @@ from typing import Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Resolution
-from scenic.compiler.semantics.meanings import (
-    LIBRARY,
-    Class,
-    class_of,
-    class_of_elements,
-    class_of_exported,
-    class_of_symbol,
-    meaning,
-)
-from scenic.compiler.semantics.modules import Exported, Module
+from scenic.compiler.semantics.classes import Class, is_of_library
+from scenic.compiler.semantics.model import Model
+from scenic.compiler.semantics.modules import Exported
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
 from scenic.language.members import MEMBERS
-from scenic.language.names import NAMES, NameKind
 from scenic.language.properties import attributes_of, properties_of
 from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.language.spelling import distance, nearest, related
-from scenic.project.index import Project
 
-__all__ = ["kind_of_exported", "member_findings"]
+__all__ = ["member_findings"]
 
-_OF_CLASSES: Final = (NameKind.CLASS, NameKind.REGION, NameKind.SHAPE)
-_MOST_BASES: Final = 20
-_DECLARED: Final[Mapping[str, str]] = MappingProxyType(
-    {
-        each.home: each.result.name
-        for each in NAMES.values()
-        if each.home is not None and each.result is not None and each.kind in _OF_CLASSES
-    }
-)
-"""The types of the instances of classes of the language, by the place of the class."""
 _OF_SEQUENCES: Final = frozenset({*dir(tuple), *dir(list), *dir(set)})
 _COMMON: Final = frozenset(properties_of("Object")).union(attributes_of("Object"), *MEMBERS.values())
 
 
-def member_findings(
-    project: Project,
-    tree: ast.Module,
-    source: Source,
-    resolution: Resolution,
-    brought: Mapping[str, Exported],
-) -> Iterator[Diagnostic]:
-    """Reports slips in attributes of what star imports and the model bring; ``brought`` are the names of that."""
-    files = {each.module.filename for each in brought.values() if each.module is not None}
-    folders = {os.path.dirname(file) for file in files if file.startswith(LIBRARY)}
-    if not folders:
+def member_findings(model: Model) -> Iterator[Diagnostic]:
+    """Reports slips in attributes of what star imports and the model bring."""
+    brought, resolution, source = model.brought, model.resolution, model.module.source
+    if not any(each.module is not None and is_of_library(each.module.filename) for each in brought.values()):
         return
-    module = Module(source, tree, resolution, is_scenic=True, broken=False)
     stored = {node.attr for node, _ in resolution.nodes(ast.Attribute) if isinstance(node.ctx, ast.Store)}
     stored |= {node.property for node, _ in resolution.nodes(scenic.SpecifierPhrase) if node.property}
     called = {id(node.func) for node, _ in resolution.nodes(ast.Call)}
@@ -75,7 +48,7 @@ def member_findings(
             continue
         key = (chain, node.attr)
         if key not in seen:
-            seen[key] = _slip(project, module, node)
+            seen[key] = _slip(model, node)
         found = seen[key]
         if found is not None:
             kind, meant, advice, is_method = found
@@ -139,37 +112,12 @@ def _chain(node: ast.expr, resolution: Resolution, brought: Collection[str]) -> 
     return None if node.id in resolution.names else f"{node.id} {words}"
 
 
-def kind_of_exported(project: Project, exported: Exported) -> str | None:
-    """The kind of a value that a module defines, in the word of the declared type: a region, a vector field, a shape."""
-    key = ("kind", None if exported.module is None else exported.module.filename, exported.binding)
-    if key not in project.derived:
-        project.derived[key] = _kind_of_class(project, class_of_exported(project, exported))
-    found: str | None = project.derived[key]
-    return found
-
-
-def _kind_of_class(project: Project, symbol: Symbol | None) -> str | None:
-    waiting = [symbol]
-    for _ in range(_MOST_BASES):
-        cls = waiting.pop(0) if waiting else None
-        if cls is None:
-            return None
-        if cls.filename is not None and cls.filename.startswith(LIBRARY):
-            home = cls.filename.removeprefix(LIBRARY).removesuffix(".py").replace(os.sep, ".")
-            declared = _DECLARED.get(f"scenic.{home}:{cls.name}")
-            if declared is not None:
-                return declared
-        known = class_of_symbol(project, cls)
-        waiting += () if known is None else known.bases
-    return None
-
-
-def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, str | None, str, bool] | None:
+def _slip(model: Model, node: ast.Attribute) -> tuple[str, str | None, str, bool] | None:
     """The class of the owner of an attribute, the name that was meant if it is known, advice, and whether a method is meant; if the class has no such attribute."""
-    symbol = class_of(project, module, node.value)
-    element = class_of_elements(project, module, node.value) if symbol is None else None
+    symbol = model.class_of(node.value)
+    element = model.class_of_elements(node.value) if symbol is None else None
     if element is not None and node.attr not in _OF_SEQUENCES:
-        known = class_of_symbol(project, element)
+        known = model.class_of_symbol(element)
         meant = None if known is None else nearest(node.attr, {each.name for each in known.members})
         return (
             None
@@ -178,10 +126,10 @@ def _slip(project: Project, module: Module, node: ast.Attribute) -> tuple[str, s
         )
     if symbol is None:
         # An attribute of the class itself, such as a member of an enumeration.
-        symbol = meaning(project, module, node.value) if isinstance(node.value, ast.Name) else None
-    if symbol is None or symbol.filename is None or not symbol.filename.startswith(LIBRARY):
+        symbol = model.meaning(node.value) if isinstance(node.value, ast.Name) else None
+    if symbol is None or not is_of_library(symbol.filename):
         return None
-    cls = class_of_symbol(project, symbol)
+    cls = model.class_of_symbol(symbol)
     if cls is None or cls.member(node.attr) is not None or cls.member("__getattr__") is not None:
         return None
     names = {each.name for each in cls.members if not each.name.startswith("_")}

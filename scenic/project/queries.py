@@ -9,11 +9,11 @@ from unicodedata import normalize
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Binding, BindingKind, Scope
-from scenic.compiler.semantics.meanings import class_of_symbol, meaning
-from scenic.compiler.semantics.modules import Exported, FoundModule, Module
-from scenic.compiler.semantics.names import DEFINITIONS
+from scenic.compiler.semantics.model import Model
+from scenic.compiler.semantics.modules import FoundModule, Module
 from scenic.compiler.semantics.signatures import Signature, signature_of
 from scenic.compiler.semantics.symbols import (
+    DEFINITIONS,
     Symbol,
     SymbolKind,
     symbol_of_binding,
@@ -192,7 +192,7 @@ def symbol_at(project: Project, filename: str, line: int, column: int) -> Symbol
     """The symbol that the word at a place means."""
     module = project.module(filename)
     found = None if module is None else occurrence_at(module, line, column)
-    return None if module is None or found is None else symbol_of(project, module, found)
+    return None if module is None or found is None else symbol_of(Model(module, project), found)
 
 
 def definition(project: Project, filename: str, line: int, column: int) -> Symbol | None:
@@ -201,92 +201,92 @@ def definition(project: Project, filename: str, line: int, column: int) -> Symbo
     return None if symbol is None or symbol.is_builtin else symbol
 
 
-def symbol_of(project: Project, module: Module, occurrence: Occurrence) -> Symbol | None:
+def symbol_of(model: Model, occurrence: Occurrence) -> Symbol | None:
     """The symbol that a word of a module means."""
     node: Any = occurrence.node
     match node:
         case ast.Name():
-            return meaning(project, module, node) or _bound(project, module, node)
+            return model.meaning(node) or _bound(model, node)
         case ast.Attribute():
-            return meaning(project, module, node)
+            return model.meaning(node)
         case ast.keyword():
-            return _keyword(project, module, node)
+            return _keyword(model, node)
         case scenic.SpecifierPhrase():
-            return _property(project, module, node)
+            return _property(model, node)
         case scenic.PropertyDef():
-            return _own_property(project, module, node)
+            return _own_property(model, node)
         case scenic.Model():
-            return _module(project, module, node.name, occurrence.index or 0, 0)
+            return _module(model, node.name, occurrence.index or 0, 0)
         case ast.ImportFrom():
-            return _module(project, module, node.module or "", occurrence.index or 0, node.level)
+            return _module(model, node.module or "", occurrence.index or 0, node.level)
         case ast.alias():
-            return _alias(project, module, node, occurrence)
+            return _alias(model, node, occurrence)
         case ast.Global() | ast.Nonlocal():
-            binding = module.resolution.names.get(occurrence.name)
-            return (
-                None
-                if binding is None
-                else symbol_of_exported(project, Exported(binding.name, module, binding))
-            )
-    return _bound(project, module, node)
+            binding = model.module.resolution.names.get(occurrence.name)
+            return None if binding is None else symbol_of_exported(model.modules, model.own(binding))
+    return _bound(model, node)
 
 
-def _bound(project: Project, module: Module, node: ast.AST) -> Symbol | None:
-    binding = module.resolution.sites.get(node)
-    return None if binding is None else symbol_of_exported(project, Exported(binding.name, module, binding))
+def _bound(model: Model, node: ast.AST) -> Symbol | None:
+    binding = model.module.resolution.sites.get(node)
+    return None if binding is None else symbol_of_exported(model.modules, model.own(binding))
 
 
-def _module(project: Project, module: Module, name: str, index: int, level: int) -> Symbol | None:
+def _module(model: Model, name: str, index: int, level: int) -> Symbol | None:
     """The module that the beginning of a dotted name means."""
-    found = project.find(".".join(name.split(".")[: index + 1]), importer=module.filename, level=level)
+    found = model.modules.find(
+        ".".join(name.split(".")[: index + 1]), importer=model.module.filename, level=level
+    )
     return None if found.is_missing else symbol_of_module(found)
 
 
-def _alias(project: Project, module: Module, alias: ast.alias, occurrence: Occurrence) -> Symbol | None:
-    statement = module.import_of.get(alias)
+def _alias(model: Model, alias: ast.alias, occurrence: Occurrence) -> Symbol | None:
+    statement = model.module.import_of.get(alias)
     if isinstance(statement, ast.Import):
         if occurrence.index is not None:
-            return _module(project, module, alias.name, occurrence.index, 0)
-        return _bound(project, module, alias)
+            return _module(model, alias.name, occurrence.index, 0)
+        return _bound(model, alias)
     if statement is None:
         return None
-    found = project.found_by(statement, module.filename)
-    target = project.member(found, alias.name, importer=module.filename, level=statement.level)
+    found = model.modules.found_by(statement, model.module.filename)
+    target = model.modules.member(found, alias.name, importer=model.module.filename, level=statement.level)
     if target is None:
-        return _bound(project, module, alias)
+        return _bound(model, alias)
     return (
-        symbol_of_module(target) if isinstance(target, FoundModule) else symbol_of_exported(project, target)
+        symbol_of_module(target)
+        if isinstance(target, FoundModule)
+        else symbol_of_exported(model.modules, target)
     )
 
 
-def _property(project: Project, module: Module, node: scenic.SpecifierPhrase) -> Symbol | None:
+def _property(model: Model, node: scenic.SpecifierPhrase) -> Symbol | None:
     """The property after ``with``: that of the class which is made."""
-    owner = module.owner_of_specifier.get(node)
+    owner = model.module.owner_of_specifier.get(node)
     if not isinstance(owner, scenic.New):
         return None
-    cls = meaning(project, module, owner.cls)
-    known = None if cls is None else class_of_symbol(project, cls)
+    cls = model.meaning(owner.cls)
+    known = None if cls is None else model.class_of_symbol(cls)
     member = None if known is None else known.member(node.property or "")
     if member is None:
         return None
     return member.symbol or Symbol(member.name, member.kind, container=member.owner)
 
 
-def _own_property(project: Project, module: Module, node: scenic.PropertyDef) -> Symbol | None:
-    scope = module.resolution.scopes.get(node)
+def _own_property(model: Model, node: scenic.PropertyDef) -> Symbol | None:
+    scope = model.module.resolution.scopes.get(node)
     owner = None if scope is None else scope.parent
-    binding = None if owner is None else module.resolution.sites.get(owner.node)
-    known = None if binding is None else class_of_symbol(project, symbol_of_binding(module, binding))
+    binding = None if owner is None else model.module.resolution.sites.get(owner.node)
+    known = None if binding is None else model.class_of_symbol(symbol_of_binding(model.module, binding))
     member = None if known is None else known.member(node.name)
     return None if member is None else member.symbol
 
 
-def _keyword(project: Project, module: Module, node: ast.keyword) -> Symbol | None:
+def _keyword(model: Model, node: ast.keyword) -> Symbol | None:
     """The parameter that an argument by name is given to."""
-    call = module.call_of.get(node)
-    callee = None if call is None else meaning(project, module, call.func)
+    call = model.module.call_of.get(node)
+    callee = None if call is None else model.meaning(call.func)
     if callee is not None and callee.kind is SymbolKind.CLASS:
-        known = class_of_symbol(project, callee)
+        known = model.class_of_symbol(callee)
         initial = None if known is None else known.member("__init__")
         callee = None if initial is None else initial.symbol
     if callee is None or callee.module is None or not isinstance(callee.node, DEFINITIONS):
@@ -296,10 +296,10 @@ def _keyword(project: Project, module: Module, node: ast.keyword) -> Symbol | No
     return None if binding is None else symbol_of_binding(callee.module, binding)
 
 
-def call_signature(project: Project, module: Module, call: ast.Call) -> Signature | None:
+def call_signature(model: Model, call: ast.Call) -> Signature | None:
     """The signature of the function that a call calls."""
-    callee = meaning(project, module, call.func)
-    return None if callee is None else signature_of(project, callee)
+    callee = model.meaning(call.func)
+    return None if callee is None else signature_of(model.modules, callee)
 
 
 def exported(project: Project, filename: str) -> dict[str, Symbol]:
@@ -335,10 +335,11 @@ def references(
         names = {name} | {
             alias.asname for alias in module.import_of if alias.asname and name in alias.name.split(".")
         }
+        model = Model(module, project)
         spans = {
             each.span: each.defines
             for each in occurrences(module)
-            if each.name in names and symbol_of(project, module, each) in wanted
+            if each.name in names and symbol_of(model, each) in wanted
         }
         yield from (Location(module.filename, span, defines) for span, defines in spans.items())
 

@@ -3,7 +3,7 @@
 import ast
 from pathlib import Path
 
-from scenic.compiler.semantics.meanings import class_of
+from scenic.compiler.semantics.model import Model
 from tests.project.layouts import project
 from tests.work import calls_while
 
@@ -17,5 +17,5 @@ def test_long_chains_and_names_that_lead_to_themselves_cost_little(tmp_path: Pat
         assert module is not None
         (*_, last) = module.tree.body
         assert isinstance(last, ast.Assign)
-        assert class_of(index, module, last.value) is None
-        assert calls_while(class_of, index, module, last.value) < 50_000
+        assert Model(module, index).class_of(last.value) is None
+        assert calls_while(Model(module, index).class_of, last.value) < 50_000

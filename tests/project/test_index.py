@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from scenic.compiler.semantics.meanings import class_of_symbol
+from scenic.compiler.semantics.classes import Classes
 from scenic.compiler.semantics.signatures import signature_of
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind
 from scenic.project.index import Project
@@ -140,7 +140,7 @@ def test_what_the_language_provides_has_no_definition(cars: Project) -> None:
 def test_members_are_own_and_inherited(cars: Project) -> None:
     car = _at(cars, "Car")
     assert car is not None
-    known = class_of_symbol(cars, car)
+    known = Classes(cars).of_symbol(car)
     assert known is not None
     assert known.complete
     assert known.is_scenic
@@ -152,7 +152,7 @@ def test_members_are_own_and_inherited(cars: Project) -> None:
     assert (members["allowCollisions"].owner, members["allowCollisions"].default) == ("Object", "False")
     assert members["honk"].kind is SymbolKind.METHOD
     assert members["honked"].kind is SymbolKind.ATTRIBUTE
-    assert "honk" not in {each.name for each in known.properties}
+    assert "honk" not in known.properties
 
 
 @pytest.mark.parametrize(

@@ -5,11 +5,11 @@ from collections.abc import Iterator, Sequence
 from typing import Any, Final, NamedTuple
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.checks.context import CheckContext, Definition, NodeRule
+from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.checks.provided import PROVIDED_PARAMETERS
 from scenic.compiler.places import word_span
 from scenic.compiler.scopes import Scope, ScopeKind
-from scenic.compiler.surroundings import Foreign
+from scenic.compiler.semantics.symbols import Symbol, symbol_of_binding
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label
 from scenic.language.names import NAMES
 from scenic.language.spans import Span
@@ -59,15 +59,6 @@ def _required(args: ast.arguments) -> list[str]:
 
 
 def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    foreign = context.foreign(node.func)
-    if foreign is not None:
-        if foreign.definition is not None:
-            args = foreign.parameters or _parameters(foreign.definition)
-            if args is not None:
-                title = f"the {kind_of(foreign.definition)} `{foreign.name}`"
-                foreign_callee = _Callee(foreign.name, title, args, foreign.definition, foreign)
-                yield from _arguments(node, foreign_callee, context)
-        return
     callee = _known(node, context)
     if context.provided(node.func) in _CHOICES and not node.args:
         yield context.error(
@@ -86,9 +77,16 @@ class _Callee(NamedTuple):
     name: str
     title: str
     args: ast.arguments
-    definition: Definition | None = None
-    foreign: Foreign | None = None
+    symbol: Symbol | None = None
     skip: int = 0
+
+    @property
+    def definition(self) -> ast.AST | None:
+        return None if self.symbol is None else self.symbol.node
+
+    def is_here(self, context: CheckContext) -> bool:
+        """Return whether the program itself defines it, or the language does."""
+        return self.symbol is None or self.symbol.module is context.module
 
     @property
     def required(self) -> list[str]:
@@ -100,7 +98,7 @@ class _Callee(NamedTuple):
 
     def labels(self, context: CheckContext) -> tuple[Label, ...]:
         """Return labels at the definition of the callee; none if the language defines it."""
-        return () if self.definition is None else context.defined(self.name, self.definition, self.foreign)
+        return () if self.symbol is None else context.defined(self.symbol)
 
 
 def _known(node: ast.Call, context: CheckContext) -> _Callee | None:
@@ -111,16 +109,19 @@ def _known(node: ast.Call, context: CheckContext) -> _Callee | None:
         if args is None:
             return None
         return _Callee(builtin_name, f"the {NAMES[builtin_name].kind} `{builtin_name}`", args)
-    definition: Any = context.definition(node.func)
+    symbol = context.definition(node.func)
     skip = 0
-    if definition is None:
-        definition = _own_method(node.func, context)
+    if symbol is None:
+        symbol = _own_method(node.func, context)
         skip = 1
-    args = None if definition is None else _parameters(definition)
+    if symbol is None or symbol.node is None:
+        return None
+    cls = context.class_of_symbol(symbol)
+    args = _parameters(symbol.node) if cls is None else cls.parameters
     if args is None:
         return None
-    title = f"the {'method' if skip else kind_of(definition)} `{definition.name}`"
-    return _Callee(definition.name, title, args, definition, None, skip)
+    title = f"the {'method' if skip else kind_of(symbol.node)} `{symbol.name}`"
+    return _Callee(symbol.name, title, args, symbol, skip)
 
 
 def _too_many(
@@ -275,13 +276,13 @@ def _no_numbers(node: ast.Call, callee: _Callee, context: CheckContext) -> Itera
         if (
             kind is None
             or kind.name not in _NOT_NUMBERS
-            or (kind.name == "nothing" and callee.foreign is None)
+            or (kind.name == "nothing" and callee.is_here(context))
         ):
             continue
         text = context.text(value) or ""
         plain = text.strip("\"'")
         is_number = kind.name == "text" and plain.replace(".", "", 1).isdigit()
-        say = context.warning if callee.foreign is None else context.error
+        say = context.warning if callee.is_here(context) else context.error
         yield say(
             "SC404",
             f"{callee.title} needs a number as `{name}`, not {kind.phrase}",
@@ -293,7 +294,7 @@ def _no_numbers(node: ast.Call, callee: _Callee, context: CheckContext) -> Itera
         )
 
 
-def _own_method(function: ast.expr, context: CheckContext) -> Any:
+def _own_method(function: ast.expr, context: CheckContext) -> Symbol | None:
     """The method that ``self.name`` can only mean, in a method of a class without bases that the text does not show."""
     if not (isinstance(function, ast.Attribute) and isinstance(function.value, ast.Name)):
         return None
@@ -321,7 +322,8 @@ def _own_method(function: ast.expr, context: CheckContext) -> Any:
     definition = sites[0]
     # A method that does nothing but raise an error is there to be replaced.
     abstract = isinstance(definition.body[-1], ast.Raise | ast.Pass)
-    return definition if definition.args.args and not definition.args.posonlyargs and not abstract else None
+    plain = definition.args.args and not definition.args.posonlyargs and not abstract
+    return symbol_of_binding(context.module, method_binding) if plain else None
 
 
 def _specifier(node: scenic.SpecifierPhrase, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
@@ -341,37 +343,39 @@ def _do(node: Any, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]
     for target in node.targets:
         is_call = isinstance(target, ast.Call)
         function = target.func if isinstance(target, ast.Call) else target
-        foreign = context.foreign(function)
-        definition: Any = context.definition(function) if foreign is None else foreign.definition
-        plain = isinstance(definition, ast.FunctionDef)
-        if plain and (not is_call or (foreign is None and not _returns(definition, context))):
-            name = definition.name
+        symbol = context.definition(function)
+        definition = None if symbol is None else symbol.node
+        plain = isinstance(definition, ast.FunctionDef) and not (
+            is_call and (definition not in context.resolution.scopes or _returns(definition, context))
+        )
+        if symbol is not None and plain:
+            name = symbol.name
             yield context.error(
                 "SC211",
                 f"`do` runs behaviors and scenarios, and `{name}` is a plain function"
                 + (" that returns nothing" if is_call else ""),
                 target,
                 f"call it without `do`, or define it with `behavior {name}(...):`",
-                labels=context.defined(name, definition, foreign),
+                labels=context.defined(symbol),
             )
         elif not is_call:
             yield from _uncalled(target, context)
 
 
 def _uncalled(value: ast.expr | None, context: CheckContext) -> Iterator[Diagnostic]:
-    foreign = context.foreign(value)
-    definition: Any = context.definition(value) if foreign is None else foreign.definition
-    if value is None or not isinstance(definition, scenic.BehaviorDef | scenic.ScenarioDef):
+    symbol = context.definition(value)
+    definition = None if symbol is None else symbol.node
+    if value is None or symbol is None or not isinstance(definition, scenic.BehaviorDef | scenic.ScenarioDef):
         return
     missing = required_parameters(definition)
     if missing and missing[0] != "self":
-        name = definition.name
+        name = symbol.name
         yield context.error(
             "SC211",
             f"the {kind_of(definition)} `{name}` needs {_listed(missing)}",
             value,
             f"call it: `{name}({', '.join(missing)})`",
-            labels=context.defined(name, definition, foreign),
+            labels=context.defined(symbol),
         )
 
 

@@ -18,10 +18,10 @@ _POSITIVE: Final = frozenset(name for name, entry in properties_of("Object").ite
 
 
 def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    properties = context.classes.inherited(node)
-    if properties is None or context.classes.of(node) is None:
+    cls = context.class_at(node)
+    if cls is None:
         return
-    base = context.classes.base(node.bases[0]) if node.bases else "Object"
+    properties, base = cls.inherited, cls.built_in
     base_attributes = attributes_of(base) if base is not None else {}
     for item in node.body:
         match item:
@@ -79,7 +79,7 @@ def check_size(name: str, value: ast.expr | None, context: CheckContext) -> Iter
 
 def _new(node: scenic.New, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """``new Object with width 0``."""
-    if context.classes.base(node.cls) == "Object":
+    if context.built_in(node.cls) == "Object":
         for specifier in node.specifiers:
             if specifier.property is not None and specifier.operands:
                 yield from check_size(specifier.property, specifier.operands[0], context)

@@ -8,7 +8,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.places import word_span
 from scenic.compiler.scopes import Scope
-from scenic.compiler.surroundings import Property
+from scenic.compiler.semantics.classes import Member
 from scenic.language.diagnostics import Diagnostic, Edit, Fix
 from scenic.language.spans import Span
 from scenic.language.spelling import distance
@@ -17,17 +17,17 @@ __all__ = ["RULES"]
 
 
 def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    properties = context.classes.of(node)
-    if properties is None:
+    cls = context.class_at(node)
+    if cls is None:
         return
-    own_names = {item.name for item in node.body if isinstance(item, scenic.PropertyDef)}
-    base_properties = context.classes.inherited(node) or {}
+    inherited = cls.inherited
+    own = {item.name for item in node.body if isinstance(item, scenic.PropertyDef)}
     for item in node.body:
         match item:
-            case ast.Assign(targets=[ast.Name(id=name) as target]) if name in properties:
-                yield _attribute(context, node, target, item.value, known=name in own_names)
-            case scenic.PropertyDef(name=name) if name not in base_properties:
-                yield from _misspelt(context, node, item, base_properties, own_names)
+            case ast.Assign(targets=[ast.Name(id=name) as target]) if name in own or name in inherited:
+                yield _attribute(context, node, target, item.value, known=name in own)
+            case scenic.PropertyDef(name=name) if name not in inherited:
+                yield from _misspelt(context, node, item, inherited, own)
 
 
 def _attribute(
@@ -53,7 +53,7 @@ def _misspelt(
     context: CheckContext,
     node: ast.ClassDef,
     item: scenic.PropertyDef,
-    inherited: Mapping[str, Property],
+    inherited: Mapping[str, Member],
     own: set[str],
 ) -> Iterator[Diagnostic]:
     """SC300: ``lenght: 4``, of which nothing else in the program speaks."""

@@ -163,7 +163,8 @@ def _constant(
             "compare something: `ego.position.x > 3`, or `ego in region`",
         )
         return
-    definition: Any = context.definition(condition)
+    symbol = context.definition(condition)
+    definition: Any = None if symbol is None else symbol.node
     if isinstance(definition, ast.FunctionDef | ast.AsyncFunctionDef):
         name = definition.name
         yield context.warning(

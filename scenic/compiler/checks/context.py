@@ -7,18 +7,18 @@ from typing import Any, Final
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks.blocks import Block, blocks
-from scenic.compiler.places import header_span, word_span
-from scenic.compiler.scopes import PROVIDED, BindingKind, Resolution, Scope
+from scenic.compiler.places import header_span
+from scenic.compiler.scopes import PROVIDED, BindingKind, Scope
 from scenic.compiler.semantics.model import Model
-from scenic.compiler.semantics.names import DEFINITIONS, Definition
-from scenic.compiler.surroundings import Foreign, Surroundings
+from scenic.compiler.semantics.modules import NO_MODULES, Module
+from scenic.compiler.semantics.symbols import DEFINITIONS, Symbol
+from scenic.compiler.surroundings import Surroundings
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label, Severity
-from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.language.spelling import is_slip
 
-__all__ = ["DEFINITIONS", "CheckContext", "Definition", "NodeRule", "ProgramRule"]
+__all__ = ["DEFINITIONS", "CheckContext", "NodeRule", "ProgramRule"]
 
 HEADED: Final = (
     ast.ClassDef,
@@ -36,17 +36,21 @@ class CheckContext(Model):
 
     def __init__(
         self,
-        tree: ast.Module,
-        source: Source,
-        resolution: Resolution,
+        module: Module,
         surroundings: Surroundings | None = None,
         *,
         typing: bool = False,
     ) -> None:
-        super().__init__(tree, resolution, surroundings)
-        self.source = source
+        super().__init__(module, NO_MODULES if surroundings is None else surroundings.modules)
+        self.surroundings: Final = surroundings
+        self.source = module.source
         self.typing: Final = typing
         """True if somebody is writing the program, in an editor."""
+
+    @property
+    def wildcard(self) -> bool:
+        """Return whether names may exist that neither the text nor the modules that it imports show."""
+        return self.resolution.wildcard
 
     # What the program is
 
@@ -127,13 +131,13 @@ class CheckContext(Model):
             if isinstance(each.value, ast.Tuple) and each.value.elts
         )
 
-    def defined(self, name: str, definition: Definition, foreign: Foreign | None) -> tuple[Label, ...]:
+    def defined(self, symbol: Symbol) -> tuple[Label, ...]:
         """The place of a definition, here or in another file."""
-        if foreign is None:
-            return (Label(word_span(self.source, definition, name), "defined here"),)
-        if foreign.filename is None or foreign.span is None:
+        if symbol.span is None:
             return ()
-        return (Label(foreign.span, "defined here", foreign.filename),)
+        if symbol.module is self.module:
+            return (Label(symbol.span, "defined here"),)
+        return (Label(symbol.span, "defined here", symbol.filename),)
 
     @cached_property
     def imports(self) -> Mapping[ast.AST, tuple[Any, bool, list[Any]]]:

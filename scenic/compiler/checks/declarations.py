@@ -96,7 +96,7 @@ def _property(context: CheckContext, node: scenic.PropertyDef) -> Iterator[Diagn
 def _misspelt(context: CheckContext, node: Any) -> Iterator[Diagnostic]:
     if not any(specifier.property for specifier in node.specifiers):
         return
-    properties = context.classes.properties(node.cls)
+    properties = context.properties(node.cls)
     if properties is None:
         return
     for specifier in node.specifiers:

@@ -215,8 +215,8 @@ def _is_forgotten(node: ast.AST, context: CheckContext) -> bool:
     if not isinstance(node, ast.Expr):
         return False
     function = node.value.func if isinstance(node.value, ast.Call) else node.value
-    foreign = context.foreign(function)
-    definition: Any = context.definition(function) if foreign is None else foreign.definition
+    symbol = context.definition(function)
+    definition: Any = None if symbol is None else symbol.node
     return isinstance(definition, scenic.BehaviorDef | scenic.ScenarioDef)
 
 

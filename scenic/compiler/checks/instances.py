@@ -27,7 +27,7 @@ def check_instances(context: CheckContext) -> Iterator[Diagnostic]:
                     severity = Severity.WARNING
                 case _:
                     continue
-            if context.classes.properties(cls) is not None:
+            if context.properties(cls) is not None:
                 yield missing_new(cls, context, f"new {cls.id}", severity)
 
 

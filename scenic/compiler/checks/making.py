@@ -34,7 +34,7 @@ def _call(node: ast.Call, _scope: Scope, context: CheckContext) -> Iterator[Diag
             "write `workspace = Workspace(region)`",
             fix=context.renaming(node.func, "workspace", "Workspace"),
         )
-    if context.classes.properties(node.func) is None:
+    if context.properties(node.func) is None:
         return
     name = node.func.id
     example = f"new {name}"
@@ -113,8 +113,8 @@ def _statement(node: ast.Expr, scope: Scope, context: CheckContext) -> Iterator[
     callee = value.func if isinstance(value, ast.Call) else value
     if not isinstance(callee, ast.Name | ast.Attribute):
         return
-    foreign = context.foreign(callee)
-    definition: Any = context.definition(callee) if foreign is None else foreign.definition
+    symbol = context.definition(callee)
+    definition: Any = None if symbol is None else symbol.node
     kind = _RUN.get(type(definition))
     if kind is None:
         return
@@ -146,8 +146,8 @@ def _required(node: scenic.Require, context: CheckContext) -> Iterator[Diagnosti
     condition = node.condition
     if not isinstance(condition, ast.Call):
         return
-    foreign = context.foreign(condition.func)
-    definition: Any = context.definition(condition.func) if foreign is None else foreign.definition
+    symbol = context.definition(condition.func)
+    definition: Any = None if symbol is None else symbol.node
     if not isinstance(definition, scenic.MonitorDef) or node.probability is not None:
         return
     start = context.source.span(condition)
@@ -208,9 +208,8 @@ def _wrong(
     """Yield the errors about a value that is run as one of ``kinds``; ``classes`` if the definition itself is allowed."""
     is_call = isinstance(value, ast.Call)
     name = value.func if isinstance(value, ast.Call) else value
-    nameable = isinstance(name, ast.Name | ast.Attribute)
-    foreign = context.foreign(name) if nameable else None
-    definition: Any = context.definition(name) if foreign is None else foreign.definition
+    symbol = context.definition(name) if isinstance(name, ast.Name | ast.Attribute) else None
+    definition: Any = None if symbol is None else symbol.node
     kind = _RUN.get(type(definition))
     if kind is None:
         value_kind = None if classes else context.kind_of(value)
@@ -241,7 +240,7 @@ def _wrong(
 def _new(node: scenic.New, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC401: an object that is made while a simulation runs."""
     where = where_of(node, scope)
-    if where.place in DYNAMIC and where.function is None and context.classes.base(node.cls) == "Object":
+    if where.place in DYNAMIC and where.function is None and context.built_in(node.cls) == "Object":
         yield context.error(
             "SC401",
             f"no object can be created {where.place}",
@@ -253,11 +252,10 @@ def _new(node: scenic.New, scope: Scope, context: CheckContext) -> Iterator[Diag
 def _take(node: scenic.Take, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC314: ``take SetBrakeAction``."""
     for action in node.actions:
-        callee = action.func if isinstance(action, ast.Call) else action
-        definition = context.definition(callee)
-        foreign = context.foreign(callee)
-        if isinstance(definition if foreign is None else foreign.definition, scenic.BehaviorDef):
-            text = context.text(callee) or "Name"
+        called = action.func if isinstance(action, ast.Call) else action
+        symbol = context.definition(called)
+        if symbol is not None and isinstance(symbol.node, scenic.BehaviorDef):
+            text = context.text(called) or "Name"
             run = text if isinstance(action, ast.Call) else f"{text}()"
             yield context.warning(
                 "SC314",
@@ -267,13 +265,14 @@ def _take(node: scenic.Take, _scope: Scope, context: CheckContext) -> Iterator[D
                 fix=_do_instead(node, context) if len(node.actions) == 1 else None,
             )
             continue
-        foreign = context.foreign(action)
-        if foreign is not None and foreign.is_plain_class:
+        cls = None if isinstance(action, ast.Call) else context.class_of_symbol(symbol)
+        if cls is not None and cls.complete and not cls.is_scenic:
+            name = cls.symbol.name
             yield context.warning(
                 "SC314",
-                f"this names the class `{foreign.name}`, and makes no action",
+                f"this names the class `{name}`, and makes no action",
                 action,
-                f"write `take {context.text(action) or foreign.name}(...)`",
+                f"write `take {context.text(action) or name}(...)`",
             )
 
 

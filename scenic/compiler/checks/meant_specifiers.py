@@ -77,7 +77,7 @@ def _missing_new(node: scenic.Operation, context: CheckContext) -> Iterator[Diag
     if node.operator not in _DIRECTIONS:
         return
     left = node.operands[0]
-    if not isinstance(left, ast.Name) or context.classes.properties(left) is None:
+    if not isinstance(left, ast.Name) or context.properties(left) is None:
         return
     words = node.operator.removeprefix("is ")
     start = context.source.span(left)

@@ -336,8 +336,8 @@ def _names_property(context: CheckContext, reference: Reference) -> bool:
     """Return whether a name in the default of a property can only mean another property of the same object."""
     for scope in reference.scope.ancestors():
         if scope.kind is ScopeKind.PROPERTY and scope.parent is not None:
-            properties = context.classes.of(scope.parent.node)
-            return properties is not None and reference.node.id in properties
+            cls = context.class_at(scope.parent.node)
+            return cls is not None and reference.node.id in cls.properties
     return False
 
 
@@ -379,18 +379,19 @@ def _no_class(context: CheckContext, name: ast.Name) -> Iterator[Diagnostic]:
             fix=context.renaming(name, builtin_name, similar_class) if similar_class else None,
         )
         return
-    foreign = context.foreign(name)
-    definition: Any = context.definition(name) if foreign is None else foreign.definition
+    symbol = context.definition(name)
+    definition: Any = None if symbol is None else symbol.node
     labels: tuple[Label, ...] = ()
-    if foreign is not None and foreign.is_plain_class:
-        labels = context.defined(name.id, definition, foreign)
+    cls = context.class_of_symbol(symbol)
+    if symbol is not None and cls is not None and cls.complete and not cls.is_scenic:
+        labels = context.defined(symbol)
         what = f"`{name.id}` is a class of Python, not one of objects"
         help_ = f"leave out `new`: write `{name.id}(...)`"
         yield context.warning("SC203", what, name, help_, labels=labels)
         return
-    if definition is not None and not isinstance(definition, ast.ClassDef):
+    if symbol is not None and cls is None:
         what = kind_of(definition)
-        labels = context.defined(name.id, definition, foreign)
+        labels = context.defined(symbol)
         help_ = f"leave out `new`: write `{name.id}(...)`"
         yield context.error("SC203", f"`{name.id}` is a {what}, not a class", name, help_, labels=labels)
         return

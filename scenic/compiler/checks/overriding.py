@@ -56,11 +56,7 @@ def _is_defined(name: str, context: CheckContext) -> bool:
         for item, _ in context.nodes(scenic.SpecifierPhrase)
     ):
         return True
-    surroundings = context.surroundings
-    classes = () if surroundings is None else map(surroundings.brought, surroundings.names)
-    return any(
-        each is not None and each.properties is not None and name in each.properties for each in classes
-    )
+    return name in context.properties_brought
 
 
 RULES: Final[dict[type[ast.AST], NodeRule]] = {scenic.Override: _override}

@@ -132,8 +132,8 @@ def _statement(node: ast.Expr, scope: Scope, context: CheckContext) -> Iterator[
     call = node.value
     if not isinstance(call, ast.Call):
         return
-    foreign = context.foreign(call.func)
-    definition: Any = context.definition(call.func) if foreign is None else foreign.definition
+    symbol = context.definition(call.func)
+    definition: Any = None if symbol is None else symbol.node
     if not isinstance(definition, ast.ClassDef) or not _is_action(definition):
         return
     where = where_of(node, scope)
@@ -173,7 +173,7 @@ def _annotation(node: ast.AnnAssign, _scope: Scope, context: CheckContext) -> It
 
 def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC307: ``def __init__`` in a class of objects."""
-    if context.classes.of(node) is None:
+    if context.class_at(node) is None:
         return
     for item in node.body:
         if not isinstance(item, ast.FunctionDef) or item.name != "__init__":

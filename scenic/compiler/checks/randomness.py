@@ -154,7 +154,8 @@ def _counts(
 
 def _is_passed(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC403: ``f(Range(0, 9))``, where the function ``f`` of the program decides by its parameter."""
-    function = context.definition(node.func)
+    symbol = context.definition(node.func)
+    function = None if symbol is None else symbol.node
     if not isinstance(function, ast.FunctionDef) or any(isinstance(each, ast.Starred) for each in node.args):
         return
     parameters = [*function.args.posonlyargs, *function.args.args]

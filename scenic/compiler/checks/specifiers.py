@@ -9,8 +9,7 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.checks.context import CheckContext, NodeRule
 from scenic.compiler.places import word_span
 from scenic.compiler.scopes import Scope
-from scenic.compiler.semantics.classes import find_cycle
-from scenic.compiler.surroundings import Property
+from scenic.compiler.semantics.classes import Member, find_cycle
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.operators import OPERATORS
 from scenic.language.spans import Span
@@ -52,7 +51,7 @@ def _new(node: scenic.New, _scope: Scope, context: CheckContext) -> Iterator[Dia
     yield from _regions(node.specifiers, context)
     conflicts = list(_conflicts(node.specifiers, context))
     yield from conflicts
-    properties = context.classes.properties(node.cls)
+    properties = context.properties(node.cls)
     if properties is None:
         return
     finals = list(_finals(node, properties, context))
@@ -128,7 +127,7 @@ def _conflicts(specifiers: list[scenic.SpecifierPhrase], context: CheckContext) 
 
 
 def _finals(
-    node: scenic.New, properties: Mapping[str, Property], context: CheckContext
+    node: scenic.New, properties: Mapping[str, Member], context: CheckContext
 ) -> Iterator[Diagnostic]:
     """SC301: properties that follow from others and cannot be given."""
     for specifier in node.specifiers:
@@ -177,9 +176,7 @@ def _is_vector(node: ast.expr | None) -> bool:
     return isinstance(node, ast.Tuple | ast.List)
 
 
-def _cycle(
-    node: scenic.New, properties: Mapping[str, Property], context: CheckContext
-) -> Iterator[Diagnostic]:
+def _cycle(node: scenic.New, properties: Mapping[str, Member], context: CheckContext) -> Iterator[Diagnostic]:
     """SC308: a value that cannot be computed, because it needs itself in the end."""
     providers: dict[str, Any] = {}
     uncertain: set[str] = set()
@@ -213,10 +210,10 @@ def _cycle(
 
     # Where the defaults need one another in no circle, there can only be one through what the specifiers give. Those of
     # other modules are checked there.
-    circular_properties = (
-        properties if context.foreign(node.cls) is None and context.classes.is_circular(properties) else ()
-    )
-    cycle = find_cycle([*(name for name in providers if needed(name)), *circular_properties], needed)
+    cls = context.class_named(node.cls)
+    is_here = cls is not None and cls.symbol.module is context.module
+    own = properties if cls is not None and is_here and cls.is_circular else ()
+    cycle = find_cycle([*(name for name in providers if needed(name)), *own], needed)
     if cycle is not None:
         yield _needs_itself(node, cycle, providers, context)
 

@@ -511,9 +511,7 @@ def _of_agent(node: ast.Attribute, context: CheckContext) -> Iterator[Diagnostic
     similar_name = None if name in names else nearest(name, _MEMBERS_OF_OBJECTS)
     if similar_name is None or any(name == item.name for item, _ in context.nodes(scenic.PropertyDef)):
         return
-    surroundings = context.surroundings
-    classes = () if surroundings is None else map(surroundings.brought, surroundings.names)
-    if any(each is not None and each.properties is not None and name in each.properties for each in classes):
+    if name in context.properties_brought:
         return
     place = _end(node, context)
     yield context.warning(
@@ -552,7 +550,8 @@ def _end(node: ast.Attribute, context: CheckContext) -> Span:
 def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC214: ``size: self.lenth * 2``, in the defaults of a class."""
     defaults = [item.value for item in node.body if isinstance(item, scenic.PropertyDef)]
-    members = context.classes.members_of(node) if defaults else None
+    cls = context.class_at(node) if defaults else None
+    members = None if cls is None else cls.names
     if members is None:
         return
     for default in defaults:

@@ -1,171 +1,399 @@
-"""The properties and members of the classes that a program uses, as far as its text shows them."""
+"""The classes of a program and of the modules that it imports: their members, their own and inherited ones."""
 
 import ast
-from collections.abc import Callable, Iterator, Mapping
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import field
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any, Final
 
+from scenic import language
 from scenic.compiler import tree as scenic
+from scenic.compiler.semantics.modules import Module, Modules
 from scenic.compiler.semantics.names import Names
-from scenic.compiler.surroundings import Property
-from scenic.compiler.traversal import walk
-from scenic.language.properties import CLASSES, attributes_of, properties_of
+from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_binding, symbol_of_exported
+from scenic.compiler.traversal import position, walk
+from scenic.dataclass import dataclass
+from scenic.language.properties import CLASSES, BuiltinProperty, attributes_of, properties_of
 
-__all__ = ["BUILT_IN", "Classes", "find_cycle", "own_property"]
+__all__ = ["LIBRARY", "Class", "Classes", "Member", "find_cycle", "is_of_library"]
 
-
-BUILT_IN: Mapping[str, Mapping[str, Property]] = MappingProxyType(
-    {
-        cls: MappingProxyType(
-            {name: Property(entry.needs, entry.final) for name, entry in properties_of(cls).items()}
-        )
-        for cls in CLASSES
-    }
-)
-
+LIBRARY: Final = os.path.dirname(os.path.dirname(os.path.abspath(language.__file__ or ""))) + os.sep
+"""The folder of the package, with a separator at its end."""
 
 _DEEPEST: Final = 20
-"""Length to which a chain of base classes is followed."""
+"""Classes within classes whose names are looked up."""
+
+_FROM_NARROWEST: Final = ("Object", "OrientedPoint", "Point")
+
+_WITHOUT_MEMBERS: Final = frozenset({"object", "Exception", "ABC"})
+"""Bases that give nothing that programs use."""
 
 
-_DEFINED: Final[Mapping[type[Any], str]] = MappingProxyType(
-    {
-        ast.FunctionDef: "function",
-        scenic.BehaviorDef: "behavior",
-        scenic.MonitorDef: "monitor",
-        scenic.ScenarioDef: "scenario",
-    }
-)
+@dataclass(frozen=True, slots=True)
+class Member:
+    """Something that instances of a class have.
+
+    ``owner`` is the name of the class that defines it. ``default`` is the text of a property's default or of an
+    attribute's value, ``type`` the type in words; ``attributes`` are those in the brackets of a property definition, and
+    ``needs`` the properties that the default reads. ``symbol`` is ``None`` for what built-in classes define.
+    """
+
+    name: str
+    kind: SymbolKind
+    owner: str
+    default: str | None = None
+    type: str | None = None
+    attributes: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
+    documentation: str | None = field(default=None, compare=False)
+    symbol: Symbol | None = None
+
+    @property
+    def final(self) -> bool:
+        """Return whether no class and no specifier may give it."""
+        return "final" in self.attributes
+
+
+@dataclass(frozen=True, eq=False)
+class Class:
+    """A class with all its members, the nearest definition of each, own ones first.
+
+    ``parents`` are the classes it names (``Object`` if it names none and is written in Scenic), as far as they are known. It is
+    ``complete`` if it certainly has no other members, and ``is_scenic`` if it is a class of objects: created with ``new``.
+    """
+
+    symbol: Symbol
+    members: tuple[Member, ...]
+    parents: "tuple[Class, ...]"
+    complete: bool
+    is_scenic: bool
+
+    @cached_property
+    def _by_name(self) -> Mapping[str, Member]:
+        return {each.name: each for each in self.members}
+
+    def member(self, name: str) -> Member | None:
+        """The member of a name."""
+        return self._by_name.get(name)
+
+    @property
+    def bases(self) -> tuple[Symbol, ...]:
+        """The classes that it names, as far as they are known."""
+        return tuple(each.symbol for each in self.parents)
+
+    @property
+    def initial_is_own(self) -> bool:
+        """Return whether the class itself says how instances are made."""
+        initial = self.member("__init__")
+        return initial is not None and initial.owner == self.symbol.name
+
+    @cached_property
+    def properties(self) -> Mapping[str, Member]:
+        """Properties that can be given after ``with``."""
+        return {each.name: each for each in self.members if each.kind is SymbolKind.PROPERTY}
+
+    @cached_property
+    def inherited(self) -> Mapping[str, Member]:
+        """The properties that it has from its parents."""
+        inherited: dict[str, Member] = {}
+        for parent in reversed(self.parents):
+            inherited.update(parent.properties)
+        return inherited
+
+    @cached_property
+    def names(self) -> frozenset[str] | None:
+        """All attributes and methods of its instances, if it is a class of objects; ``None`` if there may be others."""
+        if not (self.complete and self.is_scenic) or self.member("__getattr__") is not None:
+            return None
+        return frozenset(self._by_name)
+
+    @property
+    def built_in(self) -> str | None:
+        """The class of the language from which it certainly derives; ``None`` if it may derive from a narrower one as well."""
+        built_in: set[str] = set()
+        waiting = [self]
+        while waiting:
+            cls = waiting.pop()
+            built_in.add(cls.symbol.name if cls.symbol.is_builtin else "")
+            waiting += cls.parents
+        narrowest = next((name for name in _FROM_NARROWEST if name in built_in), None)
+        return narrowest if self.complete or narrowest == _FROM_NARROWEST[0] else None
+
+    @cached_property
+    def is_circular(self) -> bool:
+        """Return whether the defaults of its properties need one another in a circle."""
+        properties = self.properties
+        if not any(each.needs and each.symbol is not None for each in properties.values()):
+            return False  # Those of the language are in no circle.
+
+        def needed(name: str) -> tuple[str, ...]:
+            return properties[name].needs if name in properties else ()
+
+        return find_cycle(list(properties), needed) is not None
+
+    @property
+    def parameters(self) -> ast.arguments | None:
+        """The parameters of a class that is called like a function, as calls give them; ``None`` if they are not known."""
+        node: Any = self.symbol.node
+        if self.is_scenic or node is None:
+            return None
+        own = self.initial_is_own and not node.keywords
+        if not (own or self.complete) or self.member("__new__") is not None:
+            return None
+        initial = self.member("__init__")
+        method: Any = None if initial is None or initial.symbol is None else initial.symbol.node
+        if not isinstance(method, ast.FunctionDef) or method.decorator_list:
+            return None
+        args = method.args
+        if args.posonlyargs or not args.args:
+            return None
+        rest = args.args[1:]
+        return ast.arguments(
+            posonlyargs=[],
+            args=rest,
+            vararg=args.vararg,
+            kwonlyargs=args.kwonlyargs,
+            kw_defaults=args.kw_defaults,
+            kwarg=args.kwarg,
+            defaults=args.defaults[-len(rest) :] if rest and args.defaults else [],
+        )
+
+
+def is_of_library(filename: str | None) -> bool:
+    """Return whether a file is one of the library, which does not change."""
+    return filename is not None and filename.startswith(LIBRARY)
 
 
 class Classes:
-    """The properties and members of built-in classes and of those that the module defines."""
+    """The classes of a program and of the modules that it imports. Each is examined once, on first use."""
 
-    def __init__(self, names: Names) -> None:
-        self._names = names
-        self._known: dict[ast.AST, Mapping[str, Property] | None] = {}
-        self._circular: dict[int, bool] = {}
+    def __init__(self, modules: Modules, names: Names | None = None) -> None:
+        """Make a table of classes; ``names`` are those of the program, if they are known already."""
+        self.modules: Final = modules
+        self._names: Final[dict[Module, Names]] = {} if names is None else {names.module: names}
+        self._classes: Final[dict[tuple[ast.AST, bool], Class | None]] = {}
 
-    def properties(self, name: ast.expr) -> Mapping[str, Property] | None:
-        """All properties of the class that an expression names; ``None`` if they cannot be known."""
-        provided = self._names.provided(name)
-        if provided is not None:
-            return BUILT_IN.get(provided)
-        foreign = self._names.foreign(name)
-        if foreign is not None:
-            return foreign.properties
-        definition = self._names.definition(name)
-        return None if definition is None else self.of(definition)
-
-    def of(self, definition: ast.AST) -> Mapping[str, Property] | None:
-        """All properties of a class that the program defines; ``None`` if they cannot be known."""
-        return self._defined(definition) if isinstance(definition, ast.ClassDef) else None
-
-    def inherited(self, definition: ast.ClassDef) -> Mapping[str, Property] | None:
-        """The properties that a class has from its bases; ``None`` if they cannot be known."""
-        found: dict[str, Property] = {}
-        for properties in reversed(
-            [self.properties(base) for base in definition.bases] or [BUILT_IN["Object"]]
-        ):
-            if properties is None or definition.keywords:
-                return None
-            found.update(properties)
-        return found
-
-    def is_circular(self, properties: Mapping[str, Property]) -> bool:
-        """Return whether the defaults of a class need one another in a circle."""
-        known = self._circular.get(id(properties))
+    def names(self, module: Module) -> Names:
+        """The names of a module."""
+        known = self._names.get(module)
         if known is None:
-            known = self._circular[id(properties)] = _is_circular(properties)
+            known = self._names[module] = Names(module, self.modules)
         return known
 
-    def base(self, cls: ast.expr, depth: int = 0) -> str | None:
-        """The built-in class from which a class derives."""
-        name = self._names.provided(cls)
-        if name is not None:
-            return name if name in CLASSES else None
-        foreign = self._names.foreign(cls)
-        if foreign is not None:
-            return foreign.base
-        definition = self._names.definition(cls)
-        if depth > _DEEPEST or not isinstance(definition, ast.ClassDef):
+    def of_symbol(self, symbol: Symbol | None) -> Class | None:
+        """The class that a symbol is; ``None`` if it is none."""
+        if symbol is None or symbol.kind is not SymbolKind.CLASS:
             return None
-        return self.base(definition.bases[0], depth + 1) if definition.bases else "Object"
-
-    def members(self, cls: ast.expr, depth: int = 0) -> frozenset[str] | None:
-        """All attributes and methods of the instances of a class of objects."""
-        name = self._names.provided(cls)
-        if name is not None:
-            return frozenset(properties_of(name)).union(attributes_of(name)) if name in CLASSES else None
-        foreign = self._names.foreign(cls)
-        if foreign is not None:
-            return foreign.members
-        definition = self._names.definition(cls)
-        if depth > _DEEPEST or not isinstance(definition, ast.ClassDef):
+        module = symbol.module
+        if symbol.is_builtin:
+            return _BUILT_IN.get(symbol.name) or Class(symbol, (), (), False, False)
+        if module is None or not isinstance(symbol.node, ast.ClassDef):
             return None
-        return self.members_of(definition, depth)
+        if is_of_library(symbol.filename):
+            return module.derived(f"class {symbol.name} {symbol.span}", lambda: self._of_name(module, symbol))
+        return self._of_name(module, symbol)
 
-    def members_of(self, definition: ast.ClassDef, depth: int = 0) -> frozenset[str] | None:
-        """All attributes and methods of the instances of a class that the program defines."""
-        properties = self.of(definition)
-        scope = self._names.resolution.scopes.get(definition)
-        if properties is None or scope is None or definition.decorator_list:
+    def of_node(self, module: Module, node: ast.AST) -> Class | None:
+        """The class that a statement of a module defines, whatever else has its name."""
+        binding = module.resolution.sites.get(node)
+        if binding is None or not isinstance(node, ast.ClassDef):
             return None
-        found = frozenset(properties).union(scope.bindings, attributes_of("Object"))
-        for base in definition.bases:
-            inherited = self.members(base, depth + 1)
-            if inherited is None:
-                return None
-            found |= inherited
-        return found
+        return self._once(module, symbol_of_binding(module, binding), node, definite=True)
 
-    def defined(self, name: ast.expr) -> str | None:
-        """The kind of what the program or a module that it imports defines under a name, in a word: function, behavior, ..."""
-        if not isinstance(name, ast.Name | ast.Attribute) or self._names.provided(name) is not None:
+    def _meaning(self, module: Module, node: ast.expr, depth: int = 0) -> Symbol | None:
+        """The meaning of a name, or of an attribute of a module or class; ``None`` if it is unknown."""
+        symbol = self.names(module).name_meaning(node)
+        if symbol is not None or not isinstance(node, ast.Attribute) or depth > _DEEPEST:
+            return symbol
+        owner = self.of_symbol(self._meaning(module, node.value, depth + 1))
+        member = None if owner is None else owner.member(node.attr)
+        return None if member is None else member.symbol
+
+    def _of_name(self, module: Module, symbol: Symbol) -> Class | None:
+        """The class that a name means: of several definitions the first."""
+        node: Any = symbol.node
+        sites = () if symbol.binding is None else sorted(symbol.binding.sites, key=position)
+        if len(sites) > 1 and all(_refines(site, sites[0]) for site in sites[1:]):
+            return self._once(module, symbol, sites[0], definite=True)
+        return self._once(module, symbol, node, definite=_are_alike(sites))
+
+    def _once(self, module: Module, symbol: Symbol, node: Any, *, definite: bool) -> Class | None:
+        key = (node, definite)
+        if key not in self._classes:
+            self._classes[key] = None  # A class among its own bases: nothing is known.
+            self._classes[key] = self._examine(module, symbol, node, definite)
+        return self._classes[key]
+
+    def _examine(self, module: Module, symbol: Symbol, node: ast.ClassDef, definite: bool) -> Class:
+        # Decorators and metaclasses of the library add no attributes.
+        plain = is_of_library(module.filename) or not (node.keywords or node.decorator_list)
+        complete = definite and plain
+        parents: list[Class] = []
+        if not node.bases and module.is_scenic:
+            parents.append(_BUILT_IN["Object"])
+        for base in node.bases:
+            parent = self._parent(module, symbol, node, base)
+            if parent is not None:
+                parents.append(parent)
+                complete = complete and self.names(module).stays(base)
+            elif not (isinstance(base, ast.Name) and base.id in _WITHOUT_MEMBERS):
+                complete = False
+        members: dict[str, Member] = {}
+        for member in _own(module, symbol, node):
+            members.setdefault(member.name, member)
+        for parent in parents:
+            for member in parent.members:
+                members.setdefault(member.name, member)
+        complete = complete and all(each.complete for each in parents)
+        is_scenic = any(each.is_scenic for each in parents)
+        return Class(symbol, tuple(members.values()), tuple(parents), complete, is_scenic)
+
+    def _parent(self, module: Module, symbol: Symbol, node: ast.ClassDef, base: ast.expr) -> Class | None:
+        meant = self._meaning(module, base)
+        if meant is not None and meant.node is node:
+            # `class Car(Car)` extends the class that a star import or the model brings.
+            before = self.names(module).before(symbol.name)
+            meant = None if before is None else symbol_of_exported(self.modules, before)
+        return self.of_symbol(meant)
+
+
+def _are_alike(sites: Sequence[ast.AST]) -> bool:
+    """Return whether a name means one class, or classes with the same bases and properties, such as those of two branches."""
+    if len(sites) == 1:
+        return True
+    outlines = {_outline(site) for site in sites}
+    return len(outlines) == 1 and None not in outlines
+
+
+def _refines(site: ast.AST, first: ast.AST) -> bool:
+    """Return whether a class extends the class of the same name, and only changes defaults of its properties."""
+    if not (isinstance(first, ast.ClassDef) and isinstance(site, ast.ClassDef)):
+        return False
+    match site.bases:
+        case [ast.Name(id=name)] if name == site.name == first.name:
+            outline = _outline(site)
+            own = {item.name for item in first.body if isinstance(item, scenic.PropertyDef)}
+            return outline is not None and own.issuperset(outline[1])
+    return False
+
+
+def _outline(site: ast.AST) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
+    """Bases and properties of a class that has nothing else; ``None`` for any other definition."""
+    if not isinstance(site, ast.ClassDef) or site.keywords or site.decorator_list:
+        return None
+    properties = []
+    for item in site.body:
+        if isinstance(item, scenic.PropertyDef):
+            properties.append(item.name)
+        elif not (isinstance(item, ast.Expr) and isinstance(item.value, ast.Constant)):
             return None
-        foreign = self._names.foreign(name)
-        definition = self._names.definition(name) if foreign is None else foreign.definition
-        if foreign is None and getattr(definition, "name", None) != getattr(name, "id", None):
-            return None  # `self` in a behavior.
-        if isinstance(definition, ast.ClassDef):
-            return "class" if self.properties(name) is not None else None
-        return _DEFINED.get(type(definition))
-
-    def ego_members(self) -> frozenset[str] | None:
-        """All attributes and methods of the ego, if the program sets it just once and makes it there."""
-        value = self._names.ego_value
-        return self.members(value.cls) if isinstance(value, scenic.New) else None
-
-    def _defined(self, node: ast.ClassDef) -> Mapping[str, Property] | None:
-        if node not in self._known:
-            self._known[node] = None  # A class among its own bases: nothing is known.
-            inherited = self.inherited(node)
-            if inherited is not None:
-                own = (item for item in node.body if isinstance(item, scenic.PropertyDef))
-                self._known[node] = MappingProxyType(
-                    {**inherited, **{item.name: own_property(item) for item in own}}
-                )
-        return self._known[node]
+    return tuple(map(ast.dump, site.bases)), tuple(sorted(properties))
 
 
-def own_property(item: scenic.PropertyDef) -> Property:
-    """A property as a class defines it."""
+def _built_in(name: str) -> Class:
+    """A class of objects of the language."""
+    members = [_declared(each, name) for each in properties_of(name).values()]
+    members += [
+        Member(
+            each.name,
+            SymbolKind.METHOD if each.is_method else SymbolKind.ATTRIBUTE,
+            name,
+            type=each.type,
+            documentation=each.documentation,
+        )
+        for each in attributes_of(name).values()
+    ]
+    base = CLASSES[name].base
+    parents = () if base is None else (_built_in(base),)
+    return Class(Symbol(name, SymbolKind.CLASS), tuple(members), parents, True, True)
+
+
+def _declared(each: BuiltinProperty, owner: str) -> Member:
+    attributes = tuple(name for name in ("additive", "dynamic", "final") if getattr(each, name))
+    return Member(
+        each.name,
+        SymbolKind.PROPERTY,
+        owner,
+        each.default,
+        each.type,
+        attributes,
+        each.needs,
+        each.documentation,
+    )
+
+
+_BUILT_IN: Final = MappingProxyType({name: _built_in(name) for name in CLASSES})
+
+
+def _own(module: Module, symbol: Symbol, node: ast.ClassDef) -> Iterator[Member]:
+    """Yield the members that the body of a class defines, and the attributes that its methods set."""
+    for item in node.body:
+        if isinstance(item, scenic.PropertyDef):
+            place = Symbol(
+                item.name,
+                SymbolKind.PROPERTY,
+                module.filename,
+                module.word_span(item, item.name),
+                module.source.span(item),
+                symbol.name,
+                module,
+                item,
+            )
+            yield Member(
+                item.name,
+                SymbolKind.PROPERTY,
+                symbol.name,
+                module.text(item.value),
+                attributes=tuple(item.attributes),
+                needs=_needs(item.value),
+                documentation=place.documentation,
+                symbol=place,
+            )
+    scope = module.resolution.scopes.get(node)
+    for binding in () if scope is None else scope.bindings.values():
+        inner = symbol_of_binding(module, binding)
+        kind = SymbolKind.METHOD if inner.kind is SymbolKind.METHOD else SymbolKind.ATTRIBUTE
+        statement = None if inner.node is None else module.assignment_of.get(inner.node)
+        value = None if statement is None or statement.value is None else module.text(statement.value)
+        yield Member(binding.name, kind, symbol.name, value, documentation=inner.documentation, symbol=inner)
+    yield from _set_by_methods(module, symbol, node)
+
+
+def _needs(default: ast.expr) -> tuple[str, ...]:
+    """The properties that a default reads."""
     needs = [
         part.attr
-        for part in walk(item.value)
+        for part in walk(default)
         if isinstance(part, ast.Attribute) and isinstance(part.value, ast.Name) and part.value.id == "self"
     ]
-    return Property(tuple(dict.fromkeys(needs)), "final" in item.attributes)
+    return tuple(dict.fromkeys(needs))
 
 
-def _is_circular(properties: Mapping[str, Property]) -> bool:
-    built_in = BUILT_IN["Object"]
-    if not any(item.needs and item != built_in.get(name) for name, item in properties.items()):
-        return False  # Those of the language are in no circle.
-    return (
-        find_cycle(list(properties), lambda name: properties[name].needs if name in properties else ())
-        is not None
-    )
+def _set_by_methods(module: Module, symbol: Symbol, node: ast.ClassDef) -> Iterator[Member]:
+    """Yield the attributes that methods set on their first parameter."""
+    for method in node.body:
+        if not isinstance(method, ast.FunctionDef | ast.AsyncFunctionDef):
+            continue
+        positional = [*method.args.posonlyargs, *method.args.args]
+        if not positional:
+            continue
+        own = positional[0].arg
+        for part in walk(method):
+            match part:
+                case ast.Attribute(value=ast.Name(id=name), attr=attribute, ctx=ast.Store()) if name == own:
+                    place = Symbol(
+                        attribute,
+                        SymbolKind.ATTRIBUTE,
+                        module.filename,
+                        module.attribute_span(part),
+                        module.source.span(part),
+                        symbol.name,
+                        module,
+                        part,
+                    )
+                    yield Member(attribute, SymbolKind.ATTRIBUTE, symbol.name, symbol=place)
 
 
 def find_cycle(names: list[str], needed: Callable[[str], tuple[str, ...]]) -> list[str] | None:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import field
 from enum import StrEnum
 from functools import cached_property
-from typing import Any, Protocol, TypeVar
+from typing import Any, Final, Protocol, TypeVar
 
 from scenic.compiler import tree as scenic
 from scenic.compiler.places import word_span
@@ -15,7 +15,7 @@ from scenic.dataclass import dataclass
 from scenic.language.source import Source
 from scenic.language.spans import Span
 
-__all__ = ["Exported", "Exports", "FoundModule", "Module", "ModuleKind", "Modules", "Unseen"]
+__all__ = ["NO_MODULES", "Exported", "Exports", "FoundModule", "Module", "ModuleKind", "Modules", "Unseen"]
 
 _T = TypeVar("_T")
 
@@ -287,9 +287,6 @@ class Modules(Protocol):
     def found_by(self, node: ast.ImportFrom | scenic.Model, importer: str) -> FoundModule:
         """The module that ``from m import ...`` or ``model m`` means."""
 
-    def exports(self, module: Module) -> Exports:
-        """The names of a module, with those that it imports."""
-
     def exports_of(self, found: FoundModule) -> Exports:
         """The names of a module that was found; none and `Exports.unseen` if nobody can look into it."""
 
@@ -300,3 +297,30 @@ class Modules(Protocol):
 
     def follow(self, exported: Exported) -> Exported | FoundModule:
         """The definition behind an imported name, through all modules that pass it on."""
+
+
+class _NoModules:
+    """The modules of a program of which nobody knows the others."""
+
+    def find(self, name: str, *, importer: str, level: int = 0) -> FoundModule:
+        return FoundModule(name, ModuleKind.MISSING)
+
+    def found_by(self, node: ast.ImportFrom | scenic.Model, importer: str) -> FoundModule:
+        return FoundModule(
+            (node.name if isinstance(node, scenic.Model) else node.module) or "", ModuleKind.MISSING
+        )
+
+    def exports_of(self, found: FoundModule) -> Exports:
+        return Exports({}, frozenset(), (Unseen(found.name, "nobody looks for it"),))
+
+    def member(
+        self, found: FoundModule, name: str, *, importer: str, level: int = 0
+    ) -> Exported | FoundModule | None:
+        return None
+
+    def follow(self, exported: Exported) -> Exported | FoundModule:
+        return exported
+
+
+NO_MODULES: Final[Modules] = _NoModules()
+"""The modules of a program that is looked at alone."""

@@ -1,38 +1,19 @@
 """The meanings of the names of one program: bindings, definitions, values, and what other modules and the language provide."""
 
 import ast
+import builtins
 from bisect import bisect_left, bisect_right
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any, Final
 
-from scenic.compiler import tree as scenic
 from scenic.compiler.scopes import Binding, BindingKind, Resolution, Scope, ScopeKind
-from scenic.compiler.surroundings import Foreign, Surroundings
+from scenic.compiler.semantics.modules import Exported, Exports, FoundModule, Module, Modules
+from scenic.compiler.semantics.symbols import Symbol, builtin_symbol, symbol_of_exported
 from scenic.compiler.traversal import first_position, position
 
-__all__ = ["DEFINITIONS", "Definition", "Names"]
-
-DEFINITIONS: Final = (
-    ast.FunctionDef,
-    ast.AsyncFunctionDef,
-    ast.ClassDef,
-    scenic.BehaviorDef,
-    scenic.MonitorDef,
-    scenic.ScenarioDef,
-)
-"""Statements that bind a name to something that can be called, instantiated or run."""
-
-Definition = (
-    ast.FunctionDef
-    | ast.AsyncFunctionDef
-    | ast.ClassDef
-    | scenic.BehaviorDef
-    | scenic.MonitorDef
-    | scenic.ScenarioDef
-)
-
+__all__ = ["Names"]
 
 _YIELDS: Final = (ast.Yield, ast.YieldFrom)
 _GROWING: Final = frozenset(
@@ -42,17 +23,147 @@ _GROWING: Final = frozenset(
 
 
 class Names:
-    """The meanings of the names of a program, as far as its text and the modules that it imports show them."""
+    """The meanings of the names of a module, as far as its text and the modules that it imports show them."""
 
-    def __init__(
-        self, tree: ast.Module, resolution: Resolution, surroundings: Surroundings | None = None
-    ) -> None:
-        self.tree: Final = tree
-        self.resolution: Final = resolution
-        self.surroundings: Final = surroundings
-        self.brought: Final[Collection[str]] = () if surroundings is None else surroundings.names
+    def __init__(self, module: Module, modules: Modules) -> None:
+        self.module: Final = module
+        self.modules: Final = modules
+        self.tree: Final = module.tree
+        self.resolution: Final = module.resolution
+        self._definitions: Final[dict[ast.expr, Symbol | None]] = {}
+        self._homes: Final[dict[ast.expr, FoundModule | None]] = {}
+
+    # What imports bring
+
+    @cached_property
+    def _stars(self) -> tuple[Exports, ...]:
+        """The names that each star import and each ``model`` brings, in order."""
+        found = (self.modules.found_by(node, self.module.filename) for node in self.module.stars)
+        return tuple(map(self.modules.exports_of, found))
+
+    @cached_property
+    def complete(self) -> bool:
+        """Return whether all names that star imports and the model bring are known."""
+        return all(exports.complete for exports in self._stars)
+
+    @cached_property
+    def brought(self) -> Mapping[str, Exported]:
         """The names that star imports and the model are known to bring."""
-        self._foreign: Final[dict[ast.expr, Foreign | None]] = {}
+        return {
+            name: exports.names[name]
+            for exports in self._stars
+            for name in exports.public
+            if name in exports.names
+        }
+
+    @cached_property
+    def wildcard(self) -> bool:
+        """Return whether names may exist that neither the text nor the modules that it imports show."""
+        return self.resolution.wildcard and (self.module.is_dynamic or not self.complete)
+
+    def imported(self, alias: ast.alias) -> Exported | FoundModule | None:
+        """The definition or module that an import of a name brings; ``None`` if that is not known."""
+        statement, importer = self.module.import_of.get(alias), self.module.filename
+        if isinstance(statement, ast.ImportFrom):
+            found = self.modules.found_by(statement, importer)
+            return self.modules.member(found, alias.name, importer=importer, level=statement.level)
+        return self.modules.find(
+            alias.name if alias.asname else alias.name.partition(".")[0], importer=importer
+        )
+
+    def module_behind(self, node: ast.expr) -> FoundModule | None:
+        """The module that an expression such as ``m`` or ``package.m`` means; ``None`` if it is none."""
+        chain: list[ast.Attribute] = []
+        while isinstance(node, ast.Attribute) and node not in self._homes:
+            chain.append(node)
+            node = node.value
+        module = self._module_named(node) if isinstance(node, ast.Name) else self._homes.get(node)
+        for attribute in reversed(chain):
+            member = None
+            if module is not None:
+                member = self.modules.member(module, attribute.attr, importer=self.module.filename)
+            module = self._homes[attribute] = self._as_module(member)
+        return module
+
+    def _module_named(self, name: ast.Name) -> FoundModule | None:
+        """The module that all bindings of a name bring."""
+        binding = self.resolution.binding(name)
+        if binding is None:
+            return self._as_module(self.brought.get(name.id))
+        modules = [
+            self._as_module(self.imported(site)) if isinstance(site, ast.alias) else None
+            for site in binding.sites
+        ]
+        first = modules[0]
+        alike = first is not None and all(
+            each is not None and each.filename == first.filename for each in modules
+        )
+        return first if alike else None
+
+    def _as_module(self, target: Exported | FoundModule | None) -> FoundModule | None:
+        if isinstance(target, Exported):
+            target = self.modules.follow(target)
+        return target if isinstance(target, FoundModule) and not target.is_missing else None
+
+    def attribute_of_module(self, node: ast.Attribute) -> Exported | FoundModule | None:
+        """The meaning of ``m.name``, where ``m`` is a module; ``None`` if it is not known."""
+        home = self.module_behind(node.value)
+        return None if home is None else self.modules.member(home, node.attr, importer=self.module.filename)
+
+    # What names mean
+
+    def name_meaning(self, name: ast.expr | None) -> Symbol | None:
+        """The meaning of a name, or of an attribute of a module, as likely as it is; ``None`` if it is unknown."""
+        if isinstance(name, ast.Attribute):
+            target = self.attribute_of_module(name)
+            return None if target is None else symbol_of_exported(self.modules, target)
+        if not isinstance(name, ast.Name):
+            return None
+        binding = self.resolution.binding(name)
+        target = self.brought.get(name.id) if binding is None else self.own(binding)
+        if target is not None:
+            return symbol_of_exported(self.modules, target)
+        return builtin_symbol(name.id) if self.module.is_scenic else None
+
+    def own(self, binding: Binding) -> Exported:
+        """A binding of the module, to be followed."""
+        return Exported(binding.name, self.module, binding)
+
+    def at_top(self, name: str) -> Exported | None:
+        """The meaning of a name at the top level of the module."""
+        binding = self.resolution.names.get(name)
+        return self.brought.get(name) if binding is None else self.own(binding)
+
+    def before(self, name: str) -> Exported | None:
+        """The meaning of a name before the module itself binds it: the one that its last star import or model brings."""
+        stars = reversed(self._stars)
+        return next((exports.names[name] for exports in stars if name in exports.names), None)
+
+    def definition(self, name: ast.expr | None) -> Symbol | None:
+        """The one definition that an expression can only mean, in whatever module; ``None`` if there may be others, or decorators."""
+        if name is None or self.resolution.reflective:
+            return None
+        # Several rules ask about each name.
+        if name not in self._definitions:
+            symbol = self.name_meaning(name) if self._is_certain(name) else None
+            self._definitions[name] = symbol if symbol is not None and symbol.is_definite else None
+        return self._definitions[name]
+
+    def definitions_brought(self) -> Iterator[Symbol]:
+        """The definitions that star imports and the model bring."""
+        symbols = (symbol_of_exported(self.modules, each) for each in self.brought.values())
+        return (each for each in symbols if each.is_definite)
+
+    def _is_certain(self, name: ast.expr) -> bool:
+        """Return whether an expression can have no other meaning than the likely one."""
+        if not isinstance(name, ast.Name):
+            return isinstance(name, ast.Attribute)
+        reference = self.resolution.references.get(name)
+        binding = None if reference is None else reference.binding
+        if binding is None:
+            return reference is not None and name.id in self.brought and not self.wildcard
+        single = len(binding.sites) == 1 and binding.kinds != {BindingKind.SELF}
+        return single and self.stands(binding.name, binding.sites[0])
 
     def nodes(self, cls: type[ast.AST]) -> Sequence[tuple[Any, Scope]]:
         """All nodes of a class, with their scopes."""
@@ -76,11 +187,7 @@ class Names:
     @cached_property
     def _last_wildcard(self) -> tuple[int, int]:
         """The last place where names come in that the text does not show; they may replace those before."""
-        stars = [
-            node for node, _ in self.nodes(ast.ImportFrom) if any(alias.name == "*" for alias in node.names)
-        ]
-        models = [node for node, _ in self.nodes(scenic.Model)]
-        return max(map(position, (*stars, *models)), default=(0, 0))
+        return max(map(position, self.module.stars), default=(0, 0))
 
     def binding(self, name: ast.Name) -> Binding | None:
         """The meaning of a name of the program, as far as the text shows it."""
@@ -91,66 +198,31 @@ class Names:
         reference = self.resolution.references.get(name)
         return reference is not None and reference.binding is None
 
-    def definition(self, name: ast.expr | None) -> Definition | None:
-        """The one definition that an expression can only mean; ``None`` if there may be others, or decorators."""
-        if not isinstance(name, ast.Name) or self.resolution.reflective:
-            return None
-        binding = self.binding(name)
-        if binding is None or len(binding.sites) != 1:
-            return None
-        [site] = binding.sites
-        if not isinstance(site, DEFINITIONS) or getattr(site, "decorator_list", None):
-            return None
-        return site if self._stands(name.id, site) else None
-
-    def _stands(self, name: str, site: ast.AST) -> bool:
+    def stands(self, name: str, site: ast.AST) -> bool:
         """Return whether no names that the text does not show may replace what is bound to a name there."""
         if position(site) >= self._last_wildcard:
             return True
-        return not self.resolution.wildcard and name not in self.brought
+        return not self.wildcard and name not in self.brought
 
-    def foreign(self, name: ast.expr | None) -> Foreign | None:
-        """The meaning of an expression, if another module certainly defines it."""
-        if self.surroundings is None or self.resolution.reflective or name is None:
-            return None
-        # Several rules ask about each name.
-        if name not in self._foreign:
-            self._foreign[name] = self._foreign_of(name, self.surroundings)
-        return self._foreign[name]
-
-    def _foreign_of(self, name: ast.expr, surroundings: Surroundings) -> Foreign | None:
-        if isinstance(name, ast.Attribute):
-            return surroundings.attribute(name)
-        reference = self.resolution.references.get(name) if isinstance(name, ast.Name) else None
-        if reference is None:
-            return None
-        binding = reference.binding
+    def stays(self, name: ast.expr) -> bool:
+        """Return whether no names that the text does not show may replace what a name likely means."""
+        binding = self.resolution.binding(name)
         if binding is None:
-            known = reference.node.id in self.brought and not self.resolution.wildcard
-            return surroundings.brought(reference.node.id) if known else None
-        if len(binding.sites) != 1 or binding.kinds != {BindingKind.IMPORTED}:
-            return None
-        [site] = binding.sites
-        if not isinstance(site, ast.alias) or not self._stands(binding.name, site):
-            return None
-        return surroundings.imported(site)
-
-    def kind_of_brought(self, name: ast.expr) -> str | None:
-        """The kind of the value that another module defines under a name, in the word of the declared type."""
-        if self.surroundings is None or not isinstance(name, ast.Name) or self.resolution.reflective:
-            return None
-        reference = self.resolution.references.get(name)
-        if reference is None or reference.binding is not None or self.resolution.wildcard:
-            return None
-        return self.surroundings.kind_of(name.id) if name.id in self.brought else None
+            return not (isinstance(name, ast.Name) and self.wildcard)
+        return self.stands(binding.name, binding.first_site)
 
     def provided(self, name: ast.expr | None) -> str | None:
-        """The name that an expression is, if it means what the language provides under that name."""
-        if not isinstance(name, ast.Name) or self.resolution.wildcard:
+        """The name that an expression is, if it certainly means what the language provides under that name."""
+        return None if self.wildcard else self.likely_provided(name)
+
+    def likely_provided(self, name: ast.expr | None) -> str | None:
+        """The name that an expression is, if nothing that is known binds it, but the language provides it."""
+        if not isinstance(name, ast.Name):
             return None
         reference = self.resolution.references.get(name)
-        own = reference is not None and reference.binding is None and name.id not in self.brought
-        return name.id if own else None
+        if reference is None or reference.binding is not None or name.id in self.brought:
+            return None
+        return name.id if self.module.is_scenic or hasattr(builtins, name.id) else None
 
     def constant(self, name: ast.Name) -> ast.expr | None:
         """The literal that is certainly the value of a name: a number, text or collection assigned just once."""
@@ -159,7 +231,7 @@ class Names:
             return None
         value = self.assigned.get(binding.sites[0])
         literal = isinstance(value, ast.Constant | ast.List | ast.Tuple | ast.Dict | ast.Set | ast.JoinedStr)
-        return value if literal and value is not None and self._stands(name.id, value) else None
+        return value if literal and value is not None and self.stands(name.id, value) else None
 
     @cached_property
     def assigned(self) -> "Assigned":
@@ -186,40 +258,29 @@ class Names:
         stores = [use.node for use in uses if isinstance(use.node.ctx, ast.Store)]
         return self.assigned.get(stores[0]) if len(stores) == 1 else None
 
-    def _only(self, name: ast.Name) -> Binding | None:
-        """The binding of a name that is bound just once, in the text."""
-        binding = self.binding(name)
-        if binding is None or len(binding.sites) != 1 or self.resolution.reflective:
-            return None
-        if binding.scope is self.resolution.module and binding.name in self.brought:
-            return None
-        return binding
+    def values(self, binding: Binding) -> list[tuple[ast.expr, bool]] | None:
+        """The expressions that are bound to a name, one of which is its value; ``None`` if it may have another.
 
-    def only_value(self, name: ast.Name) -> tuple[ast.expr, bool] | None:
-        """The expression that is certainly bound to a name; true if it is the parts of that expression in turn."""
-        binding = self._only(name)
-        if binding is None:
-            return None
-        [site] = binding.sites
-        value = self.assigned.part(site)
-        if value is not None:
-            return value, False
-        for loop in self.nodes_around(site, ast.For):
-            if loop.target is site:
-                return loop.iter, True
-        return None
+        Each comes with whether the name runs through the parts of that expression in turn.
+        """
+        values: list[tuple[ast.expr, bool]] = []
+        for site in binding.sites:
+            value, source = self.assigned.part(site), self.module.loop_of.get(site)
+            if value is None and source is None:
+                return None
+            values.append((value, False) if value is not None else (source, True))  # type: ignore[arg-type]
+        return values
 
-    def annotation(self, name: ast.Name) -> ast.expr | None:
-        """The annotation of the parameter that a name certainly is."""
-        binding = self._only(name)
-        [site] = [None] if binding is None else binding.sites
-        return site.annotation if isinstance(site, ast.arg) else None
+    def is_hidden(self, binding: Binding) -> bool:
+        """Return whether a name may have other values than the text shows."""
+        if self.resolution.reflective:
+            return True
+        return binding.scope is self.resolution.module and binding.name in self.brought
 
-    def returned(self, function: ast.expr) -> Sequence[ast.expr]:
-        """The expressions of which a function of the program certainly returns one; none if it may return others."""
-        definition = self.definition(function)
-        scope = None if definition is None else self.resolution.scopes.get(definition)
-        if not isinstance(definition, ast.FunctionDef) or scope is None:
+    def returned(self, function: ast.AST) -> Sequence[ast.expr]:
+        """The expressions of which a function of the module returns one; none if it may return others."""
+        scope = self.resolution.scopes.get(function)
+        if not isinstance(function, ast.FunctionDef) or scope is None:
             return ()
         if any(self.resolution.nodes_in(scope, cls) for cls in _YIELDS):
             return ()

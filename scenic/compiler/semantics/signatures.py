@@ -5,7 +5,7 @@ from dataclasses import field
 from typing import Any
 
 from scenic.compiler import tree as scenic
-from scenic.compiler.semantics.meanings import class_of_symbol
+from scenic.compiler.semantics.classes import Classes
 from scenic.compiler.semantics.modules import Module, Modules
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind
 from scenic.dataclass import dataclass
@@ -97,7 +97,7 @@ def signature_of(modules: Modules, symbol: Symbol) -> Signature | None:
 
 
 def _of_class(modules: Modules, symbol: Symbol, node: ast.ClassDef) -> Signature | None:
-    known = class_of_symbol(modules, symbol)
+    known = Classes(modules).of_symbol(symbol)
     if known is None or known.is_scenic:
         return None
     initial = next((member for member in known.members if member.name == "__init__"), None)

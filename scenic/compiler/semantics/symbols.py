@@ -17,6 +17,8 @@ from scenic.language.properties import CLASSES
 from scenic.language.spans import Span
 
 __all__ = [
+    "DEFINITIONS",
+    "Definition",
     "Symbol",
     "SymbolKind",
     "builtin_symbol",
@@ -70,12 +72,39 @@ class Symbol:
         return self.filename is None
 
     @property
+    def is_definite(self) -> bool:
+        """Return whether its name can only mean this one definition, which no decorator changes."""
+        binding, node = self.binding, self.node
+        if binding is None or len(binding.sites) != 1 or not isinstance(node, DEFINITIONS):
+            return False
+        return not getattr(node, "decorator_list", None)
+
+    @property
     def documentation(self) -> str | None:
         """The docstring of the definition, or the language's documentation of the name."""
         return documentation_of(self)
 
 
 _ORIGIN: Final = Span(1, 0, 1, 0)
+
+DEFINITIONS: Final = (
+    ast.FunctionDef,
+    ast.AsyncFunctionDef,
+    ast.ClassDef,
+    scenic.BehaviorDef,
+    scenic.MonitorDef,
+    scenic.ScenarioDef,
+)
+"""Statements that bind a name to something that can be called, instantiated or run."""
+
+Definition = (
+    ast.FunctionDef
+    | ast.AsyncFunctionDef
+    | ast.ClassDef
+    | scenic.BehaviorDef
+    | scenic.MonitorDef
+    | scenic.ScenarioDef
+)
 
 _KINDS: Final = {
     ast.FunctionDef: SymbolKind.FUNCTION,
@@ -117,9 +146,10 @@ def symbol_of_module(found: FoundModule) -> Symbol:
     )
 
 
-def symbol_of_exported(modules: Modules, exported: Exported, *, follow: bool = True) -> Symbol:
-    """The symbol of a name that a module has; unless ``follow`` is false, of what is behind imports."""
-    target = modules.follow(exported) if follow else exported
+def symbol_of_exported(modules: Modules, target: Exported | FoundModule) -> Symbol:
+    """The symbol of a module, or of what is behind a name that a module has."""
+    if isinstance(target, Exported):
+        target = modules.follow(target)
     if isinstance(target, FoundModule):
         return symbol_of_module(target)
     if target.module is None or target.binding is None:

@@ -15,6 +15,7 @@ from scenic.compiler.checks import CheckContext, lint
 from scenic.compiler.fixes import apply_fixes, repair
 from scenic.compiler.parser import parse
 from scenic.compiler.resolver import resolve
+from scenic.compiler.semantics.modules import Module
 from scenic.language.diagnostics import CODES, Diagnostic, Fix, Severity
 from scenic.language.names import NAMES
 from scenic.language.source import Source
@@ -333,7 +334,10 @@ def test_large_programs(text: str) -> None:
     tree = parse(text).tree
     source = Source(text, "f")
     assert all(
-        isinstance(item, Diagnostic) for item in lint(CheckContext(tree, source, resolve(tree, source)))
+        isinstance(item, Diagnostic)
+        for item in lint(
+            CheckContext(Module(source, tree, resolve(tree, source), is_scenic=True, broken=False))
+        )
     )
     assert isinstance(tree, ast.Module)
 
