@@ -71,7 +71,9 @@ _ALL: Final = {
         roll: scalar, toHeading(): scalar, toOrientation(): orientation, w: scalar, x: scalar, y: scalar, yaw: scalar, z: scalar
     """,
     "region": """
-        AABB, area: scalar, boundary: region, boundingPolygon, buffer(scalar): region, center: vector, circumcircle,
+        AABB, approxBoundFootprint(any any), area: scalar, boundFootprint(any any), boundary: region, boundingPolygon,
+        buffer(scalar): region, center: vector, circumcircle, closestPointTo(any): vector, cumulativeLengths, defaultOrientation(any),
+        dimensions, heading, hl, hw, inradius: scalar, kdTree, lineString, onDirection, rotation, tolerance,
         containsObject(any): boolean, containsPoint(place): boolean, containsRegion(region any): boolean, corners,
         difference(region): region, dimensionality: scalar, distanceTo(place): scalar, end: oriented,
         equallySpacedPoints(scalar): points, footprint: region, fromFile(text): region, getSurfaceRegion(): region,

@@ -195,6 +195,15 @@ def test_declared_members_are_those_of_the_runtime() -> None:
         public = {name for name in dir(params[kind][0]) if not name.startswith("_")}
         # Those that are left out are of the implementation.
         assert public - set(MEMBERS[kind]) <= {"of", "row"}, kind
+    # The implementation writes its names in lower case; those of the language are all declared, so that no rule calls them unknown.
+    for kind in ("region", "shape"):
+        public = {
+            name
+            for value in params[kind]
+            for name in dir(value)
+            if re.fullmatch("[a-z]+[A-Z][A-Za-z]*", name)
+        }
+        assert public <= set(MEMBERS[kind]), kind
 
 
 COLOURS = [
