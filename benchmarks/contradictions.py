@@ -15,12 +15,10 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Final
 
-from hypothesis import HealthCheck, Phase, given, seed, settings
-
 import scenic
 from benchmarks.law_programs import programs as programs_of_laws
 from docs._extensions.blocks import blocks_of
-from fuzz.semantics.programs import Program, programs
+from fuzz.semantics.programs import texts
 from scenic.deep.findings import deep_check
 from scenic.language.diagnostics import Diagnostic, Severity
 from tests.analysis.test_contradictions import PLANTED
@@ -45,28 +43,8 @@ def satisfiable(count: int) -> Iterator[tuple[str, str, Path]]:
     for name, program in programs_of_laws().items():
         if not name.startswith("road"):  # examples, too
             yield name, program.text, ROOT
-    for number, text in enumerate(generated(count)):
+    for number, text in enumerate(texts(count, 0)):
         yield f"generated {number}", text, ROOT
-
-
-def generated(count: int) -> list[str]:
-    """Texts of random typed programs."""
-    texts: list[str] = []
-
-    @seed(0)
-    @settings(
-        max_examples=count,
-        database=None,
-        deadline=None,
-        phases=(Phase.generate,),
-        suppress_health_check=list(HealthCheck),
-    )
-    @given(programs())
-    def collect(program: Program) -> None:
-        texts.append(program.text)
-
-    collect()
-    return list(dict.fromkeys(texts))
 
 
 def has_scenes(path: Path) -> bool:

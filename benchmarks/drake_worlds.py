@@ -19,13 +19,14 @@ _TRIES: Final = 20
 
 
 class Worlds:
-    """The other side of the process, as a context manager."""
+    """The other side of the process, as a context manager; the process starts at the first question."""
+
+    _process: subprocess.Popen[str] | None = None
 
     def __enter__(self) -> Self:
-        self._start()
         return self
 
-    def _start(self) -> None:
+    def _start(self) -> subprocess.Popen[str]:
         self._process = subprocess.Popen(
             [sys.executable, "-m", "benchmarks.drake_worlds"],
             stdin=subprocess.PIPE,
@@ -34,10 +35,13 @@ class Worlds:
             text=True,
             cwd=Path(__file__).parents[1],
         )
+        return self._process
 
     def __exit__(self, *_: object) -> None:
-        self._process.terminate()
-        self._process.wait()
+        if self._process is not None:
+            self._process.terminate()
+            self._process.communicate()
+            self._process = None
 
     def read(self, path: Path) -> dict[str, Any]:
         """The `answer` about a world; raises ``RuntimeError`` where Drake cannot read it."""
@@ -48,19 +52,19 @@ class Worlds:
                 if "error" in answered:
                     raise RuntimeError(answered["error"])
                 return answered
-            self._process.wait()
-            self._start()
+            self.__exit__()
         raise RuntimeError(f"Drake has crashed {_TRIES} times")
 
     def _asked(self, path: Path) -> str:
         """The line of an answer; empty where the process has crashed."""
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
+        process = self._process or self._start()
+        assert process.stdin is not None
+        assert process.stdout is not None
         try:
-            print(path, file=self._process.stdin, flush=True)
+            print(path, file=process.stdin, flush=True)
         except BrokenPipeError:
             return ""
-        return self._process.stdout.readline()
+        return process.stdout.readline()
 
 
 def answer(path: str) -> dict[str, Any]:

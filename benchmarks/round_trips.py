@@ -17,11 +17,10 @@ from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 import numpy as np
-from hypothesis import HealthCheck, Phase, given, seed, settings
 
 import scenic
 from benchmarks.drake_worlds import Worlds
-from fuzz.semantics.programs import Program, programs
+from fuzz.semantics.programs import texts
 from scenic.formats.poses import rotation_matrix
 from scenic.formats.robotics.scene_files import scene_files
 from scenic.formats.robotics.solids import Solid, solids_of
@@ -163,26 +162,6 @@ def first_scene(load: Callable[[], scenic.Scenario]) -> Any:
     return None if isinstance(scene, Exhausted) else scene
 
 
-def random_texts(count: int, number: int) -> list[str]:
-    """Typed programs, drawn by Hypothesis under a seed."""
-    texts: list[str] = []
-
-    @seed(number)
-    @settings(
-        max_examples=count,
-        database=None,
-        deadline=None,
-        phases=(Phase.generate,),
-        suppress_health_check=list(HealthCheck),
-    )
-    @given(programs())
-    def collect(program: Program) -> None:
-        texts.append(program.text)
-
-    collect()
-    return texts
-
-
 def sources(count: int) -> Iterator[tuple[str, Any]]:
     """Scenes with their names: of all examples, then of ``count`` random programs that have scenes."""
     for path in sorted(EXAMPLES.rglob("*.scenic")):
@@ -190,7 +169,7 @@ def sources(count: int) -> Iterator[tuple[str, Any]]:
     left, number = count, 0
     while left:
         number += 1
-        for index, text in enumerate(random_texts(100, number)):
+        for index, text in enumerate(texts(100, number)):
             scene = first_scene(lambda text=text: scenic.scenarioFromString(text))  # type: ignore[misc]
             if scene is not None and left:
                 left -= 1

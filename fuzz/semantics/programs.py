@@ -4,9 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
-__all__ = ["Program", "programs"]
+__all__ = ["Program", "programs", "texts"]
 
 Draw = Callable[[st.SearchStrategy[Any]], Any]
 
@@ -328,3 +329,23 @@ def programs(draw: Draw) -> Program:
             f"record {maker.number(1)} as first\nterminate when simulation().currentTime > {maker.pick('3', '5')}"
         )
     return Program("\n".join(lines) + "\n", 6 if moving else 0)
+
+
+def texts(count: int, number: int) -> list[str]:
+    """Texts of random programs, each once, at most ``count``: always the same for the same numbers."""
+    drawn: list[str] = []
+
+    @seed(number)
+    @settings(
+        max_examples=count,
+        database=None,
+        deadline=None,
+        phases=(Phase.generate,),
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(programs())
+    def collect(program: Program) -> None:
+        drawn.append(program.text)
+
+    collect()
+    return list(dict.fromkeys(drawn))
