@@ -1,6 +1,7 @@
 """Images of the cameras of objects while a simulation runs, with rays: no display, the same everywhere."""
 
 from collections.abc import Collection, Iterator, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,12 +23,18 @@ class Cameras:
         self._classes: dict[str, int] = {}
 
     def deliver(self, simulation: Any, *, leave: Collection[tuple[str, ...]] = ()) -> None:
-        """Let every camera see the objects as they are now, but those whose outputs are among ``leave``."""
+        """Let every camera see the objects as they are now when it is read, but those whose outputs are among ``leave``."""
         now: Present | None = None
         for obj, name, sensor in carried(simulation.objects):
             if sensor.outputs not in leave:
-                now = now or Present(simulation)
-                sensor.deliver(self._image(now, obj, name, sensor))
+                now = now or self._present(simulation)
+                sensor.deliver_when_read(partial(self._image, now, obj, name, sensor))
+
+    def _present(self, simulation: Any) -> "Present":
+        """The objects now; their classes get numbers, whether or not an image shows them."""
+        for obj in simulation.objects:
+            self._classes.setdefault(type(obj).__name__, len(self._classes) + 1)
+        return Present(simulation)
 
     def _image(self, now: "Present", owner: Any, name: str, sensor: CameraSensor) -> Any:
         """The image of one camera; a dictionary of images for one that gives several."""
@@ -37,8 +44,7 @@ class Cameras:
         instance = (observation.objects + 1).astype(np.uint16)
         images = {"rgb": observation.rgb, "depth": observation.depth, "instance": instance}
         if "semantic" in sensor.outputs:
-            kinds = [type(obj).__name__ for obj in now.objects]
-            numbers = [self._classes.setdefault(kind, len(self._classes) + 1) for kind in kinds]
+            numbers = [self._classes[type(obj).__name__] for obj in now.objects]
             images["semantic"] = np.array([0, *numbers], dtype=np.uint16)[instance]
         outputs = {output: images[output] for output in sensor.outputs}
         return outputs if len(outputs) != 1 else next(iter(outputs.values()))

@@ -25,6 +25,7 @@ from scenic.runtime.description.definitions import running_in
 from scenic.runtime.dynamics.chosen_draws import Sourcing
 from scenic.runtime.dynamics.copies import Copies
 from scenic.runtime.dynamics.run import Ending, Run
+from scenic.runtime.elements.sensors import Sensor
 from scenic.runtime.ground.reported_places import is_library, reported
 from scenic.runtime.instances.properties import Finals
 from scenic.runtime.python.random_state import is_as, preserved, restore, seed_globals, states
@@ -275,6 +276,7 @@ class Simulation(ABC):
                 self.advance()
             self._tell_state(ActionsTaken())
             run.finish()
+            self.look()
             assert run.ending is not None
             self._restore()
             self.result = SimulationResult(
@@ -306,6 +308,10 @@ class Simulation(ABC):
     def _destroy_once(self) -> None:
         if not self._destroyed:
             self._destroyed = True
+            for obj in self.objects:
+                for sensor in obj.sensors.values():
+                    if isinstance(sensor, Sensor):
+                        sensor.forget()
             self.destroy()
 
     def _say_where(self, error: Exception) -> None:
@@ -457,11 +463,18 @@ class Simulation(ABC):
     def sense(self) -> None:
         """Let every object with sensors observe."""
         for obj in self.objects:
-            sensors = obj.sensors
-            if sensors:
-                obj.__dict__["observations"] = {
-                    name: sensor.getObservation() for name, sensor in sensors.items()
+            if obj.sensors:
+                # Sensors that wait to be read stand for their observations, and the whole is made when it is read.
+                obj.__dict__["_observed"] = {
+                    name: sensor if getattr(sensor, "is_waiting", False) else sensor.getObservation()
+                    for name, sensor in obj.sensors.items()
                 }
+                obj.__dict__.pop("observations", None)
+
+    def look(self) -> None:
+        """Let every sensor observe that has not been read in this step, since it may be read later."""
+        for obj in self.objects:
+            _ = obj.observations
 
     def recordCurrentState(self) -> None:
         """Append the state to the trajectory."""

@@ -3,10 +3,12 @@
 from typing import Any
 
 import numpy as np
+import pytest
 
 import scenic
 from scenic.formats.labels import observe
 from scenic.formats.sensors import sensor_viewpoint
+from scenic.simulators.cameras import Cameras
 from scenic.simulators.kinematic import KinematicSimulation, KinematicSimulator
 from scenic.simulators.simulation import Simulation
 
@@ -108,3 +110,61 @@ def test_a_simulator_may_see_itself_for_some_cameras() -> None:
     assert done is not None
     ((_, seen),) = done.records["seen"]
     assert {name for name, image in seen.items() if image is not None} == {"depth", "parts"}
+
+
+ONCE = """
+monitor Once():
+    wait
+    assert ego.observations['rgb'] is not None
+    while True:
+        wait
+"""
+
+
+@pytest.mark.parametrize(
+    ("lines", "images"),
+    [
+        ("", 1),
+        ("record int(ego.observations['rgb'].sum()) as seen\n", 6),
+        ("record final int(ego.observations['rgb'].sum()) as seen\n", 1),
+        (f"{ONCE}require monitor Once()\n", 2),
+        ("require always ego.sensors['rgb'].getObservation() is ego.sensors['rgb'].getObservation()\n", 6),
+    ],
+)
+def test_cameras_see_what_is_read_and_the_end(
+    lines: str, images: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[float] = []
+    image = Cameras._image
+    monkeypatch.setattr(
+        Cameras, "_image", lambda self, *given: made.append(given[1].x) or image(self, *given)
+    )
+    text = f"{HEAD}ego = new Chair at (0, 0), with velocity (1, 0, 0), with sensors {{'rgb': RGBSensor(width=8, height=6)}}\n"
+    (scene,) = scenic.scenarioFromString(text + lines).sample(1, seed=0)
+    done = KinematicSimulator().simulate(scene, maxSteps=5, timestep=1.0)
+    assert done is not None
+    assert len(made) == images
+    assert made == sorted(made)
+    assert made[-1] == 5
+
+
+def test_a_compose_block_reads_what_was_observed_in_the_last_step() -> None:
+    text = f"""{HEAD}
+scenario Main():
+    setup:
+        ego = new Chair at (0, 0), with velocity (1, 0, 0), with sensors {{'rgb': RGBSensor(width=8, height=6)}}
+        new Ball at (3, 3, 0)
+        record int(ego.observations['rgb'].sum()) as seen
+        record last[0] as before
+    compose:
+        while True:
+            last[0] = int(ego.observations['rgb'].sum()) if ego.observations else None
+            wait
+last = [None]
+"""
+    (scene,) = scenic.scenarioFromString(text).sample(1, seed=0)
+    done = KinematicSimulator().simulate(scene, maxSteps=3, timestep=1.0)
+    assert done is not None
+    seen, before = ([value for _, value in done.records[name]] for name in ("seen", "before"))
+    assert before == [None, *seen[:-1]]
+    assert len(set(seen)) == 4

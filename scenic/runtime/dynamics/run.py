@@ -43,6 +43,9 @@ class Simulated(Protocol):
     def sense(self) -> None:
         """Let every object observe."""
 
+    def look(self) -> None:
+        """Let every sensor observe that has not been read."""
+
     def recordCurrentState(self) -> None:
         """Append to the trajectory."""
 
@@ -376,6 +379,8 @@ class Run:
                 return
             # 7. Actions; whoever runs this then lets the simulator advance and reads back
             simulation.act(actions)
+            if top.instance is not None:  # compose blocks read the observations of the last step
+                simulation.look()
             yield
 
     def _record(self, step: int) -> None:

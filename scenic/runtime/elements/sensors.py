@@ -1,7 +1,7 @@
 """Sensors that objects carry: an object's `sensors` property holds them by name."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 from scenic.language.errors import InvalidScenarioError, Located
@@ -18,11 +18,28 @@ class Sensor:
 
     def getObservation(self) -> Any:
         """The latest observation; ``None`` as long as nothing has delivered one."""
+        look = self.__dict__.pop("_look", None)
+        if look is not None:
+            self._observation = look()
         return getattr(self, "_observation", None)
 
     def deliver(self, observation: object) -> None:
         """Give the sensor its latest observation."""
+        self.forget()
         self._observation = observation
+
+    def deliver_when_read(self, look: Callable[[], object]) -> None:
+        """Give the sensor a function that makes its latest observation, called once if it is read before the next one comes."""
+        self._look = look
+
+    @property
+    def is_waiting(self) -> bool:
+        """Return whether its latest observation is still to be made."""
+        return "_look" in self.__dict__
+
+    def forget(self) -> None:
+        """Drop an observation that is still to be made, as there is nothing to be seen any more."""
+        self.__dict__.pop("_look", None)
 
 
 class CameraSensor(Sensor):

@@ -155,6 +155,13 @@ class Point(Instance):
     def __getattr__(self, name: str) -> Any:
         # Reached only for what is not stored yet: a property of a sampled instance, or a vector's attribute.
         attributes = self.__dict__
+        if name == "observations" and "_observed" in attributes:
+            sensors = self.sensors
+            value = attributes[name] = {
+                key: item.getObservation() if item is sensors.get(key) else item
+                for key, item in attributes["_observed"].items()
+            }
+            return value
         source = attributes.get("_source")
         if source is not None:
             values = source.__dict__

@@ -1,6 +1,7 @@
 """Images of MuJoCo's own renderer, where there is an OpenGL library."""
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -46,7 +47,8 @@ class Images:
         library().mj_forward(simulation.model, simulation.data)
         for owner, name, sensor in waiting:
             if sensor.outputs in _DRAWN:
-                sensor.deliver(self._image(simulation.data, sensor, cameras[id(owner), name]))
+                camera = cameras[id(owner), name]
+                sensor.deliver_when_read(partial(self._image, simulation.data, sensor, camera))
         self._cameras.deliver(simulation, leave=_DRAWN)
 
     def _image(self, data: object, sensor: Any, camera: str) -> Any:
