@@ -14,7 +14,7 @@ DEFAULT_FIELD_OF_VIEW = 90.0
 
 
 class Sensor:
-    """A device that observes the world from an object; a simulator reads it once a step."""
+    """A device that observes the world from an object; a simulator gives it the latest of each step."""
 
     def getObservation(self) -> Any:
         """The latest observation; ``None`` as long as nothing has delivered one."""
