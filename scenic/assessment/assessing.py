@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from scenic.analysis.finite.explaining import findings
+from scenic.analysis.finite.explaining import findings, left_to_chance
 from scenic.analysis.supports import DrawnSupport, places_of, supports
 from scenic.assessment.assessment import Assessment, ValueRow
 from scenic.assessment.drawing import Whereabouts
@@ -58,6 +58,7 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
         )
         for row in supports(graph, domain)
     )
+    decision, checks = decision_of(scenario.outline), scenario.outline.checks
     return Assessment(
         scenario.filename,
         values,
@@ -66,7 +67,8 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
         estimates,
         tuple(impossible),
         accepted_scenes[0].approximation if accepted_scenes else None,
-        () if impossible else findings(decision_of(scenario.outline), scenario.outline.checks),
+        () if impossible else findings(decision, checks),
+        () if impossible else left_to_chance(decision, checks),
     )
 
 

@@ -2,13 +2,14 @@
 
 import json
 import math
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.analysis.finite.explaining import FiniteFinding
+from scenic.analysis.finite.explaining import FiniteFinding, LeftToChance
 from scenic.analysis.supports import DrawnSupport
 from scenic.assessment.drawing import Whereabouts, png, svg
 from scenic.dataclass import dataclass
@@ -17,6 +18,12 @@ from scenic.runtime.sampling.estimating import ComponentEstimate, RequirementEst
 from scenic.runtime.sampling.report import Approximation
 
 __all__ = ["Assessment", "ValueRow"]
+
+_SHOWN: Final = 5
+"""Requirements left to chance that are named."""
+
+_MOST_OPTIONS: Final = 8
+"""Options of a value that are shown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +45,7 @@ class ValueRow:
     def before(self) -> str:
         """The range of the value without the requirements."""
         if self.support.options:
-            return ", ".join(self.support.options)
+            return _listed(self.support.options)
         return _interval(self.support.before)
 
     @property
@@ -46,7 +53,7 @@ class ValueRow:
         """The part of the range that analysis leaves."""
         options = self.support.options
         if options:
-            return ", ".join(options[number] for number in self.support.left if number < len(options))
+            return _listed([options[number] for number in self.support.left if number < len(options)])
         return _interval(self.support.after)
 
 
@@ -63,6 +70,7 @@ class Assessment:
         impossible: labels of requirements that are proven to fail in every scene.
         approximation: the probability of scenes, estimated by approximate scenes, if no candidate of some component was accepted.
         finite: the components of discrete values that requirements couple.
+        left: the requirements on discrete values that the draw does not meet.
 
     """
 
@@ -74,6 +82,7 @@ class Assessment:
     impossible: tuple[str, ...]
     approximation: Approximation | None = None
     finite: tuple[FiniteFinding, ...] = ()
+    left: tuple[LeftToChance, ...] = ()
 
     @property
     def acceptance(self) -> float:
@@ -119,7 +128,7 @@ class Assessment:
         """The findings on the whole program, a sentence each."""
         if self.impossible:
             return [f"no scene exists: {', '.join(self.impossible)}"]
-        lines = [f"analysis removes {1 - self.kept:.4g} of all combinations of draws"]
+        lines = [f"analysis removes {_share(1 - self.kept, self.kept)} of all combinations of draws"]
         if self.approximation is not None:
             candidate_count = max(part.candidates for part in self.components)
             lines.append(
@@ -142,6 +151,9 @@ class Assessment:
                 f"the rarest takes {alone:.3g} candidates"
             )
         lines += map(str, self.finite)
+        lines += map(str, self.left[:_SHOWN])
+        if len(self.left) > _SHOWN:
+            lines.append(f"left to chance: {len(self.left) - _SHOWN} more")
         worst = self.costliest
         if worst is not None:
             gain = (
@@ -196,6 +208,9 @@ class Assessment:
                 }
                 for one in self.finite
             ],
+            "left_to_chance": [
+                {"requirement": one.label, "line": one.line, "reason": one.reason} for one in self.left
+            ],
             "objects": [
                 {"name": place.name, "lower": _vector(place.lower), "upper": _vector(place.upper)}
                 for place in self.places
@@ -233,6 +248,17 @@ class Assessment:
         head = "<tr><th>value</th><th>before</th><th>after</th><th>removed</th></tr>"
         lines = "".join(f"<li>{escape(line)}</li>" for line in self.summary())
         return f"<ul>{lines}</ul><table>{head}{rows}</table>{svg(self.places)}"
+
+
+def _listed(options: Sequence[str]) -> str:
+    """Some of the options, and how many there are."""
+    shown = ", ".join(options[:_MOST_OPTIONS])
+    return shown if len(options) <= _MOST_OPTIONS else f"{shown}, ... ({len(options)} options)"
+
+
+def _share(share: float, rest: float) -> str:
+    """A share as a percentage; by what it leaves where it is nearly all."""
+    return f"{share:.4g}" if rest > 0.01 or share == 1 else f"all but {rest:.3g}"
 
 
 def _candidates(acceptance: float) -> str:

@@ -1,6 +1,7 @@
 """The finite part of a plan: which checks couple discrete values, and how these are drawn so that the checks hold."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import field
 from itertools import islice
 from typing import Final
 
@@ -27,6 +28,9 @@ __all__ = ["Decision", "decide"]
 
 Mask = NDArray[np.bool_]
 
+_MIXED: Final = "it depends on values that are not discrete, too"
+_NO_WAY: Final = "no exact way to draw takes it together with the others"
+
 MOST_PIECES: Final = 20_000
 """Conditions and pairs of objects, at most, of which tables are made."""
 
@@ -43,6 +47,7 @@ class Decision:
         left: the numbers of the checks that read discrete values and are left to chance.
         impossible: the numbers of checks that cannot hold together; then there is no scene.
         problem: the problem of the components.
+        reasons: why the checks in ``left`` are left to chance, by number.
 
     """
 
@@ -53,6 +58,7 @@ class Decision:
     left: tuple[int, ...] = ()
     impossible: tuple[int, ...] = ()
     problem: Problem | None = None
+    reasons: Mapping[int, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -103,11 +109,14 @@ def decide(
         return Decision(order, components, impossible=_core(problem, impossible), problem=problem)
     parts = tuple(_part(drawn, order) for one in components for drawn in one.drawn)
     met_always = {id(constraint) for one in components for constraint in one.met}
-    by_chance = {
-        constraint.check for constraint in builder.constraints if id(constraint) not in met_always
-    } | builder.undecided
-    settled = frozenset(numbers) - by_chance
-    return Decision(order, components, parts, settled, tuple(sorted(by_chance)), problem=problem)
+    reasons = {
+        constraint.check: _NO_WAY for constraint in builder.constraints if id(constraint) not in met_always
+    }
+    reasons |= builder.undecided
+    settled = frozenset(numbers) - reasons.keys()
+    return Decision(
+        order, components, parts, settled, tuple(sorted(reasons)), problem=problem, reasons=reasons
+    )
 
 
 def _rejects(numbers: Sequence[int], met: Mapping[int, Mask]) -> bool:
@@ -194,8 +203,8 @@ class _Builder:
         self.order = list(variables.values())
         self.sizes = [variable.size for variable in self.order]
         self.constraints: list[Constraint] = []
-        self.undecided: set[int] = set()
-        """The numbers of checks of which no table was made."""
+        self.undecided: dict[int, str] = {}
+        """Reasons why checks have no table that tells all of them, by their numbers."""
         self._number = {variable.axis: place for place, variable in enumerate(self.order)}
         self._tabulator = Tabulator(variables, batch)
         self._decomposer = Decomposer(variables, self._number, self.sizes)
@@ -211,7 +220,7 @@ class _Builder:
             if isinstance(check, NodeCheck) and check.node.kind is Kind.BOOLEAN:
                 tables = self._decomposer.tables(check.node)
             if tables is None:
-                self.undecided.add(piece.number)
+                self.undecided[piece.number] = self._tabulator.reason
                 return
         else:
             tables = [_simplified([self._number[variable.axis] for variable in scope], allowed)]
@@ -221,7 +230,7 @@ class _Builder:
 
     def add_possible(self, piece: _Piece) -> None:
         """Add what is possible of a piece that reads other draws, too."""
-        self.undecided.add(piece.number)
+        self.undecided.setdefault(piece.number, _MIXED)
         found = self._possible.table(piece.check)
         if found is None:
             return

@@ -1,7 +1,7 @@
 """The finite part of a program in words and numbers: solutions of components, values that no solution has, contradictions."""
 
+import math
 from collections.abc import Sequence
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +17,7 @@ from scenic.graph.finite import Finite, Listed
 from scenic.language.diagnostics import Diagnostic, Label, Severity
 from scenic.runtime.sampling.checks import Check
 
-__all__ = ["FiniteFinding", "contradiction", "findings", "narrowed_values"]
-
-_SHOWN: Final = 3
+__all__ = ["FiniteFinding", "LeftToChance", "contradiction", "findings", "left_to_chance", "narrowed_values"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,11 +48,44 @@ class FiniteFinding:
         )
         if not self.ways:
             return f"{text}; drawn one by one, which suffices"
-        text += f", drawn {' and '.join(self.ways)}; {self.requirements} requirements and pairs always hold"
-        if self.left:
-            shown = ", ".join(self.left[:_SHOWN]) + (", ..." if len(self.left) > _SHOWN else "")
-            text += f"; left to chance: {shown}"
-        return text
+        pairs = "requirement or pair" if self.requirements == 1 else "requirements and pairs"
+        verb = "holds" if self.requirements == 1 else "hold"
+        return (
+            f"{text}, drawn {' and '.join(self.ways)}; {self.requirements} {pairs} of objects always {verb}"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class LeftToChance:
+    """A requirement on discrete values that rejects candidates.
+
+    Attributes:
+        label: the requirement.
+        line: its line.
+        reason: why it is not met by the draw, as a clause.
+
+    """
+
+    label: str
+    line: int | None
+    reason: str
+
+    def __str__(self) -> str:
+        where = "" if self.line is None or f"line {self.line}" in self.label else f" (line {self.line})"
+        return f"left to chance: {self.label}{where}: {self.reason}"
+
+
+def left_to_chance(decision: Decision, checks: Sequence[Check]) -> tuple[LeftToChance, ...]:
+    """The requirements on discrete values that are left to chance, each once."""
+    found = (
+        LeftToChance(
+            checks[number].label,
+            None if (span := checks[number].span) is None else span.line,
+            decision.reasons.get(number, ""),
+        )
+        for number in decision.left
+    )
+    return tuple(dict.fromkeys(found))
 
 
 def findings(decision: Decision, checks: Sequence[Check]) -> tuple[FiniteFinding, ...]:
@@ -78,7 +109,7 @@ def findings(decision: Decision, checks: Sequence[Check]) -> tuple[FiniteFinding
         found.append(
             FiniteFinding(
                 tuple(decision.variables[variable].address for variable in one.variables),
-                float(np.prod([decision.variables[variable].size for variable in one.variables])),
+                math.prod(float(decision.variables[variable].size) for variable in one.variables),
                 counted.share,
                 tuple(dict.fromkeys(drawn.way for drawn in one.drawn)),
                 len(one.met),

@@ -75,6 +75,8 @@ class Tabulator:
         self._known: dict[Hashable, Mask | None] = {}
         self._likeness = Likeness(variables)
         self._left = BUDGET
+        self.reason = ""
+        """The reason why the last table that was wanted is none."""
 
     def below(self, nodes: Iterable[Node]) -> tuple[list[Variable], list[Node], tuple[Node, ...]]:
         """The finite axes below some nodes, the other draws, and all nodes below."""
@@ -91,7 +93,7 @@ class Tabulator:
         test: Callable[[Batch], Verdict],
         kind: str,
     ) -> Mask | None:
-        """The combinations ``(sizes of the scope)`` that pass a check; ``None`` where there are too many, or one cannot be decided.
+        """The combinations ``(sizes of the scope)`` that pass a check; ``None`` where there are too many, or one cannot be decided (`reason`).
 
         Args:
             scope: the finite axes that the check reads.
@@ -104,7 +106,9 @@ class Tabulator:
         sizes = [variable.size for variable in scope]
         count = float(np.prod(sizes, dtype=np.float64))
         calls = [node.payload for node in every if isinstance(node.payload, OpaqueCode)]
-        if count > min(map(_most_calls, calls), default=LARGEST):
+        limit = min(map(_most_calls, calls), default=LARGEST)
+        if count > limit:
+            self.reason = _too_many(count, limit, len(scope), bool(calls))
             return None
         key = (kind, self._likeness(nodes, every))
         if key not in self._known:
@@ -113,6 +117,12 @@ class Tabulator:
             allowed = None if self._left < 0 else self._made(scope, test)
             # Code that draws random numbers by itself does not follow from the axes.
             self._known[key] = None if any(call.habit.draws for call in calls) else allowed
+        if self._known[key] is None:
+            self.reason = (
+                "the tables of other requirements take all the work that is allowed"
+                if self._left < 0
+                else "it draws random numbers by itself, or fails for some combination"
+            )
         return self._known[key]
 
     def _made(self, scope: Sequence[Variable], test: Callable[[Batch], Verdict]) -> Mask | None:
@@ -186,6 +196,14 @@ def _most_calls(call: OpaqueCode) -> int:
     functions = [value for value in reached if isinstance(value, FunctionType)]
     is_known = all(is_pure(function, global_names(function)) for function in functions)
     return LARGEST_OF_CODE if is_known else LARGEST_OF_OTHER_CODE
+
+
+def _too_many(count: float, limit: int, values: int, calls: bool) -> str:
+    """Say why a check has no table."""
+    if limit == 0:
+        return "it calls code that prints, asks or draws"
+    code = " where code of the program is called" if calls else ""
+    return f"its {values} values have {count:,.0f} combinations, of which at most {limit:,} are tried{code}"
 
 
 def _payload_key(payload: object) -> Hashable:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import scenic
-from scenic.analysis.finite.explaining import findings
+from scenic.analysis.finite.explaining import findings, left_to_chance
 from scenic.narrowing import decision_of
 
 LATIN = """
@@ -40,6 +40,30 @@ def test_what_is_left_to_chance_is_named() -> None:
     decision = decision_of(outlined)
     assert [outlined.checks[number].label for number in decision.left] == ["above"]
     assert "apart" in {outlined.checks[number].label for number in decision.settled}
+
+
+REASONS = {
+    "c > a + b": "it depends on values that are not discrete, too",
+    "sum(k for k in many if same(k)) == 3": "its 9 values have 19,683 combinations, of which at most 8,192 are tried where code of "
+    "the program is called",
+    "noisy(a)": "it draws random numbers by itself, or fails for some combination",
+    "shown(a)": "it calls code that prints, asks or draws",
+}
+
+
+@pytest.mark.parametrize("condition", REASONS)
+def test_the_reason_why_something_is_left_to_chance_is_given(condition: str) -> None:
+    text = (
+        "import random\ndef same(k): return k > 0\ndef noisy(k): return random.random() < 0.1 * k\n"
+        "def shown(k):\n    print(k)\n    return k > 1\n"
+        "a, b, c = Uniform(1, 2), Uniform(1, 2), Range(0, 4)\nmany = [Uniform(0, 1, 2) for i in range(9)]\n"
+        f"require a + b == 3\nrequire {condition}\n"
+    )
+    outlined = scenic.scenarioFromString(text).outline
+    (left,) = left_to_chance(decision_of(outlined), outlined.checks)
+    assert left.line == 10
+    assert left.reason == REASONS[condition]
+    assert str(left) == f"left to chance: requirement on line 10: {left.reason}"
 
 
 def deep(tmp_path: Path, text: str) -> list[tuple[str, int]]:
