@@ -118,7 +118,7 @@ def speeds_along(
     squares[-1] = last
     down, up = 2 * deceleration * along, 2 * comfort.acceleration * along
     # v(s)^2 <= v(t)^2 + 2 b (t - s) for every t ahead, and likewise for acceleration from every place behind.
-    squares = np.minimum.accumulate((squares + down)[::-1])[::-1] - down
+    squares = _backward(squares, np.diff(down))
     hardest = speed * speed - 2 * deceleration * (along - along[0])
     squares[0] = speed * speed
     squares = np.minimum.accumulate(squares - up) + up
@@ -146,18 +146,27 @@ def _slow_before(
 
     Junctions that are too near for that, at the speed of the car, are left out.
     """
+    steps = 2 * deceleration * np.diff(along)
+    # A car that is too fast for a bend ahead brakes for that anyway: later junctions count nevertheless.
+    least = min(_backward(squares, steps)[0], 0.98 * speed * speed)
     for first in range(len(junctions)):
-        falls = 2 * deceleration * np.diff(along)
+        falls = steps.copy()
         for begin, end in junctions[first:]:
             end = min(end, len(along) - 1)
-            reach = math.sqrt(squares[begin : end + 1].min()) * time
+            reach = math.sqrt(squares[begin : end + 1].min()) * time + deceleration * time * time / 2
             low, high = np.searchsorted(along, [along[begin] - reach, along[end] + reach])
             falls[low:high] = 0.0
-        down = np.concatenate([[0.0], np.cumsum(falls)])
-        slowest: Floats = np.minimum.accumulate((squares + down)[::-1])[::-1] - down
-        if slowest[0] >= min(squares[0], 0.98 * speed * speed):
+        slowest = _backward(squares, falls)
+        if slowest[0] >= (1 - 1e-9) * least:
             return slowest
     return squares
+
+
+def _backward(squares: Floats, falls: Floats) -> Floats:
+    """Squared speeds that fall at most by given amounts ``(n - 1,)`` from each point to the next, within limits ``(n,)``."""
+    down = np.concatenate([[0.0], np.cumsum(falls)])
+    slowest: Floats = np.minimum.accumulate((squares + down)[::-1])[::-1] - down
+    return slowest
 
 
 def _needed(along: Floats, squares: Floats, speed: float) -> float:
