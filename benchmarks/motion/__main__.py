@@ -4,7 +4,8 @@ A line shows a map, a target speed (m/s), a time step (s) and, of its runs:
 
 centre, corner  cars whose centre, or a corner, leaves the drivable region; corners where the lane's radius is at least 6 m
 tight           cars of which a corner leaves it within 6 m of a sharper bend
-d99, d99str     99th percentile of the distance from the lanes' centerlines, and that on straights, m
+d99, d99str     99th percentile of the distance from the lanes' centerlines, and that on straights, m; where a lane of less than
+                2.5 m opens or closes, from the line nearer to the lane beside on which a car has room
 a_lat, jerk     largest lateral acceleration, m/s², and jerk, m/s³
 flips           changes of sign of the yaw rate besides those of the planned path's curvature, a minute
 brake           cars that brake by over 0.5 m/s² within the intersection

@@ -17,7 +17,7 @@ from benchmarks.motion.courses import Course, Lines
 from benchmarks.motion.figures import Run
 from scenic.domains.driving.following import Driver
 from scenic.domains.driving.lane_driving import LaneChanger, junctions_of, lanes_along
-from scenic.domains.driving.maneuvering import next_maneuver
+from scenic.domains.driving.narrow_lanes import line_to_drive, ways_after
 from scenic.domains.driving.planning import path_of_lines, speeds_of
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.runtime.program.builtins import running_simulation
@@ -112,7 +112,7 @@ def following(
         path: Any = drivers[number][-1]._path
         backward = getattr(drivers[number][-1], "_backward", False)
         lanes = _lanes_of(path)
-        lines = [lane.line[::-1] if backward else lane.line for lane in lanes]
+        lines = [line_to_drive(lane)[:: -1 if backward else 1] for lane in lanes]
         runs.append(Run(course, Lines(lines, lanes[0].centerline.length + 1), _asked(course, path)))
     return runs, spent
 
@@ -148,7 +148,7 @@ def _fastest(
     lanes: Sequence[Any], along: float, speed: float, junction: tuple[float, float] = (0.0, 0.0)
 ) -> float:
     """The speed, up to the one that is wanted, from which a car at a place can brake comfortably, and before a junction."""
-    lines = [lane.line for lane in lanes]
+    lines = [line_to_drive(lane) for lane in lanes]
     path = path_of_lines(lines)
     path.lanes, _ = lanes_along(path, lanes, lines)
     junctions = junctions_of(path)
@@ -194,7 +194,7 @@ def _car(
     is_ego: bool,
 ) -> str:
     """The program's line of a car that drives along lines from a place on."""
-    line = shapely.LineString(np.concatenate([lane.line for lane in lanes]))
+    line = shapely.LineString(np.concatenate([line_to_drive(lane) for lane in lanes]))
     along = min(along, line.length - 0.3)
     place, after = (line.interpolate(item).coords[0] for item in (along, along + 0.2))
     heading = math.atan2(place[0] - after[0], after[1] - place[1])
@@ -216,7 +216,7 @@ def turning(road_map: Path, speed: float, step: float, ways: Sequence[Any]) -> t
             f"FollowTrajectoryBehavior({speed}, [network.elements[u] for u in {[lane.uid for lane in whole]}], "
             f"turn_speed={speed})"
         )
-        start = _straight([lane.line for lane in whole], max(3.0, length - BEFORE))
+        start = _straight([line_to_drive(lane) for lane in whole], max(3.0, length - BEFORE))
         inside = (length, length + way.connectingLane.centerline.length)
         cars.append(_car(whole, start, _fastest(whole, start, speed, inside), behavior, is_ego=not cars))
         lanes.append(whole)
@@ -224,7 +224,7 @@ def turning(road_map: Path, speed: float, step: float, ways: Sequence[Any]) -> t
     courses, drivers, spent = _simulated(road_map, "".join(cars), step, 20.0, 1)
     runs = []
     for number, course in enumerate(courses):
-        lines = Lines([lane.line for lane in lanes[number]], lengths[number][0])
+        lines = Lines([line_to_drive(lane) for lane in lanes[number]], lengths[number][0])
         along = lines.lengths[lines.indices(course.places)]
         enters, leaves = lengths[number]
         # The behavior ends before the end of its last lane, from where on the car only rolls.
@@ -255,7 +255,7 @@ def changing(network: Any, road_map: Path, speed: float, step: float) -> tuple[l
             shapely.LineString(lane.line).project(shapely.Point(section.line[0])) + 3.0
             for lane in (section.lane, beside.lane)
         ]
-        ways = [(item.connectingLane, item.endLane) for item in next_maneuver(beside.lane)] or [()]
+        ways = [(item.connectingLane, item.endLane) for item in ways_after(beside.lane)] or [()]
         # Nobody knows which way the car takes.
         start = min(
             _fastest(_lanes_after(beside.lane, *filter(None, way), length=120.0), along[1], speed)
@@ -278,7 +278,7 @@ def changing(network: Any, road_map: Path, speed: float, step: float) -> tuple[l
         if not followers or len(path.along) < 2:
             continue
         lanes = _lanes_of(path)
-        lines = Lines([lane.line for lane in lanes], lanes[0].centerline.length + 1)
+        lines = Lines([line_to_drive(lane) for lane in lanes], lanes[0].centerline.length + 1)
         begun = next(
             (i for i, at in enumerate(_indices(course, path)) if path.along[at] >= changer._end), None
         )

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
 from scenic.domains.driving.elements import Lane
+from scenic.domains.driving.narrow_lanes import line_to_drive
 from scenic.domains.driving.path_smoothing import (
     SPACING,
     curvatures_of,
@@ -97,7 +98,8 @@ class PathPieces:
         self._pieces: dict[Any, Piece] = {}
 
     def _line(self, lane: Lane) -> Floats:
-        return lane.line[::-1] if self._backward else lane.line
+        line = line_to_drive(lane)
+        return line[::-1] if self._backward else line
 
     def _curve(self, lane: Lane) -> tuple[Floats, Floats]:
         """Points on a lane's centerline, and on the smooth curve along the lane alone."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.domains.driving.elements import Lane, Maneuver
-from scenic.domains.driving.maneuvering import next_maneuver
+from scenic.domains.driving.narrow_lanes import ways_after
 from scenic.domains.driving.path_smoothing import resampled, smoothed
 from scenic.domains.driving.paths import Path, PathPieces, is_long, piece_along
 from scenic.domains.driving.speed_profiles import Comfort, speeds_along, speeds_in_bends
@@ -72,7 +72,7 @@ class Plan:
         if self._backward:
             before = last._predecessor
             return (before,) if isinstance(before, Lane) else ()
-        return next_maneuver(last)
+        return ways_after(last)
 
     def choose(self, choice: Maneuver | Lane) -> None:
         """Go on by a maneuver."""

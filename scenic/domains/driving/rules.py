@@ -107,7 +107,7 @@ class RulesDriver(LaneDriver):
     def ways(self) -> tuple[Any, ...]:
         """The ways to go on at the end of the last lane: all maneuvers, not only those straight ahead."""
         lane = self._plan.last_lane
-        return self.choices if self._backward else lane.maneuvers
+        return self.choices if self._backward else lane.maneuvers or self.choices
 
     # What lies along the path
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from scenic.domains.driving.elements import Lane, LinearElement
 from scenic.domains.driving.maneuvering import intersection_ahead
+from scenic.domains.driving.narrow_lanes import line_to_drive
 from scenic.runtime.regions.lines import PolylineRegion
 from scenic.runtime.values.describing import wrong_type
 from scenic.runtime.values.values import Vector
@@ -105,6 +106,8 @@ class Route:
 
 
 def _vertices(part: Any) -> Floats:
+    if isinstance(part, Lane):
+        return line_to_drive(part)
     if isinstance(part, LinearElement):
         return part.line
     return np.array([point[:2] for point in part.points])
