@@ -1,6 +1,7 @@
 """The driver of a car: keeps it on a path, at the speeds of a profile, behind the car ahead."""
 
 import math
+from bisect import bisect_right
 from collections.abc import Sequence
 from copy import deepcopy
 from typing import Any, Final
@@ -15,7 +16,7 @@ from scenic.domains.driving.car_following import (
     leader_on,
 )
 from scenic.domains.driving.paths import Path
-from scenic.domains.driving.planning import speeds_of
+from scenic.domains.driving.planning import join, speeds_of
 from scenic.domains.driving.running_traffic import ADVICE, running_traffic
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.watching import InsideWatch
@@ -30,8 +31,12 @@ _COMFORTABLE: Final = 3.3
 """The lateral acceleration (m/s^2) up to which a planned path is corrected."""
 _LATERAL_JERK: Final = 6.5
 """Change of the lateral acceleration (m/s^3) by steering."""
+_CORRECTING: Final = 2.0
+"""What corrections may add to the change of the lateral acceleration (m/s^3) that the path asks for."""
 _TURNING: Final = 0.35
-"""Change of curvature (1/m in a second) by steering, at any speed."""
+"""Change of curvature (1/m in a second) by steering of a car that is far from its path, at any speed."""
+_FAR: Final = 0.6
+"""Metres from its path from which a car is far from it."""
 _DAMPING: Final = 0.8
 _SETTLING: Final = 1.5
 """Gain (1/s) of the error of speed."""
@@ -43,6 +48,10 @@ _LONG: Final = 60.0
 """Seconds after which it is noted why a car stands."""
 _STILL: Final = 0.3
 """Speed (m/s) below which a car stands."""
+_STOPPING: Final = 0.6
+"""Metres before the place at which a car is to stop within which its speed falls with the distance that is left."""
+_STOP_JERK: Final = 6.0
+"""Change of the deceleration (m/s^3) at most there."""
 _LOOKS: Final = 0.3
 """Seconds between two looks for who is ahead."""
 
@@ -81,9 +90,10 @@ class Driver:
         self._only: Any = None
         self._course: Course | None = None
         self._look = 0.0
-        steering, self._acceleration = _applied(agent)
-        self._past = steering
-        self._curvature = self._simulation.curvature_of(agent, steering)
+        self._past, self._curvature, self._acceleration = 0.0, 0.0, 0.0
+        self._planned: float | None = None
+        self._is_fresh = False
+        self.resume()
         self._longitudinal: Any = None
         self._lateral: Any = None
         self._inside: InsideWatch | None = None
@@ -94,6 +104,7 @@ class Driver:
         self._begin = 0
         self._speeds: list[float] = []
         self._accelerations: list[float] = []
+        self._stop: float | None = None
         self._time = self._simulation.currentTime
         self.waiting = math.inf
         """The time (s) since which the car stands; infinite while it moves."""
@@ -138,6 +149,7 @@ class Driver:
             self._index, _, _ = path.locate(x, y, path.nearest(x, y, near))
         self._path, self._begin = path, self._index
         self._simulation.drivers[id(self._agent)] = self
+        self._stop = None if stops is None else _point_before(path.along, path.length - stops)
         self._speeds, self._accelerations = speeds_of(
             path,
             self._index,
@@ -169,10 +181,17 @@ class Driver:
 
     def resume(self) -> None:
         """Go on from the steering and the acceleration that the car has now."""
-        steering, self._acceleration = _applied(self._agent)
-        self._past = steering
-        self._curvature = self._simulation.curvature_of(self._agent, steering)
+        applied = _applied(self._agent)
+        self._is_fresh = applied is None
+        self._past, self._acceleration = applied or (0.0, 0.0)
+        self._curvature = self._simulation.curvature_of(self._agent, self._past)
+        self._planned = None
         self._time = self._simulation.currentTime
+
+    def _join(self, path: Path, speed: float, duration: float = 0.0, near: float | None = None) -> float:
+        """Bend a path so that the car joins it at a speed, from its present curvature; see `join`."""
+        curvature = None if self._is_fresh else self._curvature
+        return join(path, self._place(), self._agent.heading, speed, duration, near, curvature)
 
     # Controllers that programs ask for
 
@@ -240,19 +259,23 @@ class Driver:
             wanted, along = speeds[-1], 0.0
         if self._longitudinal is not None:
             return float(self._longitudinal.run_step(wanted - speed))
-        acceleration = along + _SETTLING * (wanted - speed)
-        if self._gap is not None:
-            acceleration = min(acceleration, self._behind(speed, share))
+        comfort, timestep = self.comfort, self._simulation.timestep
         lengths, index = self._path.along, self._index
         own = lengths[index] + share * (lengths[index + 1] - lengths[index])
+        is_stopping = self._stop is not None and self._stop - own < _STOPPING
+        if self._stop is not None and is_stopping:
+            acceleration = _stopping(speed, self._stop - own, timestep)
+        else:
+            acceleration = along + _SETTLING * (wanted - speed)
+        if self._gap is not None:
+            acceleration = min(acceleration, self._behind(speed, share))
         acceleration = min(acceleration, self.extra_acceleration(speed, own))
-        comfort, timestep = self.comfort, self._simulation.timestep
         if acceleration > -_HARD * comfort.deceleration:
             # Jolts are limited; the profile keeps to that, so that this is for what no profile foresees.
             change = (1.5 if acceleration > -1.2 * comfort.deceleration else 1.8) * comfort.jerk * timestep
             acceleration = min(max(acceleration, self._acceleration - change), self._acceleration + change)
         acceleration = min(acceleration, 1.2 * comfort.acceleration)
-        if wanted < 0.02 and speed < 0.3:
+        if wanted < 0.02 and speed < 0.3 and not is_stopping:
             acceleration = min(acceleration, -1.0)
         self._watch_standing(speed)
         self._acceleration = max(acceleration, -speed / timestep)
@@ -340,7 +363,14 @@ class Driver:
         square = max(speed, 1.0) ** 2
         most = max(abs(curve), _COMFORTABLE / square)
         curvature = min(max(curve - back, -most), most)
-        change = max(_LATERAL_JERK / square, _TURNING) * timestep
+        if self._is_fresh:
+            self._is_fresh = False
+            self._curvature = min(max(curve, -most), most)
+        asked = 0.0 if self._planned is None else abs(curve - self._planned)
+        change = max(_LATERAL_JERK * timestep / square, asked + _CORRECTING * timestep / square)
+        if abs(offset) > _FAR:
+            change = max(change, _TURNING * timestep)
+        self._planned = curve
         curvature = min(max(curvature, self._curvature - change), self._curvature + change)
         self._curvature = curvature
         return float(simulation.steering_for(agent, curvature))
@@ -364,6 +394,22 @@ _CONTROLLERS: Final = {
 }
 
 
+def _point_before(along: Sequence[float], place: float) -> float:
+    """The last place of a point of a path, of which ``along`` gives the places, that is not beyond another one."""
+    return along[max(1, bisect_right(along, place) - 1)]
+
+
+def _stopping(speed: float, left: float, timestep: float) -> float:
+    """The acceleration (m/s^2) by which a car comes to rest metres ahead, with a deceleration that falls evenly to nothing.
+
+    Over a time T from b to nothing, b T / 2 of speed and b T^2 / 6 of distance are left.
+    """
+    if speed < _STOP_JERK * timestep * timestep:
+        return -speed / timestep
+    most = math.sqrt(2 * _STOP_JERK * speed)
+    return -min(2 * speed * speed / (3 * left), most) if left > 0 else -most
+
+
 class _Line:
     """A path as the line that controllers look at."""
 
@@ -384,8 +430,11 @@ class _Line:
         return self._path.place(self._along + distance, self._index)
 
 
-def _applied(agent: Any) -> tuple[float, float]:
-    """Steering of an agent in the last step, and its acceleration (m/s^2) as far as actions tell; 0 if none."""
+def _applied(agent: Any) -> tuple[float, float] | None:
+    """Steering of an agent in the last step, and its acceleration (m/s^2) as far as actions tell.
+
+    ``None`` if it has just been put on the road: nobody knows how its wheels stand.
+    """
     simulation = running_traffic()
     # Those of this step are chosen after the last one's have been forgotten.
     taken = (
@@ -398,4 +447,4 @@ def _applied(agent: Any) -> tuple[float, float]:
             return action.steer, 0.0 if standing else simulation.acceleration_of(agent, pedal)
         if isinstance(action, SetSteerAction):
             return action.steer, 0.0
-    return 0.0, 0.0
+    return None if simulation.currentTime == 0 else (0.0, 0.0)

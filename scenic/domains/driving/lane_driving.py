@@ -15,7 +15,7 @@ from scenic.domains.driving.elements import Lane, LaneSection
 from scenic.domains.driving.following import Driver
 from scenic.domains.driving.kinds import ManeuverType
 from scenic.domains.driving.paths import Path
-from scenic.domains.driving.planning import Plan, join, path_of_lines
+from scenic.domains.driving.planning import Plan, path_of_lines
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import Route
 from scenic.language.errors import InvalidScenarioError
@@ -113,8 +113,13 @@ class LaneDriver(Driver):
         agent = self._agent
         # A car that faces against a lane drives against it.
         self._backward = abs(_turned(agent, lane)) > math.pi / 2
-        self._plan = Plan(agent.roadNetwork, lane, backward=self._backward)
-        self._near = metres_along(lane.line[::-1] if self._backward else lane.line, self._place())
+        before = self._simulation.drivers.get(id(agent))
+        if isinstance(before, LaneDriver) and before.lane_now() is lane and before._backward == self._backward:
+            # The way that the behavior before has chosen, from the same curve: nobody sees who drives.
+            self._plan, self._near = before._plan, before.along
+        else:
+            self._plan = Plan(agent.roadNetwork, lane, backward=self._backward)
+            self._near = metres_along(lane.line[::-1] if self._backward else lane.line, self._place())
         self._path = Path()
         self._joining_time = duration
         self._cover()
@@ -125,9 +130,7 @@ class LaneDriver(Driver):
         if not self._path.along and not plan.is_complete and not self._is_covered(plan.path):
             return
         if self._path is not plan.path and plan.path.length > 0:
-            self.joining = join(
-                plan.path, self._place(), self._agent.heading, self._pace(), self._joining_time, self._near
-            )
+            self.joining = self._join(plan.path, self._pace(), self._joining_time, self._near)
         stops = None
         if plan.is_complete:
             stops = self._agent.length / 2 + _BUFFER + self._simulation.pivot_of(self._agent)
@@ -200,7 +203,7 @@ class LaneDriver(Driver):
             if under is not None and lane is None:
                 self._begin_plan(under)
                 return
-        join(self._path, (x, y), self._agent.heading, self._agent.speed, near=near)
+        self._join(self._path, self._agent.speed, near=near)
         self._index = index
         path, self._path = self._path, Path()
         self._plan.path = path
@@ -209,7 +212,7 @@ class LaneDriver(Driver):
 
     def is_over(self) -> bool:
         """Return whether the car stands at the end of the network."""
-        if not self._plan.is_complete or self._agent.speed > 0.05:
+        if not self._plan.is_complete or self._agent.speed > 1e-3:
             return False
         left = self._path.length - self._path.along[self._index]
         is_over = bool(left < self._agent.length / 2 + 2 * _BUFFER + self._simulation.pivot_of(self._agent))
@@ -313,7 +316,7 @@ class RouteDriver(Driver):
     def _start(self) -> None:
         path = path_of_lines(self._route.lines)
         path.lanes, self._last = lanes_along(path, self._route.parts, self._route.lines)
-        join(path, self._place(), self._agent.heading, self._agent.speed)
+        self._join(path, self._agent.speed)
         limits, target = self._limits(path), self._target
         if self._route.speeds is not None:
             target = math.inf

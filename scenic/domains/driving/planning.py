@@ -19,8 +19,12 @@ Floats = NDArray[np.float64]
 
 _MARGIN: Final = 50.0
 """Metres of path that a plan has ahead at least, beyond the way of braking."""
-_OFF: Final = 0.15
+_OFF: Final = 0.05
 """Metres beside a path from which a car joins it along a curve of its own."""
+_TURNED: Final = 0.02
+"""Angle (radians) between a car and a path from which it does."""
+_PULL: Final = 0.3
+"""Lateral acceleration (m/s^2) by which the car would leave the path, with its steering wheel as it is, from which it does."""
 _SHARPEST: Final = 0.2
 """Curvature (1/m) of curves by which a car joins a path."""
 
@@ -106,11 +110,12 @@ def join(
     speed: float,
     duration: float = 0.0,
     near: float | None = None,
+    curvature: float | None = None,
 ) -> float:
     """Bend a path so that it begins where a car is, in the direction of the car: a lateral offset of least jerk.
 
-    The offset is the polynomial of fifth order that has the offset and slope of the car at its beginning, and none at its end
-    (T. Flash and N. Hogan, The Coordination of Arm Movements, 1985).
+    The offset is the polynomial of fifth order that has the offset, slope and curvature of the car at its beginning, and none at
+    its end (T. Flash and N. Hogan, The Coordination of Arm Movements, 1985).
 
     Args:
         path: the path, which changes.
@@ -119,6 +124,7 @@ def join(
         speed: of the car, m/s.
         duration: seconds that the car takes at least; 0 for as few as comfort allows.
         near: metres along the path about which the car is.
+        curvature: of the way of the car, in 1/m, positive to the left; that of the path by default.
 
     Returns:
         Metres along the path until the car is on it.
@@ -128,12 +134,21 @@ def join(
     index, share, offset = path.locate(x, y, path.nearest(x, y, near))
     if (share < 0 and index == 0) or (share > 1 and index == len(path.along) - 2):
         return 0.0
-    turned = (heading - path.headings[index] + math.pi) % (2 * math.pi) - math.pi
-    if duration == 0.0 and abs(offset) < _OFF and abs(turned) < 0.05:
+    direction, bend = (
+        values[index] + min(max(share, 0.0), 1.0) * (values[index + 1] - values[index])
+        for values in (path.headings, path.curvatures)
+    )
+    turned = (heading - direction + math.pi) % (2 * math.pi) - math.pi
+    bend = 0.0 if curvature is None else curvature - bend
+    pull = abs(bend) * speed * speed
+    if duration == 0.0 and abs(offset) < _OFF and abs(turned) < _TURNED and pull < _PULL:
         return 0.0
     slope = math.tan(min(max(turned, -1.2), 1.2))
-    # The peak of the acceleration of a curve of least jerk is 5.77 d / T^2; 2 m/s^2 are allowed.
+    # The peak of the acceleration of a curve of least jerk is 5.77 d / T^2; 2 m/s^2 are allowed. That of a slope m is 3.9 m v / T.
     time = max(duration, math.sqrt(5.77 * abs(offset) / 2.0), 1.5 * min(1.0, abs(slope) * 5))
+    time = max(time, min(2.6 * abs(slope) * speed, 4.0))
+    # Acceleration `pull` ends with a jerk of 9 pull / T at first; longer ways would lead too far from the path.
+    time = max(time, min(1.3 * pull, 2.0))
     distance = max(speed * time, 4.0, 6.0 * abs(offset) ** 0.5)
     along = np.array(path.along)
     start = along[index] + share * (along[index + 1] - along[index])
@@ -144,9 +159,11 @@ def join(
         if distance >= left or count - index < 6:
             break
         share_done = np.clip((along[index:count] - start) / distance, 0.0, 1.0)
-        second = _second_derivative(share_done, offset, slope * distance) / distance**2
+        second = (
+            _second_derivative(share_done, offset, slope * distance, bend * distance**2) / distance**2
+        )
         if np.abs(second + curvatures[index:count]).max() <= max(
-            _SHARPEST, 1.05 * np.abs(curvatures[index:count]).max()
+            _SHARPEST, 1.05 * np.abs(curvatures[index:count]).max(), abs(curvature or 0.0)
         ):
             break
         distance *= 1.3
@@ -155,22 +172,28 @@ def join(
     share_done = (along[:count] - start) / distance
     # The path bends to where it was behind the car, where nobody looks at its curvature.
     begin = max(0, index - 8)
-    offsets = _offset(share_done[begin:], offset, slope * distance)
+    offsets = _offset(share_done[begin:], offset, slope * distance, bend * distance**2)
     path.shifted(begin, offsets)
     return float(distance)
 
 
-def _offset(share: Floats, offset: float, slope: float) -> Floats:
-    """The polynomial of fifth order from ``offset`` and ``slope`` at 0 to nothing at 1, without curvature at both ends."""
+def _offset(share: Floats, offset: float, slope: float, bend: float) -> Floats:
+    """The polynomial of fifth order from an offset and its two derivatives at 0 to nothing at 1, where it has none."""
     t = np.minimum(share, 1.0)
-    rest: Floats = offset * (1 - 10 * t**3 + 15 * t**4 - 6 * t**5) + slope * (
-        t - 6 * t**3 + 8 * t**4 - 3 * t**5
+    rest: Floats = (
+        offset * (1 - 10 * t**3 + 15 * t**4 - 6 * t**5)
+        + slope * (t - 6 * t**3 + 8 * t**4 - 3 * t**5)
+        + bend * (t**2 - 3 * t**3 + 3 * t**4 - t**5) / 2
     )
-    return np.where(share < 0, offset + slope * share, rest)
+    return np.where(share < 0, offset + slope * share + bend * share**2 / 2, rest)
 
 
-def _second_derivative(t: Floats, offset: float, slope: float) -> Floats:
-    result: Floats = offset * (-60 * t + 180 * t**2 - 120 * t**3) + slope * (-36 * t + 96 * t**2 - 60 * t**3)
+def _second_derivative(t: Floats, offset: float, slope: float, bend: float) -> Floats:
+    result: Floats = (
+        offset * (-60 * t + 180 * t**2 - 120 * t**3)
+        + slope * (-36 * t + 96 * t**2 - 60 * t**3)
+        + bend * (1 - 9 * t + 18 * t**2 - 10 * t**3)
+    )
     return result
 
 
