@@ -42,3 +42,10 @@ def test_a_car_that_is_too_fast_for_that_brakes_in_the_junction() -> None:
     speeds, accelerations = speeds_along(ALONG, limits([(150, 5.0)]), 16.0, COMFORT, junctions=[(20, 120)])
     assert accelerations[20:120].min() == pytest.approx(-COMFORT.deceleration, abs=0.5)
     assert speeds[155] <= 5.05
+
+
+def test_junctions_count_though_the_car_is_too_fast_for_a_bend_before_them() -> None:
+    allowed = limits([(20, 3.0), (150, 4.0)])
+    _, accelerations = speeds_along(ALONG, allowed, 8.0, COMFORT, junctions=[(20, 40), (100, 145)])
+    assert accelerations[:20].min() < -1.2 * COMFORT.deceleration
+    assert accelerations[100:145].min() > -0.5

@@ -29,7 +29,7 @@ _GRIP: Final = 6.0
 """The lateral acceleration (m/s^2) that drivers do not exceed: about what tyres hold on a wet road."""
 _COMFORTABLE: Final = 3.3
 """The lateral acceleration (m/s^2) up to which a planned path is corrected."""
-_LATERAL_JERK: Final = 6.5
+_LATERAL_JERK: Final = 5.2
 """Change of the lateral acceleration (m/s^3) by steering."""
 _CORRECTING: Final = 2.0
 """What corrections may add to the change of the lateral acceleration (m/s^3) that the path asks for."""

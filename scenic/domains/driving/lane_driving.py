@@ -114,10 +114,16 @@ class LaneDriver(Driver):
         # A car that faces against a lane drives against it.
         self._backward = abs(_turned(agent, lane)) > math.pi / 2
         before = self._simulation.drivers.get(id(agent))
-        if isinstance(before, LaneDriver) and before.lane_now() is lane and before._backward == self._backward:
+        if (
+            isinstance(before, LaneDriver)
+            and before.lane_now() is lane
+            and before._backward == self._backward
+        ):
             # The way that the behavior before has chosen, from the same curve: nobody sees who drives.
             self._plan, self._near = before._plan, before.along
+            self._is_joined = duration == 0.0
         else:
+            self._is_joined = False
             self._plan = Plan(agent.roadNetwork, lane, backward=self._backward)
             self._near = metres_along(lane.line[::-1] if self._backward else lane.line, self._place())
         self._path = Path()
@@ -129,7 +135,7 @@ class LaneDriver(Driver):
         plan = self._plan
         if not self._path.along and not plan.is_complete and not self._is_covered(plan.path):
             return
-        if self._path is not plan.path and plan.path.length > 0:
+        if self._path is not plan.path and plan.path.length > 0 and not self._is_joined:
             self.joining = self._join(plan.path, self._pace(), self._joining_time, self._near)
         stops = None
         if plan.is_complete:

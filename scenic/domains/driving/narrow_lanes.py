@@ -13,7 +13,9 @@ __all__ = ["line_to_drive", "ways_after"]
 Floats = NDArray[np.float64]
 
 _NARROW: Final = 2.5
-"""Metres of width below which a car keeps to the lane beside."""
+"""Metres of width below which a car has no room of its own."""
+_WHOLE: Final = 0.97
+"""Share of the largest width from which on a lane counts as whole."""
 _CLOSED: Final = 0.5
 """Metres of width at which a lane has ended."""
 
@@ -24,8 +26,7 @@ def line_to_drive(lane: Lane) -> Floats:
     A lane with lanes of its direction on both sides, or on none, is followed in its middle.
     """
     widths = np.hypot(*(lane.left - lane.right).T)
-    narrow = widths < _NARROW
-    if not narrow.any():
+    if widths.min() >= _NARROW:
         return lane.line
     beside = _beside(lane)
     if beside is None:
@@ -33,7 +34,10 @@ def line_to_drive(lane: Lane) -> Floats:
     import shapely
 
     other, is_left = beside
-    share = widths[narrow] / _NARROW
+    # From lane to lane over the whole length on which the width changes.
+    full = max(_NARROW, _WHOLE * float(widths.max()))
+    narrow = widths < full
+    share = widths[narrow] / full
     inner = (lane.left if is_left else lane.right)[narrow]
     reach = shapely.distance(shapely.linestrings(other.line), shapely.points(inner)) + widths[narrow] / 2
     offsets = reach * (1 - 3 * share**2 + 2 * share**3)

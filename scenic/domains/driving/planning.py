@@ -23,7 +23,7 @@ _OFF: Final = 0.05
 """Metres beside a path from which a car joins it along a curve of its own."""
 _TURNED: Final = 0.02
 """Angle (radians) between a car and a path from which it does."""
-_PULL: Final = 0.3
+_PULL: Final = 0.5
 """Lateral acceleration (m/s^2) by which the car would leave the path, with its steering wheel as it is, from which it does."""
 _SHARPEST: Final = 0.2
 """Curvature (1/m) of curves by which a car joins a path."""
@@ -144,9 +144,10 @@ def join(
     if duration == 0.0 and abs(offset) < _OFF and abs(turned) < _TURNED and pull < _PULL:
         return 0.0
     slope = math.tan(min(max(turned, -1.2), 1.2))
-    # The peak of the acceleration of a curve of least jerk is 5.77 d / T^2; 2 m/s^2 are allowed. That of a slope m is 3.9 m v / T.
-    time = max(duration, math.sqrt(5.77 * abs(offset) / 2.0), 1.5 * min(1.0, abs(slope) * 5))
-    time = max(time, min(2.6 * abs(slope) * speed, 4.0))
+    # The acceleration of a curve of least jerk is 5.77 d / T^2 at most, of which 2 m/s^2 are allowed, and its jerk 60 d / T^3, of
+    # which 4 m/s^3 are; the jerk of a slope m is 36 m v / T^2.
+    time = max(duration, math.sqrt(5.77 * abs(offset) / 2.0), math.cbrt(15.0 * abs(offset)))
+    time = max(time, min(3.0 * math.sqrt(abs(slope) * speed), 4.0))
     # Acceleration `pull` ends with a jerk of 9 pull / T at first; longer ways would lead too far from the path.
     time = max(time, min(1.3 * pull, 2.0))
     distance = max(speed * time, 4.0, 6.0 * abs(offset) ** 0.5)
@@ -159,9 +160,7 @@ def join(
         if distance >= left or count - index < 6:
             break
         share_done = np.clip((along[index:count] - start) / distance, 0.0, 1.0)
-        second = (
-            _second_derivative(share_done, offset, slope * distance, bend * distance**2) / distance**2
-        )
+        second = _second_derivative(share_done, offset, slope * distance, bend * distance**2) / distance**2
         if np.abs(second + curvatures[index:count]).max() <= max(
             _SHARPEST, 1.05 * np.abs(curvatures[index:count]).max(), abs(curvature or 0.0)
         ):

@@ -25,6 +25,10 @@ _AHEAD: Final = 18.0
 """Metres of a bend that count from its beginning on."""
 _HARDER: Final = 1.25
 """Times the comfortable deceleration from which on a car brakes at once."""
+_TOLERANCE: Final = 1.1
+"""Times the squared speed limits up to which no car brakes at once."""
+_FEW: Final = 4
+"""Points of a path on which a car that is too fast brakes hard, at least."""
 _AT_ONCE: Final = 0.3
 """Seconds over which acceleration changes of a car that is too fast."""
 _CLASSES: Final = (3.0, 6.0, 12.0, 24.0, 60.0)
@@ -101,29 +105,66 @@ def speeds_along(
 
     """
     window = (comfort.acceleration + comfort.deceleration) / comfort.jerk
-    squares = _allowed(along, limits, window / 2, stops=stops)
-    deceleration = comfort.deceleration
-    needed = _needed(along, squares, speed)
-    if needed > _HARDER * deceleration:
-        # Too fast for what lies ahead: an even, harder braking that begins at once.
-        window = _AT_ONCE
-        squares = _allowed(along, limits, window / 2, stops=stops)
-        deceleration = max(deceleration, min(1.1 * _needed(along, squares, speed), _EMERGENCY))
-    squares = np.minimum(squares, _eroded(along, np.minimum(limits, wanted), window / 2) ** 2)
-    last = squares[-1]
-    if stops:
-        # Whoever stops in a junction, at the end of the network, brakes there.
-        squares[-1] = squares[-2]
-    squares = _slow_before(along, squares, junctions, speed, window / 2, comfort.deceleration)
-    squares[-1] = last
-    down, up = 2 * deceleration * along, 2 * comfort.acceleration * along
-    # v(s)^2 <= v(t)^2 + 2 b (t - s) for every t ahead, and likewise for acceleration from every place behind.
-    squares = _backward(squares, np.diff(down))
-    hardest = speed * speed - 2 * deceleration * (along - along[0])
-    squares[0] = speed * speed
-    squares = np.minimum.accumulate(squares - up) + up
-    squares = np.maximum(squares, np.maximum(hardest, 0.0))
-    return _averaged(along, np.sqrt(np.maximum(squares, 0.0)), window, acceleration, stops=stops)
+    wanted = np.minimum(limits, wanted)
+    squares = _TOLERANCE * _allowed(along, limits, window / 2, stops=stops)
+    if _needed(along, squares, speed) <= _HARDER * comfort.deceleration:
+        way = _Way(along, limits, wanted, comfort, junctions, stops)
+        return way.speeds(speed, acceleration, comfort.deceleration, window)
+    # Too fast for what lies ahead: an even, harder braking that begins at once, until comfort is enough.
+    needed = _needed(along, _allowed(along, limits, _AT_ONCE / 2, stops=stops), speed)
+    deceleration = max(comfort.deceleration, min(1.1 * needed, _EMERGENCY))
+    way = _Way(along, limits, wanted, comfort, junctions, stops)
+    speeds, accelerations = way.speeds(speed, acceleration, deceleration, _AT_ONCE)
+    slow = speeds**2 <= _backward(squares, 2 * _HARDER * comfort.deceleration * np.diff(along))
+    places = np.flatnonzero(slow[_FEW:-_FEW])
+    if not len(places):
+        return speeds, accelerations
+    place = _FEW + int(places[0])
+    after = speeds_along(
+        along[place:],
+        limits[place:],
+        float(speeds[place]),
+        comfort,
+        wanted=wanted[place:],
+        acceleration=float(accelerations[place]),
+        stops=stops,
+        junctions=[(max(0, low - place), high - place) for low, high in junctions if high > place],
+    )
+    return np.concatenate([speeds[:place], after[0]]), np.concatenate([accelerations[:place], after[1]])
+
+
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """What `speeds_along` is given of the way."""
+
+    along: Floats
+    limits: Floats
+    wanted: Floats
+    comfort: Comfort
+    junctions: Sequence[tuple[int, int]]
+    stops: bool
+
+    def speeds(
+        self, speed: float, acceleration: float, deceleration: float, window: float
+    ) -> tuple[Floats, Floats]:
+        """Speeds and accelerations ``(n,)`` of a car that brakes by a deceleration, which changes over seconds."""
+        along, comfort, stops = self.along, self.comfort, self.stops
+        squares = _allowed(along, self.limits, window / 2, stops=stops)
+        squares = np.minimum(squares, _eroded(along, self.wanted, window / 2) ** 2)
+        last = squares[-1]
+        if stops:
+            # Whoever stops in a junction, at the end of the network, brakes there.
+            squares[-1] = squares[-2]
+        squares = _slow_before(along, squares, self.junctions, speed, window / 2, comfort.deceleration)
+        squares[-1] = last
+        # v(s)^2 <= v(t)^2 + 2 b (t - s) for every t ahead, and likewise for acceleration from every place behind.
+        squares = _backward(squares, 2 * deceleration * np.diff(along))
+        hardest = speed * speed - 2 * deceleration * (along - along[0])
+        squares[0] = speed * speed
+        up = 2 * comfort.acceleration * along
+        squares = np.minimum.accumulate(squares - up) + up
+        squares = np.maximum(squares, np.maximum(hardest, 0.0))
+        return _averaged(along, np.sqrt(np.maximum(squares, 0.0)), window, acceleration, stops=stops)
 
 
 def _allowed(along: Floats, limits: Floats, time: float, *, stops: bool) -> Floats:
