@@ -74,8 +74,9 @@ def _simulated(
 
 def _indices(course: Course, path: Any) -> list[int]:
     """The points of a planned path at the states of a course."""
-    first = path.lanes[1][0] if len(path.lanes) > 1 else len(path.along)
-    index = int(((path.points()[: max(2, first)] - course.places[0]) ** 2).sum(axis=1).argmin())
+    turned = (np.array(path.headings) - course.headings[0] + math.pi) % (2 * math.pi) - math.pi
+    # A path may come back to where it was, in another direction.
+    index = int((((path.points() - course.places[0]) ** 2).sum(axis=1) + 25 * turned**2).argmin())
     found = []
     for x, y in course.places.tolist():
         index, _, _ = path.locate(x, y, index)

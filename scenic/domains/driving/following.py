@@ -32,7 +32,7 @@ _COMFORTABLE: Final = 3.3
 _LATERAL_JERK: Final = 5.2
 """Change of the lateral acceleration (m/s^3) by steering."""
 _CORRECTING: Final = 2.0
-"""What corrections may add to the change of the lateral acceleration (m/s^3) that the path asks for."""
+"""Part that corrections may add to the change of the lateral acceleration (m/s^3) that the path asks for."""
 _TURNING: Final = 0.35
 """Change of curvature (1/m in a second) by steering of a car that is far from its path, at any speed."""
 _FAR: Final = 0.6

@@ -135,7 +135,7 @@ def speeds_along(
 
 @dataclass(frozen=True, slots=True)
 class _Way:
-    """What `speeds_along` is given of the way."""
+    """A way as `speeds_along` is given it."""
 
     along: Floats
     limits: Floats

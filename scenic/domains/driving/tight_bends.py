@@ -6,6 +6,7 @@ linear program, as curvature is about linear in small offsets (as in path planni
 Hierarchical Trajectory Planning of an Autonomous Car, 2018). It is solved again about each solution.
 """
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -22,6 +23,8 @@ _HELD: Final = 3
 """Points at either end that stay: they keep position, heading and curvature."""
 _CHANGE: Final = 0.1
 """Change of curvature (1/m in a metre) that a car follows at the speed of such bends."""
+_EVENNESS: Final = 10.0
+"""Weight of the changes of curvature (1/m), beside metres from the line: without it curves waver for nothing."""
 _FARTHEST: Final = 0.1
 """Metres from the line up to which nothing is to be gained."""
 _STEP: Final = 0.6
@@ -111,16 +114,19 @@ def _offsets(points: Floats, away: Floats, sharpest: float) -> Floats | None:
     bend = np.diff(np.eye(count), 2, axis=0) / step**2
     bend[:, 1:-1] += np.diag(now**2)
     turn = np.diff(bend, axis=0) / step
-    one, none = np.eye(count), np.zeros((count, count))
-    column = np.ones((count, 1))
-    # Unknowns: offsets, their distances from the line, the largest of these.
-    curved = np.vstack([bend, -bend, turn, -turn])
+    one = np.eye(count)
+    # Unknowns: offsets, their distances from the line, the largest of these, and the changes of curvature without signs.
+    sizes = (count, count, 1, len(turn))
+    changes = np.eye(len(turn))
     rows = np.vstack(
         [
-            np.hstack([curved, np.zeros((len(curved), count + 1))]),
-            np.hstack([one, -one, 0 * column]),
-            np.hstack([-one, -one, 0 * column]),
-            np.hstack([none, one, -column]),
+            _row(sizes, {0: bend}),
+            _row(sizes, {0: -bend}),
+            _row(sizes, {0: turn, 3: -changes}),
+            _row(sizes, {0: -turn, 3: -changes}),
+            _row(sizes, {0: one, 1: -one}),
+            _row(sizes, {0: -one, 1: -one}),
+            _row(sizes, {1: one, 2: -np.ones((count, 1))}),
         ]
     )
     rate = np.diff(now) / step
@@ -128,10 +134,19 @@ def _offsets(points: Floats, away: Floats, sharpest: float) -> Floats | None:
     most = np.maximum(sharpest, np.abs(now) + 1e-6)
     most[_HELD:-_HELD] = sharpest
     fastest = np.maximum(_CHANGE, np.abs(rate) + 1e-6)
-    limits = [most - now, most + now, fastest - rate, fastest + rate, away, -away, np.zeros(count)]
-    cost = np.concatenate([np.zeros(count), np.full(count, 0.02), [1.0 * count]])
+    limits = [most - now, most + now, -rate, rate, away, -away, np.zeros(count)]
+    cost = np.concatenate(
+        [np.zeros(count), np.full(count, 0.02), [1.0 * count], np.full(len(turn), _EVENNESS * step)]
+    )
     room = np.full(count, _STEP)
     room[:_HELD] = room[-_HELD:] = 0.0
     bounds = [(-most, most) for most in room.tolist()] + [(0.0, None)] * (count + 1)
+    bounds += [(0.0, most) for most in fastest.tolist()]
     solution = linprog(cost, A_ub=rows, b_ub=np.concatenate(limits), bounds=bounds)
     return None if solution.x is None else np.asarray(solution.x[:count])
+
+
+def _row(sizes: Sequence[int], parts: dict[int, Floats]) -> Floats:
+    """A row of blocks of as many columns as sizes say: the parts, by their numbers, and zeros."""
+    height = len(next(iter(parts.values())))
+    return np.hstack([parts.get(number, np.zeros((height, size))) for number, size in enumerate(sizes)])
