@@ -1,10 +1,11 @@
 """Small OpenDRIVE maps for tests, as text: roads by a few words each."""
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-__all__ = ["RoadText", "cross", "map_text", "straight"]
+__all__ = ["RoadText", "cross", "map_text", "mirrored", "straight"]
 
 
 def lanes(left: str, right: str) -> str:
@@ -133,3 +134,19 @@ def cross(arm: float = 60.0, half: float = 10.0, *, signal: str = "", bent: int 
         )
     junction = f'<junction id="9" name="crossing">{"".join(connections)}</junction>'
     return map_text(roads, junction)
+
+
+def mirrored(text: str) -> str:
+    """A map seen in a mirror along the x axis, on which traffic keeps left."""
+    numbers = r'\b(y|hdg|curvature|curvStart|curvEnd|aV|bV|cV|dV|t|from|to)="([^"]*)"|<(lane|predecessor|successor) id="([^"]*)"'
+
+    def negated(match: re.Match[str]) -> str:
+        name, value, element, number = match.groups()
+        return f'{name}="{-float(value)!r}"' if name else f'<{element} id="{-int(number)}"'
+
+    text = re.sub(numbers, negated, text)
+    text = re.sub(r'(from|to)="(-?\d+)\.0"', r'\1="\2"', text)
+    text = re.sub(
+        r"<(/?)(left|right)>", lambda match: f"<{match[1]}{'left' if match[2] == 'right' else 'right'}>", text
+    )
+    return text.replace("<road ", '<road rule="LHT" ')

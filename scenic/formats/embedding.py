@@ -6,11 +6,13 @@ The image is what remains where a host removes frames or runs no scripts.
 import base64
 import html as markup
 from collections.abc import Mapping, Sequence
+from itertools import chain, repeat
 from typing import Any
 
 from scenic.formats.course_page import PoseTape, course_data, course_page
 from scenic.formats.html import page
 from scenic.formats.imaging import MissingLibraryError
+from scenic.formats.lamps import NO_COLORS
 from scenic.formats.png import png
 from scenic.formats.scenes import Scene
 
@@ -34,8 +36,9 @@ def embedded_courses(courses: Sequence[Mapping[str, Any]], title: str) -> str:
 def embedded_simulation(simulation: Any) -> str:
     """HTML that plays a simulation whose states were kept."""
     tape = PoseTape()
-    for state in simulation.trajectory:
-        tape.add(list(zip(state.positions, state.orientations, strict=True)))
+    colors = chain(getattr(simulation, "light_course", ()), repeat(NO_COLORS))
+    for state, lights in zip(simulation.trajectory, colors, strict=False):
+        tape.add(list(zip(state.positions, state.orientations, strict=True)), lights)
     return embedded_courses([course_data(simulation, tape)], "simulation")
 
 

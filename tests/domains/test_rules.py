@@ -12,11 +12,14 @@ import scenic
 from scenic.domains.driving.kinds import ManeuverType
 from scenic.domains.driving.right_of_way import Claim, RightOfWay, comes_first
 from scenic.domains.driving.roads import Network
+from scenic.domains.driving.roundabouts import roundabouts
 from scenic.domains.driving.signals import LightTimes, TrafficLights, phases_of
+from scenic.formats.embedding import embedded_simulation
 from scenic.formats.trajectories import course_document
 from scenic.language.errors import InvalidScenarioError
-from tests.maps import cross
+from tests.maps import cross, mirrored
 
+ROUNDABOUT = Path(scenic.__file__).parents[1] / "examples" / "driving" / "roundabout.xodr"
 LIGHT = '<signal id="7" s="99" t="-4" zOffset="3" orientation="+" dynamic="yes" country="OpenDRIVE" type="{type}" subtype="-1"/>'
 
 
@@ -77,6 +80,30 @@ def test_a_light_changes_and_the_car_goes_on(folder: Path) -> None:
     assert np.abs(places(done)[-1]).max() > 30
 
 
+def test_colors_of_lights_are_kept_for_films(folder: Path) -> None:
+    text = """
+behavior Switch():
+    do WaitBehavior() for 2 seconds
+    take SetTrafficLightAction(network.signals[0], 'green')
+    do WaitBehavior() for 5 seconds
+    take FreezeTrafficLightsAction()
+    do WaitBehavior() for 2 seconds
+ego = new Car at (80, 1.75), facing 90 deg, with behavior Switch
+record simulation().signalState(network.signals[0]) as state
+"""
+    text = text.replace("WaitBehavior()", "FollowLaneBehavior(0)")
+    lights = "{'green': 2, 'yellow': 1, 'all_red': 1, 'offset': 2.5}"
+    done = simulated(folder, "from scenic.domains.driving.signals import *\n" + text, "light", 100, lights)
+    (signal,) = (item for item in done.scene.workspace.network.signals if item.isTrafficLight)
+    shown = [colors[signal.uid] for colors in done.light_course]
+    # What is set is seen in the next state.
+    recorded = [color for _, color in done.result.records["state"]]
+    assert shown == recorded[: len(shown)]
+    assert set(shown) == {"red", "yellow", "green"}
+    assert len({id(colors) for colors in done.light_course}) < 15
+    assert "lamps" in embedded_simulation(done)
+
+
 def test_whoever_begins_in_an_intersection_holds_its_way(folder: Path) -> None:
     text = """
 ego = new Car at (15.5, 1.75), facing 90 deg, with behavior DriveByRulesBehavior(8)
@@ -115,6 +142,46 @@ def test_priority_by_signs_turns_and_from_the_right(folder: Path) -> None:
         found = ways(Network.fromFile(folder / f"{sign}.xodr"))
         assert comes_first(found[4, straight], found[1, straight])
         assert not comes_first(found[1, straight], found[2, straight])
+
+
+def test_priority_where_traffic_keeps_left(folder: Path) -> None:
+    (folder / "left.xodr").write_text(mirrored(cross(arm=100, half=15)))
+    town = Network.fromFile(folder / "left.xodr")
+    assert town.driveOnLeft
+    found = ways(town)
+    straight = found[1, ManeuverType.STRAIGHT]
+    assert comes_first(found[3, ManeuverType.STRAIGHT], found[1, ManeuverType.RIGHT_TURN])
+    assert not comes_first(found[3, ManeuverType.RIGHT_TURN], straight)
+    assert not comes_first(found[3, ManeuverType.STRAIGHT], found[1, ManeuverType.LEFT_TURN])
+    # Road 4 comes from the north in the mirror: from the right of who drives to the west.
+    assert comes_first(found[4, ManeuverType.STRAIGHT], straight)
+    assert not comes_first(found[2, ManeuverType.STRAIGHT], straight)
+
+
+def test_traffic_that_keeps_left_is_the_mirror_image(folder: Path) -> None:
+    car = "new Car at ({}, {}), facing {} deg, with speed 8, with behavior DriveByRulesBehavior()\n"
+    text = ROUNDABOUT.read_text()
+    (folder / "ring.xodr").write_text(text)
+    (folder / "mirror.xodr").write_text(mirrored(text))
+    random.seed(1)
+    right = simulated(folder, "ego = " + car.format(70, 1.75, 90) + car.format(-1.75, 60, 180), "ring", 200)
+    random.seed(1)
+    left = simulated(folder, "ego = " + car.format(70, -1.75, 90) + car.format(-1.75, -60, 0), "mirror", 200)
+    for number in range(2):
+        assert places(left, number) == pytest.approx(places(right, number) * (1, -1), abs=1e-6)
+    assert np.abs(places(right)[-1]).max() > 30
+
+
+@pytest.mark.parametrize("sign", ["205", "274"])
+def test_traffic_on_the_ring_of_a_roundabout_comes_first(folder: Path, sign: str) -> None:
+    (folder / "round.xodr").write_text(ROUNDABOUT.read_text().replace('type="205"', f'type="{sign}"'))
+    town = Network.fromFile(folder / "round.xodr")
+    (ring,) = roundabouts(town)
+    roads = {lane.road.uid for lane in ring.lanes}
+    pairs = [(a, b) for a in town.maneuvers for b in a.conflictingManeuvers]
+    mixed = [(a, b) for a, b in pairs if a.startLane.road.uid in roads and b.startLane.road.uid not in roads]
+    assert len(mixed) >= 4
+    assert all(comes_first(a, b) and not comes_first(b, a) for a, b in mixed)
 
 
 def test_ways_are_taken_in_order(folder: Path) -> None:

@@ -7,6 +7,8 @@ from typing import Any, Final
 from scenic.dataclass import dataclass
 from scenic.domains.driving.elements import Maneuver
 from scenic.domains.driving.kinds import ManeuverType
+from scenic.domains.driving.network import RoadNetwork
+from scenic.domains.driving.roundabouts import roundabouts
 
 __all__ = ["Claim", "RightOfWay", "comes_first", "ways_meet"]
 
@@ -56,22 +58,33 @@ def ways_meet(one: Maneuver, other: Maneuver) -> bool:
 def comes_first(other: Maneuver, own: Maneuver) -> bool:
     """Return whether traffic on another way has priority over that on the own one.
 
-    By signs; else ways straight ahead and to the right before those to the left of oncoming traffic; else from the right.
+    By signs; else that on the ring of a roundabout; else ways straight ahead and to the own side before those that turn across oncoming
+    traffic; else from the right.
     """
     ranks = [_rank(maneuver) for maneuver in (other, own)]
     if ranks[0] != ranks[1]:
         return ranks[0] > ranks[1]
+    network = own.startLane.network
+    on_ring = [maneuver.startLane.road.uid in _roads_of_rings(network) for maneuver in (other, own)]
+    if on_ring[0] != on_ring[1]:
+        return on_ring[0]
     turned = _approach(other) - _approach(own)
     turned = (turned + math.pi) % (2 * math.pi) - math.pi
     if abs(turned) > math.radians(135):
-        own_turns = own.type in (ManeuverType.LEFT_TURN, ManeuverType.U_TURN)
-        other_turns = other.type in (ManeuverType.LEFT_TURN, ManeuverType.U_TURN)
-        return own_turns and not other_turns
+        far = ManeuverType.RIGHT_TURN if network.driveOnLeft else ManeuverType.LEFT_TURN
+        crosses = [maneuver.type in (far, ManeuverType.U_TURN) for maneuver in (other, own)]
+        return crosses[1] and not crosses[0]
     if abs(turned) < math.radians(45):
         # Ways side by side: the one that keeps on comes first.
         return other.type is ManeuverType.STRAIGHT and own.type is not ManeuverType.STRAIGHT
     # Somebody who comes from the right drives to the left.
     return turned > 0
+
+
+@lru_cache(maxsize=16)
+def _roads_of_rings(network: RoadNetwork) -> frozenset[str]:
+    """The ``uid`` of the roads that are rings of roundabouts."""
+    return frozenset(lane.road.uid for ring in roundabouts(network) for lane in ring.lanes)
 
 
 def _rank(maneuver: Maneuver) -> int:

@@ -144,11 +144,20 @@ class TrafficLights:
         self._set: dict[str, tuple[str, str]] = {}
         self._frozen: float | None = None
         self._lag = 0.0
+        self._interventions = 0
         self.time = 0.0
 
     @property
     def _now(self) -> float:
         return (self.time if self._frozen is None else self._frozen) - self._lag + self._times.offset
+
+    @property
+    def moment(self) -> tuple[int, int, int]:
+        """Numbers that are the same as long as no light changes."""
+        times = self._times
+        length = times.green + times.yellow + times.all_red
+        turn, into = divmod(self._now, length)
+        return int(turn), (into >= times.green) + (into >= times.green + times.yellow), self._interventions
 
     def get(self, signal: Signal) -> str:
         """The colour of a light now: ``red``, ``yellow``, ``green`` or ``off``."""
@@ -201,10 +210,12 @@ class TrafficLights:
 
     def set(self, signal: Signal, color: str) -> None:
         """Set a light, until it would change."""
+        self._interventions += 1
         self._set[signal.uid] = _color(color), self._planned(signal)
 
     def freeze(self, frozen: bool) -> None:
         """Let all lights stay as they are, or change again from there on."""
+        self._interventions += 1
         if frozen and self._frozen is None:
             self._frozen = self.time
         elif not frozen and self._frozen is not None:

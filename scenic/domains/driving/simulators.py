@@ -1,7 +1,9 @@
 """Bases of simulators for the driving domain."""
 
 import math
+from collections.abc import Mapping
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any, ClassVar
 
 from scenic.domains.driving.car_following import Traffic
@@ -107,6 +109,28 @@ class DrivingSimulation(Simulation):
         lights.time = self.currentTime * float(self.timestep)
         color: str = lights.get(signal)
         return color
+
+    def recordCurrentState(self) -> None:
+        """Append the state to the trajectory, and the colours of lights to `light_course`."""
+        super().recordCurrentState()
+        colors = getattr(self.scene.workspace, "light_colors", None)
+        is_planned = type(self).signalState is DrivingSimulation.signalState
+        if colors is None or not is_planned or not isinstance(self.trajectory, list):
+            return
+        lights = self.traffic_lights
+        lights.time = self.currentTime * float(self.timestep)
+        if lights.moment != self._light_moment:
+            self._light_moment = lights.moment
+            self._light_colors = colors(self)
+        self.light_course.append(self._light_colors)
+
+    @cached_property
+    def light_course(self) -> list[Mapping[str, str]]:
+        """The colours of the map's lights in the states of the trajectory, by ``uid``, where the simulation has them by plan."""
+        return []
+
+    _light_moment: tuple[int, int, int] | None = None
+    _light_colors: Mapping[str, str] = MappingProxyType({})
 
     def _light_ahead(self, vehicle: Any, distance: float) -> Signal | None:
         """The first traffic light ahead of a vehicle within a distance in metres."""
