@@ -5,6 +5,8 @@ Headings are anticlockwise from east there, positive steering is to the left, an
 
 import math
 import sys
+from importlib import import_module
+from inspect import signature
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
@@ -13,6 +15,7 @@ import pytest
 
 import scenic
 from scenic.language.errors import SimulationCreationError, UnsupportedError
+from scenic.simulators.metadrive.library import environment, library
 from scenic.simulators.metadrive.simulator import middle_of
 from tests.maps import cross
 
@@ -253,3 +256,46 @@ def test_the_middle_of_georeferenced_maps(
     file.write_text(text)
     x, y = middle_of(file, SimpleNamespace(offset=(691000.0, 5335000.0, 0.0, 0.0)))
     assert (1050 + x, 2000 + y) == (0, 0)
+
+
+def test_the_library_takes_what_it_is_given(tmp_path: Path) -> None:
+    pytest.importorskip("metadrive")
+    pytest.importorskip("sumolib")
+    parts = library()
+    vehicle, engine = parts.DefaultVehicle, import_module("metadrive.engine.base_engine").BaseEngine
+    place = [0.0, 0.0]
+    calls: list[tuple[Any, tuple[Any, ...], dict[str, Any]]] = [
+        (engine.spawn_object, (None, vehicle), {"vehicle_config": {}, "position": place, "heading": 0.0}),
+        (vehicle, (), {"vehicle_config": {}, "position": place, "heading": 0.0}),
+        (parts.Pedestrian, (), {"position": place, "heading_theta": 0.0}),
+        (parts.TrafficBarrier, (), {"position": place, "heading_theta": 0.0, "static": True}),
+        (vehicle.before_step, (None, [0.0, 0.0]), {}),
+        (engine.register_manager, (None, "map_manager", None), {}),
+        (parts.SumoMapManager, ("map.net.xml",), {}),
+        (parts.BaseEnv.step, (None, [0.0, 0.0]), {}),
+        (parts.BaseEnv.render, (None,), {"mode": "topdown"}),
+    ]
+    for kind in (vehicle, parts.Pedestrian, parts.TrafficBarrier):
+        calls += [
+            (kind.set_position, (None, place), {}),
+            (kind.set_heading_theta, (None, 0.0), {}),
+            (kind.set_velocity, (None, place), {}),
+        ]
+        for name in ("position", "velocity", "heading_theta"):
+            assert isinstance(getattr(kind, name), property)
+    for function, given, named in calls:
+        signature(function).bind(*given, **named)
+    # An unknown setting is an error there.
+    made = environment(
+        parts,
+        tmp_path / "map.net.xml",
+        use_render=False,
+        decision_repeat=5,
+        physics_world_step_size=0.02,
+        vehicle_config={"spawn_position_heading": [place, 0.5]},
+        log_level=50,
+    )
+    assert made.config["vehicle_config"]["spawn_position_heading"] == [place, 0.5]
+    for name in ("reward_function", "cost_function", "done_function", "get_single_observation"):
+        here, there = (signature(getattr(kind, name)).parameters for kind in (type(made), parts.BaseEnv))
+        assert len(here) == len(there)

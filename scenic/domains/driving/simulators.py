@@ -114,10 +114,14 @@ class DrivingSimulation(Simulation):
         """Append the state to the trajectory, and the colours of lights to `light_course`."""
         super().recordCurrentState()
         colors = getattr(self.scene.workspace, "light_colors", None)
-        is_planned = type(self).signalState is DrivingSimulation.signalState
-        if colors is None or not is_planned or not isinstance(self.trajectory, list):
+        if colors is None or not isinstance(self.trajectory, list):
             return
         lights = self.traffic_lights
+        if (
+            not isinstance(lights, TrafficLights)
+            or type(self).signalState is not DrivingSimulation.signalState
+        ):
+            return  # those of another simulator
         lights.time = self.currentTime * float(self.timestep)
         if lights.moment != self._light_moment:
             self._light_moment = lights.moment
