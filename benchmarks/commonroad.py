@@ -20,7 +20,7 @@ import shapely
 
 import scenic
 from scenic.formats.commonroad.files import commonroad_document, document_text
-from scenic.formats.commonroad.obstacles import Course, State, state_of
+from scenic.formats.commonroad.obstacles import ObstacleCourse, State, state_of
 from scenic.simulators.newtonian import NewtonianSimulator
 from tests.maps import cross
 
@@ -75,7 +75,7 @@ def simulations(road_map: Path, count: int) -> Iterator[tuple[int, set[tuple[int
         watch = Watch()
         simulator.simulate(scene, maxSteps=STEPS, on_state=watch.see)
         courses = [
-            Course(thing, tuple(states[index] for states in watch.states))
+            ObstacleCourse(thing, tuple(states[index] for states in watch.states))
             for index, thing in enumerate(scene.objects)
         ]
         document = commonroad_document(scene, courses, 0.1, ego_moves=True)

@@ -33,7 +33,7 @@ from typing import Any, Final
 import scenic
 from scenic.domains.driving import measures
 from scenic.formats.commonroad.files import commonroad_document, document_text
-from scenic.formats.commonroad.obstacles import Course, State, state_of
+from scenic.formats.commonroad.obstacles import ObstacleCourse, State, state_of
 from scenic.simulators.newtonian import NewtonianSimulator
 from tests.maps import RoadText, line, map_text, two_way
 
@@ -125,7 +125,7 @@ def simulations(folder: Path, count: int) -> tuple[list[Path], list[list[list[fl
         watch = Watch()
         NewtonianSimulator().simulate(scene, maxSteps=STEPS, on_state=watch.see)
         courses = [
-            Course(thing, tuple(states[index] for states in watch.states))
+            ObstacleCourse(thing, tuple(states[index] for states in watch.states))
             for index, thing in enumerate(scene.objects)
         ]
         file = folder / f"{number}.xml"

@@ -18,8 +18,8 @@ from scenic.compiler.syntax import (
     ListOf,
     Many,
     Optional,
-    Reference,
     Row,
+    RuleReference,
     StatementForm,
     TokenKind,
     Word,
@@ -176,10 +176,10 @@ def _item(item: Item) -> Iterator[Any]:
             yield railroad.Terminal(text)
         case TokenKind(name) if name not in _LAYOUT:
             yield railroad.NonTerminal(name.lower())
-        case Reference(rule) if rule in _INLINE:
+        case RuleReference(rule) if rule in _INLINE:
             rows = [railroad.Sequence(*_row(each.row)) for each in RULES[rule].alternatives]
             yield rows[0] if len(rows) == 1 else railroad.Choice(0, *rows)
-        case Reference(rule):
+        case RuleReference(rule):
             yield railroad.NonTerminal(
                 (RULES[rule].label or rule.replace("_", " ")).removeprefix("a ").removeprefix("an ")
             )

@@ -36,8 +36,8 @@ from scenic.compiler.parser import parse
 from scenic.compiler.precedence import Ladder
 from scenic.compiler.resolver import resolve
 from scenic.compiler.tokens import NEWLINE
-from scenic.runtime.description.declarations import Kept, Required, required
-from scenic.runtime.temporal.monitors import Monitor
+from scenic.runtime.description.declarations import Closure, Required, required
+from scenic.runtime.temporal.monitors import FormulaMonitor
 
 __all__ = ["FORMULAS", "OF_FORMULAS", "formulas", "make_formula", "predicted", "texts", "written_in_full"]
 
@@ -389,7 +389,7 @@ def formulas_are_followed_as_meant(case: Case) -> None:
     exec(compile(module, "<fuzz>", "exec"), scope)
     requirement = required(prelude.required, "", None, None)
     for trace in random_traces(case.number, names):
-        monitor = Monitor(requirement.formula)
+        monitor = FormulaMonitor(requirement.formula)
         for state in trace:
             # Nothing in the text binds the names, so that the code reads them when it is called.
             scope.update((name, name in state) for name in names)
@@ -414,9 +414,9 @@ class _Prelude:
 
     def condition(
         self, traced: object, concrete: Callable[..., bool], values: Sequence[bool], *_margin: object
-    ) -> Kept:
+    ) -> Closure:
         del traced  # It builds nodes for the same value.
-        return Kept(concrete, values)
+        return Closure(concrete, values)
 
     def conjunction(self, *parts: object) -> object:
         return ("and", *parts)

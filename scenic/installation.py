@@ -14,7 +14,7 @@ from scenic.dataclass import dataclass
 from scenic.language.extras import EXTRAS, installation
 from scenic.runtime.geometry.store import kept_files, store_folder
 
-__all__ = ["Finding", "State", "findings"]
+__all__ = ["InstallationFinding", "State", "findings"]
 
 
 class State(StrEnum):
@@ -26,7 +26,7 @@ class State(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class InstallationFinding:
     """One thing that was looked at; ``help`` says what to do."""
 
     subject: str
@@ -35,9 +35,11 @@ class Finding:
     help: str | None = None
 
 
-def findings() -> Iterator[Finding]:
+def findings() -> Iterator[InstallationFinding]:
     """Everything worth knowing about this installation, in the order in which a reader needs it."""
-    yield Finding("Python", State.FINE, f"{platform.python_version()} on {platform.platform(terse=True)}")
+    yield InstallationFinding(
+        "Python", State.FINE, f"{platform.python_version()} on {platform.platform(terse=True)}"
+    )
     yield _package()
     yield from _rivals()
     yield from _requirements()
@@ -46,18 +48,18 @@ def findings() -> Iterator[Finding]:
     yield _rendering()
 
 
-def _package() -> Finding:
+def _package() -> InstallationFinding:
     place = Path(scenic.__file__).parent
     try:
-        return Finding("scenic-lang", State.FINE, f"{metadata.version('scenic-lang')} in {place}")
+        return InstallationFinding("scenic-lang", State.FINE, f"{metadata.version('scenic-lang')} in {place}")
     except metadata.PackageNotFoundError:
-        return Finding("scenic-lang", State.FINE, f"not installed, run from {place}")
+        return InstallationFinding("scenic-lang", State.FINE, f"not installed, run from {place}")
 
 
-def _rivals() -> Iterator[Finding]:
+def _rivals() -> Iterator[InstallationFinding]:
     """Other distributions that bring a package of the same name: which one is imported is then a matter of luck."""
     for name in sorted(set(metadata.packages_distributions().get("scenic", [])) - {"scenic-lang"}):
-        yield Finding(
+        yield InstallationFinding(
             name,
             State.PROBLEM,
             f"the distribution '{name}' brings a package `scenic`, too",
@@ -65,7 +67,7 @@ def _rivals() -> Iterator[Finding]:
         )
 
 
-def _requirements() -> Iterator[Finding]:
+def _requirements() -> Iterator[InstallationFinding]:
     try:
         requirements = metadata.requires("scenic-lang") or []
     except metadata.PackageNotFoundError:
@@ -78,41 +80,43 @@ def _requirements() -> Iterator[Finding]:
         try:
             versions.append(f"{name} {metadata.version(name)}")
         except metadata.PackageNotFoundError:
-            yield Finding(
+            yield InstallationFinding(
                 name, State.PROBLEM, "is required and not installed", f"pip install '{requirement}'"
             )
     if versions:
-        yield Finding("requirements", State.FINE, ", ".join(versions))
+        yield InstallationFinding("requirements", State.FINE, ", ".join(versions))
 
 
-def _extras() -> Iterator[Finding]:
+def _extras() -> Iterator[InstallationFinding]:
     for extra in EXTRAS.values():
         absent = [module for module in extra.modules if importlib.util.find_spec(module) is None]
         if absent:
-            yield Finding(
+            yield InstallationFinding(
                 f"extra {extra.name}",
                 State.MISSING,
                 f"not installed ({extra.purpose})",
                 installation(extra.name),
             )
         else:
-            yield Finding(f"extra {extra.name}", State.FINE, extra.purpose)
+            yield InstallationFinding(f"extra {extra.name}", State.FINE, extra.purpose)
 
 
-def _cache() -> Finding:
+def _cache() -> InstallationFinding:
     folder = store_folder()
     if folder is None:
-        return Finding("cache", State.FINE, "turned off by SCENIC_CACHE, or without a home folder")
+        return InstallationFinding(
+            "cache", State.FINE, "turned off by SCENIC_CACHE, or without a home folder"
+        )
     nearest = next(path for path in (folder, *folder.parents) if path.exists())
     if not os.access(nearest, os.W_OK):
-        return Finding(
+        return InstallationFinding(
             "cache", State.PROBLEM, f"{folder} cannot be written", "name another folder in SCENIC_CACHE_DIR"
         )
     size = sum(size for _, size, _ in kept_files(folder))
-    return Finding("cache", State.FINE, f"{size / 2**20:.1f} MiB in {folder}")
+    return InstallationFinding("cache", State.FINE, f"{size / 2**20:.1f} MiB in {folder}")
 
 
-def _rendering() -> Finding:
+def _rendering() -> InstallationFinding:
     """Return whether an image can be made without a graphics card."""
     # These bring in NumPy and the geometry libraries.
     from scenic.formats.instances import picture
@@ -123,9 +127,9 @@ def _rendering() -> Finding:
         scenes = scenarioFromString("ego = new Object").sample(1, seed=1)
         pixels = render(picture(scenes), 0, (32, 24))
     except Exception as error:  # noqa: BLE001 - whatever is wrong is what the user wants to know
-        return Finding(
+        return InstallationFinding(
             "rendering", State.PROBLEM, f"fails: {error}", "report this with the output of this command"
         )
-    return Finding(
+    return InstallationFinding(
         "rendering", State.FINE, f"works without a graphics card ({pixels.shape[1]} x {pixels.shape[0]})"
     )

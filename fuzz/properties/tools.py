@@ -9,7 +9,7 @@ from typing import Any, Final
 from lsprotocol.types import Position
 
 from fuzz.properties.case import FILENAME, Case, Property, Violation, describe, spans_of
-from scenic.cli.checking import Checker, Task
+from scenic.cli.checking import Checker, CheckTask
 from scenic.cli.render import FORMATS, Report, render
 from scenic.compiler.check import check_text
 from scenic.ide.diagnostics import diagnostics
@@ -57,7 +57,7 @@ def check_and_server_agree(case: Case) -> None:
     expected_diagnostics = check_text(case.text, filename=FILENAME, surroundings_of=surroundings_in(project))
     answers = {
         "the editor": diagnostics(case.text, filename=FILENAME, project=project),
-        "the command": _command()(Task(FILENAME, Rules(), text=case.text)).diagnostics,
+        "the command": _command()(CheckTask(FILENAME, Rules(), text=case.text)).diagnostics,
     }
     for who, answer in answers.items():
         if who == "the editor":

@@ -12,9 +12,9 @@ from itertools import product
 from types import BuiltinFunctionType, CodeType, FunctionType, MethodType
 from typing import Final
 
-from scenic.runtime.description.declarations import Kept, Required
+from scenic.runtime.description.declarations import Closure, Required
 from scenic.runtime.temporal.formulas import is_temporal
-from scenic.runtime.temporal.monitors import Monitor, Verdict
+from scenic.runtime.temporal.monitors import FormulaMonitor, Verdict
 
 __all__ = ["contradictions", "shortest_trace"]
 
@@ -68,8 +68,8 @@ def shortest_trace(requirements: Sequence[Required]) -> int | None:
     if len(number) - len(fixed) > MOST_ATOMS:
         raise _UndecidedError
     choices = [(fixed[place],) if place in fixed else (False, True) for place in range(len(number))]
-    start = tuple(Monitor(item.formula) for item in requirements)
-    waiting: deque[tuple[int, tuple[Monitor, ...]]] = deque([(0, start)])
+    start = tuple(FormulaMonitor(item.formula) for item in requirements)
+    waiting: deque[tuple[int, tuple[FormulaMonitor, ...]]] = deque([(0, start)])
     seen: set[Hashable] = set()
     added = 0
     while waiting:
@@ -107,13 +107,13 @@ def _groups(requirements: Sequence[Required]) -> list[list[Required]]:
     return [sorted(members, key=lambda item: order[id(item)]) for _, members in groups]
 
 
-def _is_fixed(atom: Kept) -> bool:
+def _is_fixed(atom: Closure) -> bool:
     """Return whether an atom is made of constants alone."""
     function = atom.function
     return isinstance(function, FunctionType) and not atom.captured and not function.__code__.co_names
 
 
-def _key(atom: Kept) -> Hashable:
+def _key(atom: Closure) -> Hashable:
     """Equal for atoms that are the same expression over the same values; functions of the program may give anything."""
     function = atom.function
     if not isinstance(function, FunctionType) or any(isinstance(item, _CALLED) for item in atom.captured):

@@ -28,7 +28,7 @@ from scenic.runtime.ground.context import warn
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
 
-__all__ = ["Finished", "Resuming", "Run", "make_dataset", "scenes_kept", "write_table"]
+__all__ = ["DatasetRun", "Finished", "Resuming", "make_dataset", "scenes_kept", "write_table"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class Resuming:
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class DatasetRun:
     """Settings of a run that change no row.
 
     Attributes:
@@ -73,7 +73,7 @@ def make_dataset(
     scenario: Scenario,
     folder: Path,
     manifest: Manifest,
-    run: Run | None = None,
+    run: DatasetRun | None = None,
     *,
     resume: bool | Resuming = False,
 ) -> Finished:
@@ -92,7 +92,7 @@ def make_dataset(
         OutputError: if files cannot be written.
 
     """
-    run = run or Run()
+    run = run or DatasetRun()
     with WrittenFolder(folder, DATASET) as place:
         current = _continued(place, manifest, resume).beside(folder, scenario.filename)
         for part in current.parts:
@@ -115,7 +115,7 @@ def make_dataset(
 
 
 def _progress(
-    scenario: Scenario, folder: Path, kept: Manifest, run: Run, missing: list[Exhausted]
+    scenario: Scenario, folder: Path, kept: Manifest, run: DatasetRun, missing: list[Exhausted]
 ) -> Iterator[Manifest]:
     """Make the parts that are not there; yields the manifest after each, and adds to ``missing`` what is not found."""
     for numbers in kept.ranges():
@@ -148,10 +148,10 @@ def write_table(
     scenario: Scenario,
     path: Path,
     manifest: Manifest,
-    run: Run | None = None,
+    run: DatasetRun | None = None,
 ) -> Finished:
     """Write scenes as one Parquet file, which has the manifest in its metadata; the arguments are those of `make_dataset`."""
-    run = run or Run()
+    run = run or DatasetRun()
     encoder = Encoder("parquet")
     missing: list[Exhausted] = []
     job = Job(

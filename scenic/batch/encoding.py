@@ -16,7 +16,7 @@ from scenic.formats.json_lines import SceneLines
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.scenes.scene import Scene
 
-__all__ = ["Block", "Encoder", "blocks_of"]
+__all__ = ["Encoder", "RowBlock", "blocks_of"]
 
 _IMAGES: Final = 16
 """Scenes whose images are kept in memory together, and lost together where a run ends."""
@@ -99,7 +99,7 @@ class Encoder:
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class RowBlock:
     """An encoded block taken apart: scene numbers ``(n,)``, attempts ``(n,)``, and rows."""
 
     numbers: NDArray[np.int64]
@@ -107,12 +107,12 @@ class Block:
     rows: memoryview
 
 
-def blocks_of(encoded: Any) -> Iterator[Block]:
+def blocks_of(encoded: Any) -> Iterator[RowBlock]:
     """The blocks in the bytes of an `Encoder`."""
     view, place = memoryview(encoded).cast("B"), 0
     while place < len(view):
         count, size = (int(word) for word in np.frombuffer(view[place : place + 16], dtype=np.int64))
         heads = np.frombuffer(view[place + 16 : place + 16 + 16 * count], dtype=np.int64)
         place += 16 + 16 * count
-        yield Block(heads[:count], heads[count:], view[place : place + size])
+        yield RowBlock(heads[:count], heads[count:], view[place : place + size])
         place += size

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from scenic.formats.trajectories import TrajectoryFile
     from scenic.simulators.simulation import OnState, Poses, Simulation
 
-__all__ = ["Form", "Kept", "Watcher", "about_file", "is_whole"]
+__all__ = ["Form", "SimulationRecord", "Watcher", "about_file", "is_whole"]
 
 Form = Literal["jsonl", "parquet", "xosc", "xml"]
 """The format of a trajectory's file, which is also its suffix."""
@@ -53,7 +53,7 @@ def is_whole(path: Path, steps: int) -> bool:
     return len(lines) == steps + 1 and all(line.endswith(b"\n") for line in lines[-1:])
 
 
-class Kept:
+class SimulationRecord:
     """Everything that is kept of a simulation while it runs; each new try starts from nothing.
 
     Args:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from scenic.batch.engines import Engine, OverExecutor, Processes
 from scenic.batch.folders.fingerprint import files_of_origin
-from scenic.batch.keeping import Form, Kept, Watcher, about_file, is_whole
+from scenic.batch.keeping import Form, SimulationRecord, Watcher, about_file, is_whole
 from scenic.batch.simulation_folders import SimulationFolder
 from scenic.dataclass import dataclass
 from scenic.language.diagnostics import Diagnostic, Severity
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from scenic.simulators.simulator import Simulator
 
 __all__ = [
-    "Running",
     "SimulationError",
     "SimulationRow",
+    "SimulationSettings",
     "Simulations",
     "is_violated",
     "nothing_happens",
@@ -44,7 +44,7 @@ _NOTHING_KEPT: Final = (
 
 
 @dataclass(frozen=True, slots=True)
-class Running:
+class SimulationSettings:
     """Settings of simulations; everything here but ``stuck_after`` decides the results."""
 
     seed: int
@@ -130,7 +130,7 @@ class Simulations:
         self,
         scenario: "Scenario",
         simulator: "str | Simulator | None",
-        running: Running,
+        running: SimulationSettings,
         *,
         folder: Path | None = None,
         form: Form = "jsonl",
@@ -271,7 +271,7 @@ class Simulations:
     def _one(self, k: int) -> SimulationRow:
         from scenic.formats.trajectories import course_document
 
-        keeping = Kept(self._file(k), self._form, shown=self._shown, watcher=self._watcher)
+        keeping = SimulationRecord(self._file(k), self._form, shown=self._shown, watcher=self._watcher)
         with closing(keeping) as keeper:
             result = self._simulated(k, keeper)
             simulation = result.simulation
@@ -290,7 +290,7 @@ class Simulations:
             is_kept = not self._only_violations or is_violated(about)
             return SimulationRow(k, about=about, page=keeper.finish(simulation, about) if is_kept else None)
 
-    def _simulated(self, k: int, kept: Kept) -> "Numbered":
+    def _simulated(self, k: int, kept: SimulationRecord) -> "Numbered":
         """Simulation ``k``, with its whole course in memory if the program's text looks back at it.
 
         Code elsewhere may do so, too: then the simulation is made again. Each simulation decides this for itself, so that
@@ -409,7 +409,7 @@ def simulated(
     max_steps = whole_number(max_steps, "max_steps", 0)
     check_seconds(timestep, "timestep")
     place = None if folder is None else Path(folder)
-    running = Running(
+    running = SimulationSettings(
         random.getrandbits(63) if seed is None else seed,
         max_steps,
         timestep,

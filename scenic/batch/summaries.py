@@ -10,7 +10,7 @@ from typing import Any, Final
 from scenic.batch.simulations import SimulationRow, is_violated
 from scenic.dataclass import dataclass
 
-__all__ = ["Setting", "csv_of", "plot", "summary", "verdict_of"]
+__all__ = ["SettingRuns", "csv_of", "plot", "summary", "verdict_of"]
 
 _WIDTH: Final = 760
 _HEIGHT: Final = 420
@@ -21,7 +21,7 @@ _TICKS: Final = 6
 
 
 @dataclass(frozen=True)
-class Setting:
+class SettingRuns:
     """The simulations of one setting of the parameters.
 
     Attributes:
@@ -63,7 +63,7 @@ def robustness_of(row: SimulationRow) -> float | None:
     return min(known, default=None)
 
 
-def summary(setting: Setting) -> str:
+def summary(setting: SettingRuns) -> str:
     """One line: the counts of verdicts, and the mean and least robustness."""
     counts = Counter(map(verdict_of, setting.simulations))
     words = ", ".join(
@@ -79,7 +79,7 @@ def summary(setting: Setting) -> str:
     return f"{head}{len(setting.rows)} simulations: {words}{by}"
 
 
-def csv_of(settings: Sequence[Setting]) -> str:
+def csv_of(settings: Sequence[SettingRuns]) -> str:
     """A table with a row for each simulation: parameters, number, verdict, least robustness, steps, why it ended."""
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
@@ -103,7 +103,7 @@ def csv_of(settings: Sequence[Setting]) -> str:
     return text.getvalue()
 
 
-def plot(settings: Sequence[Setting]) -> str:
+def plot(settings: Sequence[SettingRuns]) -> str:
     """An SVG image: a dot for the robustness of each simulation, a line through the means, the share violated below.
 
     Simulations without a finite robustness have no dot, but count in the share.
@@ -150,7 +150,11 @@ def _scale(ticks: Sequence[float], height: Callable[[float], float]) -> Iterator
 
 
 def _column(
-    setting: Setting, values: Sequence[float], middle: float, width: float, height: Callable[[float], float]
+    setting: SettingRuns,
+    values: Sequence[float],
+    middle: float,
+    width: float,
+    height: Callable[[float], float],
 ) -> Iterator[str]:
     """The dots of one setting, beside each other in the order of the simulations, and its words."""
     import html
@@ -167,5 +171,5 @@ def _column(
         yield f"<text x='{middle:.1f}' y='{y}' text-anchor='middle'>{html.escape(text)}</text>"
 
 
-def _values(setting: Setting) -> list[float]:
+def _values(setting: SettingRuns) -> list[float]:
     return [value for row in setting.simulations if (value := robustness_of(row)) is not None]

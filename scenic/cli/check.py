@@ -11,7 +11,7 @@ from typing import Final
 import click
 
 from scenic.cli.batch_parts import BatchPart, check_parts
-from scenic.cli.checking import Checker, Fixing, Outcome, Task, fault
+from scenic.cli.checking import Checker, CheckOutcome, CheckTask, Fixing, fault
 from scenic.cli.discovery import STANDARD_INPUT, discover
 from scenic.cli.options import OneOf
 from scenic.cli.output import FINDINGS, exit_code, has_colours, show_diagnostics, summary
@@ -147,7 +147,7 @@ def check(
     fixing = Fixing.MAKE if fix else Fixing.SHOW if diff else Fixing.NONE
     sources = Sources()
     problems = list(discovery.problems)
-    tasks: list[Task] = []
+    tasks: list[CheckTask] = []
     for file in discovery.files:
         name, text = file, None
         if file == STANDARD_INPUT:
@@ -160,7 +160,7 @@ def check(
             sources.add(Source(text, name))
         project = configurations.of_file(name)
         rules, root = project.rules_for(name, select, ignore), project.folder or None
-        tasks.append(Task(name, rules, root, project.python_path, verbose, deep, fixing, text, strict))
+        tasks.append(CheckTask(name, rules, root, project.python_path, verbose, deep, fixing, text, strict))
     problems = [*configurations.problems, *problems]
     if not discovery.files and not problems:
         click.echo("warning: there are no Scenic files under the given paths", err=True)
@@ -228,7 +228,7 @@ def _repairs(count: int) -> str:
     return f"{count} repair{'' if count == 1 else 's'}"
 
 
-def _show_diff(outcomes: Sequence[Outcome], diagnostics: Sequence[Diagnostic], fixed: int) -> int:
+def _show_diff(outcomes: Sequence[CheckOutcome], diagnostics: Sequence[Diagnostic], fixed: int) -> int:
     """Show the repairs; of the diagnostics, only those that kept a file from being looked at."""
     sys.stdout.write("".join(outcome.diff for outcome in outcomes))
     sys.stdout.flush()
@@ -239,9 +239,9 @@ def _show_diff(outcomes: Sequence[Outcome], diagnostics: Sequence[Diagnostic], f
     return exit_code(diagnostics, failing=_FAILING) or (FINDINGS if changed else 0)
 
 
-def _outcomes(tasks: Sequence[Task], jobs: int | None) -> list[Outcome]:
+def _outcomes(tasks: Sequence[CheckTask], jobs: int | None) -> list[CheckOutcome]:
     """Run the tasks; return their outcomes in the same order."""
-    outcomes: dict[int, Outcome] = {}
+    outcomes: dict[int, CheckOutcome] = {}
     with _progress(len(tasks)) as advance:
         for index, outcome in _results(tasks, jobs):
             outcomes[index] = outcome
@@ -249,7 +249,7 @@ def _outcomes(tasks: Sequence[Task], jobs: int | None) -> list[Outcome]:
     return [outcomes[index] for index in range(len(tasks))]
 
 
-def _results(tasks: Sequence[Task], jobs: int | None) -> Iterator[tuple[int, Outcome]]:
+def _results(tasks: Sequence[CheckTask], jobs: int | None) -> Iterator[tuple[int, CheckOutcome]]:
     if jobs == 1 or len(tasks) < 2 or not _pays(tasks):
         checker = Checker()
         yield from ((index, checker(task)) for index, task in enumerate(tasks))
@@ -259,7 +259,7 @@ def _results(tasks: Sequence[Task], jobs: int | None) -> Iterator[tuple[int, Out
     yield from run(Checker(), tasks, jobs=jobs or usable_cpus(), lost=_lost)
 
 
-def _pays(tasks: Sequence[Task]) -> bool:
+def _pays(tasks: Sequence[CheckTask]) -> bool:
     """Return whether the tasks take longer than to start other processes."""
     total = 0
     for task in tasks:
@@ -272,10 +272,10 @@ def _pays(tasks: Sequence[Task]) -> bool:
     return False
 
 
-def _lost(task: Task, code: int) -> Outcome:
+def _lost(task: CheckTask, code: int) -> CheckOutcome:
     """Return the outcome for a file whose check ended its process."""
     how = f"by signal {-code}" if code < 0 else f"with code {code}"
-    return Outcome((fault(task.filename, f"the process that checked this file ended {how}"),))
+    return CheckOutcome((fault(task.filename, f"the process that checked this file ended {how}"),))
 
 
 @contextmanager

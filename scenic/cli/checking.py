@@ -20,7 +20,7 @@ from scenic.language.source import Source, read_source
 from scenic.project.index import Project
 from scenic.project.surroundings import surroundings_in
 
-__all__ = ["Checker", "Fixing", "Outcome", "Task", "fault"]
+__all__ = ["CheckOutcome", "CheckTask", "Checker", "Fixing", "fault"]
 
 _LINE: Final = re.compile(r"[^\n]*\n|[^\n]+")
 _FRAMES: Final = 6
@@ -36,7 +36,7 @@ class Fixing(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class CheckTask:
     """A file to check.
 
     ``text`` is its content if that is not in the file: standard input. ``root`` and ``python_path`` are those of its
@@ -56,7 +56,7 @@ class Task:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class CheckOutcome:
     """The outcome of a task.
 
     ``fixed`` counts the repairs made or shown; ``text`` is the text after them, of a file that is not written;
@@ -76,11 +76,11 @@ class Checker:
     def __init__(self) -> None:
         self._projects: dict[tuple[object, ...], Project] = {}
 
-    def __call__(self, task: Task) -> Outcome:
+    def __call__(self, task: CheckTask) -> CheckOutcome:
         """Check a file. Whatever goes wrong is a diagnostic."""
         return _outcome(task, self._surroundings(task))
 
-    def _surroundings(self, task: Task) -> SurroundingsOf:
+    def _surroundings(self, task: CheckTask) -> SurroundingsOf:
         key = (task.root, task.python_path)
         project = self._projects.get(key)
         if project is None:
@@ -89,16 +89,16 @@ class Checker:
         return surroundings_in(project, verbose=task.verbose)
 
 
-def _outcome(task: Task, surroundings_of: SurroundingsOf) -> Outcome:
+def _outcome(task: CheckTask, surroundings_of: SurroundingsOf) -> CheckOutcome:
     try:
         if task.fixing is Fixing.NONE or task.filename.lower().endswith(MAP_SUFFIX):
-            return Outcome(_check(task, surroundings_of))
+            return CheckOutcome(_check(task, surroundings_of))
         return _repair(task, surroundings_of)
     except Located as error:
-        return Outcome((replace(error.diagnostic(), filename=error.filename or task.filename),))
+        return CheckOutcome((replace(error.diagnostic(), filename=error.filename or task.filename),))
     except Exception as error:  # noqa: BLE001 - the other files are to be checked all the same
         lines = traceback.format_list(traceback.extract_tb(error.__traceback__)[-_FRAMES:])
-        return Outcome((fault(task.filename, f"{type(error).__name__}: {error}"),), trace="".join(lines))
+        return CheckOutcome((fault(task.filename, f"{type(error).__name__}: {error}"),), trace="".join(lines))
 
 
 def fault(filename: str, what: str) -> Diagnostic:
@@ -115,7 +115,7 @@ MAP_SUFFIX: Final = ".xodr"
 """Ending of the names of road maps, which are checked, too."""
 
 
-def _check(task: Task, surroundings_of: SurroundingsOf) -> tuple[Diagnostic, ...]:
+def _check(task: CheckTask, surroundings_of: SurroundingsOf) -> tuple[Diagnostic, ...]:
     if task.filename.lower().endswith(MAP_SUFFIX) and task.text is None:
         return task.rules.apply(_check_map(task))
     source = Source(task.text, task.filename) if task.text is not None else read_source(task.filename)
@@ -130,7 +130,7 @@ def _check(task: Task, surroundings_of: SurroundingsOf) -> tuple[Diagnostic, ...
     return task.rules.apply(diagnostics)
 
 
-def _check_map(task: Task) -> tuple[Diagnostic, ...]:
+def _check_map(task: CheckTask) -> tuple[Diagnostic, ...]:
     """Return the problems of a road map."""
     from scenic.domains.driving.loading import (  # bring in NumPy and the geometry libraries
         MapOptions,
@@ -146,14 +146,14 @@ def _check_map(task: Task) -> tuple[Diagnostic, ...]:
     return tuple(replace(item, severity=Severity.ERROR) for item in problems) if task.strict else problems
 
 
-def _deep(task: Task, source: Source) -> tuple[Diagnostic, ...]:
+def _deep(task: CheckTask, source: Source) -> tuple[Diagnostic, ...]:
     from scenic.deep.findings import deep_check  # brings in NumPy, z3 and the geometry libraries
 
     found = deep_check(task.filename)
     return apply_ignores(source.text, found, filename=task.filename, complain=False)
 
 
-def _repair(task: Task, surroundings_of: SurroundingsOf) -> Outcome:
+def _repair(task: CheckTask, surroundings_of: SurroundingsOf) -> CheckOutcome:
     from scenic.compiler.fixes import repair
 
     if task.text is None:
@@ -168,14 +168,14 @@ def _repair(task: Task, surroundings_of: SurroundingsOf) -> Outcome:
     has_changes = repair_result.text != before
     if task.fixing is Fixing.SHOW:
         diff = _diff(before, repair_result.text, task.filename) if has_changes else ""
-        return Outcome((), repair_result.count, diff)
+        return CheckOutcome((), repair_result.count, diff)
     if task.text is not None:
-        return Outcome(repair_result.diagnostics, repair_result.count, text=repair_result.text)
+        return CheckOutcome(repair_result.diagnostics, repair_result.count, text=repair_result.text)
     if has_changes:
         from scenic.formats.files import write
 
         write(Path(task.filename), repair_result.text.encode("utf-8"))
-    return Outcome(
+    return CheckOutcome(
         _check(replace(task, fixing=Fixing.NONE), surroundings_of)
         if task.deep
         else repair_result.diagnostics,

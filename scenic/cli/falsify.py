@@ -29,7 +29,7 @@ from scenic.formats.files import safe_name, write
 from scenic.language.errors import ScenicWarning
 
 if TYPE_CHECKING:
-    from scenic.falsification.search import FalsificationResult, Plan
+    from scenic.falsification.search import FalsificationResult, SearchPlan
     from scenic.runtime.scenes.scenario import Scenario
 
 __all__ = ["falsify"]
@@ -67,16 +67,16 @@ class _FalsifyRequest(BatchRequest):
     output: Path | None
     report: Path | None
 
-    def plan(self, seed: int) -> "Plan":
+    def plan(self, seed: int) -> "SearchPlan":
         """The plan of the search for each setting of the parameters."""
         from scenic.falsification.objectives import Objective
-        from scenic.falsification.search import Plan
+        from scenic.falsification.search import SearchPlan
 
         objectives = [
             *(Objective(name=item) for item in self.objectives),
             *(Objective(expression=item) for item in self.expressions),
         ]
-        return Plan(
+        return SearchPlan(
             seed, self.sampler, self.sampler_options, tuple(objectives) or (Objective(),), self.threshold, self.space,
             self.batch, self.simulator, self.static, self.max_steps, self.timestep,
         )  # fmt: skip
@@ -212,10 +212,10 @@ def _report_again(request: _FalsifyRequest) -> int:
 
 
 def _search(
-    request: _FalsifyRequest, plan: "Plan", programs: "list[tuple[Scenario, str]]", places: list[Path]
+    request: _FalsifyRequest, plan: "SearchPlan", programs: "list[tuple[Scenario, str]]", places: list[Path]
 ) -> "dict[str, FalsificationResult]":
     """Search each program, and write what is wanted; returns the results by the labels of the programs."""
-    from scenic.falsification.search import Limits, search
+    from scenic.falsification.search import SearchLimits, search
     from scenic.falsification.store import SearchFolder
 
     results: dict[str, FalsificationResult] = {}
@@ -223,7 +223,9 @@ def _search(
         request.count * len(programs), "searching",
         jobs=request.jobs, dask=request.dask, shown=not sys.stdout.isatty(), places=places,
     ) as (advance, engine):  # fmt: skip
-        limits = Limits(request.count, request.stop_after, request.time_limit, lambda _row: advance(1, 1))
+        limits = SearchLimits(
+            request.count, request.stop_after, request.time_limit, lambda _row: advance(1, 1)
+        )
         for scenario, label in programs:
             folder = None
             if request.output is not None:

@@ -182,9 +182,9 @@ def sample_into_sinks(
 
 
 def _write_table(batch: _Batch, target: Path) -> None:
-    from scenic.batch.datasets import Run, write_table
+    from scenic.batch.datasets import DatasetRun, write_table
 
-    run = Run(batch.engine, batch.deadline, batch.advance)
+    run = DatasetRun(batch.engine, batch.deadline, batch.advance)
     batch.missing.extend(write_table(batch.scenario, target, batch.manifest("parquet", 65536), run).missing)
 
 
@@ -216,10 +216,10 @@ def _as_before(request: SampleRequest, folder: Path | None) -> tuple[int | None,
 
 
 def _write_folder(batch: _Batch, folder: Path, form: str, part_size: int) -> None:
-    from scenic.batch.datasets import Resuming, Run, make_dataset
+    from scenic.batch.datasets import DatasetRun, Resuming, make_dataset
 
     request = batch.request
-    run = Run(batch.engine, batch.deadline, batch.advance)
+    run = DatasetRun(batch.engine, batch.deadline, batch.advance)
     resume = Resuming(request.verified, request.accept_changes) if request.resume else False
     outcome = make_dataset(batch.scenario, folder, batch.manifest(form, part_size), run, resume=resume)
     batch.missing.extend(outcome.missing)

@@ -9,8 +9,8 @@ from typing import Any, Final
 
 from scenic.batch.engines import Engine
 from scenic.batch.simulation_folders import seed_of_simulations
-from scenic.batch.simulations import Running, SimulationRow, Simulations, nothing_happens
-from scenic.batch.summaries import Setting, csv_of, plot, summary
+from scenic.batch.simulations import SimulationRow, Simulations, SimulationSettings, nothing_happens
+from scenic.batch.summaries import SettingRuns, csv_of, plot, summary
 from scenic.cli.batch_parts import FileSink, places_of, write_files
 from scenic.cli.options import settings_of
 from scenic.cli.output import CLEAN, FINDINGS, show_diagnostics
@@ -23,7 +23,7 @@ from scenic.formats.files import safe_name
 __all__ = ["simulate_into_sinks"]
 
 
-def _page(request: SimulateRequest, settings: Sequence[Setting]) -> bytes | None:
+def _page(request: SimulateRequest, settings: Sequence[SettingRuns]) -> bytes | None:
     """The page that plays all simulations, if there are any."""
     pages = [row.page for setting in settings for row in setting.simulations if row.page is not None]
     return course_page(request.path.name, pages).encode() if pages else None
@@ -80,15 +80,15 @@ def _require_libraries(form: str) -> None:
         openscenario_support()
 
 
-def _batches(request: SimulateRequest, seed: int) -> list[tuple[Setting, Simulations]]:
+def _batches(request: SimulateRequest, seed: int) -> list[tuple[SettingRuns, Simulations]]:
     """The source: for each setting of the parameters what makes its simulations."""
-    running = Running(
+    running = SimulationSettings(
         seed, request.max_steps, request.timestep, request.tries, request.step_limit,
         sobol=request.sobol, keep_violations=request.keep != "none",
     )  # fmt: skip
     batches = []
     for parameters, different in settings_of(request.swept):
-        setting = Setting({}, different)
+        setting = SettingRuns({}, different)
         scenario = request.load(parameters, request.simulator, extra_params=request.extra_params)
         place = request.output
         if place is not None and different:
@@ -106,7 +106,11 @@ def _batches(request: SimulateRequest, seed: int) -> list[tuple[Setting, Simulat
 
 
 def _simulate(
-    request: SimulateRequest, setting: Setting, batch: Simulations, engine: Engine | None, advance: Advance
+    request: SimulateRequest,
+    setting: SettingRuns,
+    batch: Simulations,
+    engine: Engine | None,
+    advance: Advance,
 ) -> int:
     """Make the missing simulations of a setting, and print all in order, each as soon as those before it are there."""
     numbers = iter(range(request.first, request.first + request.count))
@@ -136,7 +140,7 @@ def _simulate(
     return code
 
 
-def _show_summaries(request: SimulateRequest, settings: Sequence[Setting]) -> None:
+def _show_summaries(request: SimulateRequest, settings: Sequence[SettingRuns]) -> None:
     """Print the outcomes of all simulations together, where there are several."""
     if len(settings) * request.count < 2:
         return

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Final
 
-from scenic.compiler.actions import Problem
+from scenic.compiler.actions import SyntaxProblem
 from scenic.compiler.generated import HARD_KEYWORDS, INFIX_KINDS, OPERATORS, SOFT_KEYWORDS
 from scenic.compiler.mistakes import (
     Situation,
@@ -86,7 +86,7 @@ class Expectations:
         self._kinds = [*tokens.kinds, 0, 0]
         self._trials = Trials(tokens)
 
-    def problem(self, start: int, token: int, expected: Iterable[int | str]) -> Problem:
+    def problem(self, start: int, token: int, expected: Iterable[int | str]) -> SyntaxProblem:
         """The mistake of a statement from ``start`` on that is right up to ``token``.
 
         ``expected`` holds the kinds of tokens, and the labels of rules, that could have stood there.
@@ -104,7 +104,7 @@ class Expectations:
                 at.expected, after_word=self._kinds[token - 1] > NAME if token else False
             )
         if not alternatives:
-            return Problem("SC110", at.here(), f"{actual} cannot stand here")
+            return SyntaxProblem("SC110", at.here(), f"{actual} cannot stand here")
         # After the end of a line it is not plain where the expected would have stood.
         # Where something is missing, it is what is before it that misses it.
         missing = (
@@ -113,9 +113,9 @@ class Expectations:
             and not alternatives.startswith("an operator")
         )
         where = f" after `{at.before}`" if missing else ""
-        return Problem("SC110", at.here(), f"expected {alternatives}{where}, but found {actual}")
+        return SyntaxProblem("SC110", at.here(), f"expected {alternatives}{where}, but found {actual}")
 
-    def failed(self, start: int, failure: Problem) -> Problem:
+    def failed(self, start: int, failure: SyntaxProblem) -> SyntaxProblem:
         """The mistake of a statement from ``start`` on whose parts are right, but for ``failure``."""
         if failure.code != "SC123":
             return failure
@@ -128,28 +128,28 @@ class Expectations:
                 return explanation
         return failure
 
-    def unfinished_header(self, first: int) -> Problem | None:
+    def unfinished_header(self, first: int) -> SyntaxProblem | None:
         """The mistake of a line before an indented one, if it is the beginning of a header."""
         start, end = self._trials.line(max(first - 3, 0))
         return unfinished_header(Situation(self._tokens, self._trials, start, end, frozenset()))
 
-    def unfinished_clause(self, first: int) -> Problem:
+    def unfinished_clause(self, first: int) -> SyntaxProblem:
         """The mistake of a line that is the beginning of a clause."""
         start, end = self._trials.line(first)
         at = Situation(self._tokens, self._trials, start, end, frozenset())
-        return Problem(
+        return SyntaxProblem(
             "SC110",
             at.place(first),
             f"`{at.word(first)}` is no complete clause",
             "write the whole clause, with a colon at its end",
         )
 
-    def unexpected_block(self, first: int) -> Problem:
+    def unexpected_block(self, first: int) -> SyntaxProblem:
         """The mistake of a line, with its first token, that is indented more than the one before."""
         # Before it stand the end of the line before, and the indentation.
         start, end = self._trials.line(max(first - 3, 0))
         before = Situation(self._tokens, self._trials, start, end, frozenset())
-        return header_without_colon(before) or Problem(
+        return header_without_colon(before) or SyntaxProblem(
             "SC102",
             before.place(first),
             "this line is indented more than the one before, which begins no block",

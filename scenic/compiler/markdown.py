@@ -9,13 +9,13 @@ from scenic.compiler.fixes import Repaired, repair
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.language.diagnostics import Diagnostic
 
-__all__ = ["SUFFIXES", "Block", "check_blocks", "program_blocks", "repair_blocks", "with_blocks"]
+__all__ = ["SUFFIXES", "ProgramBlock", "check_blocks", "program_blocks", "repair_blocks", "with_blocks"]
 
 SUFFIXES: Final = (".md", ".markdown")
 _FENCE: Final = re.compile(r"^(?P<indent> {0,3})(?P<fence>`{3,}|~{3,})(?P<info>[^`]*)$")
 
 
-class Block(NamedTuple):
+class ProgramBlock(NamedTuple):
     """A program, and the number of lines of the file before it."""
 
     lines_before: int
@@ -27,7 +27,7 @@ class Block(NamedTuple):
         return "\n" * self.lines_before + self.text
 
 
-def program_blocks(text: str) -> Iterator[Block]:
+def program_blocks(text: str) -> Iterator[ProgramBlock]:
     """The blocks of a Markdown text that contain programs, in order."""
     fence, first, is_program = "", 0, False
     lines = text.split("\n")
@@ -44,7 +44,7 @@ def program_blocks(text: str) -> Iterator[Block]:
             and fence_match["fence"].startswith(fence)
         ):
             if is_program and number > first:
-                yield Block(first, "\n".join(lines[first:number]) + "\n")
+                yield ProgramBlock(first, "\n".join(lines[first:number]) + "\n")
             fence = ""
 
 

@@ -14,7 +14,7 @@ from dataclasses import field, replace
 from types import MappingProxyType
 from typing import Any, Final, TypeAlias
 
-from scenic.compiler.actions import Actions, Problem
+from scenic.compiler.actions import Actions, SyntaxProblem
 from scenic.compiler.actions.common import Place
 from scenic.compiler.generated import WORDS, build_parser
 from scenic.compiler.lexer import lex
@@ -53,7 +53,7 @@ class Parsed:
 
     tokens: Tokens
     tree: ast.Module
-    problems: list[Problem]
+    problems: list[SyntaxProblem]
 
 
 def parse(text: str, *, filename: str = "<string>") -> ParseResult:
@@ -209,7 +209,7 @@ class _Parsers:
 _PARSERS: Final = _Parsers()
 
 
-def _diagnostic(problem: Problem, source: Source) -> Diagnostic:
+def _diagnostic(problem: SyntaxProblem, source: Source) -> Diagnostic:
     fix = None
     if problem.fix is not None:
         title, edits = problem.fix

@@ -12,7 +12,7 @@ from scenic.compiler.actions import Actions
 from scenic.compiler.generated import KIND_NAMES, WORDS, build_recording_parser
 from scenic.compiler.lexer import lex
 from scenic.compiler.parser import deep_recursion
-from scenic.compiler.syntax import BLOCK_STARTERS, RULES, Reference, first_words
+from scenic.compiler.syntax import BLOCK_STARTERS, RULES, RuleReference, first_words
 from scenic.compiler.tokens import DEDENT, ERROR, INDENT, NEWLINE, Tokens
 from scenic.dataclass import dataclass
 
@@ -22,7 +22,7 @@ _MARK: Final = "$"
 """Read as a token that fits nowhere: what the parser wants instead of it is what may stand there."""
 _MOST_LINES: Final = 400
 """So many lines before a place are looked at."""
-CLAUSES: Final = frozenset(BLOCK_STARTERS - first_words((Reference("statement"),)))
+CLAUSES: Final = frozenset(BLOCK_STARTERS - first_words((RuleReference("statement"),)))
 """The first words of lines that continue the statement before them."""
 _GOING_ON: Final = (*sorted(CLAUSES), ")", "]", "}")
 """Beginnings of lines that continue the statement before them."""
@@ -32,7 +32,7 @@ _ALONE: Final = ("statement", "class_item", "specifier_line")
 _NAMES: Final = {kind: word for word, kind in WORDS.items()}
 
 _LABELLED: Final = {
-    label: tuple(Reference(rule.name) for rule in RULES.values() if rule.label == label)
+    label: tuple(RuleReference(rule.name) for rule in RULES.values() if rule.label == label)
     for label in {rule.label for rule in RULES.values() if rule.label is not None}
 }
 

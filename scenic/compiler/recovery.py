@@ -11,7 +11,7 @@ from bisect import bisect_left, bisect_right
 from typing import Any, Final
 
 from scenic.compiler import tree
-from scenic.compiler.actions import Actions, Problem, make
+from scenic.compiler.actions import Actions, SyntaxProblem, make
 from scenic.compiler.actions.common import place_of
 from scenic.compiler.contexts import set_contexts
 from scenic.compiler.expectations import Expectations
@@ -70,7 +70,7 @@ class Recovery:
     def __init__(self, tokens: Tokens, actions: Actions) -> None:
         self.tokens = tokens
         self.actions = actions
-        self.problems: list[Problem] = []
+        self.problems: list[SyntaxProblem] = []
         self.expectations = Expectations(tokens)
         lists = (*tokens.lists(), actions)
         self._kinds = lists[0]
@@ -167,7 +167,7 @@ class Recovery:
             if earlier is not None and earlier + 1 not in self._reported:
                 word = self.tokens.texts[again]
                 place = self.actions.place_of_token
-                problem = Problem(
+                problem = SyntaxProblem(
                     "SC210",
                     place(again),
                     f"a scenario has only one `{word}` block",
@@ -216,7 +216,7 @@ class Recovery:
         except RecursionError:
             place = actions.place_of_token(start)
             self.problems.append(
-                Problem(
+                SyntaxProblem(
                     "SC112", place, "this statement is nested too deeply", "split it into several statements"
                 )
             )
@@ -370,7 +370,7 @@ class Recovery:
                 if each.code != "SC103" or each.span is None or (each.span.line, each.span.column) != place
             ]
 
-    def _explain(self, start: int, farthest: int, expected: set[Any], failure: Problem | None) -> None:
+    def _explain(self, start: int, farthest: int, expected: set[Any], failure: SyntaxProblem | None) -> None:
         farthest = max(start, farthest)
         if (
             start in self._reported  # and what follows a wrong beginning is not worth a second message
@@ -387,7 +387,7 @@ class Recovery:
         else:
             self._add(self.expectations.problem(start, farthest, expected), farthest)
 
-    def _add(self, problem: Problem, token: int) -> None:
+    def _add(self, problem: SyntaxProblem, token: int) -> None:
         if len(self.problems) < MOST_PROBLEMS:
             self.problems.append(problem)
         self._note(token)
@@ -532,19 +532,19 @@ class Recovery:
             last -= 1
         return False
 
-    def _no_specifiers(self, position: int) -> Problem:
+    def _no_specifiers(self, position: int) -> SyntaxProblem:
         """Specifiers stand on lines of their own, and the line before does not allow that."""
         last = position - 2
         line, column = self.tokens.end_lines[last], self.tokens.end_columns[last]
         if self._kinds[last] == _COMMA:
-            return Problem(
+            return SyntaxProblem(
                 "SC111",
                 self.actions.place_of_token(last),
                 "specifiers follow, but this line makes no instance",
                 "write `new` before the class",
             )
         place = (line, column, line, column)
-        return Problem(
+        return SyntaxProblem(
             "SC113",
             place,
             "a comma is missing here, since the next line goes on with specifiers",

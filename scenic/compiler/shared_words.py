@@ -20,7 +20,7 @@ from scenic.compiler.precedence import Fixity
 from scenic.compiler.tokens import FSTRING_START, NAME, NEWLINE, NUMBER, STRING, Tokens
 from scenic.dataclass import dataclass
 
-__all__ = ["Operand", "closed_operands", "in_parentheses"]
+__all__ = ["OperandSpan", "closed_operands", "in_parentheses"]
 
 _FROM: Final = HARD_KEYWORDS["from"]
 _FOR: Final = HARD_KEYWORDS["for"]
@@ -75,7 +75,7 @@ _OPERAND_STARTS: Final = frozenset(
 )
 
 
-class Operand(NamedTuple):
+class OperandSpan(NamedTuple):
     """The tokens from ``first`` up to ``end`` (exclusive) are one operand.
 
     ``start`` and ``stop`` are the places (line and column in bytes) of the first token of its simple statement or header
@@ -121,11 +121,11 @@ class _Frame:
     regions: list[list[_Event]] = field(default_factory=lambda: [[]])
 
 
-def closed_operands(tokens: Tokens) -> list[Operand]:
+def closed_operands(tokens: Tokens) -> list[OperandSpan]:
     """The operands in ``tokens`` that have to end before a closing word, although one within them could use it."""
     kinds, lines, columns = tokens.kinds, tokens.lines, tokens.columns
     scan = _Scan(kinds)
-    operands: list[Operand] = []
+    operands: list[OperandSpan] = []
     start = 0
     statement_end = -1
     # What can be wrong here takes an operator that must have its words, or a condition with an instance.
@@ -140,7 +140,7 @@ def closed_operands(tokens: Tokens) -> list[Operand]:
             statement_end += 1
         if statement_end < len(kinds):
             places = (lines[start], columns[start]), (lines[statement_end], columns[statement_end])
-            operands += (Operand(*each, *places) for each in scan.statement(start, statement_end))
+            operands += (OperandSpan(*each, *places) for each in scan.statement(start, statement_end))
     return operands
 
 
@@ -152,7 +152,7 @@ def _places(kinds: list[int], kind: int) -> Iterator[int]:
         yield place
 
 
-def in_parentheses(tokens: Tokens, operands: Iterable[Operand]) -> Tokens:
+def in_parentheses(tokens: Tokens, operands: Iterable[OperandSpan]) -> Tokens:
     """``tokens`` with parentheses of no width around ``operands``."""
     openings: dict[int, int] = {}
     closings: dict[int, int] = {}

@@ -20,14 +20,14 @@ __all__ = [
     "STATEMENT_WORDS",
     "Alternative",
     "Choice",
-    "Constant",
+    "ConstantField",
     "Item",
     "ListOf",
     "Many",
     "Optional",
-    "Reference",
     "Row",
     "Rule",
+    "RuleReference",
     "StatementForm",
     "TokenKind",
     "Word",
@@ -54,7 +54,7 @@ class TokenKind:
 
 
 @dataclass(frozen=True, slots=True)
-class Reference:
+class RuleReference:
     """The text that another rule matches."""
 
     rule: str
@@ -89,7 +89,7 @@ class Choice:
     rows: tuple["Row", ...]
 
 
-Item: TypeAlias = Word | TokenKind | Reference | Optional | Many | ListOf | Choice
+Item: TypeAlias = Word | TokenKind | RuleReference | Optional | Many | ListOf | Choice
 Row: TypeAlias = tuple[Item, ...]
 
 
@@ -103,11 +103,11 @@ class Alternative:
 
     row: Row
     node: str | None
-    fields: Mapping[str, "int | Constant"] | None = None
+    fields: Mapping[str, "int | ConstantField"] | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class Constant:
+class ConstantField:
     """A value that a field of a node has whatever the text."""
 
     value: object
@@ -149,7 +149,7 @@ def _item(raw: tuple[Any, ...]) -> Item:
         case ("kind", name):
             return TokenKind(name)
         case ("rule", name):
-            return Reference(name)
+            return RuleReference(name)
         case ("optional", row):
             return Optional(read_row(row))
         case ("many", row):
@@ -166,11 +166,11 @@ def read_row(raw: Iterable[tuple[Any, ...]]) -> Row:
     return tuple(_item(each) for each in raw)
 
 
-def _fields(raw: Iterable[tuple[str, str, Any]] | None) -> Mapping[str, int | Constant] | None:
+def _fields(raw: Iterable[tuple[str, str, Any]] | None) -> Mapping[str, int | ConstantField] | None:
     if raw is None:
         return None
     return MappingProxyType(
-        {field: value if source == "item" else Constant(value) for field, source, value in raw}
+        {field: value if source == "item" else ConstantField(value) for field, source, value in raw}
     )
 
 
@@ -213,7 +213,7 @@ def reached_from(*rules: str) -> frozenset[str]:
         if rule not in reached_rules:
             reached_rules.add(rule)
             for alternative in RULES[rule].alternatives:
-                stack += [item.rule for item in _within(alternative.row) if isinstance(item, Reference)]
+                stack += [item.rule for item in _within(alternative.row) if isinstance(item, RuleReference)]
     return frozenset(reached_rules)
 
 
@@ -242,7 +242,7 @@ def first_words(row: Row) -> frozenset[str]:
             match item:
                 case Word():
                     words.add(item.text)
-                case Reference() if item.rule not in rules:
+                case RuleReference() if item.rule not in rules:
                     rules.add(item.rule)
                     stack += [each.row for each in RULES[item.rule].alternatives]
                 case Optional() | Many() | ListOf():
@@ -276,7 +276,7 @@ def _alone(rule: str) -> Iterator[str]:
     yield rule
     for each in RULES[rule].alternatives if rule in RULES else ():
         match each.row:
-            case (Reference(rule=inner), *_) if inner not in _OF_OPERANDS:
+            case (RuleReference(rule=inner), *_) if inner not in _OF_OPERANDS:
                 yield from _alone(inner)
 
 
@@ -286,7 +286,7 @@ def _statement_forms() -> Iterator[StatementForm]:
         for alternative in RULES[rule].alternatives:
             row = alternative.row
             starts = [item.text for item in row if isinstance(item, Word) and item.text.isidentifier()]
-            has_block = any(isinstance(item, Reference) and item.rule in _BLOCKS for item in row) or any(
+            has_block = any(isinstance(item, RuleReference) and item.rule in _BLOCKS for item in row) or any(
                 pair == (Word(":"), TokenKind("NEWLINE")) for pair in pairwise(row)
             )
             if starts and (has_block or (row[0] == Word(starts[0]) and (alternative.node or rule in whole))):

@@ -23,7 +23,7 @@ from scenic.compiler.syntax import (
     STATEMENT_WORDS,
     ListOf,
     Optional,
-    Reference,
+    RuleReference,
     StatementForm,
     TokenKind,
     Word,
@@ -74,7 +74,9 @@ def _any_of(patterns: Iterable[str]) -> str:
 _WITH_OPERAND: Final = frozenset(
     form.start
     for form in STATEMENT_FORMS
-    if form.has_block and form.start not in STATEMENT_WORDS and isinstance(form.row[1], Reference | ListOf)
+    if form.has_block
+    and form.start not in STATEMENT_WORDS
+    and isinstance(form.row[1], RuleReference | ListOf)
 ) | {"else", "async"}
 """The words that begin blocks, but stand elsewhere as well or may be names: their lines end with a colon."""
 

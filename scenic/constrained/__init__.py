@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from scenic.compiler.generated import HARD_KEYWORDS
-from scenic.compiler.syntax import Choice, Item, ListOf, Many, Optional, Reference, Row, TokenKind, Word
+from scenic.compiler.syntax import Choice, Item, ListOf, Many, Optional, Row, RuleReference, TokenKind, Word
 from scenic.constrained.layout import Laid, lay_out
 from scenic.constrained.rules import read_rules
 from scenic.constrained.terminals import Tokens, tokens
@@ -61,7 +61,7 @@ def _item_data(item: Item) -> dict[str, Any]:
             return {"word": item.text}
         case TokenKind():
             return {"kind": item.name}
-        case Reference():
+        case RuleReference():
             return {"rule": item.rule}
         case Optional():
             return {"optional": _row_data(item.row)}

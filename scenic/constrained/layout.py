@@ -195,7 +195,7 @@ class _Layout:
     @staticmethod
     def _use(item: syntax.Item, place: _Place, *, bare: bool) -> TextItem:
         match item:
-            case syntax.Reference():
+            case syntax.RuleReference():
                 return Use(Variant(item.rule, place.brackets > 0, bare), place.deeper)
             case TokenKind("TEXT") if bare:
                 return TokenKind("BARE_TEXT")

@@ -15,8 +15,8 @@ from scenic.compiler.syntax import (
     ListOf,
     Many,
     Optional,
-    Reference,
     Row,
+    RuleReference,
     TokenKind,
     Word,
     read_row,
@@ -115,7 +115,7 @@ class EdgeFinder:
                 return edges, edges
             case TokenKind():
                 return _edges_of_kind(item.name)
-            case Reference():
+            case RuleReference():
                 return self.edges[item.rule]
             case Choice():
                 return self.of_rows(item.rows)
@@ -137,12 +137,12 @@ _Loop: TypeAlias = tuple[Row, tuple[Row, ...]]
 
 def _loop_of(name: str, rows: tuple[Row, ...]) -> _Loop | None:
     """A step of a ladder: ``a: a operator b | b`` or ``a: b (operator b)+ | b``."""
-    tails = tuple(row[1:] for row in rows if row[0] == Reference(name))
-    bases = tuple(row for row in rows if row[0] != Reference(name))
+    tails = tuple(row[1:] for row in rows if row[0] == RuleReference(name))
+    bases = tuple(row for row in rows if row[0] != RuleReference(name))
     if tails:
         return bases[0] if len(bases) == 1 else (Choice(bases),), tails
     match bases:
-        case ((Reference() as base, Many(row=tail)), (other,)) if base == other:
+        case ((RuleReference() as base, Many(row=tail)), (other,)) if base == other:
             return (base,), (tail,)
     return None
 
@@ -158,16 +158,16 @@ def _flattened(name: str, loops: Mapping[str, _Loop], raw: Rules) -> Row:
         base, own_tails = loops[steps[-1]]
         for tail in own_tails:
             match tail:
-                case (Reference(rule=rule),):
+                case (RuleReference(rule=rule),):
                     tails += raw[rule]
                 case _:
                     tails.append(tail)
         match base:
-            case (Reference(rule=rule),) if rule in loops:
+            case (RuleReference(rule=rule),) if rule in loops:
                 steps.append(rule)
             case _:
                 break
-    lower = {Reference(step) for step in steps[1:]}
+    lower = {RuleReference(step) for step in steps[1:]}
     if lower:
         tails = [(*tail[:-1], *base) if tail[-1] in lower else tail for tail in tails]
     return (*base, Optional((Many((Choice(tuple(tails)),)),)))

@@ -12,7 +12,7 @@ from typing import Final
 import scenic
 from scenic.compiler.semantics.classes import Classes
 from scenic.compiler.semantics.symbols import SymbolKind, symbol_of_exported
-from scenic.compiler.syntax import Item, ListOf, Optional, Reference, Row, TokenKind, Word
+from scenic.compiler.syntax import Item, ListOf, Optional, Row, RuleReference, TokenKind, Word
 from scenic.constrained.items import CharacterClass, TextChoice, TextItem, TextMany
 from scenic.constrained.rules import Rules
 from scenic.constrained.terminals import Tokens, tokens
@@ -76,29 +76,29 @@ def _blueprints() -> tuple[str, ...]:
     return tuple(sorted(identity for kind in CATALOGUE.values() for identity in kind))
 
 
-_CALL: Final = Reference("behavior_call")
+_CALL: Final = RuleReference("behavior_call")
 
 
 def restricted(rules: Rules, world: World) -> Rules:
     """The rules with names of a world where classes, behaviors, blueprints and the model stand."""
     new_rules = dict(rules)
     new_rules["behavior_call"] = (
-        (TokenKind("BEHAVIOR"), Optional((Word("("), Optional((Reference("arguments"),)), Word(")")))),
+        (TokenKind("BEHAVIOR"), Optional((Word("("), Optional((RuleReference("arguments"),)), Word(")")))),
     )
-    weighted_call = (_CALL, Word(":"), Reference("expression"))
+    weighted_call = (_CALL, Word(":"), RuleReference("expression"))
     comma = (Word(","),)
     new_rules["run"] = ((_CALL,), (Word("{"), ListOf(weighted_call, comma), Word("}")))
     new_rules["behavior_value"] = ((_CALL,), (Word("None"),), _uniform(_CALL))
     new_rules["new_expression"] = tuple(
-        tuple(TokenKind("OBJECT_CLASS") if item == Reference("name_load") else item for item in row)
+        tuple(TokenKind("OBJECT_CLASS") if item == RuleReference("name_load") else item for item in row)
         for row in rules["new_expression"]
     )
     properties: tuple[Row, ...] = (
-        (Word("with"), TokenKind("PROPERTY"), Reference("expression")),
-        (Word("with"), Word("behavior"), Reference("behavior_value")),
+        (Word("with"), TokenKind("PROPERTY"), RuleReference("expression")),
+        (Word("with"), Word("behavior"), RuleReference("behavior_value")),
     )
     if world.blueprints:
-        properties += ((Word("with"), Word("blueprint"), Reference("blueprint_value")),)
+        properties += ((Word("with"), Word("blueprint"), RuleReference("blueprint_value")),)
         new_rules["blueprint_value"] = ((TokenKind("BLUEPRINT"),), _uniform(TokenKind("BLUEPRINT")))
     new_rules["specifier"] = (
         *properties,
@@ -119,7 +119,7 @@ def _uniform(item: Item) -> Row:
 
 def _run(item: Item) -> Item:
     """An item of a `do` statement: what is run becomes a behavior."""
-    return ListOf((Reference("run"),), item.separator) if isinstance(item, ListOf) else item
+    return ListOf((RuleReference("run"),), item.separator) if isinstance(item, ListOf) else item
 
 
 def restricted_tokens(world: World) -> Tokens:

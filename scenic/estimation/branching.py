@@ -9,7 +9,7 @@ import numpy as np
 from scenic.batch.engines import Engine
 from scenic.dataclass import dataclass
 from scenic.falsification.evaluating import Evaluation, evaluated
-from scenic.falsification.lineages import Ancestry, Lineage, Step
+from scenic.falsification.lineages import Ancestry, Lineage, LineageStep
 from scenic.statistics.intervals import Interval
 from scenic.statistics.splitting import (
     Move,
@@ -103,7 +103,7 @@ def split(
         outcomes = []
         for row, move in zip(make(number, moves), moves, strict=False):
             value = None if row["values"] is None else _distance(row, threshold)
-            step = Step(row["run"], move.step, move.share)
+            step = LineageStep(row["run"], move.step, move.share)
             point = Lineage(row["run"]) if move.parent is None else move.parent.child(step)
             outcomes.append(Outcome(point, value))
             yield row
@@ -149,7 +149,9 @@ class Branching:
     def rows(self, first: int, moves: Sequence[Move[Lineage]]) -> Iterator[_Row]:
         """The rows of moves, in order; the first is run ``first``."""
         lineages = [
-            Lineage(run) if move.parent is None else move.parent.child(Step(run, move.step, move.share))
+            Lineage(run)
+            if move.parent is None
+            else move.parent.child(LineageStep(run, move.step, move.share))
             for run, move in enumerate(moves, first)
         ]
         for row, move in zip(self._made(first, lineages), moves, strict=True):

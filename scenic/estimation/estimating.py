@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from scenic.batch.engines import Engine, OverExecutor, Processes
-from scenic.batch.simulations import Running, Simulations
+from scenic.batch.simulations import Simulations, SimulationSettings
 from scenic.dataclass import dataclass
 from scenic.estimation.asking import asked_of
 from scenic.estimation.branching import Branching, is_of_law, rare_of, split
@@ -21,10 +21,10 @@ from scenic.estimation.following import Guide, guide_of, weighted_of
 from scenic.estimation.requirements import EstimateError, check_labels, goals_of, requirement_labels
 from scenic.estimation.store import EstimateFolder, joined, manifest_of
 from scenic.falsification.comparing import row_departures
-from scenic.falsification.evaluating import Evaluation, Failures, Task, evaluated
+from scenic.falsification.evaluating import Evaluation, Failures, RunTask, evaluated
 from scenic.falsification.lineages import Ancestry, Held, Lineage
 from scenic.falsification.objectives import Objective
-from scenic.falsification.search import Plan
+from scenic.falsification.search import SearchPlan
 from scenic.falsification.space import Space
 from scenic.falsification.store import read_rows
 from scenic.runtime.ground.arguments import check_seconds, whole_number
@@ -121,7 +121,7 @@ class Runs:
 
     def settings(self) -> dict[str, Any]:
         """Everything that decides the rows, as plain data."""
-        plan = Plan(
+        plan = SearchPlan(
             self.seed, "none", None, self.objectives, self.threshold, "none", None, self.simulator,
             self.is_static, self.max_steps, self.timestep,
         )  # fmt: skip
@@ -137,7 +137,7 @@ class Runs:
         """The evaluation of one run."""
         simulations = None
         if not self.is_static:
-            running = Running(self.seed, self.max_steps, self.timestep, tries=1)
+            running = SimulationSettings(self.seed, self.max_steps, self.timestep, tries=1)
             simulations = Simulations(self.scenario, self.simulator, running)
         return Evaluation(
             self.scenario, simulations, self.objectives, Space(()), self.seed, self.threshold,
@@ -315,7 +315,7 @@ class _Course:
                 rows = self._evaluation.chosen(some[0], columns, len(some))
             else:
                 tasks = [
-                    Task(run, dict(zip(guide.addresses, map(float, point), strict=True)))
+                    RunTask(run, dict(zip(guide.addresses, map(float, point), strict=True)))
                     for run, point in zip(some, points, strict=True)
                 ]
                 rows = evaluated(self._evaluation, tasks, self._engine)
@@ -331,7 +331,7 @@ class _Course:
         if row is None or self._runs.is_static:
             return None
         numbers = {int(name, 16): number for name, number in row.get("numbers", {}).items()}
-        task = Task(row["run"], numbers) if numbers else self._ancestry.task(Lineage(row["run"]))
+        task = RunTask(row["run"], numbers) if numbers else self._ancestry.task(Lineage(row["run"]))
         return not row_departures(row, self._evaluation(task))
 
 

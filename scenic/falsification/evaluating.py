@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from scenic.batch.keeping import Kept, Watcher
+from scenic.batch.keeping import SimulationRecord, Watcher
 from scenic.dataclass import dataclass
 from scenic.falsification.objectives import Objective, ObjectiveError
 from scenic.falsification.space import Floats, Space
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from scenic.batch.simulations import Simulations
     from scenic.runtime.scenes.scenario import Scenario
 
-__all__ = ["Evaluation", "Failures", "SearchError", "Task", "checked", "evaluated"]
+__all__ = ["Evaluation", "Failures", "RunTask", "SearchError", "checked", "evaluated"]
 
 _FAILURES: Final = 10
 """Failing runs in a row that end a batch of runs."""
@@ -62,7 +62,7 @@ class Failures:
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class RunTask:
     """A run to be made.
 
     Attributes:
@@ -154,11 +154,11 @@ class Evaluation:
                 self._add_distances(row, values, distances)
             yield row
 
-    def static(self, task: Task) -> Iterator[dict[str, Any]]:
+    def static(self, task: RunTask) -> Iterator[dict[str, Any]]:
         """The row of one scene."""
         return self._rows_of([self._scene(task)], task.run)
 
-    def __call__(self, task: Task) -> dict[str, Any]:
+    def __call__(self, task: RunTask) -> dict[str, Any]:
         """The row of one simulation. Raises nothing but interruptions.
 
         The status is ``objective`` or ``unwritable`` where the search cannot go on: no objective, or no room for a counterexample.
@@ -180,13 +180,13 @@ class Evaluation:
         row["seconds"] = round(time.perf_counter() - start_time, 4)
         return row
 
-    def _simulated(self, task: Task) -> dict[str, Any]:
+    def _simulated(self, task: RunTask) -> dict[str, Any]:
         assert self.simulations is not None
         scene = self._scene(task)
         if isinstance(scene, Exhausted):
             return {"run": task.run, "status": "rejected", "values": None, "attempts": scene.attempts}
         waiting = None if self.folder is None else self.folder / f".run-{task.run:06d}.jsonl"
-        keeping = Kept(waiting, "jsonl", shown=waiting is not None, watcher=self.watcher)
+        keeping = SimulationRecord(waiting, "jsonl", shown=waiting is not None, watcher=self.watcher)
         with closing(keeping) as keeper:
             reasons: list[str] = []
             simulation = self.simulations.simulator.simulate(
@@ -228,7 +228,7 @@ class Evaluation:
                 self._keep_course(scene, keeper, simulation, about, task.run, waiting)
             return row
 
-    def _scene(self, task: Task) -> Scene | Exhausted:
+    def _scene(self, task: RunTask) -> Scene | Exhausted:
         """The scene of a run."""
         columns = {place: np.array([value]) for place, value in task.numbers.items()}
         number = task.run if task.scene is None else task.scene
@@ -267,7 +267,13 @@ class Evaluation:
         scene.save(folder / "scene.json")
 
     def _keep_course(
-        self, scene: Scene, kept: Kept, done: Any, about: Mapping[str, object], run: int, waiting: Path
+        self,
+        scene: Scene,
+        kept: SimulationRecord,
+        done: Any,
+        about: Mapping[str, object],
+        run: int,
+        waiting: Path,
     ) -> None:
         from scenic.formats.course_page import course_page
 
@@ -296,7 +302,7 @@ def checked(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def evaluated(
-    evaluation: Evaluation, tasks: Iterable[Task], engine: "Engine | None"
+    evaluation: Evaluation, tasks: Iterable[RunTask], engine: "Engine | None"
 ) -> Generator[dict[str, Any]]:
     """The rows of runs in order, each as soon as it and those before it are there."""
     if engine is None:
@@ -311,7 +317,7 @@ def evaluated(
             due += 1
 
 
-def _lost(task: Task, code: int) -> dict[str, Any]:
+def _lost(task: RunTask, code: int) -> dict[str, Any]:
     return {
         "run": task.run,
         "status": "failed",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from scenic.falsification.samplers import RESTORABLE, SEQUENCES, make_sampler
-from scenic.falsification.samplers.protocol import Exhausted, Sampler
+from scenic.falsification.samplers.protocol import NoMorePointsError, Sampler
 from scenic.falsification.space import Coordinate, Floats, Space, space_of
 from scenic.language.errors import InvalidScenarioError, ScenicWarning
 from scenic.runtime.python.random_state import preserved
@@ -97,7 +97,7 @@ class VerifaiSampler(ExternalSampler):
                 self.sampler.tell(self.cachedSample, np.array([self.value_of(feedback)]))
             found = self.sampler.ask(1)
         if not len(found):
-            raise Exhausted("the sampler has no more points")
+            raise NoMorePointsError("the sampler has no more points")
         return found
 
     def value_of(self, feedback: Any) -> float:
@@ -166,7 +166,7 @@ class _Queue:
         if missing > 0:
             try:
                 self._points = np.concatenate([self._points, self.sampler.sampler.ask(missing)])
-            except Exhausted:
+            except NoMorePointsError:
                 if not len(self._points):
                     raise
         return _columns(self._space, self._points[:count])

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
-from scenic.falsification.evaluating import Task
+from scenic.falsification.evaluating import RunTask
 from scenic.graph.draws import Words, mix, open_unit, scene_keys, seed_words, words_of
 from scenic.graph.operations.distributions import FIRST, LAST
 from scenic.runtime.dynamics.draws import Draw, Seeded, Source
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from scenic.runtime.scenes.scenario import Scenario
     from scenic.runtime.scenes.scene import Scene
 
-__all__ = ["Ancestry", "Descent", "Held", "Lineage", "SceneDraws", "Step", "lineages_of"]
+__all__ = ["Ancestry", "Descent", "Held", "Lineage", "LineageStep", "SceneDraws", "lineages_of"]
 
 Floats = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ _CHANCES: Final = 1 << 12
 _NORMAL: Final = NormalDist()
 
 
-class Step(NamedTuple):
+class LineageStep(NamedTuple):
     """A move: the run that it made, its length from 0 (stay) to 1 (forget), the chance of each number to move."""
 
     run: int
@@ -56,14 +56,14 @@ class Lineage:
     """A run by its first ancestor, a run of the program's law, and the moves since."""
 
     first: int
-    steps: tuple[Step, ...] = ()
+    steps: tuple[LineageStep, ...] = ()
 
     @property
     def run(self) -> int:
         """The number of the run."""
         return self.steps[-1].run if self.steps else self.first
 
-    def child(self, step: Step) -> "Lineage":
+    def child(self, step: LineageStep) -> "Lineage":
         """The run that a move makes of this one."""
         return Lineage(self.first, (*self.steps, step))
 
@@ -126,7 +126,7 @@ def lineages_of(rows: Iterable[Mapping[str, object]]) -> dict[int, Lineage]:
         assert isinstance(run, int)
         if isinstance(move, list):
             parent, length, share = move
-            lineages[run] = lineages[parent].child(Step(run, length, share))
+            lineages[run] = lineages[parent].child(LineageStep(run, length, share))
         else:
             lineages[run] = Lineage(run)
     return lineages
@@ -172,7 +172,7 @@ class Ancestry:
             draws_of |= zip(moving, self._moved(parents, [item.steps[-1] for item in moving]), strict=True)
         return [draws_of[item] for item in lineages]
 
-    def _moved(self, parents: Sequence[SceneDraws], steps: Sequence[Step]) -> list[SceneDraws]:
+    def _moved(self, parents: Sequence[SceneDraws], steps: Sequence[LineageStep]) -> list[SceneDraws]:
         """The draws that moves make of those of some runs."""
         runs = np.array([step.run for step in steps], dtype=np.int64)
         from scipy.special import ndtri
@@ -190,15 +190,15 @@ class Ancestry:
         words = np.where(changes, words_of(keys, addresses), old)
         return [SceneDraws(places[:, k], words[:, k]) for k in range(len(steps))]
 
-    def task(self, lineage: Lineage) -> Task:
+    def task(self, lineage: Lineage) -> RunTask:
         """The task to make a run."""
         source = Descent(self._seed, lineage) if lineage.steps else None
         if self._held is not None:
-            return Task(lineage.run, self._held.numbers, self._held.words, source, self._held.scene)
+            return RunTask(lineage.run, self._held.numbers, self._held.words, source, self._held.scene)
         if not lineage.steps:
-            return Task(lineage.run, {})
+            return RunTask(lineage.run, {})
         numbers, words = self.numbers([self.draws(lineage)])
-        return Task(
+        return RunTask(
             lineage.run,
             {name: float(column[0]) for name, column in numbers.items()},
             {name: int(column[0]) for name, column in words.items()},
@@ -255,7 +255,7 @@ class Descent:
 class _Descended:
     """Numbers of a first run after some moves."""
 
-    def __init__(self, first: Seeded, moves: Sequence[tuple[Seeded, Step]]) -> None:
+    def __init__(self, first: Seeded, moves: Sequence[tuple[Seeded, LineageStep]]) -> None:
         self._first = first
         self._moves = [
             (source, step.length, math.sqrt(1 - step.length**2), step.share * _CHANCES, step.length**2)

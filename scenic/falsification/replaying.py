@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, Final, cast
 from scenic.batch.folders.fingerprint import file_digests
 from scenic.batch.folders.folder import check_files
 from scenic.batch.keeping import Form, about_file
-from scenic.batch.simulations import Running, Simulations
+from scenic.batch.simulations import Simulations, SimulationSettings
 from scenic.dataclass import dataclass
 from scenic.falsification.comparing import file_departures, row_departures
-from scenic.falsification.evaluating import Evaluation, Task
+from scenic.falsification.evaluating import Evaluation, RunTask
 from scenic.falsification.lineages import Ancestry, Held, Lineage, lineages_of
 from scenic.falsification.objectives import Objective, ObjectiveError
 from scenic.falsification.space import space_of
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from scenic.simulators.simulation import Simulation
     from scenic.simulators.simulator import Simulator
 
-__all__ = ["KeptRun", "Replay", "ReplayError", "kept_run", "program_of", "replay"]
+__all__ = ["KeptRun", "Repetition", "ReplayError", "kept_run", "program_of", "replay"]
 
 _FORMS: Final = ("jsonl", "parquet", "xosc", "xml")
 
@@ -67,7 +67,7 @@ class KeptRun:
 
 
 @dataclass(slots=True)
-class Replay:
+class Repetition:
     """A run that was made again.
 
     Attributes:
@@ -210,7 +210,7 @@ def replay(
     objectives: Sequence[Objective] | None = None,
     shown: bool = False,
     accept_changes: bool = False,
-) -> Replay:
+) -> Repetition:
     """Make a run again, and compare it with what was kept.
 
     Args:
@@ -261,7 +261,7 @@ def _search_again(
     objectives: Sequence[Objective] | None,
     shown: bool,
     folder: Path,
-) -> Replay:
+) -> Repetition:
     settings = run.settings
     goals = run.origin.get("objectives")
     if objectives is None and goals is not None:
@@ -277,7 +277,7 @@ def _search_again(
     watcher = _Shown()
     simulations = None
     if settings["simulator"] != "none":
-        running = Running(settings["seed"], settings["steps"], settings["timestep"], tries=1)
+        running = SimulationSettings(settings["seed"], settings["steps"], settings["timestep"], tries=1)
         simulations = _simulations(run, scenario, simulator, running)
     evaluation = Evaluation(
         scenario,
@@ -292,7 +292,7 @@ def _search_again(
     )
     row_again = _made_again(run, scenario, evaluation, numbers)
     new_folder = folder / "counterexamples" / f"{run.number:04d}"
-    result = Replay(row_again)
+    result = Repetition(row_again)
     if objectives is None:
         # The value is known from the row alone.
         result.unknown.append(
@@ -323,7 +323,7 @@ def _made_again(
 ) -> dict[str, Any]:
     """Return the row of a run that was made again; ``numbers`` are the draws that were chosen."""
     held_data = run.settings.get("held")
-    task = Task(run.number, numbers)
+    task = RunTask(run.number, numbers)
     if held_data is not None or run.lineage is not None:
         ancestry = Ancestry(
             scenario, run.settings["seed"], None if held_data is None else Held.from_data(held_data)
@@ -340,7 +340,7 @@ def _anything(_result: object) -> float:
     return 0.0
 
 
-def _show(result: Replay, made: Path, scenario: "Scenario") -> None:
+def _show(result: Repetition, made: Path, scenario: "Scenario") -> None:
     """Take the page of a simulation, or make page and picture of a scene."""
     page, scene = made / "play.html", made / "scene.json"
     if page.exists():
@@ -356,7 +356,11 @@ def _show(result: Replay, made: Path, scenario: "Scenario") -> None:
 
 
 def _simulations(
-    run: KeptRun, scenario: "Scenario", simulator: "str | Simulator | None", running: Running, **options: Any
+    run: KeptRun,
+    scenario: "Scenario",
+    simulator: "str | Simulator | None",
+    running: SimulationSettings,
+    **options: Any,
 ) -> Simulations:
     """Return what simulates a run; raises `ReplayError` if the simulator was made in Python."""
     before = run.settings["simulator"]
@@ -373,9 +377,9 @@ def _simulations(
 
 def _simulate_again(
     run: KeptRun, scenario: "Scenario", simulator: "str | Simulator | None", shown: bool, folder: Path
-) -> Replay:
+) -> Repetition:
     settings = run.settings
-    running = Running(
+    running = SimulationSettings(
         settings["seed"],
         settings["maxSteps"],
         settings["timestep"],
@@ -389,10 +393,10 @@ def _simulate_again(
     row = batch(run.number)
     if row.about is None:
         words = row.missing if row.error is None else row.error.message
-        return Replay({}, [f"now there is no simulation: {words}"])
+        return Repetition({}, [f"now there is no simulation: {words}"])
     assert run.trajectory is not None
     trajectory = folder / f"simulation-{run.number:04d}.{run.form}"
-    result = Replay(row.about, file_departures(run.trajectory, trajectory, run.form))
+    result = Repetition(row.about, file_departures(run.trajectory, trajectory, run.form))
     if row.page is not None:
         from scenic.formats.course_page import course_page
 

@@ -13,12 +13,12 @@ import numpy as np
 
 from scenic.batch.engines import Engine, Processes
 from scenic.batch.folders.fingerprint import files_of_origin
-from scenic.batch.simulations import Running, Simulations
+from scenic.batch.simulations import Simulations, SimulationSettings
 from scenic.dataclass import dataclass
-from scenic.falsification.evaluating import Evaluation, Failures, SearchError, Task, evaluated
+from scenic.falsification.evaluating import Evaluation, Failures, RunTask, SearchError, evaluated
 from scenic.falsification.objectives import Objective
 from scenic.falsification.samplers import make_sampler
-from scenic.falsification.samplers.protocol import Exhausted
+from scenic.falsification.samplers.protocol import NoMorePointsError
 from scenic.falsification.space import Floats, Space, space_of, worded
 from scenic.falsification.store import SearchFolder
 from scenic.language.errors import InvalidScenarioError
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from scenic.runtime.scenes.scenario import Scenario
     from scenic.simulators.simulator import Simulator
 
-__all__ = ["FalsificationResult", "Plan", "SearchError", "falsify", "search"]
+__all__ = ["FalsificationResult", "SearchError", "SearchPlan", "falsify", "search"]
 
 _GENERATION: Final = 8
 """Number of points requested at a time, if a sampler has no preference and simulations take long."""
@@ -38,7 +38,7 @@ _STATIC_GENERATION: Final = 512
 
 
 @dataclass(frozen=True)
-class Plan:
+class SearchPlan:
     """Everything that decides what a search finds."""
 
     seed: int
@@ -158,7 +158,7 @@ class FalsificationResult:
 
 
 @dataclass
-class Limits:
+class SearchLimits:
     """When a search ends."""
 
     runs: int
@@ -170,8 +170,8 @@ class Limits:
 
 def search(
     scenario: "Scenario",
-    plan: Plan,
-    limits: Limits,
+    plan: SearchPlan,
+    limits: SearchLimits,
     *,
     engine: Engine | None = None,
     folder: SearchFolder | None = None,
@@ -193,7 +193,11 @@ def search(
 
 
 def _search(
-    scenario: "Scenario", plan: Plan, limits: Limits, engine: Engine | None, folder: SearchFolder | None
+    scenario: "Scenario",
+    plan: SearchPlan,
+    limits: SearchLimits,
+    engine: Engine | None,
+    folder: SearchFolder | None,
 ) -> FalsificationResult:
     space = space_of(scenario, plan.space)
     if not len(space):
@@ -205,7 +209,7 @@ def _search(
     simulations = None
     if not plan.is_static:
         simulations = Simulations(
-            scenario, plan.simulator, Running(plan.seed, plan.max_steps, plan.timestep, tries=1)
+            scenario, plan.simulator, SimulationSettings(plan.seed, plan.max_steps, plan.timestep, tries=1)
         )
     evaluation = Evaluation(
         scenario,
@@ -233,7 +237,7 @@ def _search(
         size = plan.batch or sampler.batch or (_STATIC_GENERATION if plan.is_static else _GENERATION)
         try:
             points = sampler.ask(size)
-        except Exhausted:
+        except NoMorePointsError:
             break
         first = len(result.rows)
         run_count = min(len(points), limits.runs - first)
@@ -280,7 +284,7 @@ def _evaluated(
         yield [whole(row, place) for place, row in enumerate(together, done)]
         return
     tasks = [
-        Task(
+        RunTask(
             first + place,
             {item.address: float(numbers[place, k]) for k, item in enumerate(space.coordinates)},
         )
@@ -348,7 +352,7 @@ def falsify(
     objectives = [_objective(item) for item in objective_list]
     if minimize is not None:
         objectives.append(Objective(expression=minimize))
-    plan = Plan(
+    plan = SearchPlan(
         random.getrandbits(63) if seed is None else seed,
         sampler,
         sampler_options,
@@ -365,7 +369,9 @@ def falsify(
         None if folder is None else SearchFolder(Path(folder), plan.settings(scenario), resume=resume)
     )
     engine = Processes(processes) if processes > 1 else None
-    return search(scenario, plan, Limits(n, stop_after, time_limit), engine=engine, folder=search_folder)
+    return search(
+        scenario, plan, SearchLimits(n, stop_after, time_limit), engine=engine, folder=search_folder
+    )
 
 
 def _objective(item: Any) -> Objective:

@@ -13,7 +13,7 @@ from scenic.formats.poses import rotation_matrix
 from scenic.language.errors import ScenicError
 from scenic.language.spelling import nearest
 
-__all__ = ["BEHIND", "FollowError", "Track"]
+__all__ = ["BEHIND", "CameraFollowError", "Track"]
 
 BEHIND: Final = (0.0, 22.0)
 """Azimuth and elevation of a camera that follows, degrees, if nothing else is said."""
@@ -27,7 +27,7 @@ _LEAST: Final = 5.0
 """Metres around the object that are in the picture at least."""
 
 
-class FollowError(ScenicError):
+class CameraFollowError(ScenicError):
     """There is no object of the name that a camera is to follow."""
 
     code = "SC604"
@@ -42,7 +42,7 @@ class Track:
         timestep: seconds between states.
 
     Raises:
-        FollowError: there is no such object.
+        CameraFollowError: there is no such object.
 
     """
 
@@ -90,7 +90,7 @@ def _chosen(states: Sequence[Sequence[Instance]], name: str | int) -> Instance:
     names = list(dict.fromkeys(item.label for state in states for item in state if item.name or item.is_ego))
     count = max(map(len, states), default=0)
     near = nearest(name, names) if isinstance(name, str) else None
-    raise FollowError(
+    raise CameraFollowError(
         f"there is no object {name!r} to follow",
         help=f"did you mean {near!r}?"
         if near

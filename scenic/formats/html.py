@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.formats.colors import linear
-from scenic.formats.instances import Array, Gallery, Instance, Piece, Surface, places_of, resting
+from scenic.formats.instances import Array, Gallery, GroundPiece, Instance, Surface, places_of, resting
 from scenic.formats.json_lines import plain
 from scenic.formats.lamps import COLORS, color_numbers, first_colors
 from scenic.formats.poses import euler_angles, rotation_matrix
@@ -37,7 +37,7 @@ class Page:
         self._scenes: list[dict[str, Any]] = []
         # Most regions are the same in all scenes: their lines are on the page once.
         self._outlines: dict[str, int] = {}
-        self._pieces: dict[int, tuple[int, Piece]] = {}
+        self._pieces: dict[int, tuple[int, GroundPiece]] = {}
 
     def __len__(self) -> int:
         return len(self._scenes)
@@ -99,7 +99,7 @@ class Page:
             "lampColors": packed(color_numbers([key for key, _ in lamps], colors)),
         }
 
-    def _ground(self, scene: Scene, pieces: Sequence[Piece]) -> dict[str, Any]:
+    def _ground(self, scene: Scene, pieces: Sequence[GroundPiece]) -> dict[str, Any]:
         """Return the page's data of the ground, empty if the workspace shows no ground."""
         if not pieces:
             return {}

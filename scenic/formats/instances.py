@@ -129,7 +129,7 @@ class Instance:
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class GroundPiece:
     """A part of the ground as it is drawn, in the place where it is: a surface and a colour.
 
     Of pieces that overlap, the one with the largest ``layer`` is on top. ``is_flat`` tells whether it lies wherever the ground of
@@ -149,7 +149,7 @@ class Picture:
     surfaces: tuple[Surface, ...]
     scenes: tuple[tuple[Instance, ...], ...]
     params: tuple[Mapping[str, object], ...]
-    grounds: tuple[tuple[Piece, ...], ...]
+    grounds: tuple[tuple[GroundPiece, ...], ...]
     lamps: tuple[tuple[Instance, ...], ...] = ()
 
 
@@ -200,7 +200,7 @@ class Gallery:
         self._surfaces: list[Surface] = []
         # The mesh is kept beside its number: its identity stays taken while the table lives.
         self._known: dict[int, tuple[UnitMesh | Appearance, int]] = {}
-        self._patches: dict[int, tuple[Patch, Piece]] = {}
+        self._patches: dict[int, tuple[Patch, GroundPiece]] = {}
         self._colors: dict[str, Triple] = {}
         for name in classes:
             if name != _PLAIN:
@@ -250,7 +250,7 @@ class Gallery:
             )
         return tuple(instances)
 
-    def ground(self, workspace: object, places: Array) -> tuple[Piece, ...]:
+    def ground(self, workspace: object, places: Array) -> tuple[GroundPiece, ...]:
         """The pieces that a workspace shows under objects at places ``(n, 3)``."""
         if not isinstance(workspace, Workspace) or not len(places):
             return ()
@@ -279,12 +279,12 @@ class Gallery:
         )
         return lamp.key, instance
 
-    def _piece(self, patch: Patch) -> Piece:
+    def _piece(self, patch: Patch) -> GroundPiece:
         known = self._patches.get(id(patch))
         if known is None:
             normals = np.tile([0.0, 0.0, 1.0], (len(patch.vertices), 1))
             self._surfaces.append(Surface(patch.vertices, normals, patch.faces))
-            piece = Piece(len(self._surfaces) - 1, (*patch.color, 1.0), patch.layer, patch.is_flat)
+            piece = GroundPiece(len(self._surfaces) - 1, (*patch.color, 1.0), patch.layer, patch.is_flat)
             known = self._patches[id(patch)] = (patch, piece)
         return known[1]
 

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from scenic.dataclass import dataclass
 from scenic.formats.camera import corners, ground_height
 from scenic.formats.colors import linear
-from scenic.formats.instances import Array, Instance, Piece, Surface
+from scenic.formats.instances import Array, GroundPiece, Instance, Surface
 from scenic.formats.poses import rotation_matrix
 from scenic.formats.scenery import USUAL, Scenery
 from scenic.formats.textures import ImageTexture, Texture, TextureError, texture_of
@@ -64,7 +64,7 @@ class Stage:
         surfaces: Sequence[Surface],
         instances: Sequence[Instance],
         scenery: Scenery = USUAL,
-        pieces: Sequence[Piece] = (),
+        pieces: Sequence[GroundPiece] = (),
         around: Array | None = None,
     ) -> None:
         self.scenery = scenery

@@ -14,7 +14,7 @@ __all__ = [
     "VERSION",
     "Course",
     "LinesFile",
-    "Running",
+    "RunningSimulation",
     "TrajectoryFile",
     "course_document",
     "step_document",
@@ -24,7 +24,7 @@ FORMAT: Final = "scenic-simulation"
 VERSION: Final = 1
 
 
-class Running(Protocol):
+class RunningSimulation(Protocol):
     """A simulation (`scenic.simulators.simulation.Simulation`)."""
 
     objects: Any
@@ -32,7 +32,7 @@ class Running(Protocol):
     timestep: float
 
 
-class Course(Running, Protocol):
+class Course(RunningSimulation, Protocol):
     """A simulation that has run."""
 
     scene: Any
@@ -91,7 +91,7 @@ def _record(value: object, numbers: Mapping[int, int]) -> Any:
 
 
 def step_document(
-    course: Running, poses: Sequence[tuple[Any, Any]], actions: Mapping[Any, Any]
+    course: RunningSimulation, poses: Sequence[tuple[Any, Any]], actions: Mapping[Any, Any]
 ) -> dict[str, Any]:
     """The present state: positions in metres, orientations as quaternions x, y, z, w, and the actions then taken."""
     numbers = {id(thing): index for index, thing in enumerate(course.objects)}

@@ -21,11 +21,11 @@ from scenic.graph.schedule import (
     AnyStep,
     ChosenDraw,
     ColumnPlace,
-    Draw,
+    ColumnRun,
+    DrawStep,
     Fixed,
     Gather,
     Gathered,
-    Run,
     Schedule,
     Scheduler,
     Slot,
@@ -162,7 +162,7 @@ class Batch:
             with np.errstate(all="ignore"):
                 for step in schedule.steps:
                     start_time = 0.0 if self._meter is None else time.thread_time()
-                    if isinstance(step, Draw):
+                    if isinstance(step, DrawStep):
                         group = self._draw(step)
                     elif isinstance(step, ChosenDraw):
                         group = self._draw_chosen(step)
@@ -273,7 +273,7 @@ class Batch:
 
     # Steps
 
-    def _draw(self, step: Draw) -> _Group:
+    def _draw(self, step: DrawStep) -> _Group:
         if step.axes is None:
             return _Group(self._source.words(step.addresses), None, self._generation)
         numbers = self._source.uniforms(step.addresses)
@@ -342,7 +342,7 @@ class Batch:
         """The columns of an operand over the members, and their statuses."""
         if isinstance(gather, Fixed):
             return gather.column, None
-        if isinstance(gather, Run):
+        if isinstance(gather, ColumnRun):
             group = self._group(gather.slot)
             status = group.status
             return group.column[gather.members], None if status is None else status[gather.members]

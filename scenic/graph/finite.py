@@ -1,7 +1,7 @@
 """Discrete values that are drawn together, so that requirements which couple them hold.
 
 An axis of the cube below a discrete value falls into *cells*, on each of which the value is the same. A `Finite` part of a
-domain chooses the cells of some axes jointly, by a `Law` over combinations of cells. The number of an axis is then any
+domain chooses the cells of some axes jointly, by a `FiniteLaw` over combinations of cells. The number of an axis is then any
 number of the cell, so that nothing else of the graph has to know.
 """
 
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scenic.dataclass import dataclass
 from scenic.graph.draws import Floats, Words
 
-__all__ = ["BoundedDistinct", "Distinct", "Finite", "Law", "Listed", "Sequential", "Step"]
+__all__ = ["BoundedDistinct", "ConditionalChoice", "Distinct", "Finite", "FiniteLaw", "Listed", "Sequential"]
 
 Cells = NDArray[np.intp]
 
@@ -24,7 +24,7 @@ _MOST_ENTRIES: Final = 1 << 19
 """Combinations of a group that are compared at a time, in all lanes."""
 
 
-class Law(Protocol):
+class FiniteLaw(Protocol):
     """A law over combinations of cells, one of each variable."""
 
     @property
@@ -58,7 +58,7 @@ class Listed:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Step:
+class ConditionalChoice:
     """The choice of one variable, given others.
 
     Attributes:
@@ -85,7 +85,7 @@ class Sequential:
 
     """
 
-    steps: tuple[Step, ...]
+    steps: tuple[ConditionalChoice, ...]
     outputs: tuple[int, ...]
 
     @property
@@ -286,7 +286,7 @@ class Finite:
     lower: tuple[Floats, ...]
     upper: tuple[Floats, ...]
     addresses: Words
-    law: Law
+    law: FiniteLaw
     share: float
 
     @property

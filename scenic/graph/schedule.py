@@ -41,7 +41,7 @@ class Fixed:
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class ColumnRun:
     """An operand whose columns are members of one group at equal distances."""
 
     slot: Slot
@@ -55,7 +55,7 @@ class Gathered:
     parts: tuple[ColumnPlace | Column, ...]
 
 
-Gather = Fixed | Run | Gathered
+Gather = Fixed | ColumnRun | Gathered
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +78,7 @@ class Step:
 
 
 @dataclass(frozen=True, slots=True)
-class Draw:
+class DrawStep:
     """Axes (or keys) drawn together."""
 
     slot: Slot
@@ -99,7 +99,7 @@ class ChosenDraw:
     """Numbers of the axes in the domain."""
 
 
-AnyStep = Draw | ChosenDraw | Step
+AnyStep = DrawStep | ChosenDraw | Step
 
 
 @dataclass(frozen=True, slots=True)
@@ -276,9 +276,9 @@ class Scheduler:
             places[node] = ColumnPlace(slot, member)
         return slot
 
-    def _draw(self, members: Sequence[Node], places: dict[Node, ColumnPlace], *, axes: bool) -> Draw:
+    def _draw(self, members: Sequence[Node], places: dict[Node, ColumnPlace], *, axes: bool) -> DrawStep:
         numbers = np.array([self.graph.axes[node] for node in members], dtype=np.intp) if axes else None
-        return Draw(self._slot(members, places), self.graph.addresses(members), numbers)
+        return DrawStep(self._slot(members, places), self.graph.addresses(members), numbers)
 
     def _chosen_draw(self, node: Node, places: dict[Node, ColumnPlace]) -> ChosenDraw:
         index, *axes = node.operands
@@ -315,10 +315,10 @@ class Scheduler:
 
 
 def _slots_read(step: AnyStep) -> Iterator[Slot]:
-    if isinstance(step, Draw):
+    if isinstance(step, DrawStep):
         return
     for gather in step.operands if isinstance(step, Step) else (step.index,):
-        if isinstance(gather, Run):
+        if isinstance(gather, ColumnRun):
             yield gather.slot
         elif isinstance(gather, Gathered):
             yield from (part.slot for part in gather.parts if isinstance(part, ColumnPlace))
@@ -358,30 +358,30 @@ def _equal_constants(operands: Sequence[Node]) -> bool:
     return all(operand.payload.key == first for operand in operands[1:])
 
 
-def _run(places: Sequence[ColumnPlace]) -> Run | None:
+def _run(places: Sequence[ColumnPlace]) -> ColumnRun | None:
     slot = places[0].slot
     if any(place.slot != slot for place in places):
         return None
     members = [place.member for place in places]
     if len(members) == 1:
-        return Run(slot, slice(members[0], members[0] + 1))
+        return ColumnRun(slot, slice(members[0], members[0] + 1))
     step = members[1] - members[0]
     if step <= 0 or any(b - a != step for a, b in pairwise(members)):
         if all(member == members[0] for member in members):
-            return Run(slot, slice(members[0], members[0] + 1))
+            return ColumnRun(slot, slice(members[0], members[0] + 1))
         return None
-    return Run(slot, slice(members[0], members[-1] + 1, step))
+    return ColumnRun(slot, slice(members[0], members[-1] + 1, step))
 
 
 __all__ = [
     "AnyStep",
     "ChosenDraw",
     "ColumnPlace",
-    "Draw",
+    "ColumnRun",
+    "DrawStep",
     "Fixed",
     "Gather",
     "Gathered",
-    "Run",
     "Schedule",
     "Scheduler",
     "Step",

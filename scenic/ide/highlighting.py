@@ -18,8 +18,8 @@ from scenic.compiler.syntax import (
     STATEMENT_FORMS,
     ListOf,
     Optional,
-    Reference,
     Row,
+    RuleReference,
     TokenKind,
     words_of,
 )
@@ -111,7 +111,7 @@ def _starts_of_statements() -> tuple[Mapping[str, set[str]], set[tuple[str, ...]
                 starts["whole"].add(form.start)
             case _ if form.has_block and len(words) == 1:
                 starts["header"].add(form.start)
-            case (Reference() | ListOf() | TokenKind(), *_):
+            case (RuleReference() | ListOf() | TokenKind(), *_):
                 starts["statement"].add(form.start)
         if len(words) > 1:
             phrases.add(words)
@@ -163,7 +163,7 @@ def _begins_with_name(row: Row) -> bool:
     match row:
         case (TokenKind("NAME"), *_):
             return True
-        case (Reference(rule), *_):
+        case (RuleReference(rule), *_):
             alternatives = RULES[rule].alternatives
             return len(alternatives) == 1 and _begins_with_name(alternatives[0].row)
     return False

@@ -1,9 +1,9 @@
 """Programs in Markdown documents: where they are, and their usual style."""
 
-from scenic.compiler.markdown import SUFFIXES, Block, program_blocks, with_blocks
+from scenic.compiler.markdown import SUFFIXES, ProgramBlock, program_blocks, with_blocks
 from scenic.ide.formatting import format_text
 
-__all__ = ["Block", "format_blocks", "is_markdown", "program_blocks"]
+__all__ = ["ProgramBlock", "format_blocks", "is_markdown", "program_blocks"]
 
 
 def is_markdown(name: str, language: str = "") -> bool:

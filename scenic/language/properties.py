@@ -29,14 +29,14 @@ __all__ = [
     "Attribute",
     "BuiltinClass",
     "BuiltinProperty",
-    "Constant",
+    "ConstantDefault",
     "attributes_of",
     "properties_of",
 ]
 
 
 @dataclass(frozen=True, slots=True)
-class Constant:
+class ConstantDefault:
     """A default that is the same for every instance; ``text`` is how a program writes it, where that is not ``repr``."""
 
     value: Any
@@ -54,7 +54,7 @@ class BuiltinProperty:
 
     name: str
     types: tuple[Type, ...]
-    given: Constant | str
+    given: ConstantDefault | str
     documentation: str
     needs: tuple[str, ...] = ()
     dynamic: bool = False
@@ -129,67 +129,97 @@ _POINT = BuiltinClass(
     None,
     "A position in space.",
     (
-        _P("position", (VECTOR,), Constant((0, 0, 0)), "Global position, in metres.", dynamic=True, unit="m"),
-        _P("width", (SCALAR,), Constant(0), "Extent along the local X axis; points have none.", unit="m"),
-        _P("length", (SCALAR,), Constant(0), "Extent along the local Y axis; points have none.", unit="m"),
-        _P("height", (SCALAR,), Constant(0), "Extent along the local Z axis; points have none.", unit="m"),
+        _P(
+            "position",
+            (VECTOR,),
+            ConstantDefault((0, 0, 0)),
+            "Global position, in metres.",
+            dynamic=True,
+            unit="m",
+        ),
+        _P(
+            "width",
+            (SCALAR,),
+            ConstantDefault(0),
+            "Extent along the local X axis; points have none.",
+            unit="m",
+        ),
+        _P(
+            "length",
+            (SCALAR,),
+            ConstantDefault(0),
+            "Extent along the local Y axis; points have none.",
+            unit="m",
+        ),
+        _P(
+            "height",
+            (SCALAR,),
+            ConstantDefault(0),
+            "Extent along the local Z axis; points have none.",
+            unit="m",
+        ),
         _P(
             "baseOffset",
             (VECTOR,),
-            Constant((0, 0, 0)),
+            ConstantDefault((0, 0, 0)),
             "The base point, relative to the position, that `on` puts on a surface.",
             unit="m",
         ),
         _P(
             "contactTolerance",
             (SCALAR,),
-            Constant(0),
+            ConstantDefault(0),
             "The small gap that `on` and the directional specifiers leave, in metres.",
             unit="m",
         ),
         _P(
             "onDirection",
             (VECTOR, NONE),
-            Constant(None),
+            ConstantDefault(None),
             "The direction in which `on` projects a position onto a surface.",
         ),
         _P(
             "viewAngles",
             (_words("pair of scalars"),),
-            Constant((2 * math.pi, math.pi), "(360 deg, 180 deg)"),
+            ConstantDefault((2 * math.pi, math.pi), "(360 deg, 180 deg)"),
             "Horizontal and vertical angle of view.",
             unit="rad",
         ),
-        _P("visibleDistance", (SCALAR,), Constant(50), "Range of the view, in metres.", unit="m"),
+        _P("visibleDistance", (SCALAR,), ConstantDefault(50), "Range of the view, in metres.", unit="m"),
         _P(
             "viewRayDensity",
             (SCALAR,),
-            Constant(5),
+            ConstantDefault(5),
             "Rays per degree, in each dimension, with which visibility is tested.",
         ),
         _P(
             "viewRayCount",
             (_words("pair of integers"), NONE),
-            Constant(None),
+            ConstantDefault(None),
             "Numbers of rays, instead of a density.",
         ),
         _P(
             "viewRayDistanceScaling",
             (BOOLEAN,),
-            Constant(False),
+            ConstantDefault(False),
             "True if more rays are cast towards more distant things.",
         ),
         _P(
             "regionContainedIn",
             (REGION, NONE),
-            Constant(None),
+            ConstantDefault(None),
             "The region that must contain it; `None` means the workspace.",
         ),
-        _P("mutationScale", (SCALAR,), Constant(0), "Factor of the noise that mutation adds; 0 means none."),
+        _P(
+            "mutationScale",
+            (SCALAR,),
+            ConstantDefault(0),
+            "Factor of the noise that mutation adds; 0 means none.",
+        ),
         _P(
             "positionStdDev",
             (VECTOR,),
-            Constant((1, 1, 0)),
+            ConstantDefault((1, 1, 0)),
             "Standard deviation of the noise on the position, per axis.",
             unit="m",
         ),
@@ -213,7 +243,7 @@ _ORIENTED_POINT = BuiltinClass(
         _P(
             "yaw",
             (SCALAR,),
-            Constant(0),
+            ConstantDefault(0),
             "Rotation about the Z axis of the parent orientation, in radians.",
             dynamic=True,
             unit="rad",
@@ -221,7 +251,7 @@ _ORIENTED_POINT = BuiltinClass(
         _P(
             "pitch",
             (SCALAR,),
-            Constant(0),
+            ConstantDefault(0),
             "Rotation about the X axis after the yaw, in radians.",
             dynamic=True,
             unit="rad",
@@ -229,7 +259,7 @@ _ORIENTED_POINT = BuiltinClass(
         _P(
             "roll",
             (SCALAR,),
-            Constant(0),
+            ConstantDefault(0),
             "Rotation about the Y axis after yaw and pitch, in radians.",
             dynamic=True,
             unit="rad",
@@ -262,7 +292,7 @@ _ORIENTED_POINT = BuiltinClass(
         _P(
             "viewAngle",
             (SCALAR,),
-            Constant(2 * math.pi, "360 deg"),
+            ConstantDefault(2 * math.pi, "360 deg"),
             "Horizontal angle of view; the older form of `viewAngles`.",
             unit="rad",
         ),
@@ -277,7 +307,7 @@ _ORIENTED_POINT = BuiltinClass(
         _P(
             "headingStdDev",
             (SCALAR,),
-            Constant(math.radians(5), "5 deg"),
+            ConstantDefault(math.radians(5), "5 deg"),
             "Standard deviation of the noise on the yaw.",
             unit="rad",
         ),
@@ -367,14 +397,14 @@ _OBJECT = BuiltinClass(
         _P(
             "present",
             (BOOLEAN,),
-            Constant(True),
+            ConstantDefault(True),
             "True if the object is in the scene; random for a random number of objects.",
         ),
-        _P("allowCollisions", (BOOLEAN,), Constant(False), "True if it may overlap other objects."),
+        _P("allowCollisions", (BOOLEAN,), ConstantDefault(False), "True if it may overlap other objects."),
         _P(
             "regionContainedIn",
             (REGION, NONE),
-            Constant(None),
+            ConstantDefault(None),
             "The region that must contain it; `None` means the workspace.",
         ),
         _P(
@@ -387,16 +417,21 @@ _OBJECT = BuiltinClass(
         _P(
             "contactTolerance",
             (SCALAR,),
-            Constant(1e-4, "1e-4"),
+            ConstantDefault(1e-4, "1e-4"),
             "The small gap that `on` and the directional specifiers leave.",
         ),
         _P(
             "sideComponentThresholds",
             (_words("three pairs of scalars"),),
-            Constant(((-0.5, 0.5),) * 3, "((-0.5, 0.5),) * 3"),
+            ConstantDefault(((-0.5, 0.5),) * 3, "((-0.5, 0.5),) * 3"),
             "Limits of the components of a normal, per axis, beyond which a face belongs to the surface of a side.",
         ),
-        _P("cameraOffset", (VECTOR,), Constant((0, 0, 0)), "The position of its eye, in its own frame."),
+        _P(
+            "cameraOffset",
+            (VECTOR,),
+            ConstantDefault((0, 0, 0)),
+            "The position of its eye, in its own frame.",
+        ),
         _P(
             "visionSensorOffset",
             (VECTOR,),
@@ -404,16 +439,16 @@ _OBJECT = BuiltinClass(
             "The default position of its vision sensors, in its own frame.",
             ("length",),
         ),
-        _P("requireVisible", (BOOLEAN,), Constant(False), "True if the ego must see it."),
-        _P("occluding", (BOOLEAN,), Constant(True), "True if it hides things behind it."),
-        _P("showVisibleRegion", (BOOLEAN,), Constant(False), "True if pictures show its view volume."),
+        _P("requireVisible", (BOOLEAN,), ConstantDefault(False), "True if the ego must see it."),
+        _P("occluding", (BOOLEAN,), ConstantDefault(True), "True if it hides things behind it."),
+        _P("showVisibleRegion", (BOOLEAN,), ConstantDefault(False), "True if pictures show its view volume."),
         _P(
             "color",
             (COLOR, NONE),
-            Constant(None),
+            ConstantDefault(None),
             "Colour in pictures: red, green, blue, opacity.",
         ),
-        _P("render", (BOOLEAN,), Constant(True), "Whether pictures show it."),
+        _P("render", (BOOLEAN,), ConstantDefault(True), "Whether pictures show it."),
         _P(
             "velocity",
             (VECTOR,),
@@ -423,11 +458,18 @@ _OBJECT = BuiltinClass(
             dynamic=True,
             unit="m/s",
         ),
-        _P("speed", (SCALAR,), Constant(0), "Speed at the start of a simulation.", dynamic=True, unit="m/s"),
+        _P(
+            "speed",
+            (SCALAR,),
+            ConstantDefault(0),
+            "Speed at the start of a simulation.",
+            dynamic=True,
+            unit="m/s",
+        ),
         _P(
             "angularVelocity",
             (VECTOR,),
-            Constant((0, 0, 0)),
+            ConstantDefault((0, 0, 0)),
             "Angular velocity at the start of a simulation.",
             dynamic=True,
             unit="rad/s",
@@ -435,7 +477,7 @@ _OBJECT = BuiltinClass(
         _P(
             "angularSpeed",
             (SCALAR,),
-            Constant(0),
+            ConstantDefault(0),
             "Angular speed at the start of a simulation.",
             dynamic=True,
             unit="rad/s",
@@ -443,20 +485,20 @@ _OBJECT = BuiltinClass(
         _P(
             "behavior",
             (BEHAVIOR, NONE),
-            Constant(None),
+            ConstantDefault(None),
             "Its behavior in simulations.",
         ),
         _P(
             "lastActions",
             (_words("tuple of actions"),),
-            Constant(()),
+            ConstantDefault(()),
             "The actions that it took last; empty while it decides.",
         ),
-        _P("sensors", (_words("dictionary of sensors"),), Constant({}), "Its sensors by name."),
+        _P("sensors", (_words("dictionary of sensors"),), ConstantDefault({}), "Its sensors by name."),
         _P(
             "observations",
             (_words("dictionary"),),
-            Constant({}),
+            ConstantDefault({}),
             "The latest observation of each sensor.",
             final=True,
         ),

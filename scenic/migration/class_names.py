@@ -15,7 +15,7 @@ from scenic.migration.moved import MOVED_MODULES
 from scenic.migration.texts import Token, tokens_of
 from scenic.project.search import Finder
 
-__all__ = ["ClassInfo", "Library", "Names", "definitions"]
+__all__ = ["ClassInfo", "Library", "ModuleNames", "definitions"]
 
 _DEEPEST: Final = 50
 _FLAT: Final = frozenset({"scenic.domains.driving.model"})
@@ -48,7 +48,7 @@ class ClassInfo:
 
 
 @dataclass(slots=True)
-class Names:
+class ModuleNames:
     """The names that a module has.
 
     ``unseen`` are the names that come from modules which were not found, and ``has_unseen`` is true if such a module was
@@ -118,12 +118,12 @@ class Library:
 
     def __init__(self, roots: Sequence[str] = ()) -> None:
         self.finder = Finder(roots)
-        self._known: dict[str, Names] = {}
+        self._known: dict[str, ModuleNames] = {}
         self._pending: set[str] = set()
 
-    def names(self, source: Source, tokens: Sequence[Token]) -> Names:
+    def names(self, source: Source, tokens: Sequence[Token]) -> ModuleNames:
         """The names of a program with this text."""
-        names = Names()
+        names = ModuleNames()
         for name in CLASSES:
             names.classes[name] = ClassInfo(name)
         for module, imported_name, alias, star in _imports(tokens):
@@ -140,7 +140,7 @@ class Library:
         return names
 
     def _bring(
-        self, names: Names, importer: str, module: str, imported: str | None, alias: str, star: bool
+        self, names: ModuleNames, importer: str, module: str, imported: str | None, alias: str, star: bool
     ) -> None:
         module = MOVED_MODULES.get(module, module)
         level = len(module) - len(module.lstrip("."))
@@ -173,7 +173,7 @@ class Library:
         else:
             names.others.add(alias)
 
-    def _module(self, found: FoundModule) -> Names | None:
+    def _module(self, found: FoundModule) -> ModuleNames | None:
         """The names of a Scenic module; ``None`` for other modules."""
         filename = found.filename
         if found.kind is not ModuleKind.SCENIC or filename is None:
@@ -182,13 +182,13 @@ class Library:
         if names is not None:
             return names
         if filename in self._pending or len(self._pending) > _DEEPEST:
-            return Names()
+            return ModuleNames()
         self._pending.add(filename)
         try:
             source = read_source(filename)
             names = self.names(source, tokens_of(source))
         except ScenicError:
-            names = Names(has_unseen=True)
+            names = ModuleNames(has_unseen=True)
         self._pending.discard(filename)
         if is_of_library(filename):
             names.imported.clear()
@@ -196,7 +196,7 @@ class Library:
         return names
 
 
-def _info(definition: DefinedClass, names: Names, filename: str) -> ClassInfo | None:
+def _info(definition: DefinedClass, names: ModuleNames, filename: str) -> ClassInfo | None:
     """The class of objects that a definition makes; ``None`` if it is a plain class of Python."""
     if not definition.bases:
         return ClassInfo("Object", definition.pinned, (filename,))

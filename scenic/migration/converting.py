@@ -12,7 +12,7 @@ from scenic.migration.pieces import TextPiece
 from scenic.migration.rules import Note
 from scenic.migration.specifiers import rewrite_specifiers
 from scenic.migration.statements import rewrite_statements
-from scenic.migration.texts import Edit, edited, restored, tokens_of
+from scenic.migration.texts import TextEdit, edited, restored, tokens_of
 from scenic.migration.words import rewritten_words
 
 __all__ = ["Converted", "Converter"]
@@ -90,7 +90,7 @@ class Converter:
         return Converted(restored(result, text), remaining_notes, dialect, None, import_paths)
 
 
-def _checked(text: str, edits: list[Edit], filename: str) -> str | Diagnostic:
+def _checked(text: str, edits: list[TextEdit], filename: str) -> str | Diagnostic:
     """The text with the edits, or the error that the parser finds in it."""
     if not edits:
         return text

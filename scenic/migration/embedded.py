@@ -11,7 +11,7 @@ from typing import Final
 from scenic.dataclass import dataclass
 from scenic.migration.converting import Converted
 from scenic.migration.rules import Note, decision
-from scenic.migration.texts import Edit, edited
+from scenic.migration.texts import TextEdit, edited
 
 __all__ = ["SUFFIXES", "convert_embedded"]
 
@@ -53,7 +53,7 @@ def convert_embedded(text: str, filename: str, convert: Convert) -> tuple[str, t
         strings = _of_json(text)
     else:
         strings = _of_markdown(text)
-    edits: list[Edit] = []
+    edits: list[TextEdit] = []
     notes: list[Note] = []
     for string in strings:
         if not _SIGN.search(string.value):
@@ -67,7 +67,7 @@ def convert_embedded(text: str, filename: str, convert: Convert) -> tuple[str, t
             if literal is None:
                 notes.append(decision("formatted-string", string.line))
                 continue
-            edits.append(Edit(string.start, string.end, literal))
+            edits.append(TextEdit(string.start, string.end, literal))
         notes += [
             Note(
                 string.line + (note.line - 1 if several else 0),

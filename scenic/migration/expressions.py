@@ -6,7 +6,7 @@ from typing import Final
 from scenic.compiler import tree as scenic
 from scenic.migration.moved import LIBRARY_NAMES
 from scenic.migration.pieces import TextPiece
-from scenic.migration.texts import Edit
+from scenic.migration.texts import TextEdit
 
 __all__ = ["rewrite_expressions"]
 
@@ -66,7 +66,7 @@ def _is_local_path(node: ast.AST) -> bool:
 def _as_text(piece: TextPiece, node: ast.AST) -> None:
     start, end = piece.place(node)
     piece.edit("local-path", node, start, start, "str(")
-    piece.edits.append(Edit(end, end, ")"))
+    piece.edits.append(TextEdit(end, end, ")"))
 
 
 def _decisions(piece: TextPiece) -> None:

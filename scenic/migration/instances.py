@@ -9,7 +9,7 @@ from typing import Final
 
 from scenic.compiler.tokens import NAME
 from scenic.dataclass import dataclass
-from scenic.migration.class_names import Names
+from scenic.migration.class_names import ModuleNames
 from scenic.migration.texts import Token
 
 __all__ = ["Dialect", "dialect_of", "makers"]
@@ -79,7 +79,7 @@ class Dialect:
     count: int = 0
 
 
-def dialect_of(tokens: Sequence[Token], names: Names) -> Dialect:
+def dialect_of(tokens: Sequence[Token], names: ModuleNames) -> Dialect:
     """The dialect of a text, judged by its tokens."""
     signs: list[int] = []
     is_new = False
@@ -98,7 +98,7 @@ def dialect_of(tokens: Sequence[Token], names: Names) -> Dialect:
     return Dialect(bool(signs) and not is_new, is_new, signs[0] if signs else 1, len(signs))
 
 
-def unknown_classes(tokens: Sequence[Token], names: Names, *, certain: bool = False) -> frozenset[str]:
+def unknown_classes(tokens: Sequence[Token], names: ModuleNames, *, certain: bool = False) -> frozenset[str]:
     """Names of no known meaning that are used like classes: capitalised, and followed by a specifier or made the ego.
 
     ``certain`` leaves out names that no module which was not found may define: in Scenic 3 these are mistakes.
@@ -123,7 +123,7 @@ def unknown_classes(tokens: Sequence[Token], names: Names, *, certain: bool = Fa
     return frozenset(class_names)
 
 
-def makers(tokens: Sequence[Token], names: Names, *, certain: bool = False) -> Iterator[int]:
+def makers(tokens: Sequence[Token], names: ModuleNames, *, certain: bool = False) -> Iterator[int]:
     """Return the indices of the names that make objects.
 
     ``certain`` leaves out those that may be meant as classes in Scenic 3: names that no specifier follows, except the

@@ -9,10 +9,10 @@ from scenic.compiler import tree as scenic
 from scenic.compiler.traversal import walk
 from scenic.dataclass import dataclass
 from scenic.language.source import Source
-from scenic.migration.class_names import ClassInfo, Names
+from scenic.migration.class_names import ClassInfo, ModuleNames
 from scenic.migration.maps import MapFiles
 from scenic.migration.rules import Note, decision
-from scenic.migration.texts import Edit, line_starts
+from scenic.migration.texts import TextEdit, line_starts
 
 __all__ = ["TextPiece"]
 
@@ -27,12 +27,12 @@ class TextPiece:
 
     source: Source
     tree: ast.Module
-    names: Names
+    names: ModuleNames
     is_old: bool
     flat: bool
     maps: MapFiles
     monitors: frozenset[int] = frozenset()
-    edits: list[Edit] = field(default_factory=list)
+    edits: list[TextEdit] = field(default_factory=list)
     notes: list[Note] = field(default_factory=list)
     nodes: list[ast.AST] = field(init=False)
     parents: dict[ast.AST, ast.AST] = field(init=False)
@@ -62,7 +62,7 @@ class TextPiece:
 
     def edit(self, rule: str, node: ast.AST, start: int, end: int, text: str) -> None:
         """Replace a part of the text because of a node."""
-        self.edits.append(Edit(start, end, text))
+        self.edits.append(TextEdit(start, end, text))
         self.notes.append(Note(self.line(node), rule))
 
     def rewords(self, rule: str, node: ast.AST, words: str, text: str) -> bool:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from scenic.compiler.tokens import FSTRING_END, NAME, NUMBER, STRING
-from scenic.migration.texts import Edit, Token, first_of_line
+from scenic.migration.texts import TextEdit, Token, first_of_line
 
 __all__ = ["renamings"]
 
@@ -57,7 +57,7 @@ _CONTINUING: Final = frozenset(["and", "or", "if", "else", "in", "is", "for", "a
 _STATEMENTS: Final = frozenset({"do", "require"})
 
 
-def renamings(tokens: Sequence[Token]) -> Iterator[tuple[int, Edit]]:
+def renamings(tokens: Sequence[Token]) -> Iterator[tuple[int, TextEdit]]:
     """The edits that rename what a text calls by a reserved name, each with its line."""
     places: list[tuple[int, str]] = []
     bound: set[str] = set()
@@ -78,7 +78,7 @@ def renamings(tokens: Sequence[Token]) -> Iterator[tuple[int, Edit]]:
         token = tokens[index]
         if tokens[index + 1].text == "=" and _in_call(tokens, index) and name in CONVERSIONS:
             continue
-        yield token.line, Edit(token.start, token.end, f"{name}_")
+        yield token.line, TextEdit(token.start, token.end, f"{name}_")
 
 
 def _is_annotation(tokens: Sequence[Token], index: int) -> bool:

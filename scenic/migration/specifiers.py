@@ -6,7 +6,7 @@ from typing import Final
 from scenic.compiler import tree as scenic
 from scenic.compiler.parser import parse
 from scenic.migration.pieces import TextPiece
-from scenic.migration.texts import Edit
+from scenic.migration.texts import TextEdit
 
 __all__ = ["rewrite_specifiers"]
 
@@ -80,7 +80,7 @@ def _offset(piece: TextPiece, phrase: scenic.SpecifierPhrase, words: str) -> Non
     assert operand is not None
     piece.edit("offset-by", phrase, start, start, "at ego ")
     inner_start, inner_end = piece.place(operand)
-    piece.edits += (Edit(inner_start, inner_start, "("), Edit(inner_end, inner_end, ")"))
+    piece.edits += (TextEdit(inner_start, inner_start, "("), TextEdit(inner_end, inner_end, ")"))
 
 
 def _operand_is_whole(text: str, phrase: scenic.SpecifierPhrase, words: str) -> bool:

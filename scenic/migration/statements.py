@@ -11,7 +11,7 @@ from scenic.compiler.semantics.modules import ModuleKind
 from scenic.migration.maps import SUFFIXES
 from scenic.migration.moved import LOST_CLASSES, MAP_LOADERS, MAP_LOADING, MOVED_MODULES, PARAMETERS
 from scenic.migration.pieces import TextPiece
-from scenic.migration.texts import Edit
+from scenic.migration.texts import TextEdit
 from scenic.project.search import Finder
 
 __all__ = ["rewrite_statements"]
@@ -179,13 +179,13 @@ def _loaded_maps(piece: TextPiece) -> None:
                 start, end = piece.place(call)
                 piece.edit("loaded-map", node, start, piece.place(path)[0], MAP_LOADERS[name])
                 if name == "loadNetwork":
-                    piece.edits.append(Edit(piece.place(path)[1], end, ""))
+                    piece.edits.append(TextEdit(piece.place(path)[1], end, ""))
                 has_loader = True
     for node in imports if has_loader else ():
         start, end = piece.place(node)
         alone = piece.source.text[end : end + 1] == "\n"
         text = "param use2DMap = True" if not piece.flat else "" if alone else "pass"
-        piece.edits.append(Edit(start, end + (alone and not text), text))
+        piece.edits.append(TextEdit(start, end + (alone and not text), text))
 
 
 def _moved(piece: TextPiece, node: ast.AST, names: tuple[str, ...]) -> None:

@@ -13,7 +13,7 @@ from scenic.compiler.lexer import lex
 from scenic.compiler.tokens import DEDENT, ENDMARKER, INDENT, NEWLINE
 from scenic.language.source import Source
 
-__all__ = ["Edit", "Token", "edited", "first_of_line", "restored", "tokens_of"]
+__all__ = ["TextEdit", "Token", "edited", "first_of_line", "restored", "tokens_of"]
 
 _LINE: Final = re.compile(r"[^\r\n]*(?:\r\n|\r|\n)|[^\r\n]+")
 _LAYOUT: Final = frozenset({NEWLINE, INDENT, DEDENT})
@@ -34,7 +34,7 @@ class Token(NamedTuple):
         return self.kind in _LAYOUT or self.kind == ENDMARKER
 
 
-class Edit(NamedTuple):
+class TextEdit(NamedTuple):
     """The replacement of a part of a text."""
 
     start: int
@@ -80,7 +80,7 @@ def first_of_line(tokens: list[Token], index: int) -> int:
     return index
 
 
-def edited(text: str, edits: Iterable[Edit]) -> str:
+def edited(text: str, edits: Iterable[TextEdit]) -> str:
     """The text with all edits, which must not overlap; insertions at one place are made in the order given."""
     pieces: list[str] = []
     position = 0

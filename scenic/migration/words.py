@@ -3,20 +3,20 @@
 from collections.abc import Iterator, Sequence
 
 from scenic.compiler.tokens import NAME
-from scenic.migration.class_names import Names
+from scenic.migration.class_names import ModuleNames
 from scenic.migration.instances import Dialect, makers, unknown_classes
 from scenic.migration.reserved import renamings
 from scenic.migration.rules import Note, decision
-from scenic.migration.texts import Edit, Token
+from scenic.migration.texts import TextEdit, Token
 
 __all__ = ["rewritten_words"]
 
 
 def rewritten_words(
-    tokens: Sequence[Token], names: Names, dialect: Dialect
-) -> tuple[list[Edit], list[Note], frozenset[int]]:
+    tokens: Sequence[Token], names: ModuleNames, dialect: Dialect
+) -> tuple[list[TextEdit], list[Note], frozenset[int]]:
     """The edits and notes of a text, and the lines of the monitors that get parentheses."""
-    edits: list[Edit] = []
+    edits: list[TextEdit] = []
     notes: list[Note] = []
     monitors: set[int] = set()
     for index, token in enumerate(tokens):
@@ -26,15 +26,15 @@ def rewritten_words(
         if name.kind < NAME:
             continue
         if token.text == "constructor" and tokens[index + 2].text in ("(", ":"):
-            edits.append(Edit(token.start, token.end, "class"))
+            edits.append(TextEdit(token.start, token.end, "class"))
             notes.append(Note(token.line, "constructor"))
         elif token.text == "monitor" and tokens[index + 2].text == ":":
-            edits.append(Edit(name.end, name.end, "()"))
+            edits.append(TextEdit(name.end, name.end, "()"))
             notes.append(Note(token.line, "monitor"))
             monitors.add(token.line)
     for index in makers(tokens, names, certain=not dialect.is_old):
         token = tokens[index]
-        edits.append(Edit(token.start, token.start, "new "))
+        edits.append(TextEdit(token.start, token.start, "new "))
         notes.append(Note(token.line, "new"))
     if not dialect.is_new:
         for line, edit in renamings(tokens):
@@ -45,7 +45,7 @@ def rewritten_words(
     return edits, notes, frozenset(monitors)
 
 
-def _decisions(tokens: Sequence[Token], names: Names) -> Iterator[Note]:
+def _decisions(tokens: Sequence[Token], names: ModuleNames) -> Iterator[Note]:
     reported_words: set[str] = set()
     class_names = unknown_classes(tokens, names)
     for index, token in enumerate(tokens):

@@ -316,9 +316,9 @@ _ON_A_SHEET: Final = 6
 
 
 def _simulate(loaded: "Scenario", trial: Trial, made: _Answer) -> None:
-    from scenic.batch.simulations import Running, Simulations, nothing_happens
+    from scenic.batch.simulations import Simulations, SimulationSettings, nothing_happens
 
-    running = Running(
+    running = SimulationSettings(
         trial.seed, trial.steps, keep_violations=True, tries=5, stuck_after=trial.limits.seconds
     )
     watcher = None if trial.moments is None else _Moments(trial.moments)

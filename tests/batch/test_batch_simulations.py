@@ -4,7 +4,7 @@ import pytest
 
 import scenic
 from scenic.batch.engines import Processes
-from scenic.batch.simulations import Running, SimulationError, SimulationRow, Simulations
+from scenic.batch.simulations import SimulationError, SimulationRow, Simulations, SimulationSettings
 
 PROGRAM = """
 behavior Drive():
@@ -73,7 +73,7 @@ NUMBERS = range(12)
 
 def rows_of(deaths: Path, processes: int) -> dict[int, SimulationRow]:
     scenario = scenic.scenarioFromString(DYING, params={"deaths": str(deaths)})
-    rows = Simulations(scenario, None, Running(5)).rows(NUMBERS, Processes(processes))
+    rows = Simulations(scenario, None, SimulationSettings(5)).rows(NUMBERS, Processes(processes))
     return {row.k: row for row in rows}
 
 

@@ -16,7 +16,7 @@ import pytest
 
 import scenic
 from scenic.batch import encoding
-from scenic.batch.datasets import Run, make_dataset, write_table
+from scenic.batch.datasets import DatasetRun, make_dataset, write_table
 from scenic.batch.engines import OverExecutor, Processes
 from scenic.batch.manifest import NAME, DatasetError, Manifest
 from scenic.batch.verifying import merge, part_rows, verify
@@ -57,10 +57,10 @@ def test_parts_do_not_depend_on_what_makes_them(scenario: scenic.Scenario, tmp_p
         for numbers in ("00000000-00000019", "00000020-00000039", "00000040-00000049")
     ]
     expected = contents(tmp_path / "alone")
-    make_dataset(scenario, tmp_path / "shared", wanted, Run(Processes(2)))
+    make_dataset(scenario, tmp_path / "shared", wanted, DatasetRun(Processes(2)))
     assert contents(tmp_path / "shared") == expected
     with ThreadPoolExecutor(2) as executor:
-        make_dataset(scenario, tmp_path / "threads", wanted, Run(OverExecutor(executor, 2)))
+        make_dataset(scenario, tmp_path / "threads", wanted, DatasetRun(OverExecutor(executor, 2)))
     assert contents(tmp_path / "threads") == expected
 
 
@@ -150,7 +150,7 @@ def test_a_journal_saves_looking_again(
 
     monkeypatch.setattr(encoding, "LONGEST", 4)
     with pytest.raises(Ended):
-        make_dataset(scenario, tmp_path / "ended", wanted, Run(advance=advance))
+        make_dataset(scenario, tmp_path / "ended", wanted, DatasetRun(advance=advance))
     names = sorted(path.name for path in (tmp_path / "ended").iterdir())
     assert names == [NAME, "part-00000000.journal"]
     journal = np.fromfile(tmp_path / "ended" / "part-00000000.journal", dtype=np.int64).reshape(-1, 2)
@@ -160,7 +160,11 @@ def test_a_journal_saves_looking_again(
         stream.write(b"torn")  # the process was killed while it wrote
     told: list[int] = []
     make_dataset(
-        scenario, tmp_path / "ended", wanted, Run(advance=lambda count, _: told.append(count)), resume=True
+        scenario,
+        tmp_path / "ended",
+        wanted,
+        DatasetRun(advance=lambda count, _: told.append(count)),
+        resume=True,
     )
     assert told[: len(journal)] == [1] * len(journal)
     assert contents(tmp_path / "ended") == contents(tmp_path / "whole")

@@ -16,7 +16,7 @@ import trimesh
 
 import scenic
 from scenic.batch import portable
-from scenic.batch.datasets import Run, make_dataset
+from scenic.batch.datasets import DatasetRun, make_dataset
 from scenic.batch.engines import ClusterError, DaskCluster, OverExecutor
 from scenic.batch.folders.lock import LOCK, BusyError
 from scenic.batch.manifest import Manifest
@@ -299,7 +299,7 @@ def test_a_cluster_gives_the_bytes_of_one_process(tmp_path: Path) -> None:
                     os.kill(next(iter(local.workers.values())).process.process.pid, signal.SIGKILL)
 
             with DaskCluster(local.scheduler_address) as cluster:
-                make_dataset(scenario, tmp_path / "cluster", wanted, Run(cluster, advance=advance))
+                make_dataset(scenario, tmp_path / "cluster", wanted, DatasetRun(cluster, advance=advance))
     for part in sorted((tmp_path / "alone").glob("*.jsonl")):
         assert (tmp_path / "cluster" / part.name).read_bytes() == part.read_bytes()
     assert not (tmp_path / "cluster" / LOCK).exists()

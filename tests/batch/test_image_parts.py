@@ -16,7 +16,7 @@ import PIL.Image
 import pytest
 
 import scenic
-from scenic.batch.datasets import Run, make_dataset
+from scenic.batch.datasets import DatasetRun, make_dataset
 from scenic.batch.engines import OverExecutor, Processes
 from scenic.batch.manifest import NAME, DatasetError, Manifest
 from scenic.batch.verifying import merge, verify
@@ -69,10 +69,10 @@ def test_images_do_not_depend_on_what_makes_them(
     made: Path, scenario: scenic.Scenario, tmp_path: Path
 ) -> None:
     wanted = manifest(scenario, form_of(made))
-    make_dataset(scenario, tmp_path / "processes", wanted, Run(Processes(2)))
+    make_dataset(scenario, tmp_path / "processes", wanted, DatasetRun(Processes(2)))
     assert contents(tmp_path / "processes") == contents(made)
     with ThreadPoolExecutor(2) as executor:
-        make_dataset(scenario, tmp_path / "threads", wanted, Run(OverExecutor(executor, 2)))
+        make_dataset(scenario, tmp_path / "threads", wanted, DatasetRun(OverExecutor(executor, 2)))
     assert contents(tmp_path / "threads") == contents(made)
 
 
@@ -89,7 +89,7 @@ def test_an_interrupted_run_goes_on_to_the_same_bytes(
 
     with ThreadPoolExecutor(1) as executor, pytest.raises(KeyboardInterrupt):
         # Pieces of one scene each.
-        make_dataset(scenario, tmp_path, wanted, Run(OverExecutor(executor, 4), advance=end))
+        make_dataset(scenario, tmp_path, wanted, DatasetRun(OverExecutor(executor, 4), advance=end))
     assert not Manifest.load(tmp_path).is_complete
     with pytest.raises(DatasetError, match="holds a data set"):
         make_dataset(scenario, tmp_path, wanted)

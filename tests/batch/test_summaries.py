@@ -6,8 +6,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import scenic
-from scenic.batch.simulations import Running, Simulations
-from scenic.batch.summaries import Setting, csv_of, summary, verdict_of
+from scenic.batch.simulations import Simulations, SimulationSettings
+from scenic.batch.summaries import SettingRuns, csv_of, summary, verdict_of
 from tests.cli.commands import run_here
 
 PROGRAM = """
@@ -33,23 +33,23 @@ def test_violations_are_kept_with_their_robustness(tmp_path: Path) -> None:
         assert (outcome["verdict"] == "FALSE") == violated == (strict.about is None)
         assert verdict_of(row) == ("violated" if violated else "held")
         assert row.about["steps"] == 10  # to its end
-    table = list(csv.DictReader(io.StringIO(csv_of([Setting(dict(enumerate(rows)))]))))
+    table = list(csv.DictReader(io.StringIO(csv_of([SettingRuns(dict(enumerate(rows)))]))))
     assert [line["verdict"] for line in table] == [verdict_of(row) for row in rows]
     assert min(float(line["robustness"]) for line in table) == min(
         row.about["requirements"][0]["robustness"] for row in rows
     )
     failed = sum(verdict_of(row) == "violated" for row in rows)
     assert 0 < failed < 8
-    assert summary(Setting(dict(enumerate(rows)))).startswith(
+    assert summary(SettingRuns(dict(enumerate(rows)))).startswith(
         f"8 simulations: {8 - failed} held, {failed} violated; robustness "
     )
-    assert summary(Setting(dict(enumerate(rejecting)))).startswith(
+    assert summary(SettingRuns(dict(enumerate(rejecting)))).startswith(
         f"8 simulations: {8 - failed} held, {failed} rejected"
     )
 
 
 def test_only_violations_are_written_where_that_is_asked(tmp_path: Path) -> None:
-    running = Running(1, 10, 1.0, keep_violations=True)
+    running = SimulationSettings(1, 10, 1.0, keep_violations=True)
     batch = Simulations(
         scenic.scenarioFromString(PROGRAM), "kinematic", running, folder=tmp_path, only_violations=True
     )

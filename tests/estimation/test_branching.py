@@ -13,7 +13,7 @@ import scenic
 from scenic.estimation.estimate import Estimate
 from scenic.estimation.requirements import EstimateError
 from scenic.estimation.sentences import notes
-from scenic.falsification.lineages import Ancestry, Descent, Lineage, Step
+from scenic.falsification.lineages import Ancestry, Descent, Lineage, LineageStep
 from scenic.falsification.replaying import kept_run, replay
 from scenic.falsification.store import read_rows
 from scenic.runtime.dynamics.draws import Draw, Seeded
@@ -122,7 +122,7 @@ def test_moves_keep_the_law_of_scenes() -> None:
     text = "ego = new Object at Range(0, 1) @ Normal(0, 1), facing Uniform(0, 1, 2)"
     ancestry = Ancestry(scenic.scenarioFromString(text), 5)
     parents = [Lineage(run) for run in range(600)]
-    children = [item.child(Step(1000 + item.first, 0.7, 0.6)) for item in parents]
+    children = [item.child(LineageStep(1000 + item.first, 0.7, 0.6)) for item in parents]
     before = np.array([item.places for item in ancestry.all_draws(parents)])
     after = np.array([item.places for item in ancestry.all_draws(children)])
     assert before.shape == (600, len(ancestry.axes)) == (600, 3)
@@ -136,7 +136,7 @@ def test_moves_keep_the_law_of_scenes() -> None:
 
 def test_moves_keep_the_law_of_draws_in_time() -> None:
     what = Draw(1, None, "", 0, 0, 0)
-    lineage = Lineage(3).child(Step(9, 0.5, 1.0)).child(Step(12, 0.8, 0.5))
+    lineage = Lineage(3).child(LineageStep(9, 0.5, 1.0)).child(LineageStep(12, 0.8, 0.5))
     source = Descent(7, lineage)(Seeded(b"other"))
     first = Seeded(b"7:3:1")
     numbers = np.array([source.draw(place, what) for place in range(1500)])

@@ -15,7 +15,7 @@ from scipy.stats import qmc
 import scenic
 from scenic.falsification.samplers import SAMPLERS, make_sampler
 from scenic.falsification.samplers.buckets import Bandit, CrossEntropy, EpsilonGreedy
-from scenic.falsification.samplers.protocol import Exhausted, SamplerError
+from scenic.falsification.samplers.protocol import NoMorePointsError, SamplerError
 from scenic.falsification.space import Coordinate, Space, space_of
 
 SPACE = Space((Coordinate(1, "x"), Coordinate(2, "d", 1, 4, 4), Coordinate(3, "y", shares=(0.5, 0.0, 0.5))))
@@ -105,7 +105,7 @@ def test_a_grid_is_the_product_with_the_first_coordinate_fastest() -> None:
     ]
     wanted = [(x, d, y) for y, d, x in itertools.product([0, 1], [1, 2, 3, 4], [0, 0.5, 1])]
     assert values == wanted
-    with pytest.raises(Exhausted):
+    with pytest.raises(NoMorePointsError):
         sampler.ask(1)
     again = make_sampler("grid", SPACE, 0, {"N": [3, 2], "repeat": True})
     assert (again.ask(30)[24:] == found[:6]).all()

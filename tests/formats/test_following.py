@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from scenic.formats.camera import Camera, Outlook
-from scenic.formats.following import BEHIND, FollowError, Track
+from scenic.formats.following import BEHIND, CameraFollowError, Track
 
 BEHIND_IT = Outlook(azimuth=BEHIND[0], elevation=BEHIND[1], follow="ego")
 
@@ -83,7 +83,7 @@ def test_the_camera_waits_where_an_object_comes() -> None:
     ("name", "help"), [("egoo", "did you mean 'ego'?"), (7, "or give a number from 0 to 0")]
 )
 def test_an_unknown_object_is_reported(name: str | int, help: str) -> None:
-    with pytest.raises(FollowError, match="no object") as caught:
+    with pytest.raises(CameraFollowError, match="no object") as caught:
         Track([[item(0, 0, 0)]], name, 0.1)
     assert caught.value.code == "SC604"
     assert help in str(caught.value.help)

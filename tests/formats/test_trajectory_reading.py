@@ -17,7 +17,7 @@ from scenic.formats.trajectories import LinesFile, TrajectoryFile, course_docume
 from scenic.formats.trajectory_reading import Trajectory, TrajectoryFileError
 from scenic.formats.trajectory_tables import ParquetFile, parquet_steps
 from scenic.language.errors import MissingFileError
-from scenic.runtime.dynamics.requirements import Outcome
+from scenic.runtime.dynamics.requirements import RequirementOutcome
 from scenic.simulators.dummy import DummySimulator
 from tests.cli.commands import run_here
 
@@ -222,7 +222,7 @@ def test_a_document_holds_what_the_simulation_did() -> None:
     assert near["robustness"] == 7
     assert there["robustness"] == {"$float": "inf"}
     # What was never evaluated has no verdict.
-    done.result.requirements = (Outcome("late", None, None, None),)
+    done.result.requirements = (RequirementOutcome("late", None, None, None),)
     (late,) = course_document(done, k=4, tries=2)["requirements"]
     assert late == {"label": "late", "line": None, "verdict": None, "robustness": None}
     read = Trajectory(about, *(np.empty(0),) * 3, [])

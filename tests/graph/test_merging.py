@@ -12,7 +12,7 @@ from scenic.graph.draws import Counter, Points, each_of_distinct
 from scenic.graph.merging import Merger
 from scenic.graph.node import Graph, Node, axis
 from scenic.graph.operation import OK
-from scenic.graph.schedule import ChosenDraw, Draw, Scheduler, Step
+from scenic.graph.schedule import ChosenDraw, DrawStep, Scheduler, Step
 from tests.graph.programs import CODEC, make, one_of, uniform
 
 LANES = 500
@@ -91,7 +91,7 @@ def test_drawn_options_alone_are_evaluated() -> None:
     scheduler = Scheduler(Graph([root]))
     steps = scheduler.after(scheduler.start, (root,)).steps
     assert sum(len(step.nodes) for step in steps if isinstance(step, Step)) < 20
-    assert sum(len(step.addresses) for step in steps if isinstance(step, Draw)) < 4
+    assert sum(len(step.addresses) for step in steps if isinstance(step, DrawStep)) < 4
     (chosen,) = (step for step in steps if isinstance(step, ChosenDraw))
     assert len(chosen.addresses) > 190
 

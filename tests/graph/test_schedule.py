@@ -8,7 +8,16 @@ import pytest
 import scenic
 from scenic.graph.node import Graph, axis
 from scenic.graph.operation import FAULT, OK
-from scenic.graph.schedule import ChosenDraw, ColumnPlace, Draw, Gathered, Run, Scheduler, Step, _run
+from scenic.graph.schedule import (
+    ChosenDraw,
+    ColumnPlace,
+    ColumnRun,
+    DrawStep,
+    Gathered,
+    Scheduler,
+    Step,
+    _run,
+)
 from tests.graph.programs import batch_at, make
 
 
@@ -26,7 +35,7 @@ from tests.graph.programs import batch_at, make
 )
 def test_runs_are_steps_of_one_length(members: list[int], run: slice | None) -> None:
     found = _run([ColumnPlace(7, member) for member in members])
-    assert found == (None if run is None else Run(7, run))
+    assert found == (None if run is None else ColumnRun(7, run))
     assert _run([*(ColumnPlace(7, member) for member in members), ColumnPlace(8, members[-1] + 1)]) is None
 
 
@@ -173,14 +182,14 @@ def test_columns_are_freed_after_their_last_use() -> None:
     np.testing.assert_array_equal(*values)
 
 
-def read_by(step: Draw | ChosenDraw | Step) -> set[int]:
+def read_by(step: DrawStep | ChosenDraw | Step) -> set[int]:
     """The slots that a step reads: those of its operands, however they are gathered."""
     gathers = (
-        () if isinstance(step, Draw) else (step.index,) if isinstance(step, ChosenDraw) else step.operands
+        () if isinstance(step, DrawStep) else (step.index,) if isinstance(step, ChosenDraw) else step.operands
     )
     slots = set()
     for gather in gathers:
-        if isinstance(gather, Run):
+        if isinstance(gather, ColumnRun):
             slots.add(gather.slot)
         elif isinstance(gather, Gathered):
             slots |= {part.slot for part in gather.parts if isinstance(part, ColumnPlace)}
@@ -214,7 +223,7 @@ def test_a_chain_keeps_what_is_still_read_and_nothing_else() -> None:
                 given = {schedule.places[node].slot for each in stages[number:] for node in each}
                 assert batch._groups.keys() == made & (later | given)
                 kinds |= {type(step) for step in schedule.steps}
-    assert kinds == {Draw, ChosenDraw, Step}
+    assert kinds == {DrawStep, ChosenDraw, Step}
 
 
 def test_a_chain_that_is_left_begins_anew() -> None:

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import scenic
-from scenic.batch.keeping import Kept
+from scenic.batch.keeping import SimulationRecord
 from scenic.language.errors import (
     DivergenceError,
     InvalidScenarioError,
@@ -28,7 +28,7 @@ from scenic.language.errors import (
     annotation,
 )
 from scenic.runtime.dynamics.recorders import Recorder
-from scenic.runtime.dynamics.requirements import Outcome
+from scenic.runtime.dynamics.requirements import RequirementOutcome
 from scenic.runtime.temporal.monitors import Verdict
 from scenic.runtime.values.values import Vector
 from scenic.simulators.actions import Action
@@ -488,8 +488,8 @@ def test_simulators_that_were_meant_are_named(name: str, meant: str | None) -> N
 
 
 def test_what_became_of_a_requirement_is_told_in_words() -> None:
-    assert repr(Outcome("near", 3, Verdict.PRESUMABLY_TRUE, 1.0)) == "<near: presumably true>"
-    assert repr(Outcome("near", None, None, None)) == "<near: not evaluated>"
+    assert repr(RequirementOutcome("near", 3, Verdict.PRESUMABLY_TRUE, 1.0)) == "<near: presumably true>"
+    assert repr(RequirementOutcome("near", None, None, None)) == "<near: not evaluated>"
 
 
 def test_a_property_without_a_value_takes_the_type_of_its_first_one() -> None:
@@ -533,7 +533,7 @@ def test_each_property_without_a_value_takes_a_type_of_its_own() -> None:
 
 
 def test_a_look_back_in_one_try_is_remembered_in_the_next() -> None:
-    kept = Kept(None, "jsonl", shown=False)
+    kept = SimulationRecord(None, "jsonl", shown=False)
     courses = [Latest("state"), Latest("state")]
     for course in courses:
         course.append(1)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scenic.analysis.finite.tables import Table
 from scenic.dataclass import dataclass
 from scenic.graph.bounds import Floats
-from scenic.graph.finite import Step
+from scenic.graph.finite import ConditionalChoice
 
 __all__ = ["WIDEST", "Elimination", "eliminate", "ordered"]
 
@@ -29,7 +29,7 @@ MOST: Final = 1 << 22
 class Elimination:
     """The result: the steps of a draw, and the weight of all combinations together."""
 
-    steps: tuple[Step, ...]
+    steps: tuple[ConditionalChoice, ...]
     weight: float
 
 
@@ -91,7 +91,7 @@ def eliminate(tables: Sequence[Table], weights: Mapping[int, Floats], order: Seq
         elif not table.allowed.all():
             return Elimination((), 0.0)
     logarithm = 0.0
-    steps: list[Step] = []
+    steps: list[ConditionalChoice] = []
     for variable in order:
         factors = buckets.pop(variable)
         given = tuple(
@@ -105,7 +105,7 @@ def eliminate(tables: Sequence[Table], weights: Mapping[int, Floats], order: Seq
         for theirs, entries in factors:
             product *= _spread(theirs, entries, scope)
         cumulative, sums = _law_of_rows(product.reshape(-1, product.shape[-1]))
-        steps.append(Step(variable, given, sizes, cumulative))
+        steps.append(ConditionalChoice(variable, given, sizes, cumulative))
         most = float(sums.max(initial=0.0))
         if most <= 0:
             return Elimination((), 0.0)

@@ -18,7 +18,7 @@ from scenic.analysis.finite.network import Constraint, Problem, Reduced, compone
 from scenic.analysis.finite.occupying import Exclusive, exclusives, occupied
 from scenic.analysis.finite.tables import Mask
 from scenic.dataclass import dataclass
-from scenic.graph.finite import Law, Listed, Sequential
+from scenic.graph.finite import FiniteLaw, Listed, Sequential
 
 __all__ = ["Component", "Drawn", "solve"]
 
@@ -46,7 +46,7 @@ class Drawn:
 
     variables: tuple[int, ...]
     values: tuple[NDArray[np.intp], ...]
-    law: Law
+    law: FiniteLaw
     numbers: tuple[int | None, ...]
     share: float
     way: str

@@ -6,11 +6,11 @@ messages prefer to what the parser expected. What is wrong without making the te
 Positions here are those of tokens and nodes: lines from 1, columns in UTF-8 bytes. A *place* is a quadruple of them.
 """
 
-from scenic.compiler.actions.common import Place, Problem, make, place_of
+from scenic.compiler.actions.common import Place, SyntaxProblem, make, place_of
 from scenic.compiler.actions.patterns import PatternActions
 from scenic.compiler.actions.statements import StatementActions
 
-__all__ = ["Actions", "Place", "Problem", "make", "place_of"]
+__all__ = ["Actions", "Place", "SyntaxProblem", "make", "place_of"]
 
 
 class Actions(StatementActions, PatternActions):

@@ -14,7 +14,7 @@ LOAD: Final = ast.Load()
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class SyntaxProblem:
     """A problem at a place, before it is a diagnostic."""
 
     code: str
@@ -50,13 +50,13 @@ class CommonActions:
     def __init__(self, tokens: Tokens) -> None:
         self._tokens = tokens
         self._texts = tokens.texts
-        self.problems: dict[tuple[str, Place], Problem] = {}
-        self.failure: Problem | None = None
+        self.problems: dict[tuple[str, Place], SyntaxProblem] = {}
+        self.failure: SyntaxProblem | None = None
 
     def fail(self, place: Place, message: str, *, help: str | None = None, code: str = "SC110") -> None:
         """Note why the alternative being parsed fails; the first reason counts."""
         if self.failure is None:
-            self.failure = Problem(code, place, message, help)
+            self.failure = SyntaxProblem(code, place, message, help)
 
     def _report(
         self,
@@ -67,7 +67,7 @@ class CommonActions:
         code: str = "SC110",
         labels: tuple[tuple[Place, str], ...] = (),
     ) -> None:
-        self.problems.setdefault((code, place), Problem(code, place, message, help, labels))
+        self.problems.setdefault((code, place), SyntaxProblem(code, place, message, help, labels))
 
     def place_of_token(self, index: int) -> Place:
         """The place of a token."""

@@ -7,7 +7,7 @@ one is believed, so they go from the unmistakable to the merely likely.
 from collections.abc import Callable
 from typing import Final
 
-from scenic.compiler.actions import Problem
+from scenic.compiler.actions import SyntaxProblem
 from scenic.compiler.mistakes import (
     blocks,
     dialects,
@@ -32,7 +32,7 @@ __all__ = [
     "unfinished_header",
 ]
 
-Rule = Callable[[Situation], Problem | None]
+Rule = Callable[[Situation], SyntaxProblem | None]
 
 RULES: Final[tuple[Rule, ...]] = (
     # Forms that nothing else looks like.
@@ -129,12 +129,12 @@ RULES: Final[tuple[Rule, ...]] = (
 )
 
 
-def instead_of_failure(at: Situation) -> Problem | None:
+def instead_of_failure(at: Situation) -> SyntaxProblem | None:
     """The message of a rule that knows better than the parser why a statement is no assignment, ``None`` if none does."""
     return dialects.setting_of_property(at)
 
 
-def explain(at: Situation) -> Problem | None:
+def explain(at: Situation) -> SyntaxProblem | None:
     """The message of the first rule that knows the mistake, ``None`` if none does."""
     for rule in RULES:
         problem = rule(at)

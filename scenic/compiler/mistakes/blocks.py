@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Final
 
-from scenic.compiler.actions import Problem
+from scenic.compiler.actions import SyntaxProblem
 from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.mistakes.elsewhere import first_word
 from scenic.compiler.mistakes.situation import Situation, insertion
@@ -32,7 +32,7 @@ _HEADERS: Final = {
 """First words of lines that end in a colon, with their names in messages."""
 
 
-def missing_colon(at: Situation) -> Problem | None:
+def missing_colon(at: Situation) -> SyntaxProblem | None:
     """``if x``, ``def f()``, ``while x {``."""
     first = at.word(at.first)
     if not at.expects(":") or first not in _HEADERS or at.opener(at.token) is not None or _has_colon(at):
@@ -81,7 +81,7 @@ def _begins_block(at: Situation) -> bool:
     return at.end + 1 < len(kinds) and kinds[at.end] == NEWLINE and kinds[at.end + 1] == INDENT
 
 
-def _colon(at: Situation, message: str, changes: list[Change]) -> Problem:
+def _colon(at: Situation, message: str, changes: list[Change]) -> SyntaxProblem:
     header = at.words(at.first, at.token)
     advice = f"write `{header}:`" if len(header) < 40 else "end the line with `:`"
     problem = at.problem("SC121", at.gap(at.token), message, advice, fix=("insert `:`", changes))
@@ -91,7 +91,7 @@ def _colon(at: Situation, message: str, changes: list[Change]) -> Problem:
     return problem
 
 
-def header_without_colon(at: Situation) -> Problem | None:
+def header_without_colon(at: Situation) -> SyntaxProblem | None:
     """``setup``, ``compose`` and the like before a block; without the colon they are names."""
     if at.word(at.first) not in ("setup", "compose") or at.end != at.first + 1:
         return None
@@ -103,7 +103,7 @@ _LEAST: Final = 3
 """So many letters of a word are enough to know it by them."""
 
 
-def unfinished_header(at: Situation) -> Problem | None:
+def unfinished_header(at: Situation) -> SyntaxProblem | None:
     """``behavior``, ``beha`` before the lines of a block: a header of which one word is typed so far."""
     word = at.word(at.first)
     if at.end != at.first + 1 or not at.is_name(at.first) or word in ("setup", "compose"):
@@ -121,7 +121,7 @@ def unfinished_header(at: Situation) -> Problem | None:
     return at.problem("SC118", at.place(at.first), f"`{word}` begins no block", f"did you mean `{example}`?")
 
 
-def missing_block(at: Situation) -> Problem | None:
+def missing_block(at: Situation) -> SyntaxProblem | None:
     """The header of a block is followed by no indented line."""
     if INDENT not in at.expected and at.expected != {"an indented block"}:
         return None
@@ -147,7 +147,7 @@ def missing_block(at: Situation) -> Problem | None:
     )
 
 
-def unexpected_indent(at: Situation) -> Problem | None:
+def unexpected_indent(at: Situation) -> SyntaxProblem | None:
     """A line that is indented more than it can be."""
     if at.token >= len(at.tokens.kinds) or at.tokens.kinds[at.token] != INDENT:
         return None
@@ -165,7 +165,7 @@ _BEGINNINGS: Final = {
 """By the first word of a clause: what it belongs to."""
 
 
-def clause_without_beginning(at: Situation) -> Problem | None:
+def clause_without_beginning(at: Situation) -> SyntaxProblem | None:
     """`else` without `if`, `case` without `match`."""
     word = at.word(at.first)
     if word not in _BEGINNINGS or at.first != at.start:
@@ -226,7 +226,7 @@ _CLAUSES: Final = {
 """Clauses after which not every clause can come, and the order of clauses there."""
 
 
-def try_alone(at: Situation) -> Problem | None:
+def try_alone(at: Situation) -> SyntaxProblem | None:
     """`try` without any clause."""
     if not at.expects("`except`, `finally` or `interrupt when`"):
         return None
@@ -263,7 +263,7 @@ def try_alone(at: Situation) -> Problem | None:
     )
 
 
-def decorator_alone(at: Situation) -> Problem | None:
+def decorator_alone(at: Situation) -> SyntaxProblem | None:
     """A decorator before what it cannot decorate."""
     if at.token != at.first or at.tokens.texts[at.start] != "@" or HARD_KEYWORDS["def"] not in at.expected:
         return None

@@ -3,7 +3,7 @@
 from itertools import pairwise
 from typing import Final
 
-from scenic.compiler.actions import Problem
+from scenic.compiler.actions import SyntaxProblem
 from scenic.compiler.generated import SPECIFIER_KINDS
 from scenic.compiler.mistakes.situation import Situation
 from scenic.compiler.mistakes.trial import Change
@@ -32,7 +32,7 @@ _OWN_SPECIFIERS: Final = {
 """Properties, and words for them, that have a specifier of their own."""
 
 
-def continuation(at: Situation) -> Problem | None:
+def continuation(at: Situation) -> SyntaxProblem | None:
     """``new Object at x,`` and on the next line, without indentation, ``with width 2``."""
     kinds, previous = at.tokens.kinds, at.first - 1
     while previous > 0 and kinds[previous] in (NEWLINE, DEDENT):
@@ -46,7 +46,7 @@ def continuation(at: Situation) -> Problem | None:
     if not (maker or kinds[start] in SPECIFIER_KINDS) or not at.repairs(context="specifiers"):
         return None
     line, column = at.place(at.first)[:2]
-    return Problem(
+    return SyntaxProblem(
         "SC102",
         at.place(at.first, at.end),
         "this line goes on with specifiers of the line before, and is not indented",
@@ -55,7 +55,7 @@ def continuation(at: Situation) -> Problem | None:
     )
 
 
-def setting_of_property(at: Situation) -> Problem | None:
+def setting_of_property(at: Situation) -> SyntaxProblem | None:
     """``new Object at x, width 2``, ``heading 30 deg``, ``width=2``, ``speed: 3``."""
     sign = at.found in ("=", ":")
     first = at.token - 1
@@ -88,7 +88,7 @@ def setting_of_property(at: Situation) -> Problem | None:
 _SIDES: Final = {"front": ("ahead", "of"), "back": ("behind",), "rear": ("behind",)}
 
 
-def side_of_object(at: Situation) -> Problem | None:
+def side_of_object(at: Situation) -> SyntaxProblem | None:
     """``new Object in front of ego by 3``."""
     for first in range(at.token, at.first, -1):
         side = _SIDES.get(at.word(first))
@@ -108,7 +108,7 @@ def side_of_object(at: Situation) -> Problem | None:
     return None
 
 
-def number_between(at: Situation) -> Problem | None:
+def number_between(at: Situation) -> SyntaxProblem | None:
     """``(between 0 and 5, 0)``, ``random 0 to 5``."""
     first = at.token - 1
     if at.word(first) not in ("between", "random") or at.tokens.kinds[at.token] != NUMBER:
@@ -120,7 +120,7 @@ def number_between(at: Situation) -> Problem | None:
     change = Change(first, joint + 2, ("Range", "(", low_text, ",", high_text, ")"))
     place = at.place(first, joint + 2)
     replacement = f"Range({low_text}, {high_text})"
-    return Problem(
+    return SyntaxProblem(
         "SC129",
         place,
         "a random number between two bounds is a distribution, with parentheses",
@@ -129,7 +129,7 @@ def number_between(at: Situation) -> Problem | None:
     )
 
 
-def duration_of_action(at: Situation) -> Problem | None:
+def duration_of_action(at: Situation) -> SyntaxProblem | None:
     """``take X for 3 seconds``, ``take X until c``."""
     if at.word(at.first) != "take" or at.found not in ("for", "until", "while"):
         return None
@@ -145,7 +145,7 @@ def duration_of_action(at: Situation) -> Problem | None:
     )
 
 
-def bound_of_condition(at: Situation) -> Problem | None:
+def bound_of_condition(at: Situation) -> SyntaxProblem | None:
     """``require always c for 5 seconds``, ``require eventually within 5 seconds c``."""
     first = at.word(at.first)
     temporal = any(at.word(index) in _TEMPORAL for index in range(at.first + 1, at.token))
@@ -168,7 +168,7 @@ def bound_of_condition(at: Situation) -> Problem | None:
 _TEMPORAL: Final = frozenset({"always", "eventually", "next", "until"})
 
 
-def _no_bound(at: Situation, token: int) -> Problem:
+def _no_bound(at: Situation, token: int) -> SyntaxProblem:
     return at.problem(
         "SC117",
         at.place(token),
@@ -183,7 +183,7 @@ _HEADERS: Final = frozenset(
 )  # fmt: skip
 
 
-def braces(at: Situation) -> Problem | None:
+def braces(at: Situation) -> SyntaxProblem | None:
     """``behavior Go() {``."""
     if at.found != "{" or at.word(at.first) not in _HEADERS:
         return None
@@ -195,7 +195,7 @@ def braces(at: Situation) -> Problem | None:
     )
     opening = (*at.gap(at.token)[:2], *at.place(at.token)[2:])
     end = at.gap(closer)[:2]
-    return Problem(
+    return SyntaxProblem(
         "SC129",
         at.place(at.token),
         "a block begins with `:` and is indented; braces make dictionaries and sets",

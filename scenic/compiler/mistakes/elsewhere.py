@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Final
 
-from scenic.compiler.actions import Problem
+from scenic.compiler.actions import SyntaxProblem
 from scenic.compiler.mistakes.situation import Situation
 from scenic.compiler.mistakes.trial import Change
 from scenic.compiler.tokens import NUMBER
@@ -61,7 +61,7 @@ _TYPES: Final = frozenset(
 )
 
 
-def else_if(at: Situation) -> Problem | None:
+def else_if(at: Situation) -> SyntaxProblem | None:
     """``else if x:``."""
     if at.found != "if" or at.before != "else":
         return None
@@ -75,7 +75,7 @@ def else_if(at: Situation) -> Problem | None:
     )
 
 
-def operator(at: Situation) -> Problem | None:
+def operator(at: Situation) -> SyntaxProblem | None:
     """``a && b``, ``a => b``, ``a === b``."""
     for first in (at.token - 1, at.token):
         replacement = _PAIRS.get((at.word(first), at.word(first + 1)))
@@ -104,7 +104,7 @@ _UNITS: Final = {
 """Explanations of units that somebody may write after a number."""
 
 
-def unit(at: Situation) -> Problem | None:
+def unit(at: Situation) -> SyntaxProblem | None:
     """``10 km/h``, ``3 m``."""
     if at.token == 0 or at.tokens.kinds[at.token - 1] != NUMBER or not at.is_plain_name(at.token):
         return None
@@ -120,14 +120,14 @@ def unit(at: Situation) -> Problem | None:
     )
 
 
-def comment(at: Situation) -> Problem | None:
+def comment(at: Situation) -> SyntaxProblem | None:
     """``x = 3 // a note``, and lines that start with ``//``."""
     first = next((i for i in range(at.first, min(at.token, at.end - 1) + 1) if at.word(i) == "//"), None)
     if first is None or not (at.word(first + 1) or first == at.first):
         return None
     if first > at.first and not at.repairs(Change(first, at.end, ())):
         return None
-    return Problem(
+    return SyntaxProblem(
         "SC129",
         at.place(first),
         "a comment begins with `#`, not with `//`",
@@ -136,7 +136,7 @@ def comment(at: Situation) -> Problem | None:
     )
 
 
-def block_comment(at: Situation) -> Problem | None:
+def block_comment(at: Situation) -> SyntaxProblem | None:
     """``x = 3 /* a note */``."""
     first = next(
         (
@@ -151,7 +151,7 @@ def block_comment(at: Situation) -> Problem | None:
     is_closed = at.word(at.end - 1) == "/" and at.word(at.end - 2) in ("*", "**")
     opening = (*at.place(first)[:2], *at.place(first + 1)[2:])
     closing = (*at.gap(at.end - 2)[:2], *at.place(at.end - 1)[2:])
-    return Problem(
+    return SyntaxProblem(
         "SC129",
         opening,
         "a comment begins with `#` and ends with its line; `/*` begins none",
@@ -160,7 +160,7 @@ def block_comment(at: Situation) -> Problem | None:
     )
 
 
-def increment(at: Situation) -> Problem | None:
+def increment(at: Situation) -> SyntaxProblem | None:
     """``x++``."""
     first = at.token - 2
     mark = at.before
@@ -176,7 +176,7 @@ def increment(at: Situation) -> Problem | None:
     )
 
 
-def first_word(at: Situation) -> Problem | None:
+def first_word(at: Situation) -> SyntaxProblem | None:
     """``function f():``, ``switch x:``, ``throw E()``."""
     word = at.word(at.first)
     keywords = _FIRST_WORDS.get(word.lower())
@@ -197,7 +197,7 @@ def first_word(at: Situation) -> Problem | None:
     return None
 
 
-def declaration(at: Situation) -> Problem | None:
+def declaration(at: Situation) -> SyntaxProblem | None:
     """``var x = 3``, ``float y = 2``."""
     declares = at.token == at.first + 1 and at.word(at.token + 1) == "="
     if at.word(at.first) not in _TYPES or not (declares or at.found == "="):
@@ -215,7 +215,7 @@ def declaration(at: Situation) -> Problem | None:
     )
 
 
-def import_from(at: Situation) -> Problem | None:
+def import_from(at: Situation) -> SyntaxProblem | None:
     """``import x from y``."""
     if at.word(at.first) != "import" or at.found != "from":
         return None

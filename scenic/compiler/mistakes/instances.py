@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from scenic.compiler.actions import Problem
+from scenic.compiler.actions import SyntaxProblem
 from scenic.compiler.generated import SPECIFIER_KINDS
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
@@ -50,7 +50,7 @@ def _classes(at: Situation) -> list[int]:
     ]
 
 
-def missing_new(at: Situation) -> Problem | None:
+def missing_new(at: Situation) -> SyntaxProblem | None:
     """``Object facing x``, ``ego = Car with width 2``."""
     attempts = 0
     for index in range(min(at.token, at.end - 1), at.first - 1, -1):
@@ -93,7 +93,7 @@ def missing_new(at: Situation) -> Problem | None:
     )
 
 
-def missing_comma_between_specifiers(at: Situation) -> Problem | None:
+def missing_comma_between_specifiers(at: Situation) -> SyntaxProblem | None:
     """``new Object at x facing y``."""
     if at.at_end() or at.tokens.kinds[at.token] not in SPECIFIER_KINDS or at.before == ",":
         return None
@@ -114,14 +114,14 @@ def missing_comma_between_specifiers(at: Situation) -> Problem | None:
     )
 
 
-def missing_comma_between_lines(at: Situation) -> Problem | None:
+def missing_comma_between_lines(at: Situation) -> SyntaxProblem | None:
     """A line of specifiers that does not end with a comma, although another follows."""
     if at.token != at.first or at.at_end() or at.tokens.kinds[at.token] not in SPECIFIER_KINDS:
         return None
     if DEDENT not in at.expected or at.token < 2:
         return None
     place = at.gap(at.token - 1)
-    return Problem(
+    return SyntaxProblem(
         "SC113",
         place,
         "a comma is missing here, since the next line goes on with specifiers",
@@ -130,7 +130,7 @@ def missing_comma_between_lines(at: Situation) -> Problem | None:
     )
 
 
-def comma_after_class(at: Situation) -> Problem | None:
+def comma_after_class(at: Situation) -> SyntaxProblem | None:
     """``new Object, at x`` on one line."""
     index = at.token - 1
     while index > at.first and at.word(index) != ",":
@@ -150,7 +150,7 @@ def comma_after_class(at: Situation) -> Problem | None:
     )
 
 
-def dotted_class(at: Situation) -> Problem | None:
+def dotted_class(at: Situation) -> SyntaxProblem | None:
     """``new module.Class``."""
     if at.found != "." or at.word(at.token - 2) != "new" or not at.is_name(at.token + 1):
         return None
@@ -165,7 +165,7 @@ def dotted_class(at: Situation) -> Problem | None:
     )
 
 
-def _dotted_without_new(at: Situation, index: int) -> Problem | None:
+def _dotted_without_new(at: Situation, index: int) -> SyntaxProblem | None:
     """``module.Class facing x``."""
     if index != at.token - 1 or at.tokens.kinds[at.token] not in SPECIFIER_KINDS:
         return None
@@ -181,7 +181,7 @@ def _dotted_without_new(at: Situation, index: int) -> Problem | None:
     )
 
 
-def missing_class(at: Situation) -> Problem | None:
+def missing_class(at: Situation) -> SyntaxProblem | None:
     """``new at x``."""
     if at.before != "new" or not (at.at_end() or at.tokens.kinds[at.token] in SPECIFIER_KINDS):
         return None
@@ -191,7 +191,7 @@ def missing_class(at: Situation) -> Problem | None:
     )
 
 
-def foreign_clause(at: Situation) -> Problem | None:
+def foreign_clause(at: Situation) -> SyntaxProblem | None:
     """``new C at x by 3``: a word that the specifier before does not take."""
     if at.found not in ("by", "from", "for", "to", "of") or at.before == "with":
         return None
@@ -226,7 +226,7 @@ _NAMES: Final = sorted(SPECIFIERS, key=lambda name: -len(name.split()))
 """The names of the specifiers, those of several words first."""
 
 
-def call_of_class(at: Situation) -> Problem | None:
+def call_of_class(at: Situation) -> SyntaxProblem | None:
     """``new Object(width=2)``."""
     if at.found != "(" or at.word(at.token - 2) != "new":
         return None
@@ -255,7 +255,7 @@ def call_of_class(at: Situation) -> Problem | None:
     )
 
 
-def new_as_operand(at: Situation) -> Problem | None:
+def new_as_operand(at: Situation) -> SyntaxProblem | None:
     """``new Object ** 2``: an operator that cannot be applied to `new`."""
     if at.word(at.token - 2) != "new" or at.found not in ("**", "["):
         return None
@@ -269,7 +269,7 @@ def new_as_operand(at: Situation) -> Problem | None:
     )
 
 
-def equals_in_specifier(at: Situation) -> Problem | None:
+def equals_in_specifier(at: Situation) -> SyntaxProblem | None:
     """``with width = 2``, ``facing: 3``."""
     if at.found not in ("=", ":"):
         return None
@@ -317,7 +317,7 @@ _VAGUE: Final = frozenset({"next", "close", "beside", "near"})
 """The first words of those that do not say which side is meant."""
 
 
-def another_place(at: Situation) -> Problem | None:
+def another_place(at: Situation) -> SyntaxProblem | None:
     """``new C front of x``, ``new C next to x``."""
     for first in (at.token, at.token - 1):
         words = next(
@@ -351,7 +351,7 @@ def another_place(at: Situation) -> Problem | None:
     )
 
 
-def unbracketed_coordinates(at: Situation) -> Problem | None:
+def unbracketed_coordinates(at: Situation) -> SyntaxProblem | None:
     """``new Object at 1 2``."""
     kinds = at.tokens.kinds
     if kinds[at.token] != NUMBER or kinds[at.token - 1] != NUMBER:

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from scenic.compiler.actions import Problem
+from scenic.compiler.actions import SyntaxProblem
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.phrases import PREFIX_STARTS, TEMPORAL_FORMS
 from scenic.compiler.precedence import FORMS, LADDERS, Fixity, Ladder, Slot
@@ -70,7 +70,7 @@ _LOOSER: Final = frozenset(
 _TEMPORAL: Final = tuple(form.words[0] for form in TEMPORAL_FORMS if form.fixity is Fixity.PREFIX)
 
 
-def loose_prefix_operator(at: Situation) -> Problem | None:
+def loose_prefix_operator(at: Situation) -> SyntaxProblem | None:
     """``5 + distance to a``: a prefix operator is looser than the operator before it."""
     first = at.token - 1
     follows = (at.before, at.found) in PREFIX_STARTS
@@ -109,7 +109,7 @@ def _end_of_operand(at: Situation) -> int:
     return at.end
 
 
-def loose_operand(at: Situation) -> Problem | None:
+def loose_operand(at: Situation) -> SyntaxProblem | None:
     """``a + not b``, ``x == lambda: 3``, ``1 + yield x``."""
     if at.before == "not" and at.expects("visible") and at.starts_operand(at.token):
         # The operator `not visible` could have stood here.
@@ -143,7 +143,7 @@ def loose_operand(at: Situation) -> Problem | None:
     )
 
 
-def after_degrees(at: Situation) -> Problem | None:
+def after_degrees(at: Situation) -> SyntaxProblem | None:
     """``a deg ** 2``, ``a deg.x``: nothing tight can follow `deg`."""
     if at.before != "deg" or at.found not in ("**", ".", "(", "[") or at.token - 2 < at.first:
         return None
@@ -165,7 +165,7 @@ def _requirement(at: Situation) -> bool:
     return at.word(at.first) == "require"
 
 
-def temporal_elsewhere(at: Situation) -> Problem | None:
+def temporal_elsewhere(at: Situation) -> SyntaxProblem | None:
     """``x = always y``, ``if a until b:``."""
     if _requirement(at):
         return None
@@ -194,7 +194,7 @@ _CONTEXT: Final = frozenset(
 ) | {""}
 
 
-def chained_temporal(at: Situation) -> Problem | None:
+def chained_temporal(at: Situation) -> SyntaxProblem | None:
     """``require a until b until c``."""
     if not _requirement(at) or at.found not in ("until", "implies"):
         return None
@@ -211,7 +211,7 @@ def chained_temporal(at: Situation) -> Problem | None:
     )
 
 
-def temporal_after_operand(at: Situation) -> Problem | None:
+def temporal_after_operand(at: Situation) -> SyntaxProblem | None:
     """``require a always b``."""
     if not _requirement(at) or at.found not in _TEMPORAL or not at.helps(insertion(at.token, "and")):
         return None
@@ -223,7 +223,7 @@ def temporal_after_operand(at: Situation) -> Problem | None:
     )
 
 
-def temporal_operand(at: Situation) -> Problem | None:
+def temporal_operand(at: Situation) -> SyntaxProblem | None:
     """``require 3 < always x``: a temporal operator where an ordinary expression has to stand."""
     if not _requirement(at):
         return None

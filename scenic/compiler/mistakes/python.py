@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from scenic.compiler.actions import Problem
+from scenic.compiler.actions import SyntaxProblem
 from scenic.compiler.generated import HARD_KEYWORDS
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
@@ -40,7 +40,7 @@ _KEYWORD_KINDS: Final = frozenset(HARD_KEYWORDS.values())
 # Assignments.
 
 
-def assignment_in_condition(at: Situation) -> Problem | None:
+def assignment_in_condition(at: Situation) -> SyntaxProblem | None:
     """``if x = 3:``, ``require a.b = 3``, ``f(a.b=3)``, ``{a = 3}``."""
     if at.found != "=" or at.expects("="):
         return None
@@ -87,7 +87,7 @@ def assignment_in_condition(at: Situation) -> Problem | None:
     return at.problem("SC122", at.here(), message, advice, fix=("replace `=` by `==`", double))
 
 
-def misplaced_walrus(at: Situation) -> Problem | None:
+def misplaced_walrus(at: Situation) -> SyntaxProblem | None:
     """``x := 3`` as a statement, ``a.b := 3``."""
     if at.found != ":=":
         return None
@@ -111,7 +111,7 @@ def misplaced_walrus(at: Situation) -> Problem | None:
 # Commas.
 
 
-def missing_comma(at: Situation) -> Problem | None:
+def missing_comma(at: Situation) -> SyntaxProblem | None:
     """``[1 2]``, ``f(a b)``, ``import a b``."""
     if not at.starts_operand(at.token) or at.token == at.first:
         return None
@@ -134,7 +134,7 @@ def missing_comma(at: Situation) -> Problem | None:
     )
 
 
-def missing_comma_of_import(at: Situation) -> Problem | None:
+def missing_comma_of_import(at: Situation) -> SyntaxProblem | None:
     """``import a b``."""
     if at.word(at.first) not in ("import", "from") or not at.expects("as") or at.opener(at.token) is not None:
         return None
@@ -155,7 +155,7 @@ def _shown(at: Situation) -> str:
     return "the f-string" if at.tokens.kinds[at.token] == FSTRING_START else f"`{at.found}`"
 
 
-def two_commas(at: Situation) -> Problem | None:
+def two_commas(at: Situation) -> SyntaxProblem | None:
     """``f(a,, b)``."""
     if at.found != "," or at.before != ",":
         return None
@@ -165,7 +165,7 @@ def two_commas(at: Situation) -> Problem | None:
     )
 
 
-def bare_generator(at: Situation) -> Problem | None:
+def bare_generator(at: Situation) -> SyntaxProblem | None:
     """``f(x for x in y, 1)``."""
     opener = at.opener(at.token)
     if at.found != "," or opener is None or at.word(opener) != "(" or not at.expects("for"):
@@ -185,7 +185,7 @@ def bare_generator(at: Situation) -> Problem | None:
     )
 
 
-def call_without_parentheses(at: Situation) -> Problem | None:
+def call_without_parentheses(at: Situation) -> SyntaxProblem | None:
     """``x = Range 1, 2``."""
     if not at.is_plain_name(at.token - 1) or at.tokens.kinds[at.token] not in (NUMBER, STRING):
         return None
@@ -203,7 +203,7 @@ def call_without_parentheses(at: Situation) -> Problem | None:
     )
 
 
-def trailing_comma(at: Situation) -> Problem | None:
+def trailing_comma(at: Situation) -> SyntaxProblem | None:
     """``from m import a,``, ``param x = 1,``, ``do A(), until x``."""
     if at.before != ",":
         return None
@@ -219,7 +219,7 @@ def trailing_comma(at: Situation) -> Problem | None:
     )
 
 
-def missing_dictionary_value(at: Situation) -> Problem | None:
+def missing_dictionary_value(at: Situation) -> SyntaxProblem | None:
     """``{a: 1, b}``."""
     opener = at.opener(at.token)
     if opener is None or at.word(opener) != "{" or not at.expects(":") or at.found not in (",", "}"):
@@ -235,7 +235,7 @@ def missing_dictionary_value(at: Situation) -> Problem | None:
 # Words.
 
 
-def missing_loop_word(at: Situation) -> Problem | None:
+def missing_loop_word(at: Situation) -> SyntaxProblem | None:
     """``for x y:``, ``for x of y:``."""
     if not at.expects("in") or not any(at.word(i) == "for" for i in range(at.first, at.token)):
         return None
@@ -258,7 +258,7 @@ def missing_loop_word(at: Situation) -> Problem | None:
     return at.problem("SC114", at.here(), message, f"write `{words} in ...`", fix=(title, [change]))
 
 
-def conditional_without_else(at: Situation) -> Problem | None:
+def conditional_without_else(at: Situation) -> SyntaxProblem | None:
     """``x = a if b``."""
     if not at.expects("else") or at.found == ":":
         return None
@@ -277,7 +277,7 @@ def conditional_without_else(at: Situation) -> Problem | None:
     )
 
 
-def keyword_assigned(at: Situation) -> Problem | None:
+def keyword_assigned(at: Situation) -> SyntaxProblem | None:
     """``class = 3``, ``param at = 3``: the mistake is noticed only behind the keyword."""
     if at.found != "=" or at.tokens.kinds[at.token - 1] not in _KEYWORD_KINDS or at.expects("=="):
         return None
@@ -293,7 +293,7 @@ def keyword_assigned(at: Situation) -> Problem | None:
     )
 
 
-def keyword_as_name(at: Situation) -> Problem | None:
+def keyword_as_name(at: Situation) -> SyntaxProblem | None:
     """``def f(at)``, ``p.to``, ``in = 3``."""
     if at.at_end() or at.tokens.kinds[at.token] not in _KEYWORD_KINDS:
         return None
@@ -326,7 +326,7 @@ def keyword_as_name(at: Situation) -> Problem | None:
 # Python 2.
 
 
-def print_statement(at: Situation) -> Problem | None:
+def print_statement(at: Situation) -> SyntaxProblem | None:
     """``print x``."""
     if (
         at.word(at.first) not in ("print", "exec")
@@ -347,7 +347,7 @@ def print_statement(at: Situation) -> Problem | None:
     )
 
 
-def except_of_several(at: Situation) -> Problem | None:
+def except_of_several(at: Situation) -> SyntaxProblem | None:
     """``except A, B:``."""
     if at.word(at.first) != "except" or at.found != ",":
         return None
@@ -362,7 +362,7 @@ def except_of_several(at: Situation) -> Problem | None:
     )
 
 
-def raise_of_two(at: Situation) -> Problem | None:
+def raise_of_two(at: Situation) -> SyntaxProblem | None:
     """``raise E, "message"``."""
     if at.word(at.first) != "raise" or at.found != ",":
         return None
@@ -377,7 +377,7 @@ def raise_of_two(at: Situation) -> Problem | None:
 # Strings.
 
 
-def replacement_field(at: Situation) -> Problem | None:
+def replacement_field(at: Situation) -> SyntaxProblem | None:
     """``f"{}"``, ``f"{a b}"``, ``f"{lambda: x}"``."""
     opener = at.opener(at.token)
     if opener is not None and at.tokens.kinds[opener - 1] in (FSTRING_START, FSTRING_MIDDLE):

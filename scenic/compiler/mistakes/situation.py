@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import field
 from typing import Final
 
-from scenic.compiler.actions import Problem
+from scenic.compiler.actions import SyntaxProblem
 from scenic.compiler.actions.common import Place
 from scenic.compiler.generated import WORDS
 from scenic.compiler.mistakes.trial import LONGEST, Change, TrialOutcome, Trials
@@ -239,12 +239,12 @@ class Situation:
         *,
         fix: tuple[str, Sequence[Change]] | None = None,
         labels: tuple[tuple[Place, str], ...] = (),
-    ) -> Problem:
+    ) -> SyntaxProblem:
         """A problem, with the repair only if the line is right afterwards."""
         repair = None
         if fix is not None and self.repairs(*fix[1]):
             repair = (fix[0][:1].upper() + fix[0][1:], tuple(self._edit(change) for change in fix[1]))
-        return Problem(code, place, message, help, labels, repair)
+        return SyntaxProblem(code, place, message, help, labels, repair)
 
     def _edit(self, change: Change) -> tuple[Place, str]:
         text = " ".join(change.words).replace("( )", "()")

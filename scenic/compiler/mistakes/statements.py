@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from scenic.compiler.actions import Problem
+from scenic.compiler.actions import SyntaxProblem
 from scenic.compiler.generated import SPECIFIER_KINDS
 from scenic.compiler.mistakes.situation import Situation, insertion
 from scenic.compiler.mistakes.trial import Change
@@ -46,7 +46,7 @@ _BINDING_LESS: Final = frozenset({"and", "or", "if", "implies", "until", "lambda
 """Operators whose operands `not` does not reach over."""
 
 
-def clauses_out_of_order(at: Situation) -> Problem | None:
+def clauses_out_of_order(at: Situation) -> SyntaxProblem | None:
     """``record x to y every 3 steps``, ``follow f for 3 from p``."""
     for index in range(at.token - 1, at.first - 1, -1):
         word = at.word(index)
@@ -74,7 +74,7 @@ def clauses_out_of_order(at: Situation) -> Problem | None:
     return None
 
 
-def initial_or_final_clause(at: Situation) -> Problem | None:
+def initial_or_final_clause(at: Situation) -> SyntaxProblem | None:
     """``record initial x every 3 seconds``."""
     if at.word(at.first) != "record" or at.found not in ("every", "after", "to"):
         return None
@@ -89,7 +89,7 @@ def initial_or_final_clause(at: Situation) -> Problem | None:
     )
 
 
-def _until_or_for(at: Situation) -> Problem | None:
+def _until_or_for(at: Situation) -> SyntaxProblem | None:
     """``do for 3 seconds``, ``do a for 3 seconds until x``, ``do a, b until x``."""
     if at.token == at.first + 1:
         clause = "until condition" if at.found == "until" else "for 3 seconds"
@@ -120,7 +120,7 @@ def _until_or_for(at: Situation) -> Problem | None:
     )
 
 
-def _while(at: Situation) -> Problem:
+def _while(at: Situation) -> SyntaxProblem:
     """``do a while x``."""
     changes = [Change(at.token, at.token + 1, ("until", "not"))]
     if not _BINDING_LESS.isdisjoint(map(at.word, range(at.token, at.end))):
@@ -135,7 +135,7 @@ def _while(at: Situation) -> Problem:
     )
 
 
-def target_first(at: Situation) -> Problem | None:
+def target_first(at: Situation) -> SyntaxProblem | None:
     """``do until x``, ``do for 3 seconds``, ``mutate by 2 x``, ``terminate x when``."""
     first = at.word(at.first)
     if first == "do" and at.found in ("until", "for"):
@@ -152,7 +152,7 @@ def target_first(at: Situation) -> Problem | None:
     return None
 
 
-def missing_unit(at: Situation) -> Problem | None:
+def missing_unit(at: Situation) -> SyntaxProblem | None:
     """``terminate after 3``, ``wait for 3 minutes``."""
     if not at.expects("seconds") or not at.expects("steps"):
         return None
@@ -183,7 +183,7 @@ def missing_unit(at: Situation) -> Problem | None:
     return None
 
 
-def message_of_requirement(at: Situation) -> Problem | None:
+def message_of_requirement(at: Situation) -> SyntaxProblem | None:
     """``require x, "message"``, as `assert` has it."""
     if at.word(at.first) != "require" or at.found != "," or at.opener(at.token) is not None:
         return None
@@ -203,7 +203,7 @@ def message_of_requirement(at: Situation) -> Problem | None:
     )
 
 
-def probability(at: Situation) -> Problem | None:
+def probability(at: Situation) -> SyntaxProblem | None:
     """``require[p] x``: the probability has to be written out."""
     first = at.first
     if at.word(first) != "require":
@@ -233,7 +233,7 @@ def probability(at: Situation) -> Problem | None:
     return None
 
 
-def quoted_module(at: Situation) -> Problem | None:
+def quoted_module(at: Situation) -> SyntaxProblem | None:
     """``model 'x'``, ``import 'x'``."""
     if at.word(at.first) not in ("model", "import", "from") or at.token != at.first + 1:
         return None
@@ -242,7 +242,7 @@ def quoted_module(at: Situation) -> Problem | None:
     name = at.found.strip("'\"")
     if not all(part.isidentifier() for part in name.split(".")):
         name = ""
-    return Problem(
+    return SyntaxProblem(
         "SC110",
         at.here(),
         "the name of a module is written without quotes",
@@ -251,7 +251,7 @@ def quoted_module(at: Situation) -> Problem | None:
     )
 
 
-def setting_of_parameter(at: Situation) -> Problem | None:
+def setting_of_parameter(at: Situation) -> SyntaxProblem | None:
     """``param x 3``, ``param x: 3``."""
     if at.word(at.first) != "param" or not at.expects("=") or at.token < at.first + 2:
         return None
@@ -270,7 +270,7 @@ def setting_of_parameter(at: Situation) -> Problem | None:
     )
 
 
-def not_a_plain_name(at: Situation) -> Problem | None:
+def not_a_plain_name(at: Situation) -> SyntaxProblem | None:
     """``mutate a.b``, ``import a as b.c``."""
     if at.found not in (".", "[", "("):
         return None
@@ -291,7 +291,7 @@ def not_a_plain_name(at: Situation) -> Problem | None:
     return None
 
 
-def monitor_without_parentheses(at: Situation) -> Problem | None:
+def monitor_without_parentheses(at: Situation) -> SyntaxProblem | None:
     """``monitor M:``, as older dialects had it."""
     if at.word(at.first) != "monitor" or at.found != ":" or at.token != at.first + 2:
         return None
@@ -304,7 +304,7 @@ def monitor_without_parentheses(at: Situation) -> Problem | None:
     )
 
 
-def constructor(at: Situation) -> Problem | None:
+def constructor(at: Situation) -> SyntaxProblem | None:
     """``constructor C:``, as the first dialect had it."""
     if at.word(at.first) != "constructor" or not at.is_name(at.first + 1) or at.token != at.first + 1:
         return None
@@ -320,7 +320,7 @@ def constructor(at: Situation) -> Problem | None:
     )
 
 
-def definition_without_parentheses(at: Situation) -> Problem | None:
+def definition_without_parentheses(at: Situation) -> SyntaxProblem | None:
     """``behavior B:``, ``def f:``."""
     word = at.word(at.first + 1) if at.word(at.first) == "async" else at.word(at.first)
     if word not in ("behavior", "def") or not at.is_name(at.token - 1) or at.word(at.token - 2) != word:
@@ -331,12 +331,12 @@ def definition_without_parentheses(at: Situation) -> Problem | None:
     message, advice = f"the definition of {what} needs parentheses", f"write `{word} {at.before}():`"
     if at.at_end():
         place = at.gap(at.token)
-        return Problem("SC133", place, message, advice, fix=("Insert `():`", ((place, "():"),)))
+        return SyntaxProblem("SC133", place, message, advice, fix=("Insert `():`", ((place, "():"),)))
     fix = ("insert `()`", [insertion(at.token, "(", ")")])
     return at.problem("SC133", at.here(), message, advice, fix=fix)
 
 
-def attribute_of_property(at: Situation) -> Problem | None:
+def attribute_of_property(at: Situation) -> SyntaxProblem | None:
     """``speed[volatile]: 3``."""
     if not at.expects("`additive`, `dynamic` or `final`"):
         return None
@@ -360,7 +360,7 @@ def attribute_of_property(at: Situation) -> Problem | None:
     )
 
 
-def annotated_property(at: Situation) -> Problem | None:
+def annotated_property(at: Situation) -> SyntaxProblem | None:
     """``width: float = 2`` in a class."""
     if at.found != "=" or at.word(at.first + 1) != ":" or at.expects("=") or at.before == ":":
         return None
@@ -378,7 +378,7 @@ def annotated_property(at: Situation) -> Problem | None:
 _PARTS: Final = ("setup", "compose")
 
 
-def parts_of_scenario(at: Situation) -> Problem | None:
+def parts_of_scenario(at: Situation) -> SyntaxProblem | None:
     """``setup`` after ``compose``, beside other statements, or outside a scenario."""
     word = at.word(at.first)
     begins = word in _PARTS and at.word(at.first + 1) == ":" and at.token <= at.first + 2
@@ -422,7 +422,7 @@ def parts_of_scenario(at: Situation) -> Problem | None:
     return None
 
 
-def definition_without_name(at: Situation) -> Problem | None:
+def definition_without_name(at: Situation) -> SyntaxProblem | None:
     """``behavior:``, ``scenario ():``."""
     word = at.word(at.first)
     if word not in ("behavior", "monitor", "scenario") or at.word(at.first + 1) not in (":", "("):
@@ -434,7 +434,7 @@ def definition_without_name(at: Situation) -> Problem | None:
     )
 
 
-def stray_specifier(at: Situation) -> Problem | None:
+def stray_specifier(at: Situation) -> SyntaxProblem | None:
     """A line that starts with a specifier."""
     if at.token != at.first or at.start != at.first or at.tokens.kinds[at.token] not in SPECIFIER_KINDS:
         return None
@@ -448,7 +448,7 @@ def stray_specifier(at: Situation) -> Problem | None:
     )
 
 
-def statement_in_expression(at: Situation) -> Problem | None:
+def statement_in_expression(at: Situation) -> SyntaxProblem | None:
     """``x = require y``, ``f(return 3)``, ``x = take y``."""
     if at.before in SOFT_STATEMENT_WORDS and at.token > at.first + 1 and at.starts_operand(at.token):
         word, place = at.before, at.place(at.token - 1)

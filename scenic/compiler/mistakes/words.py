@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from scenic.compiler.actions import Problem
+from scenic.compiler.actions import SyntaxProblem
 from scenic.compiler.generated import HARD_KEYWORDS, SOFT_KEYWORDS
 from scenic.compiler.mistakes.elsewhere import OTHER_WORDS
 from scenic.compiler.mistakes.situation import Situation, insertion
@@ -97,7 +97,7 @@ SYNONYMS: Final = {
 }
 
 
-def misspelt(at: Situation) -> Problem | None:
+def misspelt(at: Situation) -> SyntaxProblem | None:
     """``requier x``, ``new C facng x``, ``a reltive to b``: with a keyword instead of a word the line is right."""
     for index in (at.token, at.token - 1, at.first, at.token - 2):
         # What is a keyword already is not a misspelt one, unless it is one of those nobody would suspect.
@@ -129,7 +129,7 @@ _PROPERTIES: Final = frozenset(properties_of("Object"))
 """Names that are right as they are: `width` is no misspelt `with`."""
 
 
-def perhaps_misspelt(at: Situation) -> Problem | None:
+def perhaps_misspelt(at: Situation) -> SyntaxProblem | None:
     """The same in a line that has a further mistake."""
     for index in (at.token, at.token - 1, at.first):
         if not at.is_plain_name(index) or at.word(index - 1) == "." or len(at.word(index)) < 4:
@@ -142,7 +142,7 @@ def perhaps_misspelt(at: Situation) -> Problem | None:
     return None
 
 
-def _misspelt(at: Situation, index: int, *keywords: str) -> Problem:
+def _misspelt(at: Situation, index: int, *keywords: str) -> SyntaxProblem:
     meant = " ".join(keywords)
     return at.problem(
         "SC118",
@@ -165,7 +165,7 @@ _OTHER_WORDS: Final = {
 """Words after which another one is often written than the form has, and that one."""
 
 
-def other_word(at: Situation) -> Problem | None:
+def other_word(at: Situation) -> SyntaxProblem | None:
     """``terminate if c``, ``interrupt if c:``, ``facing at x``."""
     for index in range(at.first + 1, min(at.token, at.end - 1) + 1):
         replacement = _OTHER_WORDS.get((at.word(index - 1), at.word(index)))
@@ -183,7 +183,7 @@ def other_word(at: Situation) -> Problem | None:
     return None
 
 
-def negated_sight(at: Situation) -> Problem | None:
+def negated_sight(at: Situation) -> SyntaxProblem | None:
     """``a can not see b``, ``a cannot see b``."""
     if at.found == "cannot" and at.word(at.token + 1) == "see":
         first, last = at.token, at.token + 1
@@ -208,7 +208,7 @@ def negated_sight(at: Situation) -> Problem | None:
 # Missing words.
 
 
-def missing_word(at: Situation) -> Problem | None:
+def missing_word(at: Situation) -> SyntaxProblem | None:
     """``left ego``, ``distance from a b``, ``relative heading a``: one word makes it right."""
     if at.at_end() or not (at.starts_operand(at.token) or at.before in _PHRASES or at.found in _KEYWORDS):
         return None
@@ -281,7 +281,7 @@ def _phrase(at: Situation) -> int | None:
     return position
 
 
-def wrong_word(at: Situation) -> Problem | None:
+def wrong_word(at: Situation) -> SyntaxProblem | None:
     """``ahead from x``, ``distance of x``: another small word than the form has."""
     phrase = _phrase(at)
     if at.found not in _SMALL or phrase is None:
@@ -314,7 +314,7 @@ def _either(words: Sequence[str]) -> str:
     return quoted[0] if len(quoted) == 1 else ", ".join(quoted[:-1]) + f" or {quoted[-1]}"
 
 
-def needless_word(at: Situation) -> Problem | None:
+def needless_word(at: Situation) -> SyntaxProblem | None:
     """``behind of x``, ``distance to to x``."""
     if at.found not in _SMALL or (at.tokens.kinds[at.token - 1] < NAME and at.before not in _SMALL):
         return None
@@ -333,7 +333,7 @@ def needless_word(at: Situation) -> Problem | None:
     )
 
 
-def between(at: Situation) -> Problem | None:
+def between(at: Situation) -> SyntaxProblem | None:
     """``distance between a and b``."""
     if at.found != "between" or at.before not in ("distance", "angle", "altitude"):
         return None
@@ -350,7 +350,7 @@ def between(at: Situation) -> Problem | None:
     )
 
 
-def kind_of_heading(at: Situation) -> Problem | None:
+def kind_of_heading(at: Situation) -> SyntaxProblem | None:
     """``heading of x``, ``relative x``, ``apparent x``."""
     if at.found == "of" and at.before in ("heading", "position"):
         kinds = ["relative", "apparent"] if at.before == "heading" else ["relative"]
@@ -380,7 +380,7 @@ def kind_of_heading(at: Situation) -> Problem | None:
     )
 
 
-def operator_without_left_side(at: Situation) -> Problem | None:
+def operator_without_left_side(at: Situation) -> SyntaxProblem | None:
     """``x = relative to b``, ``x = can see b``."""
     form = f"{at.before} {at.found}"
     if form not in ("relative to", "can see", "offset by", "offset along", "visible from"):
@@ -396,7 +396,7 @@ def operator_without_left_side(at: Situation) -> Problem | None:
     )
 
 
-def missing_operand(at: Situation) -> Problem | None:
+def missing_operand(at: Situation) -> SyntaxProblem | None:
     """``beyond x from y``, ``follow f for 3``: a whole clause is missing before a word."""
     for opening, keyword, clause in (
         ("beyond", "by", "by distance"),
@@ -426,7 +426,7 @@ def missing_operand(at: Situation) -> Problem | None:
     return None
 
 
-def order_of_corners(at: Situation) -> Problem | None:
+def order_of_corners(at: Situation) -> SyntaxProblem | None:
     """``top left of x``, ``left front of x``."""
     last = at.token
     while at.word(last) in _CORNERS:

@@ -25,7 +25,7 @@ from scenic.domains.driving.network import RoadNetwork
 from scenic.domains.driving.signs import signal_of
 from scenic.domains.driving.speed_limits import lowest, ranges_of, road_speeds, section_speeds
 from scenic.formats.opendrive import records
-from scenic.formats.opendrive.records import MapRecords, Problem
+from scenic.formats.opendrive.records import MapProblem, MapRecords
 from scenic.formats.opendrive.shapes import RoadShape, SectionShape, joined, road_shape
 
 __all__ = ["BuiltRoad", "LaneTypes", "build_roads"]
@@ -89,7 +89,7 @@ class BuiltRoad:
         return self.lanes_by_section[0 if end == "start" else -1].items()
 
 
-Tell = Callable[[Problem], None]
+Tell = Callable[[MapProblem], None]
 
 
 def build_roads(
@@ -111,7 +111,7 @@ def build_roads(
             shapes.append(road_shape(record, tell, max_error=max_error, min_points=min_points))
         except (ValueError, ArithmeticError, IndexError, MemoryError) as error:
             message = f"road {record.id} is left out: its geometry cannot be computed ({error})"
-            tell(Problem("SC621", message, record.line, "road"))
+            tell(MapProblem("SC621", message, record.line, "road"))
     strips = {id(shape): _strips_of(shape, types) for shape in shapes}
     _fill_polygons([strip for rows in strips.values() for row in rows for strip in row])
     built: dict[str, BuiltRoad] = {}
@@ -222,7 +222,7 @@ class _RoadBuilder:
                     f"lane {strip.id} of road {self._record.id}, "
                     f"section {self._shape.sections.index(strip.shape)} has no area: dropped"
                 )
-                tell(Problem("SC622", message, strip.lane.line, "area"))
+                tell(MapProblem("SC622", message, strip.lane.line, "area"))
 
     def _is_forward(self, id: int) -> bool:
         return (id > 0) == (self._forward_side > 0)
@@ -549,7 +549,7 @@ class _RoadBuilder:
             for strip in order[1:]:
                 if abs(strip.index - run[-1].index) != 1:
                     message = f"{cls.__name__.lower()} lane {strip.id} of road {self._record.id} lies apart from the outer ones: left out"
-                    self._tell(Problem("SC622", message, strip.lane.line, "apart"))
+                    self._tell(MapProblem("SC622", message, strip.lane.line, "apart"))
                     break
                 run.append(strip)
             indices = [strip.index for strip in run]

@@ -10,7 +10,7 @@ from scenic.domains.driving.elements import Intersection, PedestrianCrossing, Ro
 from scenic.domains.driving.kinds import VehicleType
 from scenic.domains.driving.network import RoadNetwork
 from scenic.formats.opendrive.curves import Curve, cubic_values
-from scenic.formats.opendrive.records import Crosswalk, Problem
+from scenic.formats.opendrive.records import Crosswalk, MapProblem
 
 __all__ = ["add_crossings"]
 
@@ -37,7 +37,7 @@ def add_crossings(network: RoadNetwork, built: Mapping[str, BuiltRoad], tell: Te
             polygon = area_of(shapely.MultiPoint(corners).convex_hull) if np.isfinite(corners).all() else None
             if polygon is None:
                 message = f"crosswalk {crosswalk.id} of road {road.record.id} has no area: left out"
-                tell(Problem("SC621", message, crosswalk.line, "crosswalk"))
+                tell(MapProblem("SC621", message, crosswalk.line, "crosswalk"))
                 continue
             crossing = PedestrianCrossing(
                 network,

@@ -19,7 +19,7 @@ from scenic.domains.driving.elements import Intersection, Lane, LaneGroup, Maneu
 from scenic.domains.driving.network import RoadNetwork
 from scenic.domains.driving.signs import Signal, placement_of, signal_of
 from scenic.formats.opendrive import records
-from scenic.formats.opendrive.records import Link, MapRecords, Problem
+from scenic.formats.opendrive.records import Link, MapProblem, MapRecords
 
 __all__ = ["link_roads"]
 
@@ -150,7 +150,7 @@ class _Linker:
                 f"road {other.record.id} has no {which}, but road {road.record.id} is linked to it: completed"
             )
             if other.record.id not in self._one_sided:
-                self._tell(Problem("SC623", message, other.record.line, "one-sided"))
+                self._tell(MapProblem("SC623", message, other.record.line, "one-sided"))
             self._one_sided.add(other.record.id)
 
     def _look_up_road(self, id: str, line: int) -> None:
@@ -180,7 +180,7 @@ class _Linker:
             names = f"{len(lines)} links name" if len(lines) > 1 else "a link names"
             are = "are" if len(found) > 1 else "is"
             message = f"{', '.join(found)}, which {names}, {are} not there: dropped"
-            self._tell(Problem("SC623", message, lines[0], "dangling"))
+            self._tell(MapProblem("SC623", message, lines[0], "dangling"))
 
     def _contact(self, other: BuiltRoad, id: str) -> str:
         """The end of a road that is linked to another one."""
@@ -265,7 +265,7 @@ class _Linker:
         polygon = union_of(lane.polygon for road in through.values() for lane in road.road.lanes)
         if polygon is None or not ways:
             message = f"junction {junction.id} has no connection that can be used: left out"
-            self._tell(Problem("SC624", message, junction.line, "junction"))
+            self._tell(MapProblem("SC624", message, junction.line, "junction"))
             return None
         if fill:
             parts = [shapely.Polygon(part.exterior) for part in getattr(polygon, "geoms", [polygon])]
@@ -323,7 +323,7 @@ class _Linker:
         ):
             message = f"lane {lane_id} of connecting road {record.id} leads nowhere: no maneuver"
             line = record.line if link is None or lane is None else lane.line
-            self._tell(Problem("SC624", message, line, "leads nowhere"))
+            self._tell(MapProblem("SC624", message, line, "leads nowhere"))
 
     def _touching(
         self, incoming: BuiltRoad, junction: str, connecting: BuiltRoad, connection: records.Connection
@@ -337,7 +337,7 @@ class _Linker:
                 return end
         message = f"road {incoming.record.id} leads into junction {junction}, but has no link to it"
         self._tell(
-            Problem("SC623", f"{message}: its end counts", incoming.record.line, "link of incoming road")
+            MapProblem("SC623", f"{message}: its end counts", incoming.record.line, "link of incoming road")
         )
         return "end"
 
@@ -440,7 +440,7 @@ class _Linker:
                     message = (
                         f"road {built.record.id} refers to signal {item.id}, which is not there: dropped"
                     )
-                    self._tell(Problem("SC623", message, item.line, "signal"))
+                    self._tell(MapProblem("SC623", message, item.line, "signal"))
                     continue
                 named.placements = (*named.placements, placement_of(item, built.road.uid))
                 added.append(named)
@@ -495,7 +495,7 @@ class _Linker:
                 "a link, a place or a width is wrong"
             )
             record = self._built_of(before if before.road is wrong else after).record
-            self._tell(Problem("SC623", message, record.line, "apart"))
+            self._tell(MapProblem("SC623", message, record.line, "apart"))
 
     def _built_of(self, lane: Lane) -> BuiltRoad:
         return self._built[lane.road.uid.removeprefix("road")]

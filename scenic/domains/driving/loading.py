@@ -16,7 +16,7 @@ from scenic.domains.driving.network import RoadNetwork
 from scenic.domains.driving.storing import KIND, restored, stored
 from scenic.formats.opendrive.problems import told
 from scenic.formats.opendrive.reader import read_map
-from scenic.formats.opendrive.records import Problem
+from scenic.formats.opendrive.records import MapProblem
 from scenic.formats.opendrive.shapes import MAX_ERROR
 from scenic.formats.opendrive.xml_tree import MapError
 from scenic.language.diagnostics import Diagnostic, Severity
@@ -180,7 +180,7 @@ def _build(content: bytes, filename: str, options: MapOptions, cls: type[RoadNet
     """The network of the text of a map."""
     records = read_map(content, filename)
     problems = list(records.problems)
-    tell: Callable[[Problem], None] = problems.append
+    tell: Callable[[MapProblem], None] = problems.append
     left = sum(road.left_hand for road in records.roads) * 2 > len(records.roads)
     network = cls(tolerance=options.tolerance, driveOnLeft=left)
     network.offset = records.offset
@@ -225,6 +225,6 @@ def _build(content: bytes, filename: str, options: MapOptions, cls: type[RoadNet
     return network
 
 
-def _diagnostic(problem: Problem, filename: str) -> Diagnostic:
+def _diagnostic(problem: MapProblem, filename: str) -> Diagnostic:
     span = Span(problem.line, 0, problem.line, 1) if problem.line > 0 else None
     return Diagnostic(problem.code, problem.message, span, Severity.WARNING, filename)

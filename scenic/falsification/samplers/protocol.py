@@ -6,7 +6,7 @@ from typing import Any, Protocol
 from scenic.falsification.space import Floats
 from scenic.language.errors import InvalidScenarioError, Located
 
-__all__ = ["Exhausted", "Sampler", "SamplerError", "options"]
+__all__ = ["NoMorePointsError", "Sampler", "SamplerError", "options"]
 
 
 class SamplerError(Located):
@@ -15,7 +15,7 @@ class SamplerError(Located):
     code = "SC604"
 
 
-class Exhausted(InvalidScenarioError):
+class NoMorePointsError(InvalidScenarioError):
     """A sampler has no more points."""
 
 
@@ -27,7 +27,7 @@ class Sampler(Protocol):
         """Number of points that the sampler prefers to give at a time; ``None`` if that does not matter."""
 
     def ask(self, count: int) -> Floats:
-        """The next points ``(count, d)``; raises `Exhausted` if there are none."""
+        """The next points ``(count, d)``; raises `NoMorePointsError` if there are none."""
 
     def tell(self, points: Floats, values: Floats) -> None:
         """Take the values of points ``(n, d)``: ``(n,)``, smaller ones better, NaN where a point was rejected."""

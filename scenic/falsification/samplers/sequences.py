@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.falsification.samplers.protocol import Exhausted, SamplerError, options
+from scenic.falsification.samplers.protocol import NoMorePointsError, SamplerError, options
 from scenic.falsification.space import Floats, Space
 
 __all__ = ["Grid", "Halton", "Random", "Sobol"]
@@ -146,7 +146,7 @@ class Grid:
         """See `Sampler.ask`."""
         rows = list(itertools.islice(self._points, count))
         if not rows:
-            raise Exhausted(
+            raise NoMorePointsError(
                 "the sampler 'grid' has given all of its points",
                 help="set its option `repeat`, or a larger `N`",
             )

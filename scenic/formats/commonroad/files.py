@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 
 from scenic.formats.commonroad.elements import Numbers, add_location, add_roads, decimal
 from scenic.formats.commonroad.obstacles import (
-    Course,
+    ObstacleCourse,
     State,
     add_obstacle,
     add_problem,
@@ -37,7 +37,7 @@ _TIMESTEP: Final = 0.1
 
 def commonroad_document(
     scene: Scene,
-    courses: Sequence[Course],
+    courses: Sequence[ObstacleCourse],
     timestep: float,
     *,
     colors: Sequence[Mapping[str, str]] = (),
@@ -146,7 +146,7 @@ def write_scene(scene: Scene, path: Path) -> None:
 
     """
     courses = [
-        Course(thing, (state_of(thing.position, thing, getattr(thing, "velocity", (0.0, 0.0))),))
+        ObstacleCourse(thing, (state_of(thing.position, thing, getattr(thing, "velocity", (0.0, 0.0))),))
         for thing in scene.objects
     ]
     write(path, document_text(commonroad_document(scene, courses, _TIMESTEP)))
@@ -181,7 +181,7 @@ class CommonRoadFile:
                 "CommonRoad has no objects that are made during the simulation", help="write JSON Lines"
             )
         courses = [
-            Course(thing, tuple(states[index] for states in self._states))
+            ObstacleCourse(thing, tuple(states[index] for states in self._states))
             for index, thing in enumerate(scene.objects)
         ]
         root = commonroad_document(scene, courses, float(simulation.timestep), colors=self._colors)

@@ -11,7 +11,7 @@ from scenic.dataclass import dataclass
 from scenic.formats.commonroad.elements import Numbers, add, add_exact, add_point, decimal
 from scenic.formats.scenes import SceneObject
 
-__all__ = ["Course", "State", "add_obstacle", "add_problem", "state_of"]
+__all__ = ["ObstacleCourse", "State", "add_obstacle", "add_problem", "state_of"]
 
 Element = ElementTree.Element
 
@@ -50,7 +50,7 @@ class State:
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
+class ObstacleCourse:
     """An object and its states, one for each step."""
 
     thing: SceneObject
@@ -78,7 +78,7 @@ def state_of(position: Iterable[float], orientation: Turned, velocity: Iterable[
     return State(x, y, heading, along * math.cos(heading) + across * math.sin(heading))
 
 
-def add_obstacle(root: Element, course: Course, key: str, numbers: Numbers, timestep: float) -> None:
+def add_obstacle(root: Element, course: ObstacleCourse, key: str, numbers: Numbers, timestep: float) -> None:
     """Append an obstacle: a static one if it never moves."""
     first, *later = course.states
     if course.is_still:
@@ -123,7 +123,7 @@ def _add_state(element: Element, state: State, time: int) -> None:
 
 def add_problem(
     root: Element,
-    course: Course,
+    course: ObstacleCourse,
     numbers: Numbers,
     goal: Sequence[str],
     timestep: float,

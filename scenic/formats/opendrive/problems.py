@@ -3,7 +3,7 @@
 from collections import Counter
 from typing import Final
 
-from scenic.formats.opendrive.records import Problem
+from scenic.formats.opendrive.records import MapProblem
 
 __all__ = ["told"]
 
@@ -11,7 +11,7 @@ _ALIKE: Final = 5
 """Number of problems of one kind that are reported one by one."""
 
 
-def told(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
+def told(problems: tuple[MapProblem, ...]) -> tuple[MapProblem, ...]:
     """The problems with at most a few of a kind, and a count of the others of that kind."""
     counts: Counter[str] = Counter()
     remaining = []
@@ -23,5 +23,5 @@ def told(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
         if count > _ALIKE:
             first = next(problem for problem in problems if problem.kind == kind)
             message = f"{count - _ALIKE} more like: {first.message}"
-            remaining.append(Problem(first.code, message, first.line, kind))
+            remaining.append(MapProblem(first.code, message, first.line, kind))
     return tuple(remaining)

@@ -1,6 +1,6 @@
 """From the text of an OpenDRIVE file to records (sections 3.1 and 3.7 of the driving specification).
 
-Anything that is wrong with a part of the file costs at most that part, and is told as a `Problem` with its line.
+Anything that is wrong with a part of the file costs at most that part, and is told as a `MapProblem` with its line.
 """
 
 import math
@@ -43,8 +43,8 @@ from scenic.formats.opendrive.records import (
     LaneLinks,
     LaneSection,
     Link,
+    MapProblem,
     MapRecords,
-    Problem,
     Road,
     Signal,
     SignalReference,
@@ -93,14 +93,14 @@ class _Reader:
 
     def __init__(self, filename: str, root: Element) -> None:
         self._filename = filename
-        self._problems: list[Problem] = []
+        self._problems: list[MapProblem] = []
         self._faults = dict(faults_of(root))
         self._left_out: set[str] = set()
         self._lost: set[str] = set()
         """The links, of the road that is being read, that cannot be used."""
 
     def _tell(self, code: str, message: str, line: int, kind: str) -> None:
-        self._problems.append(Problem(code, message, line, kind))
+        self._problems.append(MapProblem(code, message, line, kind))
 
     def _tell_of(self, about: tuple[Element, str], code: str, message: str, kind: str) -> None:
         """Report what follows from a fault, instead of the fault itself."""
@@ -180,10 +180,10 @@ class _Reader:
             help="is the file complete?" if first is None else "mend the road, or save the map again",
         )
 
-    def _told(self) -> list[Problem]:
+    def _told(self) -> list[MapProblem]:
         """All problems: what was left out or changed, then faults without further effect."""
         faults = [
-            Problem(_CODES[fault.where], fault.message, fault.line, f"{element.tag} {part}")
+            MapProblem(_CODES[fault.where], fault.message, fault.line, f"{element.tag} {part}")
             for (element, part), fault in self._faults.items()
         ]
         return [*self._problems, *faults]

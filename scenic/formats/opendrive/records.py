@@ -15,8 +15,8 @@ __all__ = [
     "LaneLinks",
     "LaneSection",
     "Link",
+    "MapProblem",
     "MapRecords",
-    "Problem",
     "Road",
     "Signal",
     "SignalReference",
@@ -26,7 +26,7 @@ Shape = Literal["line", "arc", "spiral", "poly3", "paramPoly3"]
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class MapProblem:
     """Something that is wrong with a map, and what was done instead.
 
     Attributes:
@@ -274,6 +274,6 @@ class MapRecords:
     """Metres by which the coordinates of the file lie beside those of ``georeference``, and radians by which they are turned."""
     roads: tuple[Road, ...]
     junctions: tuple[Junction, ...]
-    problems: tuple[Problem, ...] = field(default=())
+    problems: tuple[MapProblem, ...] = field(default=())
     left_out: frozenset[str] = frozenset()
     """Roads and junctions that are not here because something is wrong with them, as ``road 5``."""

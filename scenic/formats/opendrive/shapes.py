@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from scenic.dataclass import dataclass
 from scenic.formats.opendrive.curves import Curve, cubic_bend, cubic_values
-from scenic.formats.opendrive.records import Cubic, Lane, LaneSection, Problem, Road
+from scenic.formats.opendrive.records import Cubic, Lane, LaneSection, MapProblem, Road
 
 __all__ = ["MAX_ERROR", "RoadShape", "SectionShape", "road_shape"]
 
@@ -80,7 +80,7 @@ class RoadShape:
 
 def road_shape(
     road: Road,
-    tell: Callable[[Problem], None],
+    tell: Callable[[MapProblem], None],
     *,
     max_error: float = MAX_ERROR,
     min_points: int = 2,
@@ -99,7 +99,7 @@ def road_shape(
     gaps = [index for index in np.flatnonzero(tears > _TORN).tolist() if not road.geometry[index].corrected]
     if gaps:
         message = f"a piece of road {road.id} begins {tears[gaps[0]]:.2f} m from where the one before it ends"
-        tell(Problem("SC621", message, road.geometry[gaps[0] + 1].line, "torn"))
+        tell(MapProblem("SC621", message, road.geometry[gaps[0] + 1].line, "torn"))
     ends = [*(section.s for section in road.sections[1:]), road.length]
     shapes = []
     for section, end in zip(road.sections, ends, strict=True):
@@ -169,7 +169,7 @@ def _jumps(cubics: Sequence[Cubic], least: float) -> list[float]:
     return places
 
 
-def _offsets(road: Road, section: LaneSection, s: Floats, tell: Callable[[Problem], None]) -> Floats:
+def _offsets(road: Road, section: LaneSection, s: Floats, tell: Callable[[MapProblem], None]) -> Floats:
     """Offsets of all boundaries from the reference line, ``(m + 1, n)``, from left to right."""
     middle = cubic_values(road.lane_offset, s)
     ds = s - section.s
@@ -193,7 +193,7 @@ def _outer(
     middle: Floats,
     ds: Floats,
     side: int,
-    tell: Callable[[Problem], None],
+    tell: Callable[[MapProblem], None],
 ) -> Floats:
     """The outer boundary of a lane whose inner one is known."""
     if lane.widths:
@@ -202,7 +202,7 @@ def _outer(
         width = side * (middle + cubic_values(lane.borders, ds) - inner)
     if float(width.min()) < _NEGATIVE:
         message = f"lane {lane.id} of road {road.id} is {width.min():.3f} m wide: 0 counts"
-        tell(Problem("SC622", message, lane.line, "negative"))
+        tell(MapProblem("SC622", message, lane.line, "negative"))
     return np.asarray(inner + side * np.maximum(width, 0))
 
 

@@ -3,13 +3,13 @@
 from collections.abc import Iterator
 
 from scenic.formats.opendrive.attributes import validity
-from scenic.formats.opendrive.records import Problem
+from scenic.formats.opendrive.records import MapProblem
 from scenic.formats.opendrive.xml_tree import Element
 
 __all__ = ["unknown_references"]
 
 
-def unknown_references(root: Element) -> Iterator[Problem]:
+def unknown_references(root: Element) -> Iterator[MapProblem]:
     """Report names that nothing has; signals that other roads refer to are linked, and reported, with the roads."""
     signals = {
         signal.attributes["id"]
@@ -35,7 +35,7 @@ def unknown_references(root: Element) -> Iterator[Problem]:
         yield from _missing(name, junction, "controller", "id", "controller", controllers)
 
 
-def _of_road(road: Element, signals: set[str], objects: set[str | None]) -> Iterator[Problem]:
+def _of_road(road: Element, signals: set[str], objects: set[str | None]) -> Iterator[MapProblem]:
     lanes = {
         lane.attributes.get("id")
         for part in road.all("lanes")
@@ -53,7 +53,7 @@ def _of_road(road: Element, signals: set[str], objects: set[str | None]) -> Iter
                     message = (
                         f"{name} is valid for {which}, which the road does not have: it holds for nobody"
                     )
-                    yield Problem("SC621", message, item.line, "validity")
+                    yield MapProblem("SC621", message, item.line, "validity")
             yield from _missing(name, item, "dependency", "id", "signal", signals)
             for reference in item.all("reference"):
                 identifiers = (
@@ -63,15 +63,15 @@ def _of_road(road: Element, signals: set[str], objects: set[str | None]) -> Iter
                 if target is not None and target not in identifiers:
                     kind = reference.attributes.get("elementType", "element")
                     message = f"{name} refers to {kind} {target}, which is not there"
-                    yield Problem("SC623", message, reference.line, "signal reference")
+                    yield MapProblem("SC623", message, reference.line, "signal reference")
 
 
 def _missing(
     name: str, element: Element, tag: str, attribute: str, kind: str, known: set[str] | set[str | None]
-) -> Iterator[Problem]:
+) -> Iterator[MapProblem]:
     """Report children of an element that name something unknown."""
     for item in element.all(tag):
         named = item.attributes.get(attribute)
         if named is not None and named not in known:
             message = f"{name} names {kind} {named}, which is not there"
-            yield Problem("SC623", message, item.line, f"{kind} of {element.tag}")
+            yield MapProblem("SC623", message, item.line, f"{kind} of {element.tag}")

@@ -15,10 +15,10 @@ from scenic.runtime.temporal.formulas import Atom, Compound, Formula
 from scenic.runtime.values.values import describe
 
 __all__ = [
+    "Closure",
     "Copier",
     "Declared",
     "End",
-    "Kept",
     "MonitorUse",
     "RecordUse",
     "Required",
@@ -52,7 +52,7 @@ class Copier(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
+class Closure:
     """An expression to be evaluated later: a function, and the values of the names in it when the statement ran.
 
     ``margin`` gives instead of the truth of a comparison by how much it holds, if it is one.
@@ -62,9 +62,9 @@ class Kept:
     captured: Sequence[Any]
     margin: Callable[..., Any] | None = None
 
-    def within(self, copier: Copier) -> "Kept":
+    def within(self, copier: Copier) -> "Closure":
         """The same over the values of a simulation."""
-        return Kept(
+        return Closure(
             copier.value(self.function),
             [copier.value(item) for item in self.captured],
             copier.value(self.margin),
@@ -78,7 +78,7 @@ class Kept:
         return [self.function, *self.captured]
 
 
-Tree = Kept | tuple[Any, ...]
+Tree = Closure | tuple[Any, ...]
 """A condition: an atom, or an operator's name with its operands."""
 
 
@@ -87,7 +87,7 @@ class Required:
     """A requirement as a simulation checks it: a formula over atoms."""
 
     formula: Formula
-    atoms: Sequence[Kept]
+    atoms: Sequence[Closure]
     label: str
     span: Span | None = None
     filename: str | None = None
@@ -100,10 +100,10 @@ class Required:
 
 def required(tree: Tree, label: str, span: Span | None, filename: str | None) -> Required:
     """The requirement of a condition."""
-    atoms: list[Kept] = []
+    atoms: list[Closure] = []
 
     def formula(part: Tree) -> Formula:
-        if isinstance(part, Kept):
+        if isinstance(part, Closure):
             atoms.append(part)
             return Atom(len(atoms) - 1)
         operator, *operands = part
@@ -116,7 +116,7 @@ def required(tree: Tree, label: str, span: Span | None, filename: str | None) ->
 class End:
     """``terminate when``; ``simulation`` if it ends all."""
 
-    condition: Kept
+    condition: Closure
     label: str
     simulation: bool
 
@@ -137,7 +137,7 @@ class MonitorUse:
 class RecordUse:
     """``record``. ``every`` and ``after`` are numbers with their units; ``to`` is a recorder or a pattern of names."""
 
-    value: Kept
+    value: Closure
     moment: str | None
     name: str
     every: tuple[float, str] | None = None

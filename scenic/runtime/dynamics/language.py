@@ -9,7 +9,7 @@ from scenic.language.errors import (
     RejectSimulationException,
     ScenicTypeError,
 )
-from scenic.runtime.description.declarations import End, Kept, MonitorUse, RecordUse, Required, label_of
+from scenic.runtime.description.declarations import Closure, End, MonitorUse, RecordUse, Required, label_of
 from scenic.runtime.description.definitions import (
     Behavior,
     Definition,
@@ -27,7 +27,7 @@ from scenic.runtime.dynamics.run import Run, RunContext
 from scenic.runtime.dynamics.scenarios import not_a_monitor
 from scenic.runtime.ground.context import Context, current, here
 from scenic.runtime.temporal.formulas import is_temporal
-from scenic.runtime.temporal.monitors import Monitor as Follower
+from scenic.runtime.temporal.monitors import FormulaMonitor as Follower
 from scenic.runtime.values.lazy import MEMO, is_lazy, resolve
 from scenic.runtime.values.values import describe, is_number
 
@@ -151,11 +151,11 @@ class Dynamics:
         """``try-interrupt``: what to delegate to."""
         return statements.interruptible(instance._activation, body, clauses)
 
-    def leave(self, value: object) -> statements.Outcome:
+    def leave(self, value: object) -> statements.BlockEnding:
         """``return value`` in a block of ``try-interrupt``."""
-        return statements.Outcome("return", value)
+        return statements.BlockEnding("return", value)
 
-    def returned(self, outcome: statements.Outcome | None) -> bool:
+    def returned(self, outcome: statements.BlockEnding | None) -> bool:
         """Return whether a block ended by ``return``."""
         return outcome is not None and outcome.way == "return"
 
@@ -208,7 +208,7 @@ class Dynamics:
     ) -> None:
         """``terminate when``."""
         label = label_of(name) or _numbered("termination condition")
-        self._declared.ends.append(End(Kept(concrete, captured), label, simulation))
+        self._declared.ends.append(End(Closure(concrete, captured), label, simulation))
 
     def terminate_after(self, value: object, unit: str) -> None:
         """``terminate after``."""
@@ -237,7 +237,7 @@ class Dynamics:
         check_duration(after, "after", 0, span)
         check_target(to, span)
         key = label_of(name) or ("record" if span is None else f"record{span.line}")
-        closure = Kept(concrete, captured)
+        closure = Closure(concrete, captured)
         self._declared.records.append(
             RecordUse(closure, moment, key, every, after, to, span, self._module.filename)
         )

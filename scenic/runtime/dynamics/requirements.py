@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any
 from scenic.language.errors import RejectSimulationException, StuckBehaviorError, StuckBehaviorWarning
 from scenic.runtime.description.declarations import Required
 from scenic.runtime.temporal.formulas import Atom, Formula
-from scenic.runtime.temporal.monitors import Monitor, Verdict
+from scenic.runtime.temporal.monitors import FormulaMonitor, Verdict
 from scenic.runtime.temporal.robustness import Robustness
 
 if TYPE_CHECKING:
     from scenic.runtime.dynamics.run import Run
 
-__all__ = ["Followed", "Outcome"]
+__all__ = ["Followed", "RequirementOutcome"]
 
 
-class Outcome:
+class RequirementOutcome:
     """The outcome of a requirement in one simulation.
 
     ``robustness`` is by how much it held or failed, where that was asked for: positive if it held. ``joint`` is the same where the parts of
@@ -51,12 +51,12 @@ class Followed:
 
     def __init__(self, requirement: Required, run: "Run") -> None:
         self._required = requirement
-        self._monitor = Monitor(requirement.formula)
+        self._monitor = FormulaMonitor(requirement.formula)
         self._robustness = Robustness(requirement.formula) if run.wants_robustness else None
         has_joint = run.wants_robustness and _has_parts(requirement.formula)
         self._joint = Robustness(requirement.formula, is_joint=True) if has_joint else None
         self._run = run
-        self._outcome: Outcome | None = None
+        self._outcome: RequirementOutcome | None = None
         run.followed.append(self)
 
     def follow(self) -> None:
@@ -104,7 +104,7 @@ class Followed:
         return label if span is None or label.endswith(f"line {span.line}") else f"{label} (line {span.line})"
 
     @property
-    def outcome(self) -> Outcome:
+    def outcome(self) -> RequirementOutcome:
         """The outcome so far."""
         if self._outcome is not None:
             return self._outcome
@@ -112,7 +112,7 @@ class Followed:
         joint = value if self._joint is None else self._joint.value
         span = self._required.span
         line = None if span is None else span.line
-        return Outcome(self._required.label, line, self._monitor.verdict, value, joint)
+        return RequirementOutcome(self._required.label, line, self._monitor.verdict, value, joint)
 
 
 def _has_parts(formula: Formula) -> bool:

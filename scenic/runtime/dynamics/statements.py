@@ -20,7 +20,7 @@ __all__ = [
     "ABORT",
     "BREAK",
     "CONTINUE",
-    "Outcome",
+    "BlockEnding",
     "choose",
     "do",
     "interruptible",
@@ -33,7 +33,7 @@ Running = Any  # Activation | ScenarioActivation: what resumes, checks guards an
 Steps = Generator[Yielded, None, Any]
 
 
-class Outcome:
+class BlockEnding:
     """The way in which a block of ``try-interrupt`` ended, other than at its end; ``value`` is that of ``return``."""
 
     __slots__ = ("value", "way")
@@ -43,9 +43,9 @@ class Outcome:
         self.value = value
 
 
-ABORT: Final = Outcome("abort")
-BREAK: Final = Outcome("break")
-CONTINUE: Final = Outcome("continue")
+ABORT: Final = BlockEnding("abort")
+BREAK: Final = BlockEnding("break")
+CONTINUE: Final = BlockEnding("continue")
 
 
 def limit_in_steps(value: object, unit: str, timestep: float, what: str) -> float:
@@ -205,7 +205,7 @@ def _drawn(owner: Running, options: Sequence[tuple[Any, float]], what: str) -> i
 
 def interruptible(
     owner: Running, body: Callable[[], Any], clauses: Sequence[tuple[Callable[[], Any], Callable[[], Any]]]
-) -> Generator[Yielded, None, Outcome | None]:
+) -> Generator[Yielded, None, BlockEnding | None]:
     """``try-interrupt``: the body, and conditions with their handlers in program order; returns how it ended."""
     run = owner.run
     blocks: list[Any] = [None] * len(clauses)  # The handlers that have begun.

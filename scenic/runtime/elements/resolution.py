@@ -20,7 +20,7 @@ from scenic.runtime.values.values import Orientation, Vector, is_number
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Step:
+class ResolutionStep:
     """One specifier's turn: which of its values are taken.
 
     ``number`` is its place among the specifiers of the statement; those of defaults come with the step.
@@ -49,11 +49,11 @@ class Resolution:
     It depends on the kinds of the specifiers alone, not on their values: a class keeps its resolutions.
     """
 
-    steps: tuple[Step, ...]
+    steps: tuple[ResolutionStep, ...]
     """All but those of ``constants``."""
     constants: Mapping[str, Any]
     """Properties whose defaults are the same for every instance, as instances store them."""
-    providers: Mapping[str, Step]
+    providers: Mapping[str, ResolutionStep]
     """The specifier whose value of a property the others read: its modifier if it has one, else its owner."""
     names: tuple[str, ...]
     """All properties, those of the class first."""
@@ -62,7 +62,7 @@ class Resolution:
     is_doubtful: bool
     """True if a name looks misspelt, which causes a warning each time."""
 
-    def provider(self, name: str, reader: Specifier) -> Step:
+    def provider(self, name: str, reader: Specifier) -> ResolutionStep:
         """The specifier that provides a property which ``reader`` reads."""
         provider = self.providers.get(name)
         if provider is None:
@@ -92,10 +92,10 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
     instance = cls._make({})
     values = instance.__dict__
     values.update(resolution.constants)
-    finished_steps: set[Step] = set()
+    finished_steps: set[ResolutionStep] = set()
     is_object = issubclass(cls, Object)
 
-    def evaluate(step: Step) -> None:
+    def evaluate(step: ResolutionStep) -> None:
         if step in finished_steps:
             return
         finished_steps.add(step)
@@ -132,7 +132,7 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
                 error.span = specifier.span or error.span
             raise
 
-    def demand(step: Step) -> None:
+    def demand(step: ResolutionStep) -> None:
         """Evaluate a step before its turn, after those that it depends on."""
         if step in finished_steps:
             return
@@ -233,7 +233,7 @@ def resolve(
     modifies = _by_specifier(modifiers)
     numbers = {specifier: number for number, specifier in enumerate(specifiers)}
     steps = {
-        specifier: Step(
+        specifier: ResolutionStep(
             numbers.get(specifier),
             None if specifier in numbers else specifier,
             tuple(sorted(owns.get(specifier, frozenset()) | modifies.get(specifier, frozenset()))),
@@ -356,7 +356,9 @@ def _builtin_default(properties: Mapping[str, Property], name: str) -> Callable[
     return entry.default if entry.additive else entry.definitions[0].value
 
 
-def _constants(cls: type[Point], steps: Iterable[Step], properties: Mapping[str, Property]) -> dict[str, Any]:
+def _constants(
+    cls: type[Point], steps: Iterable[ResolutionStep], properties: Mapping[str, Property]
+) -> dict[str, Any]:
     """The built-in defaults that are the same for every instance: those that read nothing but one another.
 
     ``steps`` are in the order in which they are evaluated.

@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Self
 
 from scenic.graph.kinds import Kind
 from scenic.language.errors import InvalidScenarioError
-from scenic.language.properties import CLASSES, BuiltinProperty, Constant
+from scenic.language.properties import CLASSES, BuiltinProperty, ConstantDefault
 from scenic.language.types import VECTOR
 from scenic.runtime.geometry.contact.scalar_bodies import meet
 from scenic.runtime.ground.context import here
@@ -55,7 +55,7 @@ def _definitions(name: str, computed: Mapping[str, Callable[[Any], Any]]) -> dic
         each.name: PropertyDefinition(
             each.name,
             frozenset(word for word in ATTRIBUTES if getattr(each, word)),
-            _constant(each) if isinstance(each.given, Constant) else computed[each.name],
+            _constant(each) if isinstance(each.given, ConstantDefault) else computed[each.name],
             each.needs,
             is_builtin=True,
         )
@@ -65,7 +65,7 @@ def _definitions(name: str, computed: Mapping[str, Callable[[Any], Any]]) -> dic
 
 def _constant(declared: BuiltinProperty) -> Callable[[Any], Any]:
     """The function of a constant default: a new object for each instance where it can be changed."""
-    assert isinstance(declared.given, Constant)
+    assert isinstance(declared.given, ConstantDefault)
     value = declared.given.value
     if declared.types == (VECTOR,):
         return lambda _: vector(*value)

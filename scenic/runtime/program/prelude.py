@@ -28,7 +28,7 @@ from scenic.language.errors import (
 from scenic.language.libraries import how_to_get
 from scenic.runtime.description import conditions, mutation
 from scenic.runtime.description.conditions import Condition
-from scenic.runtime.description.declarations import Kept, label_of, required
+from scenic.runtime.description.declarations import Closure, label_of, required
 from scenic.runtime.description.definitions import behavior_of
 from scenic.runtime.description.outcome import Module, Program, Requirement
 from scenic.runtime.dynamics.language import Dynamics
@@ -394,7 +394,7 @@ class Prelude(Symbolic, Dynamics):
 
         One that ``awaits`` reads names that the module sets later. ``indices`` tells which items it reads of what is captured.
         """
-        closure = Kept(concrete, captured, margin)
+        closure = Closure(concrete, captured, margin)
         symbolic_context = self._context.is_symbolic
         self._context.record.awaits |= awaits
         build = (

@@ -98,7 +98,7 @@ class Disc(Flat):
         return False if body.mesh.is_box and farthest > self._radius + body.slack else None
 
 
-class Outline:
+class ConvexOutline:
     """The edges of a convex polygon, anticlockwise."""
 
     def __init__(self, corners: Sequence[tuple[float, float]]) -> None:
@@ -138,7 +138,7 @@ class Rectangle(Flat):
         super().__init__(z, (min(easts), min(norths), max(easts), max(norths)))
         self._x, self._y, self._cos, self._sin = x, y, cos, sin
         self._across, self._along = across, along
-        self._outline = Outline(corners)
+        self._outline = ConvexOutline(corners)
 
     def holds_point(self, point: Triple) -> bool | None:
         """See `Single`."""
@@ -166,7 +166,7 @@ class Polygon(Flat):
         super().__init__(height, polygons.polygon.bounds)
         self._polygons = polygons
         corners = polygons.convex_corners
-        self._outline = None if corners is None else Outline(list(map(tuple, corners.tolist())))
+        self._outline = None if corners is None else ConvexOutline(list(map(tuple, corners.tolist())))
 
     def holds_point(self, point: Triple) -> bool | None:
         """See `Single`."""

@@ -1,6 +1,6 @@
 """Verdicts of temporal formulas on the states seen so far (section 12.6 of the specification).
 
-A `Monitor` holds what has yet to come true, not the states: what it costs to add a state is bounded by the formula. What is
+A `FormulaMonitor` holds what has yet to come true, not the states: what it costs to add a state is bounded by the formula. What is
 left to hold is kept as a disjunction of conjunctions of *obligations*: subformulas that the next state has to meet.
 Since clauses absorb each other, what is left is one of finitely many.
 
@@ -16,7 +16,7 @@ from typing import Final, TypeAlias
 from scenic.runtime.temporal.formulas import Formula
 from scenic.runtime.temporal.normal import Junction, Literal, Next, Normal, Obligation, Until, normal
 
-__all__ = ["Monitor", "Verdict"]
+__all__ = ["FormulaMonitor", "Verdict"]
 
 
 class Verdict(IntEnum):
@@ -71,7 +71,7 @@ def _absorbed(clauses: _Clauses) -> _Clauses:
     return frozenset(kept)
 
 
-class Monitor:
+class FormulaMonitor:
     """Follows one formula along a trace.
 
     Args:

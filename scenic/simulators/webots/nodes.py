@@ -6,13 +6,13 @@ from typing import Any, Final
 
 from scenic.language.errors import SimulationCreationError
 
-__all__ = ["Names", "States", "field_of", "write_heights"]
+__all__ = ["NodeNames", "States", "field_of", "write_heights"]
 
 _STATE: Final = "scenic"
 """Name of the saved states in Webots."""
 
 
-class Names:
+class NodeNames:
     """The DEF names of objects that are nodes of the world already."""
 
     def __init__(self, supervisor: Any) -> None:

@@ -19,7 +19,7 @@ from scenic.runtime.values.values import Orientation, Vector
 from scenic.simulators.simulation import Simulation
 from scenic.simulators.simulator import Simulator
 from scenic.simulators.webots.axes import Axes, axis_angle, matrix_of, orientation_of
-from scenic.simulators.webots.nodes import Names, States, field_of, write_heights
+from scenic.simulators.webots.nodes import NodeNames, States, field_of, write_heights
 
 __all__ = ["OutsideWebots", "WebotsSimulation", "WebotsSimulator"]
 
@@ -113,7 +113,7 @@ class WebotsSimulation(Simulation):
         self.supervisor = supervisor
         self.axes = axes
         self._states = states
-        self._names = Names(supervisor)
+        self._names = NodeNames(supervisor)
         self._nodes: dict[int, Any] = {}
         self._made: list[Any] = []
         self._folder: tempfile.TemporaryDirectory[str] | None = None

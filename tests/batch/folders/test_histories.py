@@ -25,7 +25,7 @@ from hypothesis.stateful import (
 )
 
 import scenic
-from scenic.batch.datasets import Finished, Resuming, Run, make_dataset
+from scenic.batch.datasets import DatasetRun, Finished, Resuming, make_dataset
 from scenic.batch.folders.lock import LOCK, BusyError, Lock
 from scenic.batch.manifest import NAME, DatasetError, Manifest
 from scenic.batch.verifying import merge, verify
@@ -109,7 +109,7 @@ class Histories(RuleBasedStateMachine):
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", ScenicWarning)
                 return make_dataset(
-                    self.program(), self.place / name, wanted, Run(advance=advance), resume=how
+                    self.program(), self.place / name, wanted, DatasetRun(advance=advance), resume=how
                 )
         except Killed:
             return None

@@ -12,7 +12,7 @@ import rv_ltl
 from fuzz.traces import Formula as Tree
 from fuzz.traces import verdict
 from scenic.runtime.temporal.formulas import Atom, Compound, Formula, is_temporal
-from scenic.runtime.temporal.monitors import Monitor, Verdict
+from scenic.runtime.temporal.monitors import FormulaMonitor, Verdict
 from scenic.runtime.temporal.robustness import Robustness, joint_margin
 from tests.amounts import amount
 
@@ -98,7 +98,7 @@ def pairs(count: int, seed: int) -> Any:
 
 
 def follow(tree: Tree, trace: list[frozenset[str]]) -> list[Verdict]:
-    monitor = Monitor(formula(tree))
+    monitor = FormulaMonitor(formula(tree))
     return [monitor.add(lambda index, state=state: ATOMS[index] in state) for state in trace]  # type: ignore[misc]
 
 
@@ -133,7 +133,7 @@ def test_what_is_left_does_not_grow() -> None:
     a, b, c = Atom(0), Atom(1), Atom(2)
     inner = Compound("until", (Compound("eventually", (a,)), Compound("always", (b,))))
     hard = Compound("always", (Compound("or", (inner, Compound("next", (Compound("next", (c,)),)))),))
-    monitor = Monitor(hard)
+    monitor = FormulaMonitor(hard)
     rng = random.Random(5)
     sizes = []
     for _ in range(400):
@@ -148,7 +148,7 @@ def test_clauses_that_others_imply_are_dropped(count: int) -> None:
     """Of "always, one of these eventually" as many clauses are left as alternatives, not all their combinations."""
     alternatives = tuple(Compound("eventually", (Atom(number),)) for number in range(count))
     goal: Formula = alternatives[0] if count == 1 else Compound("or", alternatives)
-    monitor = Monitor(Compound("always", (goal,)))
+    monitor = FormulaMonitor(Compound("always", (goal,)))
     for step in range(5):
         read: list[int] = []
         monitor.add(lambda index, read=read: bool(read.append(index)))  # type: ignore[misc]
@@ -167,7 +167,7 @@ def test_what_is_written_twice_is_one_obligation() -> None:
     def eventually() -> Formula:
         return Compound("until", (Compound("next", (Atom(1),)), Atom(2)))
 
-    monitor = Monitor(Compound("and", (written(), written(), eventually(), eventually())))
+    monitor = FormulaMonitor(Compound("and", (written(), written(), eventually(), eventually())))
     for _ in range(3):
         monitor.add(lambda index: index == 1)
         (clause,) = monitor._left
@@ -180,7 +180,7 @@ def test_what_is_left_of_both_sides_is_joined_and_absorbed() -> None:
     for order in itertools.permutations(range(3)):
         a, b, c = (Compound("next", (Atom(number),)) for number in order)
         for parts in itertools.permutations([Compound("or", (a, b)), Compound("or", (a, c))]):
-            monitor = Monitor(Compound("and", tuple(parts)))
+            monitor = FormulaMonitor(Compound("and", tuple(parts)))
             monitor.add(lambda _: False)
             assert sorted(len(clause) for clause in monitor._left) == [1, 2]
 
@@ -192,7 +192,7 @@ def test_atoms_outside_temporal_operators_are_read_once() -> None:
         asked.append(index)
         return True
 
-    monitor = Monitor(Compound("and", (Atom(0), Compound("always", (Atom(1),)))))
+    monitor = FormulaMonitor(Compound("and", (Atom(0), Compound("always", (Atom(1),)))))
     for _ in range(3):
         monitor.add(evaluate)
     assert asked == [0, 1, 1, 1]
@@ -210,9 +210,9 @@ def test_an_exception_counts_only_where_nothing_else_decides() -> None:
         (Compound("implies", (Atom(2), Atom(0))), Verdict.TRUE),
         (Compound("until", (Atom(0), Atom(1))), Verdict.TRUE),
     ):
-        assert Monitor(tree).add(evaluate) is decided
+        assert FormulaMonitor(tree).add(evaluate) is decided
     with pytest.raises(ZeroDivisionError):
-        Monitor(Compound("or", (Atom(0), Atom(2)))).add(evaluate)
+        FormulaMonitor(Compound("or", (Atom(0), Atom(2)))).add(evaluate)
 
 
 def test_of_several_exceptions_the_first_is_raised() -> None:
@@ -220,7 +220,7 @@ def test_of_several_exceptions_the_first_is_raised() -> None:
         raise (ZeroDivisionError, KeyError)[index]
 
     with pytest.raises(ZeroDivisionError):
-        Monitor(Compound("or", (Atom(0), Atom(1)))).add(evaluate)
+        FormulaMonitor(Compound("or", (Atom(0), Atom(1)))).add(evaluate)
 
 
 def test_operations_are_checked() -> None:
@@ -343,4 +343,4 @@ def test_robustness_of_each_operator() -> None:
 def test_before_the_first_state_nothing_is_known() -> None:
     for form in (formula("a"), formula(("always", "a")), formula(("not", ("eventually", "a")))):
         assert Robustness(form).value is None
-        assert Monitor(form).verdict is None
+        assert FormulaMonitor(form).verdict is None
