@@ -8,12 +8,10 @@ from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.modules import FoundModule, Module, ModuleKind, Modules
 from scenic.compiler.surroundings import Surroundings, SurroundingsOf
 from scenic.language.diagnostics import Diagnostic
-from scenic.project.agents import agent_findings
 from scenic.project.appearances import appearance_findings
 from scenic.project.imports import Imports
 from scenic.project.index import Project
 from scenic.project.maps import map_findings
-from scenic.project.members import member_findings
 from scenic.project.textures import texture_findings
 
 __all__ = ["surroundings_in"]
@@ -57,5 +55,3 @@ class _Surroundings:
         yield from map_findings(tree, source)
         yield from texture_findings(tree, source)
         yield from appearance_findings(tree, source)
-        yield from agent_findings(self._model)
-        yield from member_findings(self._model)

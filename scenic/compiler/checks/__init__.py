@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Final
 
 from scenic.compiler.checks import (
+    agents,
     angles,
     arguments,
     clashes,
@@ -22,6 +23,7 @@ from scenic.compiler.checks import (
     flow,
     guards,
     instances,
+    library_attributes,
     making,
     meant_specifiers,
     names,
@@ -117,7 +119,7 @@ def check(context: CheckContext, go_on: Callable[[], None] = lambda: None) -> tu
 
 
 _ATTRIBUTE: Final = "SC214"
-"""The code of unknown attributes, about which who knows other modules knows more."""
+"""The code of unknown attributes, about which annotations of the library say more."""
 
 
 def lint(context: CheckContext, go_on: Callable[[], None] = lambda: None) -> tuple[Diagnostic, ...]:
@@ -127,7 +129,8 @@ def lint(context: CheckContext, go_on: Callable[[], None] = lambda: None) -> tup
     """
     surroundings = context.surroundings
     with no_garbage_collection():
-        missing = () if surroundings is None else tuple(surroundings.findings())
+        missing = [*agents.check_agents(context), *library_attributes.check_library_attributes(context)]
+        missing += () if surroundings is None else surroundings.findings()
         places = {item.span for item in missing}
         diagnostics = list(missing)
         for rule in _LINTS:

@@ -73,23 +73,30 @@ class CheckContext(Model):
 
     @cached_property
     def stored_attributes(self) -> frozenset[str]:
-        """The names of all attributes that the program writes."""
-        return frozenset(
-            node.attr for node, _ in self.nodes(ast.Attribute) if not isinstance(node.ctx, ast.Load)
-        )
+        """The names of all attributes that the program writes, also with ``setattr``."""
+        assigned = (node.attr for node, _ in self.nodes(ast.Attribute) if not isinstance(node.ctx, ast.Load))
+        return frozenset(assigned).union(each for each in self._named_in("setattr") if each is not None)
+
+    @cached_property
+    def writes_any_attribute(self) -> bool:
+        """Return whether the program may give things attributes of names that its text does not show."""
+        return "__dict__" in self.attributes or None in self._named_in("setattr")
+
+    def _named_in(self, function: str) -> Iterator[str | None]:
+        """The names of attributes that calls of a function of Python name; ``None`` for computed ones."""
+        for node, _ in self.nodes(ast.Call):
+            match node:
+                case ast.Call(func=ast.Name(id=name), args=[_, ast.Constant(value=str(attribute)), *_]) if (
+                    name == function
+                ):
+                    yield attribute
+                case ast.Call(func=ast.Name(id=name)) if name == function:
+                    yield None
 
     @cached_property
     def asked_attributes(self) -> frozenset[str]:
         """The names of all attributes that the program asks for with ``hasattr``."""
-        calls = (node for node, _ in self.nodes(ast.Call))
-        return frozenset(
-            str(node.args[1].value)
-            for node in calls
-            if isinstance(node.func, ast.Name)
-            and node.func.id == "hasattr"
-            and len(node.args) == 2
-            and isinstance(node.args[1], ast.Constant)
-        )
+        return frozenset(each for each in self._named_in("hasattr") if each is not None)
 
     @cached_property
     def given(self) -> frozenset[str]:

@@ -75,9 +75,10 @@ def _call(node: ast.Call, scope: Scope, context: CheckContext) -> Iterator[Diagn
     if name is None:
         return
     where = where_of(node, scope)
-    if name in _DRAWS and where.function is None and where.place not in DYNAMIC:
+    at_load = where.function is None and where.place not in DYNAMIC
+    if name in _DRAWS and at_load:
         yield _draw(node, name, context)
-    elif name in _CLOCKS and any(context.nodes_around(node, scenic.SpecifierPhrase)):
+    elif name in _CLOCKS and at_load and any(context.nodes_around(node, scenic.SpecifierPhrase)):
         yield context.warning(
             "SC407",
             f"`{context.text(node.func) or name}` is asked once, while the program is loaded: all scenes get the same value, and other "

@@ -427,6 +427,8 @@ def _attribute(node: ast.Attribute, scope: Scope, context: CheckContext) -> Iter
     if context.provided(node.value) == "globalParameters":
         yield from _parameter(node.attr, _end(node, context), context)
         return
+    if context.writes_any_attribute:
+        return
     kind = context.kind_of(node.value)
     if kind is None and isinstance(node.value, ast.Name) and node.value.id == "self":
         yield from _of_agent(node, context)
@@ -551,7 +553,7 @@ def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator
     """SC214: ``size: self.lenth * 2``, in the defaults of a class."""
     defaults = [item.value for item in node.body if isinstance(item, scenic.PropertyDef)]
     cls = context.class_at(node) if defaults else None
-    members = None if cls is None else cls.names
+    members = None if cls is None or context.writes_any_attribute else cls.names
     if members is None:
         return
     for default in defaults:

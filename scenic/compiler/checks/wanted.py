@@ -12,7 +12,7 @@ from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic
 from scenic.language.types import BEHAVIOR, COLOR, VECTOR, Type, wanted
 
-__all__ = ["may_be_meant", "wrong_kinds"]
+__all__ = ["is_attempt", "may_be_meant", "wrong_kinds"]
 
 
 def wrong_kinds(
@@ -134,8 +134,11 @@ def _divided(part: ast.expr, context: CheckContext) -> str:
 
 def may_be_meant(node: ast.AST, scope: Scope, context: CheckContext) -> bool:
     """Return whether what fails may be expected to: in a function without a name, or where exceptions are caught."""
-    if isinstance(scope.node, ast.Lambda):
-        return True
+    return isinstance(scope.node, ast.Lambda) or is_attempt(node, context)
+
+
+def is_attempt(node: ast.AST, context: CheckContext) -> bool:
+    """Return whether exceptions are caught where a node stands."""
     place = position(node)
     return any(
         position(attempt) < place < position(attempt.handlers[0])

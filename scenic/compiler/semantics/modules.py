@@ -89,15 +89,6 @@ class Module:
                 found[function.args.args[0]] = values
         return found
 
-    @cached_property
-    def egos(self) -> tuple[ast.expr, ...]:
-        """The values that are assigned to the ego."""
-        return tuple(
-            node.value
-            for node, _ in self.resolution.nodes(ast.Assign)
-            if any(isinstance(target, ast.Name) and target.id == "ego" for target in node.targets)
-        )
-
     def word_span(self, node: ast.AST, word: str) -> Span:
         """The place of a word in a node."""
         return word_span(self.source, node, word)

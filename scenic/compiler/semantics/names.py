@@ -20,6 +20,8 @@ _GROWING: Final = frozenset(
     {"append", "clear", "extend", "insert", "pop", "popitem", "remove", "setdefault", "update"}
 )
 """Methods that change the elements of a list or dictionary."""
+_HANDING_ON: Final = (ast.Assign, ast.AnnAssign, ast.NamedExpr, ast.Return, ast.Yield)
+"""Statements and expressions that give what they hold another name."""
 
 
 class Names:
@@ -240,10 +242,33 @@ class Names:
 
     @cached_property
     def grown(self) -> frozenset[str]:
-        """The names of lists and dictionaries whose elements the program may change."""
-        called = (node.value for node, _ in self.nodes(ast.Attribute) if node.attr in _GROWING)
-        stored = (node.value for node, _ in self.nodes(ast.Subscript) if not isinstance(node.ctx, ast.Load))
-        return frozenset(value.id for value in (*called, *stored) if isinstance(value, ast.Name))
+        """The names of lists and dictionaries whose elements the program may change, by this name or by another."""
+        changed = [node.value for node, _ in self.nodes(ast.Attribute) if node.attr in _GROWING]
+        changed += [node.value for node, _ in self.nodes(ast.Subscript) if not isinstance(node.ctx, ast.Load)]
+        for cls in _HANDING_ON:
+            changed += [part for node, _ in self.nodes(cls) for part in _shared_parts(node.value)]
+        for node, _ in self.nodes(ast.Call):
+            if self.provided(node.func) is None:
+                changed += [part for each in node.args for part in _shared_parts(each)]
+                changed += [part for each in node.keywords for part in _shared_parts(each.value)]
+        names: set[str] = set()
+        for each in changed:
+            while isinstance(each, ast.Subscript | ast.Attribute):
+                each = each.value
+            names.update([each.id] if isinstance(each, ast.Name) else ())
+        return frozenset(names)
+
+    @cached_property
+    def examined(self) -> frozenset[str]:
+        """The names whose values the program asks for their type, so that an annotation may not tell it."""
+        return frozenset(
+            node.args[0].id
+            for node, _ in self.nodes(ast.Call)
+            if isinstance(node.func, ast.Name)
+            and node.func.id in ("isinstance", "type", "hasattr")
+            and node.args
+            and isinstance(node.args[0], ast.Name)
+        )
 
     @cached_property
     def owners(self) -> Mapping[str, int]:
@@ -286,6 +311,21 @@ class Names:
             return ()
         found = [node.value for node in self.resolution.nodes_in(scope, ast.Return)]
         return () if None in found else found
+
+
+def _shared_parts(value: ast.expr | None) -> Iterator[ast.expr]:
+    """The names whose values a value is, or holds."""
+    match value:
+        case ast.Name():
+            yield value
+        case ast.Tuple(elts=parts) | ast.List(elts=parts) | ast.Dict(values=parts) | ast.BoolOp(values=parts):
+            for part in parts:
+                yield from _shared_parts(part)
+        case ast.IfExp(body=body, orelse=orelse):
+            yield from _shared_parts(body)
+            yield from _shared_parts(orelse)
+        case ast.NamedExpr(value=inner):
+            yield from _shared_parts(inner)
 
 
 def _position_of_noted(noted: tuple[ast.AST, Scope]) -> tuple[int, int]:

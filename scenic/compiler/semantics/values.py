@@ -413,8 +413,12 @@ class Values:
             return Value(kinds.NUMBER) if is_range else whole.element
         kind = whole.kind
         if kind is not None and kind.name in ("list", "dictionary"):
-            # Lists grow.
-            kind = ValueKind(kind.name, items=None if name in names.grown else kind.items)
+            # Lists grow, and so do those in them.
+            items = None if name in names.grown else kind.items
+            is_open = items is not None and items.name in ("list", "dictionary")
+            kind = ValueKind(
+                kind.name, items=ValueKind(items.name) if items is not None and is_open else items
+            )
         return Value(kind, whole.cls, whole.elements)
 
     def _parameter(self, module: Module, binding: Binding, depth: int) -> Value:
@@ -425,9 +429,9 @@ class Values:
                 return Value(None, self.value(module, run, depth).elements)
             if site.annotation is not None:
                 annotated = self._annotated(module, site.annotation, depth)
-                return Value(
-                    self._kind_of_annotation(module, site.annotation), annotated.cls, annotated.elements
-                )
+                asked = binding.name in self._classes.names(module).examined
+                kind = None if asked else self._kind_of_annotation(module, site.annotation)
+                return Value(kind, annotated.cls, annotated.elements)
         return Value(None, _class_of_self(module, binding.scope, binding.name))
 
     # Annotations

@@ -175,6 +175,49 @@ def test_operands_that_are_accepted_are_not_accused(path: Path) -> None:
         assert found(text) == [], case.title
 
 
+UNUSUAL = """
+import time, random
+def tag(thing, name, value):
+    thing.__setattr__(name, value)
+def point(n: int):
+    return n if isinstance(n, int) else n.x
+behavior Timed():
+    start, place = time.time(), new OrientedPoint at (1, 2)
+    while time.time() - start < 5:
+        wait
+def draw():
+    return random.random()
+first, nested, inner, given = [1, 2], [[1]], {"a": 1}, [3]
+alias, other = first, inner
+alias.append(Vector(1, 2))
+other["b"] = Vector(1, 2)
+def fill(values):
+    values.append(Vector(1, 2))
+fill(given)
+for row in nested:
+    row.append(Vector(1, 2))
+ego = new Object at (9, 9)
+setattr(ego, "widht", 3)
+shown = ego.widht, first[2].x, other["b"].x, given[1].x, nested[0][1].x
+param places = [each.inradius for each in (CircularRegion((0, 0), 1), RectangularRegion((0, 0), 0, 1, 1))]
+"""
+"""Python that does what its names and annotations do not show; nothing in it is wrong."""
+
+
+def test_unusual_helpers_are_not_accused() -> None:
+    computed = UNUSUAL.replace(
+        'setattr(ego, "widht", 3)', 'for each in ["widht"]:\n    setattr(ego, each, 3)'
+    )
+    for text in (UNUSUAL, computed):
+        wrong = [
+            each
+            for each in check_text(text, filename="helpers.scenic")
+            if each.code in ("SC214", "SC404", "SC407")
+        ]
+        assert not wrong
+        scenic.scenarioFromString(text).sample(1)
+
+
 PUBLIC = """
 from scenic.core.shapes import BoxShape
 box = trimesh.creation.box()

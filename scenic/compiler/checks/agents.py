@@ -9,13 +9,14 @@ from types import MappingProxyType
 from typing import Final
 
 from scenic.compiler import tree as scenic
+from scenic.compiler.checks.context import CheckContext
 from scenic.compiler.semantics.classes import LIBRARY
 from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind
 from scenic.compiler.traversal import walk
 from scenic.language.diagnostics import Diagnostic
 
-__all__ = ["agent_findings"]
+__all__ = ["check_agents"]
 
 _NEEDS: Final[Mapping[str, str]] = MappingProxyType({"SteeringAction": "drive", "WalkingAction": "walk"})
 """The ability that agents need, by the base class of actions."""
@@ -33,29 +34,27 @@ _ADVICE: Final[Mapping[str, str]] = MappingProxyType(
 )
 
 
-def agent_findings(model: Model) -> Iterator[Diagnostic]:
+def check_agents(context: CheckContext) -> Iterator[Diagnostic]:
     """Reports objects whose behaviors take actions of the driving domain that they cannot take."""
-    source = model.module.source
-    if "behavior" not in source.text or not any(name in model.brought for name in _NEEDS):
+    if "behavior" not in context.source.text or not any(name in context.brought for name in _NEEDS):
         return
-    for cls, value in _given(model.tree):
-        agent = model.meaning(cls)
+    for cls, value in _given(context.tree):
+        agent = context.meaning(cls)
         call = value.func if isinstance(value, ast.Call) else value
-        behavior = model.meaning(call) if isinstance(call, ast.Name | ast.Attribute) else None
+        behavior = context.meaning(call) if isinstance(call, ast.Name | ast.Attribute) else None
         if agent is None or behavior is None or behavior.kind is not SymbolKind.BEHAVIOR:
             continue
-        able = _abilities(model, agent)
-        needed = _needs(model, behavior, 0)
+        able = _abilities(context, agent)
+        needed = _needs(context, behavior, 0)
         # A behavior for several kinds of agents asks which one it has.
         if able is None or len(needed) != 1 or needed.keys() <= able or not all(needed.values()):
             continue
         (need,) = needed
-        yield Diagnostic(
+        yield context.error(
             "SC314",
             f"objects of the class `{agent.name}` cannot {need}, as `{behavior.name}` does",
-            source.span(value),
-            filename=source.filename,
-            help=_ADVICE[need],
+            context.source.span(value),
+            _ADVICE[need],
         )
 
 

@@ -1,6 +1,6 @@
 """Attributes that the values of world models do not have: ``network.lane``.
 
-The class of such a value follows from annotations of the library (`scenic.compiler.semantics.meanings.class_of`), which the compiler does not see.
+The class of such a value follows from annotations of the library.
 """
 
 import ast
@@ -10,36 +10,37 @@ from collections.abc import Collection, Iterator, Mapping
 from types import MappingProxyType
 from typing import Final
 
-from scenic.compiler import tree as scenic
+from scenic.compiler.checks.context import CheckContext
+from scenic.compiler.checks.wanted import is_attempt
 from scenic.compiler.scopes import Resolution
 from scenic.compiler.semantics.classes import Class, is_of_library
-from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.modules import Exported
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind
-from scenic.language.diagnostics import Diagnostic, Edit, Fix, Severity
+from scenic.language.diagnostics import Diagnostic, Edit, Fix
 from scenic.language.members import MEMBERS
 from scenic.language.properties import attributes_of, properties_of
 from scenic.language.source import Source
 from scenic.language.spans import Span
 from scenic.language.spelling import distance, nearest, related
 
-__all__ = ["member_findings"]
+__all__ = ["check_library_attributes"]
 
 _OF_SEQUENCES: Final = frozenset({*dir(tuple), *dir(list), *dir(set)})
 _COMMON: Final = frozenset(properties_of("Object")).union(attributes_of("Object"), *MEMBERS.values())
 
 
-def member_findings(model: Model) -> Iterator[Diagnostic]:
+def check_library_attributes(context: CheckContext) -> Iterator[Diagnostic]:
     """Reports slips in attributes of what star imports and the model bring."""
-    brought, resolution, source = model.brought, model.resolution, model.module.source
+    brought, resolution = context.brought, context.resolution
     if not any(each.module is not None and is_of_library(each.module.filename) for each in brought.values()):
         return
-    stored = {node.attr for node, _ in resolution.nodes(ast.Attribute) if isinstance(node.ctx, ast.Store)}
-    stored |= {node.property for node, _ in resolution.nodes(scenic.SpecifierPhrase) if node.property}
+    if context.writes_any_attribute:
+        return
+    known = context.stored_attributes | context.given | context.asked_attributes
     called = {id(node.func) for node, _ in resolution.nodes(ast.Call)}
     seen: dict[tuple[str, str], tuple[str, str | None, str, bool] | None] = {}
     for node, _ in resolution.nodes(ast.Attribute):
-        if node.attr in stored or node.attr.startswith("_"):
+        if node.attr in known or node.attr.startswith("_") or is_attempt(node, context):
             continue
         if node.attr in _COMMON and not _is_near(node, brought):
             continue
@@ -48,22 +49,20 @@ def member_findings(model: Model) -> Iterator[Diagnostic]:
             continue
         key = (chain, node.attr)
         if key not in seen:
-            seen[key] = _slip(model, node)
+            seen[key] = _slip(context, node)
         found = seen[key]
         if found is not None:
             kind, meant, advice, is_method = found
-            whole = source.span(node)
+            whole = context.source.span(node)
             place = Span(
                 whole.end_line, max(0, whole.end_column - len(node.attr)), whole.end_line, whole.end_column
             )
-            yield Diagnostic(
+            yield context.warning(
                 "SC214",
                 f"{'an' if kind[0] in 'AEIOU' else 'a'} `{kind}` has no attribute `{node.attr}`",
                 place,
-                Severity.WARNING,
-                source.filename,
                 advice,
-                fix=_renamed(place, meant, source, is_called=id(node) in called and not is_method)
+                fix=_renamed(place, meant, context.source, is_called=id(node) in called and not is_method)
                 if meant
                 else None,
             )
@@ -112,12 +111,12 @@ def _chain(node: ast.expr, resolution: Resolution, brought: Collection[str]) -> 
     return None if node.id in resolution.names else f"{node.id} {words}"
 
 
-def _slip(model: Model, node: ast.Attribute) -> tuple[str, str | None, str, bool] | None:
+def _slip(context: CheckContext, node: ast.Attribute) -> tuple[str, str | None, str, bool] | None:
     """The class of the owner of an attribute, the name that was meant if it is known, advice, and whether a method is meant; if the class has no such attribute."""
-    symbol = model.class_of(node.value)
-    element = model.class_of_elements(node.value) if symbol is None else None
+    symbol = context.class_of(node.value)
+    element = context.class_of_elements(node.value) if symbol is None else None
     if element is not None and node.attr not in _OF_SEQUENCES:
-        known = model.class_of_symbol(element)
+        known = context.class_of_symbol(element)
         meant = None if known is None else nearest(node.attr, {each.name for each in known.members})
         return (
             None
@@ -126,10 +125,10 @@ def _slip(model: Model, node: ast.Attribute) -> tuple[str, str | None, str, bool
         )
     if symbol is None:
         # An attribute of the class itself, such as a member of an enumeration.
-        symbol = model.meaning(node.value) if isinstance(node.value, ast.Name) else None
+        symbol = context.meaning(node.value) if isinstance(node.value, ast.Name) else None
     if symbol is None or not is_of_library(symbol.filename):
         return None
-    cls = model.class_of_symbol(symbol)
+    cls = context.class_of_symbol(symbol)
     if cls is None or cls.member(node.attr) is not None or cls.member("__getattr__") is not None:
         return None
     names = {each.name for each in cls.members if not each.name.startswith("_")}
