@@ -14,6 +14,7 @@ from scenic.compiler.generated import WORDS
 from scenic.compiler.loader import SUFFIXES
 from scenic.compiler.scopes import Binding, BindingKind, ScopeKind
 from scenic.compiler.semantics.classes import Class, Classes, Member
+from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.modules import Exported, FoundModule, Module, ModuleKind
 from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_binding, symbol_of_exported
 from scenic.compiler.tokens import FSTRING_END, FSTRING_MIDDLE, FSTRING_START, STRING
@@ -420,7 +421,7 @@ def _names(
                 yield Completion(
                     name, kind, name, 2 if local else 3, detail, key=("name", snapshot.filename, name, *place)
                 )
-    for name, exported in project.exports(module).names.items():
+    for name, exported in Model(module, project).brought.items():
         if name not in seen and not name.startswith("_"):
             seen.add(name)
             brought = None if exported.binding is None else exported.binding
@@ -494,15 +495,12 @@ def _symbol_named(
     project: Project, module: Module, snapshot: Snapshot | None, name: str, place: Iterable[str]
 ) -> Symbol | None:
     """Return the symbol that a name denotes at a place, or ``None``."""
-    binding: Binding | None = module.resolution.names.get(name)
     numbers = [int(part) for part in place if part.isdigit()]
     if snapshot is not None and snapshot.filename == module.filename and len(numbers) == 2:
         inner = snapshot.scope_at(numbers[0], numbers[1]).lookup(name)
         if inner is not None and inner.scope.kind is not ScopeKind.MODULE:
             return symbol_of_binding(module, inner)
-    if binding is not None:
-        return symbol_of_exported(project, Exported(binding.name, module, binding))
-    exported = project.exports(module).names.get(name)
+    exported = Model(module, project).at_top(name)
     return None if exported is None else symbol_of_exported(project, exported)
 
 

@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 from scenic.compiler import tree as scenic
 from scenic.compiler.generated import HARD_KEYWORDS, OPERATORS
 from scenic.compiler.scopes import BindingKind, Resolution, ScopeKind
+from scenic.compiler.semantics.model import Model
 from scenic.compiler.semantics.symbols import SymbolKind, symbol_of_exported
 from scenic.compiler.tokens import FSTRING_END, FSTRING_MIDDLE, FSTRING_START, NAME, NUMBER, STRING
 from scenic.compiler.traversal import walk
@@ -163,11 +164,11 @@ def _imported(snapshot: Snapshot, project: Project | None) -> Callable[[str], st
     module = None if project is None else project.module(snapshot.filename)
     if project is None or module is None:
         return lambda _name: None
-    names = project.exports(module).names
+    model = Model(module, project)
 
     @cache
     def kind_of(name: str) -> str | None:
-        exported = names.get(name)
+        exported = model.at_top(name)
         return None if exported is None else _OF_SYMBOL.get(symbol_of_exported(project, exported).kind)
 
     return kind_of
