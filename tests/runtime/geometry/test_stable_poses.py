@@ -47,6 +47,36 @@ def test_shares_are_those_of_the_toppling_graph() -> None:
     assert differences.max() < 0.1
 
 
+def test_a_fine_side_is_rested_on_as_a_coarse_one() -> None:
+    """Sides of 100 faces, each of which a tilt of 2 degrees ends, lead to each other, and keep the share of the whole side."""
+    size = np.array([[1.0, 1.0, 2.0]])
+    shares = []
+    for sections in (24, 100):
+        footing = primitives.cylinder(sections).derived(hull_footing)
+        shares.append(footing.shares(size)[0][np.abs(footing.normals[:, 2]) < 0.5])
+    assert shares[1].sum() == pytest.approx(shares[0].sum(), rel=0.01)
+    assert shares[1] == pytest.approx(shares[1].mean())
+
+
+def test_a_weak_pose_counts_for_the_one_to_which_it_leads() -> None:
+    """A board can stand on its rims, which lean a little, but a push lets it fall to the side to which they lean."""
+    points = [
+        (x * half, y * half, z) for half, z in ((1, -0.02), (0.9993, 0.02)) for x in (-1, 1) for y in (-1, 1)
+    ]
+    hull = trimesh.convex.convex_hull(np.array(points) * (0.5, 0.5, 1))
+    mesh, _, size = Mesh(hull.vertices, hull.faces).normalized()
+    footing = mesh.derived(hull_footing)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(stable_poses, "_FIRM", -np.pi)
+        unpushed = footing.shares(size[np.newaxis])[0]
+    shares = footing.shares(size[np.newaxis])[0]
+    rims = np.abs(footing.normals[:, 2]) < 0.5
+    assert np.count_nonzero(unpushed[rims]) == 4
+    assert np.count_nonzero(shares[~rims]) == np.count_nonzero(shares) == 2
+    gained = shares[~rims] - unpushed[~rims]
+    assert sorted(gained) == pytest.approx([0, unpushed[rims].sum()])
+
+
 def test_sizes_together_and_alone_agree_in_every_bit() -> None:
     rng = np.random.default_rng(1)
     sizes, draws = rng.uniform(0.5, 2, (40, 3)), rng.random(40)

@@ -23,7 +23,7 @@ from scenic.runtime.geometry.vectors import cross, dot, length
 __all__ = ["Footing", "ellipsoid_footing", "hull_footing", "resting_poses"]
 
 _FIRM: Final = np.radians(3.0)
-"""Poses that a smaller tilt would end are left out, if others are left."""
+"""Poses that a smaller tilt would end count for those to which it leads."""
 
 _FLAT: Final = 1e-6
 """Difference of the planes of two neighbouring faces below which they are one face."""
@@ -91,22 +91,31 @@ class _Hull:
         farthest = np.maximum.reduceat(beyond, self.first_edges, axis=1)
         heights = self.depths / length(self.normals / scales)
         margins = np.arctan2(-farthest, heights)
-        best = margins.max(axis=1, keepdims=True)
+        itself = np.arange(len(self.normals))
         lane, edge = np.nonzero(beyond == farthest[:, self.owners])
-        target = np.tile(np.arange(len(self.normals)), (len(sizes), 1))
-        target[lane, self.owners[edge]] = self.neighbours[edge]
-        stands = (margins >= 0) | (margins == best)
-        target = np.where(stands, np.arange(len(self.normals)), target)
-        for _ in range(len(self.normals).bit_length()):  # twice as many rolls each time
-            target = np.take_along_axis(target, target, axis=1)
+        over = np.tile(itself, (len(sizes), 1))
+        over[lane, self.owners[edge]] = self.neighbours[edge]
+        stands = (margins >= 0) | (margins == margins.max(axis=1, keepdims=True))
+        rest = _followed(np.where(stands, itself, over))
+        # A solid that is pushed leaves poses that are not firm; where it comes to none that is, it has rolled on a round side.
+        firm = margins >= _FIRM
+        pushed = _followed(np.where(firm, itself, np.take_along_axis(rest, over, axis=1)))
+        goal = np.where(np.take_along_axis(firm, pushed, axis=1), pushed, itself)
+        target = np.take_along_axis(goal, rest, axis=1)
         landed = np.add.reduceat(
             _solid_angles(self.triangles * scales[:, np.newaxis]), self.first_triangles, axis=1
         )
         shares = np.zeros_like(landed)
         np.add.at(shares, (np.arange(len(sizes))[:, np.newaxis], target), landed)
-        shares[margins < np.minimum(_FIRM, best)] = 0.0
         shares /= shares.sum(axis=1, keepdims=True)
         return shares
+
+
+def _followed(target: Indices) -> Indices:
+    """The places ``(n, f)`` to which the targets of each place lead, one after the other, in each row: those that are their own targets."""
+    for _ in range(target.shape[1].bit_length()):  # twice as far each time
+        target = np.take_along_axis(target, target, axis=1)
+    return target
 
 
 def _beyond(hull: _Hull, scales: Floats) -> Floats:
