@@ -15,6 +15,7 @@ from scenic.domains.driving.car_following import (
     following_acceleration,
     leader_on,
 )
+from scenic.domains.driving.path_smoothing import TIGHTEST
 from scenic.domains.driving.paths import Path
 from scenic.domains.driving.planning import join, speeds_of
 from scenic.domains.driving.running_traffic import ADVICE, running_traffic
@@ -71,6 +72,9 @@ class Driver:
         comfort: limits of accelerations.
         gap: the distance kept behind others; ``None`` for no regard of them.
 
+    Attributes:
+        tightest: curvature (1/m) that paths may have: a little less than the steering wheel allows.
+
     Raises:
         InvalidScenarioError: the agent has no steering wheel.
 
@@ -86,6 +90,8 @@ class Driver:
         self._simulation = running_traffic()
         self.comfort = Comfort() if comfort is None else comfort
         self._gap = gap
+        lock = abs(self._simulation.curvature_of(agent, -1.0))
+        self.tightest = min(TIGHTEST, round(0.95 * lock, 3))
         self._leader: Leader | None = None
         self._only: Any = None
         self._course: Course | None = None
@@ -278,7 +284,8 @@ class Driver:
         if wanted < 0.02 and speed < 0.3 and not is_stopping:
             acceleration = min(acceleration, -1.0)
         self._watch_standing(speed)
-        self._acceleration = max(acceleration, -speed / timestep)
+        hardest = self._simulation.acceleration_of(agent, -1.0)
+        self._acceleration = max(acceleration, hardest, -speed / timestep)
         return float(self._simulation.pedal_for(agent, acceleration))
 
     def _watch_standing(self, speed: float) -> None:

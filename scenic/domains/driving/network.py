@@ -25,6 +25,7 @@ from scenic.domains.driving.joined_surfaces import JoinedSurface
 from scenic.domains.driving.levels import Levels
 from scenic.domains.driving.lines import joined_ground
 from scenic.domains.driving.lookups import Finder, RoadDirection
+from scenic.domains.driving.path_smoothing import TIGHTEST
 from scenic.domains.driving.paths import PathPieces
 from scenic.domains.driving.random_elements import NestedFinder, element_at
 from scenic.domains.driving.signs import Signal
@@ -261,17 +262,22 @@ class RoadNetwork(Frozen):
 
     # Paths
 
-    def path_pieces(self, *, backward: bool = False) -> PathPieces:
-        """The pieces of paths that cars share; ``backward`` for those against the direction of lanes."""
-        return self._backward_pieces if backward else self._forward_pieces
+    def path_pieces(self, *, backward: bool = False, tightest: float = TIGHTEST) -> PathPieces:
+        """The pieces of paths that cars share.
+
+        Args:
+            backward: those against the direction of lanes.
+            tightest: curvature (1/m) that they may have.
+
+        """
+        key = backward, tightest
+        if key not in self._path_pieces:
+            self._path_pieces[key] = PathPieces(backward=backward, tightest=tightest)
+        return self._path_pieces[key]
 
     @cached_property
-    def _forward_pieces(self) -> PathPieces:
-        return PathPieces()
-
-    @cached_property
-    def _backward_pieces(self) -> PathPieces:
-        return PathPieces(backward=True)
+    def _path_pieces(self) -> dict[tuple[bool, float], PathPieces]:
+        return {}
 
     # What is where
 

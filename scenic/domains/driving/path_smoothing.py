@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from scenic.domains.driving.tight_bends import nearer_in_bends
 
-__all__ = ["SPACING", "curvatures_of", "headings_of", "resampled", "smoothed"]
+__all__ = ["SPACING", "TIGHTEST", "curvatures_of", "headings_of", "resampled", "smoothed"]
 
 Floats = NDArray[np.float64]
 
@@ -27,8 +27,8 @@ _TUBES: Final = (0.03, 0.12)
 """Metres that the curve may leave a straight line, and a bend."""
 _STRAIGHT: Final = 1 / 400
 """Curvature (1/m) of a line below which it counts as straight."""
-_TIGHTEST: Final = 0.195
-"""Curvature (1/m) that a curve may have: a little less than the sharpest one that a car drives."""
+TIGHTEST: Final = 0.195
+"""Curvature (1/m) that a curve of a car may have: a little less than the sharpest one that it drives."""
 _DIGITS: Final = 9
 """Digits of metres that are kept."""
 _PINNED: Final = 1e12
@@ -82,13 +82,19 @@ def curvatures_of(points: Floats) -> Floats:
     return np.concatenate([inner[:1], inner, inner[-1:]])
 
 
-def smoothed(points: Floats, first: Floats | None = None, last: Floats | None = None) -> Floats:
+def smoothed(
+    points: Floats,
+    first: Floats | None = None,
+    last: Floats | None = None,
+    tightest: float = TIGHTEST,
+) -> Floats:
     """A smooth curve ``(n, 2)`` near points ``(n, 2)`` at equal distances of about half a metre.
 
     Args:
         points: on a polyline, see `resampled`.
         first: points ``(k, 2)`` through which the curve begins, in place of the first ones.
         last: points ``(k, 2)`` through which it ends.
+        tightest: curvature (1/m) that the curve may have.
 
     """
     count = len(points)
@@ -109,7 +115,7 @@ def smoothed(points: Floats, first: Floats | None = None, last: Floats | None = 
     for _ in range(_ROUNDS):
         curve = _solved(goal, np.maximum(weights * allowed, pinned))
         away = np.hypot(*(curve - goal).T)
-        sharp = np.abs(curvatures_of(curve)) > _TIGHTEST
+        sharp = np.abs(curvatures_of(curve)) > tightest
         if sharp.any():
             near = np.convolve(sharp, np.ones(13), "same")[:count] > 0
             allowed[near] /= 4
@@ -118,7 +124,7 @@ def smoothed(points: Floats, first: Floats | None = None, last: Floats | None = 
             break
         weights[wide] *= np.minimum(away[wide] / tubes[wide], 4) ** 3
     bent = (allowed < 1) & (pinned == 0)
-    return nearer_in_bends(curve, points, bent, _TIGHTEST) if bent.any() else curve
+    return nearer_in_bends(curve, points, bent, tightest) if bent.any() else curve
 
 
 def _bends(points: Floats) -> Floats:

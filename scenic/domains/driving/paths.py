@@ -17,6 +17,7 @@ from scenic.domains.driving.elements import Lane
 from scenic.domains.driving.narrow_lanes import line_to_drive
 from scenic.domains.driving.path_smoothing import (
     SPACING,
+    TIGHTEST,
     curvatures_of,
     headings_of,
     resampled,
@@ -89,11 +90,12 @@ class PathPieces:
 
     Args:
         backward: pieces against the direction of lanes.
+        tightest: curvature (1/m) that they may have.
 
     """
 
-    def __init__(self, *, backward: bool = False) -> None:
-        self._backward = backward
+    def __init__(self, *, backward: bool = False, tightest: float = TIGHTEST) -> None:
+        self._backward, self._tightest = backward, tightest
         self._curves: dict[str, tuple[Floats, Floats]] = {}
         self._pieces: dict[Any, Piece] = {}
 
@@ -106,7 +108,7 @@ class PathPieces:
         curve = self._curves.get(lane.uid)
         if curve is None:
             points = resampled(self._line(lane))
-            curve = self._curves[lane.uid] = points, smoothed(points)
+            curve = self._curves[lane.uid] = points, smoothed(points, tightest=self._tightest)
         return curve
 
     def start(self, lane: Lane) -> Piece:
@@ -174,7 +176,7 @@ class PathPieces:
         ]
         if closes:
             marks.append((len(points) - len(after), lanes[-1]))
-        curve = smoothed(points, first, last)
+        curve = smoothed(points, first, last, self._tightest)
         return piece_along(curve, marks, cut=(2 if opens else 0, 2 if closes else 0))
 
 

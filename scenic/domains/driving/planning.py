@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from scenic.domains.driving.elements import Lane, Maneuver
 from scenic.domains.driving.narrow_lanes import ways_after
-from scenic.domains.driving.path_smoothing import resampled, smoothed
+from scenic.domains.driving.path_smoothing import TIGHTEST, resampled, smoothed
 from scenic.domains.driving.paths import Path, PathPieces, is_long, piece_along
 from scenic.domains.driving.speed_profiles import Comfort, speeds_along, speeds_in_bends
 
@@ -36,6 +36,7 @@ class Plan:
         network: the road network.
         lane: the lane in which the plan begins.
         backward: against the direction of the lanes.
+        tightest: curvature (1/m) that the path may have.
 
     Attributes:
         path: the path so far.
@@ -43,8 +44,10 @@ class Plan:
 
     """
 
-    def __init__(self, network: Any, lane: Lane, *, backward: bool = False) -> None:
-        self._pieces: PathPieces = network.path_pieces(backward=backward)
+    def __init__(
+        self, network: Any, lane: Lane, *, backward: bool = False, tightest: float = TIGHTEST
+    ) -> None:
+        self._pieces: PathPieces = network.path_pieces(backward=backward, tightest=tightest)
         self._backward = backward
         self.path = Path()
         self.is_complete = False
@@ -97,9 +100,9 @@ class Plan:
         return speed * speed / (2 * deceleration) + 2 * speed + _MARGIN
 
 
-def path_of_lines(lines: Sequence[Floats]) -> Path:
-    """The smooth path along lines ``(n, 2)``, one after the other."""
-    points = smoothed(resampled(np.concatenate(lines)))
+def path_of_lines(lines: Sequence[Floats], tightest: float = TIGHTEST) -> Path:
+    """The smooth path along lines ``(n, 2)``, one after the other, of a curvature (1/m) that a car drives."""
+    points = smoothed(resampled(np.concatenate(lines)), tightest=tightest)
     return Path(piece_along(points))
 
 
@@ -145,8 +148,9 @@ def join(
         return 0.0
     slope = math.tan(min(max(turned, -1.2), 1.2))
     # The acceleration of a curve of least jerk is 5.77 d / T^2 at most, of which 2 m/s^2 are allowed, and its jerk 60 d / T^3, of
-    # which 4 m/s^3 are; the jerk of a slope m is 36 m v / T^2.
-    time = max(duration, math.sqrt(5.77 * abs(offset) / 2.0), math.cbrt(15.0 * abs(offset)))
+    # which 3.4 m/s^3 are unless a time is given; the jerk of a slope m is 36 m v / T^2.
+    time = duration or math.cbrt(60.0 * abs(offset) / 3.4)
+    time = max(time, math.sqrt(5.77 * abs(offset) / 2.0))
     time = max(time, min(3.0 * math.sqrt(abs(slope) * speed), 4.0))
     # Acceleration `pull` ends with a jerk of 9 pull / T at first; longer ways would lead too far from the path.
     time = max(time, min(1.3 * pull, 2.0))

@@ -35,8 +35,6 @@ _CLASSES: Final = (3.0, 6.0, 12.0, 24.0, 60.0)
 """Classes of speeds (m/s) by their upper bounds."""
 _CREEP: Final = 0.05
 """Speed (m/s) below which a car counts as standing."""
-_LATERAL_JERK: Final = 3.5
-"""Change of the lateral acceleration (m/s^3) in bends that tighten."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +46,7 @@ class Comfort:
         acceleration: m/s^2.
         deceleration: m/s^2.
         jerk: change of the acceleration, m/s^3.
+        lateral_jerk: change of the acceleration to the side in bends that tighten, m/s^3.
 
     """
 
@@ -55,6 +54,7 @@ class Comfort:
     acceleration: float = 2.0
     deceleration: float = 2.5
     jerk: float = 4.0
+    lateral_jerk: float = 3.5
 
 
 def speeds_in_bends(along: Floats, curvatures: Floats, comfort: Comfort) -> Floats:
@@ -63,14 +63,14 @@ def speeds_in_bends(along: Floats, curvatures: Floats, comfort: Comfort) -> Floa
     Args:
         along: metres along the path ``(n,)``.
         curvatures: at the points.
-        comfort: of which the lateral acceleration counts.
+        comfort: of which the lateral acceleration and jerk count.
 
     """
     bent = np.sqrt(comfort.lateral / np.maximum(np.abs(curvatures), 1e-6))
     if len(along) < 3:
         return bent
     change = np.abs(np.gradient(curvatures, along))
-    tightening = np.cbrt(_LATERAL_JERK / np.maximum(change, 1e-7))
+    tightening = np.cbrt(comfort.lateral_jerk / np.maximum(change, 1e-7))
     limits = np.minimum(bent, tightening)
     # Braking ends before a bend: within it, what comes next counts already.
     from scipy.ndimage import minimum_filter1d

@@ -17,8 +17,8 @@ __all__ = ["nearer_in_bends"]
 Floats = NDArray[np.float64]
 
 _ROUNDS: Final = 4
-_ROOM: Final = 14
-"""Points before and after a bend that may move, too."""
+_ROOM: Final = 2.7
+"""Points before and after a bend that may move, too, for each metre of the radius that a car drives."""
 _HELD: Final = 3
 """Points at either end that stay: they keep position, heading and curvature."""
 _CHANGE: Final = 0.1
@@ -41,7 +41,9 @@ def nearer_in_bends(curve: Floats, line: Floats, bent: NDArray[np.bool_], sharpe
         sharpest: curvature (1/m) that the curve may have.
 
     """
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], _widened(bent).astype(int), [0]])))
+    edges = np.flatnonzero(
+        np.diff(np.concatenate([[0], _widened(bent, round(_ROOM / sharpest)).astype(int), [0]]))
+    )
     result = curve.copy()
     for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
         if end - begin > 3 * _HELD:
@@ -49,9 +51,9 @@ def nearer_in_bends(curve: Floats, line: Floats, bent: NDArray[np.bool_], sharpe
     return result
 
 
-def _widened(bent: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return which points are within `_ROOM` points of others."""
-    wide: NDArray[np.bool_] = np.convolve(bent, np.ones(2 * _ROOM + 1), "same")[: len(bent)] > 0
+def _widened(bent: NDArray[np.bool_], room: int) -> NDArray[np.bool_]:
+    """Return which points are within a number of points of others."""
+    wide: NDArray[np.bool_] = np.convolve(bent, np.ones(2 * room + 1), "same")[: len(bent)] > 0
     return wide
 
 
