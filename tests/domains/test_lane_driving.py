@@ -212,6 +212,56 @@ ego = new Car at (50, -1.75), facing -90 deg, with speed 15, with behavior Chang
     assert np.abs(motion.accelerations[0]).max() == pytest.approx(5.77 * 3.5 / 25, rel=0.1)
 
 
+def test_nobody_brakes_for_a_lane_change_in_the_time_that_is_asked(folder: Path) -> None:
+    text = """
+section = network.laneSectionAt((300, 1.75))
+behavior Change():
+    do LaneChangeBehavior(section, is_oppositeTraffic=True, target_speed=15, duration=3.2)
+    terminate
+ego = new Car at (50, -1.75), facing -90 deg, with speed 15, with behavior Change
+"""
+    done = simulated(folder, text)
+    assert 3.2 <= done.currentTime * 0.1 <= 3.6
+    assert speeds(course(done)).min() > 14.8
+
+
+@pytest.fixture(scope="module")
+def two_lanes(folder: Path) -> str:
+    """A road of two lanes in one direction, the outer one along y = -5.25."""
+    road = RoadText("1", 500, line(0, 0, 0, 500), lanes("", lane(-1) + lane(-2)))
+    (folder / "two_lanes.xodr").write_text(map_text([road]))
+    return "two_lanes"
+
+
+def test_a_car_goes_on_as_soon_as_the_one_that_cut_in_is_far_enough(folder: Path, two_lanes: str) -> None:
+    text = """
+behavior CutIn():
+    do LaneChangeBehavior(network.laneAt((20, -5.25)), target_speed=25)
+    do FollowLaneBehavior(25)
+ego = new Car at (50, -5.25), facing -90 deg, with speed 22, with behavior FollowLaneBehavior(22, follow_gap=1.5)
+new Car at (50, -1.75), facing -90 deg, with speed 25, with behavior CutIn
+"""
+    motion = speeds(course(simulated(folder, text, two_lanes, steps=120)))
+    assert motion.min() < 20, "it brakes while the other car is beside it"
+    assert motion.min() > 8
+    assert motion[-1] > 15
+
+
+def test_a_truck_takes_a_turn_along_a_curve_that_it_can_drive(folder: Path) -> None:
+    (folder / "narrow.xodr").write_text(cross(arm=100, half=7))
+    text = """
+start = network.laneAt((-60, -1.75))
+m = [m for m in start.maneuvers if m.type is ManeuverType.RIGHT_TURN][0]
+ego = new Truck at (-60, -1.75), facing -90 deg, with speed 8, with regionContainedIn None,
+    with behavior FollowTrajectoryBehavior(8, [m.startLane, m.connectingLane, m.endLane])
+"""
+    motion = course(simulated(folder, text, "narrow", steps=170))
+    assert motion.places[-1, 1] < -30
+    assert motion.jerk.max() < 8
+    after = motion.places[motion.places[:, 1] < -22]
+    assert np.abs(after[:, 0] + 1.75).max() < 0.1
+
+
 def test_a_change_to_a_lane_of_the_other_direction_is_an_error(folder: Path) -> None:
     text = """
 section = network.laneSectionAt((300, 1.75))
