@@ -28,7 +28,7 @@ _NOTHING: Final[Mapping[str, bool]] = MappingProxyType(
 
 
 def _dataclass(cls: type[Any] | None = None, /, **options: bool) -> Any:
-    """The class as a dataclass.
+    """Return the class as a dataclass.
 
     Args:
         cls: the class; without it the result is a decorator.
@@ -90,7 +90,7 @@ def _stand_in(cls: type[Any], own: dict[str, Any], options: Mapping[str, bool]) 
 
 
 def _again(cls: type[Any], namespace: dict[str, Any]) -> Any:
-    """The class made once more, with other contents."""
+    """Return the class made once more, with other contents."""
     metaclass: Any = type(cls)
     made = metaclass(cls.__name__, cls.__bases__, namespace)
     made.__qualname__ = cls.__qualname__
@@ -98,7 +98,7 @@ def _again(cls: type[Any], namespace: dict[str, Any]) -> Any:
 
 
 def _parts(options: Mapping[str, bool]) -> dict[str, str]:
-    """The methods that Python's decorator compiles, with the option that asks for them."""
+    """Return the methods that Python's decorator compiles, with the option that asks for them."""
     parts = {"__init__": "init", "__repr__": "repr"}
     if options.get("eq", True):
         parts["__eq__"] = "eq"

@@ -23,7 +23,7 @@ __all__ = ["diagnose", "placed"]
 
 
 def diagnose(error: BaseException) -> Diagnostic | None:
-    """An exception as a diagnostic: with its place in the program, if the program or its use caused it."""
+    """Return an exception as a diagnostic: with its place in the program, if the program or its use caused it."""
     if isinstance(error, Located):
         return error.diagnostic()
     annotation_of_error = annotation(error)
@@ -52,7 +52,7 @@ def diagnose(error: BaseException) -> Diagnostic | None:
 
 
 def _with_origin(found: Diagnostic, error: BaseException) -> Diagnostic:
-    """The diagnostic with the line that raised the exception, where that is another one."""
+    """Return the diagnostic with the line that raised the exception, where that is another one."""
     origin = raised_at(error)
     if origin is None or found.span is None or found.labels:
         return found

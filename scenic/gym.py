@@ -334,7 +334,7 @@ class ScenicEnv(gymnasium.Env[Observed, Any]):
         return self._observe(), self._rewarded(moment), terminated, truncated, info
 
     def render(self) -> Any:
-        """An image of what is now, ``(height, width, 3)``, if the environment was made with ``render_mode="rgb_array"``."""
+        """Return an image of what is now, ``(height, width, 3)``, if the environment was made with ``render_mode="rgb_array"``."""
         if self.render_mode is None:
             return None
         if self._present is None:
@@ -453,7 +453,7 @@ def _named(names: Mapping[Any, str], objects: Iterable[Any], ego: object) -> dic
 
 
 def _box(thing: object, name: str, bounds: tuple[float, float] | None) -> spaces.Space[Any]:
-    """The space of a property, by its value in a scene."""
+    """Return the space of a property, by its value in a scene."""
     if name.startswith("observations."):
         return _image_space(thing, name.partition(".")[2], bounds)
     try:
@@ -488,7 +488,7 @@ def _image_space(thing: Any, camera: str, bounds: tuple[float, float] | None) ->
 
 
 def _value(thing: Any, name: str, space: spaces.Space[Any]) -> Any:
-    """A property as a point of its space, to whose bounds it is clipped."""
+    """Return a property as a point of its space, to whose bounds it is clipped."""
     assert isinstance(space, spaces.Box)
     if name.startswith("observations."):
         found = np.asarray(thing.observations[name.partition(".")[2]])

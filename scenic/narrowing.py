@@ -21,7 +21,7 @@ __all__ = ["conditions", "decision_of", "prepared_sampler"]
 
 
 def conditions(outlined: Outline) -> list[Fact]:
-    """The hard requirements of an outline as analysis reads them: the program's, then containment and visibility."""
+    """Return the hard requirements of an outline as analysis reads them: the program's, then containment and visibility."""
     return [
         *(
             Fact(item.condition, item.label, item.span, False, item.filename)
@@ -32,7 +32,7 @@ def conditions(outlined: Outline) -> list[Fact]:
 
 
 def prepared_sampler(outlined: Outline, *, prune: bool) -> Sampler:
-    """A sampler that is ready; with ``prune``, of the part of the cube that the requirements allow."""
+    """Return a sampler that is ready; with ``prune``, of the part of the cube that the requirements allow."""
     sampler = Sampler(outlined)
     sampler.prepare()
     if not prune:
@@ -58,13 +58,13 @@ def decision_of(outlined: Outline) -> Decision:
 
 
 def _settled(sampler: Sampler, decision: Decision) -> frozenset[Node]:
-    """The nodes of the conditions that always hold where draws are made as decided."""
+    """Return the nodes of the conditions that always hold where draws are made as decided."""
     checks = (sampler.plan.checks[number] for number in decision.settled)
     return frozenset(check.node for check in checks if isinstance(check, NodeCheck))
 
 
 def _narrowed(outlined: Outline, met: Mapping[Node, NDArray[np.bool_]], settled: Collection[Node]) -> Pruning:
-    """The part of the cube that the requirements allow which candidates seldom meet, and those that cannot hold."""
+    """Return the part of the cube that the requirements allow which candidates seldom meet, and those that cannot hold."""
     open_facts = [fact for fact in conditions(outlined) if fact.node not in settled]
     facts = [fact for group in seldom_met(independent(open_facts), met) for fact in group]
     framed = _in_own_frames(facts)
@@ -75,6 +75,6 @@ def _narrowed(outlined: Outline, met: Mapping[Node, NDArray[np.bool_]], settled:
 
 
 def _in_own_frames(facts: Sequence[Fact]) -> list[Fact]:
-    """The facts, those about turned rectangles said in the frames of these, where bounds show more."""
+    """Return the facts, those about turned rectangles said in the frames of these, where bounds show more."""
     seen = ((fact, unturned(fact.node)) for fact in facts)
     return [fact if node is None else replace(fact, node=node) for fact, node in seen]

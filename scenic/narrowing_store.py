@@ -59,7 +59,7 @@ def contract_once(graph: Graph, conditions: Sequence[Fact], met: Mapping[Node, N
 
 
 def _packed(pruning: Pruning, conditions: Sequence[Fact]) -> Arrays:
-    """The axes that each part narrows, with the corners of its boxes along these."""
+    """Return the axes that each part narrows, with the corners of its boxes along these."""
     numbers = [conditions.index(fact) for fact in pruning.impossible]
     arrays: dict[str, NDArray[Any]] = {"made by": _makers(), "impossible": np.array(numbers, dtype=np.int64)}
     for number, part in enumerate(pruning.domain.parts):

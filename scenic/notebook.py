@@ -44,7 +44,7 @@ def load_ipython_extension(shell: Any) -> None:
 
 
 def sampled(scenario: Scenario, n: int = 1, *, seed: int | None = None, **limits: Any) -> list[Scene]:
-    """The scenes that `Scenario.sample` gives, with a progress bar while they are looked for.
+    """Return the scenes that `Scenario.sample` gives, with a progress bar while they are looked for.
 
     Scenes that are not found within the limits are shown as their report, and left out.
     """
@@ -103,7 +103,7 @@ def _run_cell(shell: Any, line: str, cell: str) -> None:
 
 
 def _row_html(row: SimulationRow) -> str:
-    """A simulation: played, if it was made for that, with its end and the verdicts of its requirements."""
+    """Return a simulation: played, if it was made for that, with its end and the verdicts of its requirements."""
     if row.about is None:
         text = row.missing or (row.error.message if row.error else "")
         why = "" if row.exhausted is None else _exhausted_html(row.exhausted)

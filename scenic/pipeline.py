@@ -71,11 +71,11 @@ class Scene(scenes.Scene):
     show3D = show
 
     def show2D(self, zoom: object = None, block: bool = True) -> Path:
-        """The same as `show`; the arguments are accepted for compatibility."""
+        """Return the same as `show`; the arguments are accepted for compatibility."""
         return self.show()
 
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> Mapping[str, str]:
-        """The scene by type of media, as notebooks ask for it: a page in which it can be turned, and text."""
+        """Return the scene by type of media, as notebooks ask for it: a page in which it can be turned, and text."""
         from scenic.formats.embedding import scene_bundle
 
         return scene_bundle(self)
@@ -134,7 +134,7 @@ def load(
     settle_tolerance: float = 0.01,
     settle_keep: bool = False,
 ) -> Scenario:
-    """The scenario of a file.
+    """Return the scenario of a file.
 
     Args:
         path: a ``.scenic`` file; ``-`` reads the program from standard input.
@@ -180,7 +180,7 @@ def scenarioFromFile(
     *,
     mode2D: bool = False,
 ) -> Scenario:
-    """The scenario of a file; the established name of `load`.
+    """Return the scenario of a file; the established name of `load`.
 
     Parameters that the program does not use are accepted, and appear among the parameters of its scenes.
 
@@ -204,7 +204,7 @@ def scenarioFromString(
     filename: str = "<string>",
     mode2D: bool = False,
 ) -> Scenario:
-    """The scenario of a program given as text."""
+    """Return the scenario of a program given as text."""
     return _scenario(text, filename, _Options(dict(params or {}), model, scenario, mode2D, _pruning_wanted()))
 
 
@@ -289,7 +289,7 @@ class _Options:
         )
 
     def given(self) -> dict[str, Any]:
-        """The keyword arguments of `load` that differ from the defaults."""
+        """Return the keyword arguments of `load` that differ from the defaults."""
         arguments: dict[str, Any] = {}
         if self.params:
             arguments["params"] = dict(self.params)
@@ -309,7 +309,7 @@ class _Options:
 
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> "_Options":
-        """The options of keyword arguments, as `given` lists them."""
+        """Return the options of keyword arguments, as `given` lists them."""
         settle = given.get("settle")
         return cls(
             given.get("params", {}), given.get("model"), given.get("scenario"), given.get("mode2D", False),
@@ -351,7 +351,7 @@ def _scenario(text: str, filename: str, options: _Options, *, keep: bool = False
 
 
 def _compiled(text: str, filename: str, *, keep: bool) -> CodeType:
-    """The code of a program, which ``keep`` puts into the store for later runs."""
+    """Return the code of a program, which ``keep`` puts into the store for later runs."""
     try:
         return loader.program_code(Source(text, filename), programs_folder() if keep else None)
     except ScenicSyntaxError as failure:
@@ -421,7 +421,7 @@ def _warn_of_draws(text: str, filename: str) -> None:
 
 
 def _outlined(program: Program, workspace: Workspace, options: _Options) -> Outline:
-    """The outline of a program that has run, with its objects at rest if the options say so."""
+    """Return the outline of a program that has run, with its objects at rest if the options say so."""
     if options.settle is None:
         return outline(program, program.ego, workspace, mode_2d=options.mode_2d)
     from scenic.simulators.mujoco.settling import Settling, keep_poses, require_rest

@@ -125,7 +125,7 @@ class Assessment:
         return "\n".join([*self.summary(), *self._value_lines()])
 
     def summary(self) -> list[str]:
-        """The findings on the whole program, a sentence each."""
+        """Return the findings on the whole program, a sentence each."""
         if self.impossible:
             return [f"no scene exists: {', '.join(self.impossible)}"]
         lines = [f"analysis removes {_share(1 - self.kept, self.kept)} of all combinations of draws"]
@@ -173,7 +173,7 @@ class Assessment:
         ]
 
     def to_data(self) -> dict[str, Any]:
-        """The findings as plain data, as ``scenic analyze --json`` writes them."""
+        """Return the findings as plain data, as ``scenic analyze --json`` writes them."""
         worst = self.costliest
         return {
             "file": self.filename,
@@ -227,7 +227,7 @@ class Assessment:
         }
 
     def to_json(self) -> str:
-        """The same as JSON."""
+        """Return the same as JSON."""
         return json.dumps(self.to_data(), indent=2)
 
     def png(self, path: str | Path) -> None:
@@ -251,7 +251,7 @@ class Assessment:
 
 
 def _listed(options: Sequence[str]) -> str:
-    """Some of the options, and how many there are."""
+    """Return some of the options, and how many there are."""
     shown = ", ".join(options[:_MOST_OPTIONS])
     return shown if len(options) <= _MOST_OPTIONS else f"{shown}, ... ({len(options)} options)"
 

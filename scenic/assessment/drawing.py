@@ -69,7 +69,7 @@ _Mark = _Box | _Dot | _Word
 
 
 def svg(places: Sequence[Whereabouts]) -> str:
-    """The drawing as SVG; empty where there are no objects."""
+    """Return the drawing as SVG; empty where there are no objects."""
     if not places:
         return ""
     width, height = _size(places)
@@ -91,7 +91,7 @@ def svg(places: Sequence[Whereabouts]) -> str:
 
 
 def png(places: Sequence[Whereabouts]) -> bytes:
-    """The drawing as the content of a PNG file; raises `MissingLibraryError` if Pillow is not installed."""
+    """Return the drawing as the content of a PNG file; raises `MissingLibraryError` if Pillow is not installed."""
     from scenic.formats.imaging import require_pillow
 
     image_library = require_pillow()

@@ -13,7 +13,7 @@ _CANDIDATES: Final = 2_000
 
 
 def remarks(scenario: Scenario) -> dict[str, Any]:
-    """The remarks about a scenario's program as plain data, with places.
+    """Return the remarks about a scenario's program as plain data, with places.
 
     ``requirements`` have the shares of candidates that they reject, and reject alone, after narrowing. ``values`` are the random
     numbers and choices of which narrowing removes a part: ``before`` and ``after`` have the least and the greatest number, or

@@ -108,7 +108,7 @@ class RowBlock:
 
 
 def blocks_of(encoded: Any) -> Iterator[RowBlock]:
-    """The blocks in the bytes of an `Encoder`."""
+    """Yield the blocks in the bytes of an `Encoder`."""
     view, place = memoryview(encoded).cast("B"), 0
     while place < len(view):
         count, size = (int(word) for word in np.frombuffer(view[place : place + 16], dtype=np.int64))

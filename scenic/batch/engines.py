@@ -245,7 +245,7 @@ class DaskCluster:
                 return [None if error is not None else next(results) for error in errors]
 
     def _error_of(self, future: Any) -> Exception | None:
-        """The loss of the worker of a task that has ended; raises any other error of it."""
+        """Return the loss of the worker of a task that has ended; raises any other error of it."""
         if future.status == "lost" or future.cancelled():
             raise self._gone()
         error: Exception | None = future.exception(timeout=_PATIENCE) if future.status == "error" else None

@@ -155,7 +155,7 @@ class _Job:
         self._simulator: Simulator | None = None
 
     def told(self, task: tuple[int, bytes]) -> GroupResult | Exception:
-        """The same, or what it raised."""
+        """Return the same, or what it raised."""
         try:
             return self(task)
         except Exception as error:  # noqa: BLE001 - raised again where the result is read

@@ -71,7 +71,7 @@ class ImageRows:
         self._most = len(scenario.objects)
 
     def rows(self, scenes: Sequence[Scene]) -> bytes:
-        """The rows of some scenes."""
+        """Return the rows of some scenes."""
         return b"".join(self._row(scene) for scene in scenes)
 
     def _row(self, scene: Scene) -> bytes:
@@ -97,7 +97,7 @@ class ImageRows:
 
 
 def classes_of(scenario: Scenario) -> list[str]:
-    """The categories that a program's objects may have, in order: those that they name, else the names of their classes."""
+    """Return the categories that a program's objects may have, in order: those that they name, else the names of their classes."""
     found: dict[str, None] = {}
     for thing in scenario.objects:
         categories = texts_of(thing.__dict__.get("category"))
@@ -167,7 +167,7 @@ class ImageSink:
 
 
 def image_rows(source: Path | bytes, form: str) -> Iterator[dict[str, Any]]:
-    """The scenes of a part, or of encoded rows: ``k``, ``images`` and ``annotations`` of the index, and ``content``."""
+    """Yield the scenes of a part, or of encoded rows: ``k``, ``images`` and ``annotations`` of the index, and ``content``."""
     if isinstance(source, bytes):
         for row in _rows_of(memoryview(source)):
             if row.images:

@@ -25,7 +25,7 @@ _FIRST_LINE: Final = 1 << 24
 
 
 def about_file(path: Path, form: Form) -> Any:
-    """The document about the whole simulation that a trajectory's file begins with.
+    """Return the document about the whole simulation that a trajectory's file begins with.
 
     Raises ``OSError`` or ``ValueError`` where it cannot be read.
     """

@@ -156,7 +156,7 @@ class Manifest:
         return self.first, self.first + self.count
 
     def ranges(self) -> list[Range]:
-        """The ranges of scenes that no part holds for good, as the parts to be made."""
+        """Return the ranges of scenes that no part holds for good, as the parts to be made."""
         lasting = [part.numbers for part in self.parts if not self.is_cut_short(part)]
         return ranges_to_make(self.numbers, self.part_size, lasting)
 
@@ -175,7 +175,7 @@ class Manifest:
         return f"{part_name(numbers)}.{'json' if is_index else self.form}"
 
     def difference(self, other: "Manifest") -> str | None:
-        """The first setting in which data sets differ that cannot be continued by each other; their counts and files may differ."""
+        """Return the first setting in which data sets differ that cannot be continued by each other; their counts and files may differ."""
         for name in _SETTINGS:
             if getattr(self, name) != getattr(other, name):
                 return f"{name} {getattr(self, name)!r}, not {getattr(other, name)!r}"
@@ -190,7 +190,7 @@ class Manifest:
         return replace(self, source=Path(source).as_posix())
 
     def table_part(self, file: str, rows: int) -> Part:
-        """The part that a single file of the whole is: its candidates and digest are not known."""
+        """Return the part that a single file of the whole is: its candidates and digest are not known."""
         return Part(file, *self.numbers, rows, 0, (), "", 0)
 
     def with_part(self, part: Part, seconds: float) -> "Manifest":
@@ -200,7 +200,7 @@ class Manifest:
         return replace(self, parts=tuple(parts), seconds=round(self.seconds + seconds, 3))
 
     def document(self) -> dict[str, Any]:
-        """The manifest as plain data, with its format."""
+        """Return the manifest as plain data, with its format."""
         return {"format": DATASET.format, "version": DATASET.version, **asdict(self)}
 
     @classmethod

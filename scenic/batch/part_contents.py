@@ -28,7 +28,7 @@ class Damage:
 
 
 def damage_of(folder: Path, part: Part, manifest: Manifest, *, read: bool) -> Damage | None:
-    """The first damage of a part: by sizes, or also by content if ``read``."""
+    """Return the first damage of a part: by sizes, or also by content if ``read``."""
     path = folder / part.file
     try:
         size = path.stat().st_size
@@ -49,7 +49,7 @@ def damage_of(folder: Path, part: Part, manifest: Manifest, *, read: bool) -> Da
 
 
 def damages_of(folder: Path, part: Part, manifest: Manifest) -> Iterator[Damage]:
-    """All damages of a part and of the files that belong to it."""
+    """Yield all damages of a part and of the files that belong to it."""
     path = folder / part.file
     if not path.is_file():
         yield Damage(part.file, "the file is missing")
@@ -88,7 +88,7 @@ def strangers(folder: Path, manifest: Manifest) -> Iterator[Path]:
 
 
 def part_rows(path: Path, form: str) -> Iterator[dict[str, Any]]:
-    """The rows of a part, as plain data."""
+    """Yield the rows of a part, as plain data."""
     if form in IMAGE_FORMS:
         yield from image_rows(path, form)
         return
@@ -107,7 +107,7 @@ def part_rows(path: Path, form: str) -> Iterator[dict[str, Any]]:
 
 
 def encoded_rows(encoded: bytes, form: str) -> list[dict[str, Any]]:
-    """The rows of an `Encoder`, as plain data."""
+    """Return the rows of an `Encoder`, as plain data."""
     if form in IMAGE_FORMS:
         return list(image_rows(encoded, form))
     if form in FORMS:

@@ -60,7 +60,7 @@ class _Lines:
 
 
 def manifest_of_table(path: Path) -> Manifest:
-    """The manifest in a Parquet file of scenes, with the rows that the file has; raises `DatasetError` if it has none."""
+    """Return the manifest in a Parquet file of scenes, with the rows that the file has; raises `DatasetError` if it has none."""
     _, parquet = parquet_support()
     try:
         file = parquet.ParquetFile(path)

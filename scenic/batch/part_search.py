@@ -20,7 +20,7 @@ __all__ = ["meshes_without_parts", "search_parts"]
 
 
 def meshes_without_parts(scenario: Scenario) -> list[Mesh]:
-    """The meshes of a program's objects of which no run has found the convex parts so far, each once."""
+    """Return the meshes of a program's objects of which no run has found the convex parts so far, each once."""
     if find_spec("coacd") is None:
         return []
     shapes: dict[Any, None] = {}

@@ -71,7 +71,7 @@ class PartInProgress:
             yield from np.abs(block[:, 1]).tolist()
 
     def _entries(self) -> NDArray[np.int64]:
-        """The journal's rows ``(n, 2)``: consecutive numbers from the part's first on, and attempts, negative if not found."""
+        """Return the journal's rows ``(n, 2)``: consecutive numbers from the part's first on, and attempts, negative if not found."""
         try:
             data = self._journal_path.read_bytes()
         except OSError:

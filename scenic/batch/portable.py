@@ -70,7 +70,7 @@ class _Pickler(pickle.Pickler):
 
 @lru_cache(maxsize=2)
 def _unpacked(payload: bytes) -> Callable[[Any], Any]:
-    """The function, with its programs compiled once in each process."""
+    """Return the function, with its programs compiled once in each process."""
     wanted, data = pickle.loads(payload)
     check_versions(wanted)
     function: Callable[[Any], Any] = pickle.loads(data)
@@ -80,7 +80,7 @@ def _unpacked(payload: bytes) -> Callable[[Any], Any]:
 def _same(
     make: Callable[..., Scenario], given: tuple[Any, ...], filename: str, wanted: Mapping[str, str]
 ) -> Scenario:
-    """The scenario, compiled in this process and compared with that of the sender."""
+    """Return the scenario, compiled in this process and compared with that of the sender."""
     name = Path(filename).name
     try:
         scenario = make(*given)
@@ -111,7 +111,7 @@ def _marks(scenario: Scenario) -> dict[str, str]:
 
 
 def _modules_in(folder: Path) -> list[ModuleType]:
-    """The modules of a folder that this process has loaded, those of packages in it included."""
+    """Return the modules of a folder that this process has loaded, those of packages in it included."""
 
     def is_there(name: str) -> bool:
         origin = getattr(getattr(sys.modules.get(name), "__spec__", None), "origin", None)

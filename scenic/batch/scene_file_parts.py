@@ -47,7 +47,7 @@ class SceneFileRows:
         self._sent: set[str] = set()
 
     def rows(self, scenes: Sequence[Scene]) -> bytes:
-        """The rows of some scenes."""
+        """Return the rows of some scenes."""
         return b"".join(self._row(scene) for scene in scenes)
 
     def _row(self, scene: Scene) -> bytes:
@@ -103,7 +103,7 @@ def _rows_of(encoded: memoryview) -> Iterator[tuple[bytes, dict[str, Any]]]:
 
 
 def scene_file_rows(source: Path | bytes) -> Iterator[dict[str, Any]]:
-    """The entries of a part's index, or of encoded rows."""
+    """Yield the entries of a part's index, or of encoded rows."""
     if isinstance(source, bytes):
         yield from (entry for _, entry in _rows_of(memoryview(source)))
         return

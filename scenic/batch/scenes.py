@@ -78,7 +78,7 @@ class Job:
 
 
 def method_of(points: str | None) -> dict[str, Any]:
-    """The settings of a job whose scenes a manifest says to be made of ``sobol`` points, or ``approximate N``."""
+    """Return the settings of a job whose scenes a manifest says to be made of ``sobol`` points, or ``approximate N``."""
     if points is not None and points.startswith("approximate "):
         return {"approximate": int(points.removeprefix("approximate "))}
     return {"source": Sobol() if points == "sobol" else None}
@@ -267,7 +267,7 @@ def _made(
 
 
 def _again(scenario: Scenario, encode: Encode, made: Made, engine: Engine) -> Made:
-    """A piece whose worker died, made by another one."""
+    """Return a piece whose worker died, made by another one."""
     code = made.died
     for _ in range(_TRIES):
         ((_, again),) = _made(scenario, encode, [made.job], engine)

@@ -61,7 +61,7 @@ class SimulationSettings:
     """True if scenes and simulations are rows of Sobol's sequence."""
 
     def options(self) -> dict[str, Any]:
-        """The arguments of `simulate_number` that decide what comes out."""
+        """Return the arguments of `simulate_number` that decide what comes out."""
         options: dict[str, Any] = {
             "seed": self.seed,
             "maxSteps": self.max_steps,
@@ -187,7 +187,7 @@ class Simulations:
             return choose_simulator(name, self._scenario)
 
     def course_options(self) -> dict[str, Any]:
-        """The arguments of `Simulator.simulate` that say how a simulation runs."""
+        """Return the arguments of `Simulator.simulate` that say how a simulation runs."""
         running = self._running
         return {
             "maxSteps": running.max_steps,
@@ -218,7 +218,7 @@ class Simulations:
                 return
 
     def opened(self, *, resume: bool, accept_changes: bool = False) -> AbstractContextManager[object]:
-        """The folder, locked within a ``with`` block; nothing where simulations are not kept. See `SimulationFolder`."""
+        """Return the folder, locked within a ``with`` block; nothing where simulations are not kept. See `SimulationFolder`."""
         if self._folder is None:
             return nullcontext()
         settings = {

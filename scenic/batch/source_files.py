@@ -14,7 +14,7 @@ __all__ = ["check_textures", "mesh_files", "texts_of", "texture_files", "warn_of
 
 
 def texture_files(scenario: Scenario) -> list[Path]:
-    """The image files that objects may have as textures."""
+    """Return the image files that objects may have as textures."""
     folder = _folder(scenario)
     names = {name for thing in scenario.objects for name in _image_names(thing.__dict__.get("texture"))}
     return [path for name in sorted(names) if (path := folder / name).is_file()]
@@ -41,7 +41,7 @@ def warn_of_textures(scenario: Scenario) -> None:
 
 
 def _texture_errors(scenario: Scenario) -> Iterator[TextureError]:
-    """The errors of reading all image files that objects may have as textures."""
+    """Yield the errors of reading all image files that objects may have as textures."""
     folder = _folder(scenario)
     for thing in scenario.objects:
         for name in dict.fromkeys(_image_names(thing.__dict__.get("texture"))):
@@ -55,12 +55,12 @@ def _texture_errors(scenario: Scenario) -> Iterator[TextureError]:
 
 
 def _image_names(value: object) -> Iterator[str]:
-    """The image files that a texture may name, as far as the program says them."""
+    """Return the image files that a texture may name, as far as the program says them."""
     return (name for item in _constants(value) if (name := image_name(item)) is not None)
 
 
 def texts_of(value: object) -> list[str]:
-    """The texts that a random value may be, as far as the program says them; texts in tuples and lists count, too."""
+    """Return the texts that a random value may be, as far as the program says them; texts in tuples and lists count, too."""
     texts: list[str] = []
     for item in _constants(value):
         texts += [
@@ -70,7 +70,7 @@ def texts_of(value: object) -> list[str]:
 
 
 def _constants(value: object) -> Iterator[Any]:
-    """The constants that a value is computed from."""
+    """Yield the constants that a value is computed from."""
     nodes, left = set(), [as_node(value)]
     while left:
         node = left.pop()
@@ -87,7 +87,7 @@ def _folder(scenario: Scenario) -> Path:
 
 
 def mesh_files(scenario: Scenario) -> list[Path]:
-    """The mesh files of a scenario's shapes."""
+    """Return the mesh files of a scenario's shapes."""
     paths: dict[Path, None] = {}
     for thing in scenario.objects:
         shape = thing.__dict__.get("shape")

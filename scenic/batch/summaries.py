@@ -54,7 +54,7 @@ def verdict_of(row: SimulationRow) -> str:
 
 
 def robustness_of(row: SimulationRow) -> float | None:
-    """The least robustness of all requirements; ``None`` where none is known."""
+    """Return the least robustness of all requirements; ``None`` where none is known."""
     if row.about is None:
         return None
     known = [
@@ -64,7 +64,7 @@ def robustness_of(row: SimulationRow) -> float | None:
 
 
 def summary(setting: SettingRuns) -> str:
-    """One line: the counts of verdicts, and the mean and least robustness."""
+    """Return one line: the counts of verdicts, and the mean and least robustness."""
     counts = Counter(map(verdict_of, setting.simulations))
     words = ", ".join(
         f"{counts[name]} {name}" for name in ("held", "violated", "rejected", "failed") if counts[name]
@@ -80,7 +80,7 @@ def summary(setting: SettingRuns) -> str:
 
 
 def csv_of(settings: Sequence[SettingRuns]) -> str:
-    """A table with a row for each simulation: parameters, number, verdict, least robustness, steps, why it ended."""
+    """Return a table with a row for each simulation: parameters, number, verdict, least robustness, steps, why it ended."""
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     names = list(settings[0].parameters) if settings else []
@@ -104,7 +104,7 @@ def csv_of(settings: Sequence[SettingRuns]) -> str:
 
 
 def plot(settings: Sequence[SettingRuns]) -> str:
-    """An SVG image: a dot for the robustness of each simulation, a line through the means, the share violated below.
+    """Return an SVG image: a dot for the robustness of each simulation, a line through the means, the share violated below.
 
     Simulations without a finite robustness have no dot, but count in the share.
     """

@@ -156,7 +156,7 @@ def _received_buffer(connection: Connection) -> bytes | mmap.mmap:
 
 
 def _door(connection: Connection) -> socket.socket:
-    """The pipe as what it is on systems with memory files: a socket."""
+    """Return the pipe as what it is on systems with memory files: a socket."""
     return socket.socket(fileno=os.dup(connection.fileno()))
 
 

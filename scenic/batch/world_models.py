@@ -14,7 +14,7 @@ _MODELS: Final = MappingProxyType({"newtonian": "scenic.simulators.newtonian.dri
 
 
 def model_for(simulator: str, program: Path) -> str | None:
-    """The world model by which a simulator can drive the cars of a program whose own model is for no simulator.
+    """Return the world model by which a simulator can drive the cars of a program whose own model is for no simulator.
 
     Args:
         simulator: its name, as for `choose_simulator`.

@@ -43,7 +43,7 @@ def check_tree(
     go_on: Callable[[], None] = lambda: None,
     typing: bool = False,
 ) -> tuple[Diagnostic, ...]:
-    """The findings of `check_text` in a program that is parsed already; ``resolution`` are its names, if they are bound."""
+    """Return the findings of `check_text` in a program that is parsed already; ``resolution`` are its names, if they are bound."""
     diagnostics = check_parsed(
         parsed, source, resolution=resolution, surroundings_of=surroundings_of, go_on=go_on, typing=typing
     )

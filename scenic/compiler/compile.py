@@ -79,7 +79,7 @@ def check_parsed(
     go_on: Callable[[], None] = lambda: None,
     typing: bool = False,
 ) -> tuple[Diagnostic, ...]:
-    """The findings about a program without running any of it.
+    """Return the findings about a program without running any of it.
 
     They are all that `compile_text` reports, and what is legal but hardly meant, or will fail once it is reached. Only
     the statements that Python may complain about are compiled. ``surroundings_of`` finds out about the modules that the
@@ -139,7 +139,7 @@ def _complaints(
 def _compiled(
     module: ast.Module, source: Source
 ) -> tuple[CodeType | None, Diagnostic | None, list[tuple[int, str]]]:
-    """The code of a lowered program, the error that Python stopped at, and what it warned of: lines and messages."""
+    """Return the code of a lowered program, the error that Python stopped at, and what it warned of: lines and messages."""
     code: CodeType | None = None
     error: Diagnostic | None = None
     with warnings.catch_warnings(record=True) as caught_warnings:

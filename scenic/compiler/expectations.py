@@ -87,7 +87,7 @@ class Expectations:
         self._trials = Trials(tokens)
 
     def problem(self, start: int, token: int, expected: Iterable[int | str]) -> SyntaxProblem:
-        """The mistake of a statement from ``start`` on that is right up to ``token``.
+        """Return the mistake of a statement from ``start`` on that is right up to ``token``.
 
         ``expected`` holds the kinds of tokens, and the labels of rules, that could have stood there.
         """
@@ -116,7 +116,7 @@ class Expectations:
         return SyntaxProblem("SC110", at.here(), f"expected {alternatives}{where}, but found {actual}")
 
     def failed(self, start: int, failure: SyntaxProblem) -> SyntaxProblem:
-        """The mistake of a statement from ``start`` on whose parts are right, but for ``failure``."""
+        """Return the mistake of a statement from ``start`` on whose parts are right, but for ``failure``."""
         if failure.code != "SC123":
             return failure
         first, end = self._trials.line(start)
@@ -129,12 +129,12 @@ class Expectations:
         return failure
 
     def unfinished_header(self, first: int) -> SyntaxProblem | None:
-        """The mistake of a line before an indented one, if it is the beginning of a header."""
+        """Return the mistake of a line before an indented one, if it is the beginning of a header."""
         start, end = self._trials.line(max(first - 3, 0))
         return unfinished_header(Situation(self._tokens, self._trials, start, end, frozenset()))
 
     def unfinished_clause(self, first: int) -> SyntaxProblem:
-        """The mistake of a line that is the beginning of a clause."""
+        """Return the mistake of a line that is the beginning of a clause."""
         start, end = self._trials.line(first)
         at = Situation(self._tokens, self._trials, start, end, frozenset())
         return SyntaxProblem(
@@ -145,7 +145,7 @@ class Expectations:
         )
 
     def unexpected_block(self, first: int) -> SyntaxProblem:
-        """The mistake of a line, with its first token, that is indented more than the one before."""
+        """Return the mistake of a line, with its first token, that is indented more than the one before."""
         # Before it stand the end of the line before, and the indentation.
         start, end = self._trials.line(max(first - 3, 0))
         before = Situation(self._tokens, self._trials, start, end, frozenset())
@@ -157,7 +157,7 @@ class Expectations:
         )
 
     def found(self, token: int) -> str:
-        """The text at a token, in words."""
+        """Return the text at a token, in words."""
         kind = self._kinds[token]
         text = self._tokens.texts[token]
         if kind in (NUMBER, STRING) or kind >= 16:

@@ -30,7 +30,7 @@ class Reader(Protocol):
 
 
 def joined(actions: Reader, tokens: Tokens, pieces: Sequence[Any], place: Place) -> ast.expr | None:
-    """The node of adjacent strings, of which ``pieces`` are f-strings (triples) or plain ones (indices)."""
+    """Return the node of adjacent strings, of which ``pieces`` are f-strings (triples) or plain ones (indices)."""
     plain = [piece for piece in pieces if not isinstance(piece, tuple)]
     values = {index: actions.string_value(index) for index in plain}
     has_bytes = any(isinstance(value, bytes) for value in values.values())
@@ -150,7 +150,7 @@ def replacement_field(
     specification: tuple[int, list[Any]] | None,
     closing: int,
 ) -> list[ast.expr] | None:
-    """The nodes of ``{value=!conversion:specification}``: a constant first if it has the ``=``."""
+    """Return the nodes of ``{value=!conversion:specification}``: a constant first if it has the ``=``."""
     code = -1
     if conversion is not None:
         if not _check_conversion(actions, tokens, conversion):

@@ -92,20 +92,20 @@ build_parser: Final[Callable[..., Any]] = _parser.build
 
 
 def syntax_rules() -> Mapping[str, tuple[Any, ...]]:
-    """The rules of the grammar as data, for `scenic.compiler.syntax`."""
+    """Return the rules of the grammar as data, for `scenic.compiler.syntax`."""
     module: Any = importlib.import_module(f"{PACKAGE}.syntax")
     rules: Mapping[str, tuple[Any, ...]] = module.RULES
     return rules
 
 
 def context_free_rules() -> Mapping[str, tuple[Any, ...]]:
-    """The rules without ordered choice, for `scenic.constrained`."""
+    """Return the rules without ordered choice, for `scenic.constrained`."""
     module: Any = importlib.import_module(f"{PACKAGE}.context_free")
     rules: Mapping[str, tuple[Any, ...]] = module.RULES
     return rules
 
 
 def build_recording_parser(*arguments: Any) -> Any:
-    """The parser that notes how far it came; loaded only when there is a mistake to explain."""
+    """Return the parser that notes how far it came; loaded only when there is a mistake to explain."""
     module: Any = importlib.import_module(f"{PACKAGE}.recording")
     return module.build(*arguments)

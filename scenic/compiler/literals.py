@@ -60,7 +60,7 @@ def literal_number(value: ast.expr | None) -> int | float | None:
 
 
 def string_value(text: str) -> str | bytes:
-    """The value of a string token that is not an f-string; raises `LiteralError` for an impossible escape."""
+    """Return the value of a string token that is not an f-string; raises `LiteralError` for an impossible escape."""
     quote = text[-1]
     start = text.index(quote)
     end = -1
@@ -81,7 +81,7 @@ def string_value(text: str) -> str | bytes:
 
 
 def decoded(body: str) -> str:
-    """A text with its escapes replaced; raises `LiteralError`."""
+    """Return a text with its escapes replaced; raises `LiteralError`."""
     return _ESCAPE.sub(_escape, body)
 
 

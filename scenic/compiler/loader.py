@@ -44,7 +44,7 @@ _DIGEST: Final = 32
 
 
 def find_module(name: str, search_path: Iterable[str | os.PathLike[str]]) -> Path | None:
-    """The file of the Scenic module ``name``, or ``None``.
+    """Return the file of the Scenic module ``name``, or ``None``.
 
     A package is a folder: ``a.b`` is ``a/b.scenic``, or ``a/b/__init__.scenic``. The first folder of ``search_path``
     that has either wins, and ``.scenic`` wins over ``.sc``.
@@ -71,7 +71,7 @@ def _candidates(base: Path) -> Iterator[Path]:
 
 
 def load_code(path: str | os.PathLike[str]) -> CodeType:
-    """The compiled code of a Scenic file, from the cache if it has one.
+    """Return the compiled code of a Scenic file, from the cache if it has one.
 
     Raises `ScenicSyntaxError`, which holds all diagnostics, if the program has errors, and `ScenicError` if the file
     cannot be read or is not UTF-8.
@@ -87,11 +87,11 @@ class ScenicLoader(SourceFileLoader):
     """
 
     def get_source(self, fullname: str) -> str:
-        """The text of the program; raises `ScenicError` if it cannot be read."""
+        """Return the text of the program; raises `ScenicError` if it cannot be read."""
         return read_source(self.path).text
 
     def get_code(self, fullname: str) -> CodeType:
-        """The code of the module, cached."""
+        """Return the code of the module, cached."""
         source = read_source(self.path)
         key = _key(source)
         cache_path = cache_file(source.filename)
@@ -106,7 +106,7 @@ class ScenicLoader(SourceFileLoader):
 
 
 def _compiled(source: Source, *, errors_only: bool = False) -> CodeType:
-    """The code of a program; raises an error that holds its diagnostics, errors first, if it has any."""
+    """Return the code of a program; raises an error that holds its diagnostics, errors first, if it has any."""
     from scenic.compiler.compile import compile_text  # takes long to import, and kept code needs none of it
 
     compilation = compile_text(source.text, filename=source.filename)
@@ -119,7 +119,7 @@ def _compiled(source: Source, *, errors_only: bool = False) -> CodeType:
 
 
 def program_code(source: Source, folder: Path | None) -> CodeType:
-    """The code of the program of a command, kept in a folder of its user's, where there is one, and not beside the program.
+    """Return the code of the program of a command, kept in a folder of its user's, where there is one, and not beside the program.
 
     Raises `ScenicSyntaxError`, which holds its errors, if it has any.
     """
@@ -191,7 +191,7 @@ def _key(source: Source) -> bytes:
 
 
 def _read(file: Path, key: bytes) -> CodeType | None:
-    """The cached code if it is whole and was made from this source."""
+    """Return the cached code if it is whole and was made from this source."""
     try:
         data = file.read_bytes()
     except OSError:

@@ -28,7 +28,7 @@ class ProgramBlock(NamedTuple):
 
 
 def program_blocks(text: str) -> Iterator[ProgramBlock]:
-    """The blocks of a Markdown text that contain programs, in order."""
+    """Yield the blocks of a Markdown text that contain programs, in order."""
     fence, first, is_program = "", 0, False
     lines = text.split("\n")
     for number, line in enumerate(lines):
@@ -49,7 +49,7 @@ def program_blocks(text: str) -> Iterator[ProgramBlock]:
 
 
 def with_blocks(text: str, change: Callable[[str], str | None]) -> str:
-    """The Markdown text with other programs in its blocks; ``change`` gives ``None`` for a program that stays."""
+    """Return the Markdown text with other programs in its blocks; ``change`` gives ``None`` for a program that stays."""
     lines = text.split("\n")
     for block in reversed(list(program_blocks(text))):
         changed = change(block.text)
@@ -62,7 +62,7 @@ def with_blocks(text: str, change: Callable[[str], str | None]) -> str:
 def check_blocks(
     text: str, *, filename: str, surroundings_of: SurroundingsOf | None = None
 ) -> tuple[Diagnostic, ...]:
-    """The findings of `check_text` in the blocks of a Markdown text, each of which is a program by itself."""
+    """Return the findings of `check_text` in the blocks of a Markdown text, each of which is a program by itself."""
     return tuple(
         item
         for block in program_blocks(text)

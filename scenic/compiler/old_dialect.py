@@ -30,7 +30,7 @@ _STRING: Final = re.compile(r"('''|\"\"\").*?\1", re.DOTALL)
 
 
 def as_old_dialect(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
-    """The diagnostics of a program; of a program of Scenic 2 a single one, at its first sign."""
+    """Return the diagnostics of a program; of a program of Scenic 2 a single one, at its first sign."""
     places = {
         item.span.line: item.span for item in diagnostics if item.code in _SIGNS and item.span is not None
     }

@@ -84,7 +84,7 @@ def parse_lexed(tokens: Tokens, *, filename: str) -> ParseResult:
 
 
 def bare_text(text: str) -> str:
-    """The tokens of a text, one a line: equal for texts that differ in comments, blanks and empty lines alone."""
+    """Return the tokens of a text, one a line: equal for texts that differ in comments, blanks and empty lines alone."""
     tokens = lex(text, WORDS)
     return "\n".join(
         _LAYOUT.get(kind) or repr(word) for kind, word in zip(tokens.kinds, tokens.texts, strict=True)
@@ -154,7 +154,7 @@ def _fast(tokens: Tokens) -> Parsed | None:
 
 
 def _statements(run: Run, kinds: Sequence[int]) -> list[ast.stmt] | None:
-    """The statements of the top level; ``None`` if there is a mistake."""
+    """Return the statements of the top level; ``None`` if there is a mistake."""
     statements: list[ast.stmt] = []
     position = 0
     try:

@@ -78,7 +78,7 @@ CLOSING_WORDS: Final = _closing_words()
 
 
 def words_before(word: str) -> frozenset[str]:
-    """The words that stand directly before ``word`` in some form, and so make one operator or statement with it."""
+    """Return the words that stand directly before ``word`` in some form, and so make one operator or statement with it."""
     pairs = [
         (left.text, right.text)
         for form in (*FORMS, *SPECIFIERS)

@@ -50,7 +50,7 @@ def _in_word(character: str) -> bool:
 
 
 def header_span(source: Source, node: ast.AST) -> Span:
-    """The first line of a node: the header of a block, all of a statement that fits on a line."""
+    """Return the first line of a node: the header of a block, all of a statement that fits on a line."""
     whole = source.span(node)
     if whole.end_line == whole.line:
         return whole

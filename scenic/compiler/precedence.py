@@ -232,7 +232,7 @@ _BY_OPERATOR: Final = _by_operator()
 
 
 def forms_of(node: str, operator: str | None, ladder: Ladder = Ladder.ORDINARY) -> tuple[Form, ...]:
-    """The forms in a ladder that make a class of nodes with an operator, in the order in which they are tried.
+    """Return the forms in a ladder that make a class of nodes with an operator, in the order in which they are tried.
 
     In the temporal ladder these are its own forms if it has any, else the ordinary ones.
     """
@@ -244,7 +244,7 @@ def forms_of(node: str, operator: str | None, ladder: Ladder = Ladder.ORDINARY) 
 
 
 def form_of(node: ast.AST, ladder: Ladder = Ladder.ORDINARY) -> Form | None:
-    """The form in which a node is written; ``None`` for atoms, and for nodes that ``ladder`` has no form for.
+    """Return the form in which a node is written; ``None`` for atoms, and for nodes that ``ladder`` has no form for.
 
     If there are several (``distance from a to b``, ``distance to b from a``), the one that is tried first. A
     comparison is judged by its first operator, a call by whether it has arguments; of ``Slice``, ``Starred``,

@@ -52,7 +52,7 @@ class Wanted:
     before: tuple[str, ...]
 
     def begins(self, label: str) -> frozenset[str]:
-        """The words with which what a label stands for may begin, none if it cannot stand here."""
+        """Return the words with which what a label stands for may begin, none if it cannot stand here."""
         if label not in self.labels:
             return frozenset()
         return _beginnings(label)
@@ -64,7 +64,7 @@ def _beginnings(label: str) -> frozenset[str]:
 
 
 def wanted_at(text: str, line: int, column: int) -> Wanted | None:
-    """The possible continuations at ``line`` (from 1) and ``column`` (in characters from 0), where a new token begins.
+    """Return the possible continuations at ``line`` (from 1) and ``column`` (in characters from 0), where a new token begins.
 
     ``None`` in strings and comments, and where what stands before on the line cannot be right.
     """

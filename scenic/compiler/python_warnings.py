@@ -55,7 +55,7 @@ identity instead."""
 def suspects(
     tree: ast.Module, resolution: Resolution, source: Source, *, longest_line: int
 ) -> list[ast.stmt]:
-    """The statements of the top level that have to be compiled to get Python's complaints, in order.
+    """Return the statements of the top level that have to be compiled to get Python's complaints, in order.
 
     ``resolution`` are the names of a program without errors, ``longest_line`` is the number of tokens of its longest
     logical line. If Python's complaints about one statement depend on others, the result is all of them.

@@ -86,7 +86,7 @@ class Recovery:
         self._lexical_lines = sorted({each.span.line for each in tokens.diagnostics if each.span is not None})
 
     def file(self) -> ast.Module:
-        """The whole tree."""
+        """Return the whole tree."""
         body: list[Any] = []
         position = 0
         while True:
@@ -100,7 +100,7 @@ class Recovery:
             position += 1  # the end of a block that never began
 
     def statements(self, rule: str, position: int) -> tuple[list[Any], int]:
-        """The statements (as ``rule`` has them) from ``position`` to the end of the block, and where that is."""
+        """Return the statements (as ``rule`` has them) from ``position`` to the end of the block, and where that is."""
         known = self._done.get((rule, position))
         if known is None:
             self._depth += 1
@@ -245,7 +245,7 @@ class Recovery:
         return kinds[position] == NEWLINE and kinds[position + 1] == INDENT
 
     def _unfinished_clause(self, position: int, previous: int | None) -> int | None:
-        """The line before the one at ``position``, if it is the beginning of a clause that is being typed.
+        """Return the line before the one at ``position``, if it is the beginning of a clause that is being typed.
 
         If a block stands between them, that line is the one of the statement at ``previous``.
         """
@@ -266,7 +266,7 @@ class Recovery:
         return start if any(word.startswith(words[0]) for word in _CLAUSE_WORDS) else None
 
     def _stray_clause(self, start: int, previous: int | None, *, unfinished: bool) -> tuple[Any, int]:
-        """A clause that stands for itself; the statement before it starts at ``previous``.
+        """Return a clause that stands for itself; the statement before it starts at ``previous``.
 
         If that one is an ``unfinished`` clause, this one is right where it stands.
         """
@@ -299,7 +299,7 @@ class Recovery:
                 del problems[key]
 
     def _clauses(self, position: int, body: list[Any]) -> tuple[list[Any], int]:
-        """The clauses that follow, each for itself, added to ``body``."""
+        """Return the clauses that follow, each for itself, added to ``body``."""
         while self._is_clause(position):
             found, position, _ = self._clause(position)
             body += found
@@ -448,13 +448,13 @@ class Recovery:
         return self._kinds[position] == ERROR and not self.tokens.texts[position]
 
     def _line_end(self, position: int) -> int:
-        """The token that ends the line."""
+        """Return the token that ends the line."""
         while self._kinds[position] not in (NEWLINE, ENDMARKER):
             position += 1
         return position
 
     def _line_start(self, position: int) -> int:
-        """The token that begins the line."""
+        """Return the token that begins the line."""
         kinds = self._kinds
         while position > 0 and kinds[position - 1] not in (NEWLINE, INDENT, DEDENT):
             position -= 1
@@ -496,7 +496,7 @@ class Recovery:
         return kinds[self._line_end(position) - 1] != _COLON
 
     def _unexpected_block(self, rule: str, position: int) -> tuple[list[Any], int, bool]:
-        """A block that nothing begins; its statements count as those of the block around it.
+        """Return a block that nothing begins; its statements count as those of the block around it.
 
         Also tells whether the line before is a header that is not complete.
         """

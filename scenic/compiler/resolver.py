@@ -220,7 +220,7 @@ class _Collector:
                 yield default, outer
 
     def _type_parameters(self, node: Any, scope: Scope) -> tuple[Scope, list[_Task]]:
-        """The scope for what follows a definition's name, and the work that its type parameters make."""
+        """Return the scope for what follows a definition's name, and the work that its type parameters make."""
         parameters: list[Any] = getattr(node, "type_params", None) or []
         if not parameters:
             return scope, []

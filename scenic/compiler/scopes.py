@@ -112,14 +112,14 @@ class Scope:
     nonlocal_names: set[str] = field(default_factory=set)
 
     def ancestors(self) -> Iterator["Scope"]:
-        """The scope itself and those around it, innermost first."""
+        """Yield the scope itself and those around it, innermost first."""
         scope: Scope | None = self
         while scope is not None:
             yield scope
             scope = scope.parent
 
     def lookup(self, name: str) -> Binding | None:
-        """The binding that a read of ``name`` in this scope means; ``None`` if no scope binds it in reach.
+        """Return the binding that a read of ``name`` in this scope means; ``None`` if no scope binds it in reach.
 
         As in Python, the names of a class body are out of reach of the functions in it.
         """
@@ -212,7 +212,7 @@ class Resolution:
         return nodes
 
     def nodes_in(self, scope: Scope, cls: type[ast.AST]) -> Sequence[Any]:
-        """The nodes of a class that stand directly in a scope."""
+        """Return the nodes of a class that stand directly in a scope."""
         by_scope = self._nodes_by_scope.get(cls)
         if by_scope is None:
             by_scope = self._nodes_by_scope[cls] = {}

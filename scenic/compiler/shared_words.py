@@ -122,7 +122,7 @@ class _Frame:
 
 
 def closed_operands(tokens: Tokens) -> list[OperandSpan]:
-    """The operands in ``tokens`` that have to end before a closing word, although one within them could use it."""
+    """Return the operands in ``tokens`` that have to end before a closing word, although one within them could use it."""
     kinds, lines, columns = tokens.kinds, tokens.lines, tokens.columns
     scan = _Scan(kinds)
     operands: list[OperandSpan] = []
@@ -198,7 +198,7 @@ class _Scan:
         self._found: list[tuple[int, int]] = []
 
     def statement(self, start: int, end: int) -> list[tuple[int, int]]:
-        """The operands in the tokens of one simple statement or header: their first tokens and those after them."""
+        """Return the operands in the tokens of one simple statement or header: their first tokens and those after them."""
         self._found = []
         self._read(start, end)
         return self._found
@@ -280,7 +280,7 @@ class _Scan:
             frame.new = None
 
     def _open(self, wants: int, first: int) -> _Open:
-        """An operator with the operand at ``first``; if its short form cannot have this operand, the closing word is required."""
+        """Return an operator with the operand at ``first``; if its short form cannot have this operand, the closing word is required."""
         kind = self._kinds[first]
         must = kind == _LAMBDA or (kind == _NOT and self._kinds[first + 1] != _VISIBLE)
         return _Open(wants, must, first)

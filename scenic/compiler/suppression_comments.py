@@ -44,7 +44,7 @@ _STATIC: Final = ("SC1", "SC2", "SC3", "SC9")
 def apply_ignores(
     text: str, diagnostics: Sequence[Diagnostic], *, filename: str, complain: bool = True
 ) -> tuple[Diagnostic, ...]:
-    """The diagnostics that no comment silences, and unless ``complain`` is false those about the comments.
+    """Return the diagnostics that no comment silences, and unless ``complain`` is false those about the comments.
 
     Comments that silence nothing are only complained of in a program without errors: with errors, not everything
     has been looked for.

@@ -162,7 +162,7 @@ def _item(raw: tuple[Any, ...]) -> Item:
 
 
 def read_row(raw: Iterable[tuple[Any, ...]]) -> Row:
-    """The items that a generated row stands for."""
+    """Return the items that a generated row stands for."""
     return tuple(_item(each) for each in raw)
 
 
@@ -205,7 +205,7 @@ def _within(row: Row) -> Iterator[Item]:
 
 
 def reached_from(*rules: str) -> frozenset[str]:
-    """The rules that these need, themselves included; those that do not exist are left out."""
+    """Return the rules that these need, themselves included; those that do not exist are left out."""
     reached_rules: set[str] = set()
     stack = [rule for rule in rules if rule in RULES]
     while stack:
@@ -218,7 +218,7 @@ def reached_from(*rules: str) -> frozenset[str]:
 
 
 def words_in(rules: Iterable[str]) -> frozenset[str]:
-    """The keywords in the rows of rules."""
+    """Return the keywords in the rows of rules."""
     return frozenset(
         word
         for rule in rules
@@ -233,7 +233,7 @@ def words_of(row: Row) -> Iterator[str]:
 
 
 def first_words(row: Row) -> frozenset[str]:
-    """The keywords and operators that a row can begin with, as such and not as names."""
+    """Return the keywords and operators that a row can begin with, as such and not as names."""
     words: set[str] = set()
     rules: set[str] = set()
     stack = [row]
@@ -272,7 +272,7 @@ _BLOCKS: Final = frozenset(
 
 
 def _alone(rule: str) -> Iterator[str]:
-    """The rule, and those that can be all that it matches."""
+    """Yield the rule, and those that can be all that it matches."""
     yield rule
     for each in RULES[rule].alternatives if rule in RULES else ():
         match each.row:

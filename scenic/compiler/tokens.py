@@ -43,7 +43,7 @@ class Tokens:
     diagnostics: list[Diagnostic] = field(default_factory=list)
 
     def lists(self) -> "TokenLists":
-        """The input of a parser, which looks a few tokens ahead: so the kinds extend a little beyond the end."""
+        """Return the input of a parser, which looks a few tokens ahead: so the kinds extend a little beyond the end."""
         return (
             [*self.kinds, 0, 0, 0, 0],
             self.texts,

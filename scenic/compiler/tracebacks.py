@@ -110,7 +110,7 @@ _CODE: Final = re.compile(r"""(?:[^#'"]|"(?:[^"\\]|\\.)*"?|'(?:[^'\\]|\\.)*'?)*"
 
 
 def _without_comment(line: str) -> str:
-    """A line up to its comment. Of one that begins inside a text less may be left, by which places are told apart as well."""
+    """Return a line up to its comment. Of one that begins inside a text less may be left, by which places are told apart as well."""
     return line if "#" not in line else line[: _CODE.match(line).end()]  # type: ignore[union-attr]  # matches anything
 
 
@@ -162,7 +162,7 @@ def _place(frame: FrameType, position: _Positions | None) -> TracedPlace | None:
 
 
 def _character(frame: FrameType, line: int, column: int) -> int:
-    """The column in characters of a column in UTF-8 bytes."""
+    """Return the column in characters of a column in UTF-8 bytes."""
     text = _line(frame, line)
     if text.isascii():
         return column
@@ -177,7 +177,7 @@ def _line(frame: FrameType, line: int) -> str:
 
 
 def format_traceback(error: BaseException) -> str:
-    """A traceback as Python prints it, with the frames of the program and of its own Python modules alone.
+    """Return a traceback as Python prints it, with the frames of the program and of its own Python modules alone.
 
     Frames of this package, of Python's library and of installed packages are left out.
     """
@@ -188,7 +188,7 @@ def format_traceback(error: BaseException) -> str:
 
 
 def _lines(frame: FrameType, first: int, last: int) -> str | None:
-    """Some lines as a traceback has to have them: from Python 3.13 on all, before the first. ``None`` where one is missing."""
+    """Return some lines as a traceback has to have them: from Python 3.13 on all, before the first. ``None`` where one is missing."""
     lines = [
         _line(frame, line) for line in range(first, (last if sys.version_info >= (3, 13) else first) + 1)
     ]

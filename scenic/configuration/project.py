@@ -46,7 +46,7 @@ class Configuration:
         return any(self._matches(path, pattern) for pattern in self.exclude)
 
     def rules_for(self, path: str, select: Sequence[str] = (), ignore: Sequence[str] = ()) -> Rules:
-        """The rules for a file, below a choice that is made nearer to the user."""
+        """Return the rules for a file, below a choice that is made nearer to the user."""
         never = [
             code for pattern, codes in self.per_file_ignores if self._matches(path, pattern) for code in codes
         ]
@@ -76,7 +76,7 @@ class Configurations:
         self._by_folder: dict[str, Configuration] = {}
 
     def of_folder(self, folder: str) -> Configuration:
-        """The configuration of the files in a folder."""
+        """Return the configuration of the files in a folder."""
         if self._fixed is not None:
             return self._fixed
         folder = os.path.abspath(folder)
@@ -95,7 +95,7 @@ class Configurations:
         return configuration
 
     def of_file(self, path: str) -> Configuration:
-        """The configuration of a file."""
+        """Return the configuration of a file."""
         return self.of_folder(os.path.dirname(path))
 
     @property
@@ -106,7 +106,7 @@ class Configurations:
 
 
 def _short(path: str) -> str:
-    """The path from the current folder, if it lies there."""
+    """Return the path from the current folder, if it lies there."""
     try:
         relative = os.path.relpath(path)
     except ValueError:
@@ -223,7 +223,7 @@ class _Reader:
         self._problems.append(_problem(self._source, message, advice, (*_TABLE, *keys), value))
 
     def _strings(self, table: Mapping[str, object], *keys: str) -> tuple[str, ...]:
-        """The strings of an array; of one that is none, nothing."""
+        """Return the strings of an array; of one that is none, nothing."""
         value = table.get(keys[-1], [])
         name = ".".join(keys)
         if not isinstance(value, list):

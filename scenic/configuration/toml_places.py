@@ -69,7 +69,7 @@ def _quoted(lines: Sequence[str], number: int, column: int, value: str) -> Span 
 
 
 def _inner(lines: Sequence[str], number: int, column: int, key: str) -> Span | None:
-    """A key of a table that is written in braces."""
+    """Return a key of a table that is written in braces."""
     pattern = re.compile(
         rf"(?<![\w-])(?:{re.escape(key)}|\"{re.escape(key)}\"|'{re.escape(key)}')(?=[ \t]*[=.])"
     )

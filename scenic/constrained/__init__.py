@@ -31,7 +31,7 @@ FORMATS: Final = (*_WRITERS, "json")
 
 
 def grammar_text(notation: str, world: str | None = None) -> str:
-    """The grammar in one of `FORMATS`, of all programs or of those for one of `worlds`.
+    """Return the grammar in one of `FORMATS`, of all programs or of those for one of `worlds`.
 
     Raises `KeyError` for others. Lark, GBNF and EBNF describe texts with four blanks for each of at most eight levels of
     indentation; in JSON the rules consist of tokens, and the layout is left to the reader.

@@ -85,7 +85,7 @@ TextRow: TypeAlias = tuple[TextItem, ...]
 
 
 def within(rows: tuple[TextRow, ...]) -> Iterator[TextItem]:
-    """All items in rows."""
+    """Yield all items in rows."""
     for row in rows:
         for item in row:
             yield item

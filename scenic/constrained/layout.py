@@ -40,7 +40,7 @@ class Laid:
 
 
 def lay_out(rules: Rules, start: str) -> Laid:
-    """The rules that ``start`` needs, with everything between their tokens."""
+    """Return the rules that ``start`` needs, with everything between their tokens."""
     layout = _Layout(rules)
     first = Variant(start)
     rows_of_variant: dict[Variant, tuple[TextRow, ...]] = {}
@@ -64,7 +64,7 @@ def factored(rows: tuple[TextRow, ...]) -> tuple[TextRow, ...]:
 
 
 def _one_of(rows: tuple[TextRow, ...]) -> TextRow:
-    """One of several rows, of which one may be empty."""
+    """Return one of several rows, of which one may be empty."""
     present = factored(tuple(row for row in rows if row))
     row = present[0] if len(present) == 1 else (TextChoice(present),) if present else ()
     return row if len(present) == 0 or all(rows) else (TextOptional(row),)
@@ -114,7 +114,7 @@ class _Layout:
         return factored(tuple(self._row(row, start.copy(), bare=variant.bare) for row in rows))
 
     def _bare_rows(self, row: syntax.Row) -> Iterator[syntax.Row]:
-        """The rows that a row stands for if it has to begin with a symbol; the first item of each is a token or a rule."""
+        """Yield the rows that a row stands for if it has to begin with a symbol; the first item of each is a token or a rule."""
         first, rest = row[0], row[1:]
         match first:
             case syntax.Optional():
@@ -146,7 +146,7 @@ class _Layout:
         return tuple(items)
 
     def _placed(self, item: syntax.Item, place: _Place, *, bare: bool) -> TextRow:
-        """An item after what is before it."""
+        """Return an item after what is before it."""
         match item:
             case syntax.Optional():
                 return (TextOptional(self._row(item.row, place.copy())),)
@@ -178,7 +178,7 @@ class _Layout:
         return (TextMany(once),) if again == once else (*once, TextOptional((TextMany(again),)))
 
     def _spaced(self, item: syntax.Item, place: _Place, *, bare: bool) -> TextRow:
-        """A token or a rule after a blank, if there has to be one."""
+        """Return a token or a rule after a blank, if there has to be one."""
         first, before = self._edges.of_item(item)[0], place.before
         here = self._use(item, place, bare=bare)
         if not before or Edge.GLUED in before | first:

@@ -124,7 +124,7 @@ class EdgeFinder:
 
 
 def read_rules() -> Rules:
-    """The rules of ``grammar/scenic.gram`` and ``grammar/demands.gram``, without left recursion and with short ladders."""
+    """Return the rules of ``grammar/scenic.gram`` and ``grammar/demands.gram``, without left recursion and with short ladders."""
     raw = {name: tuple(map(read_row, rows)) for name, rows in context_free_rules().items()}
     loops = {name: loop for name, rows in raw.items() if (loop := _loop_of(name, rows))}
     rules = {name: (_flattened(name, loops, raw),) if name in loops else rows for name, rows in raw.items()}

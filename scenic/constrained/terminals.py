@@ -46,7 +46,7 @@ _BEYOND_ASCII: Final = r"\u0080-\U0010FFFF"
 
 
 def _formatted() -> Iterator[str]:
-    """The parts of f-strings."""
+    """Yield the parts of f-strings."""
     for word, (quote, mark) in zip(("SINGLE", "DOUBLE"), _MARKS.items(), strict=True):
         yield f"{word}_QUOTES ::= {mark} {mark}?"
         for kind, marks, line_end in ((word, mark, r"\r\n"), (f"LONG_{word}", f"{mark} {mark} {mark}", "")):
@@ -148,7 +148,7 @@ class _Reader:
 
 @cache
 def tokens() -> Tokens:
-    """The kinds of tokens of the language; line ends, which depend on the indentation, are left out."""
+    """Return the kinds of tokens of the language; line ends, which depend on the indentation, are left out."""
     pairs = (line.split(" ::= ", 1) for line in _DEFINITIONS)
     definitions = {name: _Reader(text).choice() for name, text in pairs}
     return Tokens(definitions, {"NAME": frozenset(HARD_KEYWORDS)})
@@ -156,7 +156,7 @@ def tokens() -> Tokens:
 
 @cache
 def letters(*, first: bool) -> str:
-    """The characters beyond ASCII that a name can begin with, or go on with, as ranges of a character class."""
+    """Return the characters beyond ASCII that a name can begin with, or go on with, as ranges of a character class."""
     prefix = "" if first else "a"
     ranges: list[list[int]] = []
     for code in range(0x80, sys.maxunicode + 1):

@@ -113,17 +113,17 @@ def restricted(rules: Rules, world: World) -> Rules:
 
 
 def _uniform(item: Item) -> Row:
-    """One of several values at random."""
+    """Return one of several values at random."""
     return (Word("Uniform"), Word("("), ListOf((item,), (Word(","),)), Word(")"))
 
 
 def _run(item: Item) -> Item:
-    """An item of a `do` statement: what is run becomes a behavior."""
+    """Return an item of a `do` statement: what is run becomes a behavior."""
     return ListOf((RuleReference("run"),), item.separator) if isinstance(item, ListOf) else item
 
 
 def restricted_tokens(world: World) -> Tokens:
-    """The kinds of tokens that `restricted` rules have."""
+    """Return the kinds of tokens that `restricted` rules have."""
     general = tokens()
     own_class = ((TokenKind("OWN"),),)
     definitions: dict[str, TextItem] = {

@@ -35,17 +35,17 @@ _ASCII_PARTS: Final = f"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz{_DI
 
 
 def write_lark(laid: Laid, tokens: Tokens) -> str:
-    """The grammar in the dialect of Lark that llguidance reads."""
+    """Return the grammar in the dialect of Lark that llguidance reads."""
     return _Lark(laid, tokens).text()
 
 
 def write_gbnf(laid: Laid, tokens: Tokens) -> str:
-    """The grammar as llama.cpp reads it."""
+    """Return the grammar as llama.cpp reads it."""
     return _Gbnf(laid, tokens).text()
 
 
 def write_ebnf(laid: Laid, tokens: Tokens) -> str:
-    """The grammar as xgrammar reads it."""
+    """Return the grammar as xgrammar reads it."""
     return _Ebnf(laid, tokens).text()
 
 
@@ -67,7 +67,7 @@ class _Writer(ABC):
 
     @abstractmethod
     def head(self) -> Iterator[str]:
-        """The beginning of the text: comments and the first rule."""
+        """Return the beginning of the text: comments and the first rule."""
 
     @abstractmethod
     def rule(self, name: str) -> str:
@@ -92,7 +92,7 @@ class _Writer(ABC):
     # Rules.
 
     def _rules(self) -> Iterator[str]:
-        """The definitions of all rules that a text needs, each once or once for each level."""
+        """Yield the definitions of all rules that a text needs, each once or once for each level."""
         dead = self._dead()
         pending = [(self._laid.start, 0)]
         variants_done = set(pending)
@@ -109,7 +109,7 @@ class _Writer(ABC):
         self._level = 0
 
     def _dead(self) -> set[tuple[Variant, int]]:
-        """The rules, with their levels, that need deeper levels than there are."""
+        """Return the rules, with their levels, that need deeper levels than there are."""
         dead: set[tuple[Variant, int]] = set()
         for self._level in range(MOST_LEVELS, -1, -1):
             size = -1

@@ -77,7 +77,7 @@ class Settled:
         }
 
     def code(self) -> Iterator[tuple[Code, list[ast.stmt]]]:
-        """The definitions whose statements run during simulations alone, with these statements, in program order."""
+        """Yield the definitions whose statements run during simulations alone, with these statements, in program order."""
         functions = self._functions()
         for part in walk(self._tree):
             if isinstance(part, scenic.BehaviorDef | scenic.MonitorDef):
@@ -156,7 +156,7 @@ class Settled:
     # Uses
 
     def _definition_of_top(self) -> scenic.ScenarioDef | None:
-        """The definition of the scenario that the program means, unless code may start it once more."""
+        """Return the definition of the scenario that the program means, unless code may start it once more."""
         top = self._program.top
         binding = None if top is None else self._resolution.names.get(top._definition.name)
         if binding is None or len(binding.sites) != 1:
@@ -197,7 +197,7 @@ class Settled:
         return [item._arguments.arguments for item in invocations]
 
     def _functions(self) -> set[ast.AST]:
-        """The functions that are read by code of simulations alone: none of them is called while scenes are looked for."""
+        """Return the functions that are read by code of simulations alone: none of them is called while scenes are looked for."""
         if self._resolution.reflective:
             return set()
         owners = {

@@ -98,7 +98,7 @@ def prove_branches(
 
 
 def _branches(body: Sequence[ast.stmt]) -> Iterator[_Branch]:
-    """All branches in the statements of a body, outer ones first."""
+    """Yield all branches in the statements of a body, outer ones first."""
     stack: list[tuple[ast.AST, _Path]] = [(item, ()) for item in reversed(body)]
     while stack:
         part, path = stack.pop()
@@ -153,7 +153,7 @@ def _is_dead(
 def _condition(
     test: ast.expr, holds: bool, values: Mapping[str, object], program: Program, source: Source
 ) -> Node:
-    """The node of a condition over values of a program, or of its negation."""
+    """Return the node of a condition over values of a program, or of its negation."""
     text = f"({_over_parameters(test, values, source)})"
     compilation = compile_text(f"require {text if holds else f'not {text}'}\n", filename=_FILENAME)
     assert compilation.code is not None

@@ -17,7 +17,7 @@ __all__ = ["deep_check"]
 
 
 def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
-    """The faults of a program that running and analysing it finds (no scene is sampled)."""
+    """Return the faults of a program that running and analysing it finds (no scene is sampled)."""
     if find_spec("z3") is None:
         from scenic.formats.imaging import MissingLibraryError
 

@@ -155,7 +155,7 @@ class Evaluation:
             yield row
 
     def static(self, task: RunTask) -> Iterator[dict[str, Any]]:
-        """The row of one scene."""
+        """Return the row of one scene."""
         return self._rows_of([self._scene(task)], task.run)
 
     def __call__(self, task: RunTask) -> dict[str, Any]:
@@ -291,7 +291,7 @@ def _plain(value: object) -> Any:
 
 
 def checked(row: dict[str, Any]) -> dict[str, Any]:
-    """A row, unless it says why the runs cannot go on; raises `ObjectiveError` or ``OutputError``."""
+    """Return a row, unless it says why the runs cannot go on; raises `ObjectiveError` or ``OutputError``."""
     if row["status"] == "objective":
         raise ObjectiveError(row["error"], help=row["help"])
     if row["status"] == "unwritable":

@@ -100,7 +100,7 @@ class Held:
         return cls(scene.k, *draws_of(scene.found, scene.lane))
 
     def to_data(self) -> dict[str, Any]:
-        """The same as plain data."""
+        """Return the same as plain data."""
         return {
             "scene": self.scene,
             "numbers": {f"{name:016x}": number for name, number in sorted(self.numbers.items())},
@@ -229,7 +229,7 @@ class Ancestry:
 
 
 def _low(words: Words) -> Floats:
-    """The bits of words that `open_unit` does not use, as numbers."""
+    """Return the bits of words that `open_unit` does not use, as numbers."""
     return (words & np.uint64(_CHANCES - 1)).astype(np.float64)
 
 

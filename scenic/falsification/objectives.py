@@ -135,7 +135,7 @@ class Objective:
         return self.name in (outcome.label, f"line {outcome.line}")
 
     def of_scene(self, scene: Scene) -> float:
-        """The value of a scene; raises `ObjectiveError`."""
+        """Return the value of a scene; raises `ObjectiveError`."""
         if self.function is not None:
             return _number(self.function(scene), self.label)
         params = scene.params
@@ -167,7 +167,7 @@ class Objective:
 
 
 def _parts_of(expression: str) -> ast.Expression | None:
-    """An expression for the parts of a maximum; ``None`` if an expression is something else."""
+    """Return an expression for the parts of a maximum; ``None`` if an expression is something else."""
     match ast.parse(expression, mode="eval").body:
         case ast.Call(func=ast.Name(id="max"), args=[series], keywords=[]) if not isinstance(
             series, ast.Starred
@@ -179,7 +179,7 @@ def _parts_of(expression: str) -> ast.Expression | None:
 
 
 def _by_verdict(outcome: Any, robustness: float | None) -> float:
-    """A robustness of a requirement, with the sign of its verdict also where it is 0 or unknown."""
+    """Return a robustness of a requirement, with the sign of its verdict also where it is 0 or unknown."""
     value = math.nan if robustness is None else float(robustness)
     if outcome.verdict:
         return max(value, _LEAST) if value == value else math.inf
@@ -198,7 +198,7 @@ def _unknown(name: str, known: Sequence[str], words: str, added: str) -> Objecti
 
 
 def _values(record: object) -> Any:
-    """The values of a series without their times; anything else as it is."""
+    """Return the values of a series without their times; anything else as it is."""
     if (
         isinstance(record, Sequence)
         and record

@@ -48,7 +48,7 @@ def load_results(folder: Path) -> dict[str, FalsificationResult]:
 
 
 def importances(result: FalsificationResult) -> list[tuple[str, float]]:
-    """The strength with which each coordinate goes with the value: the size of Spearman's rank correlation, the greatest first."""
+    """Return the strength with which each coordinate goes with the value: the size of Spearman's rank correlation, the greatest first."""
     rows = [row for row in result.rows if row["values"] is not None and math.isfinite(_value(row))]
     if len(rows) < 3:
         return []
@@ -163,7 +163,7 @@ def _described(row: Any, result: FalsificationResult, links_from: Path | None) -
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, raw: bool = False) -> str:
-    """A table of texts; ``raw`` says that they are HTML."""
+    """Return a table of texts; ``raw`` says that they are HTML."""
     cells = "".join(f"<th>{item}</th>" for item in head)
     lines = ("".join(f"<td>{item if raw else html.escape(item)}</td>" for item in row) for row in rows)
     return f"<table><tr>{cells}</tr>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"

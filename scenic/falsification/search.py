@@ -54,7 +54,7 @@ class SearchPlan:
     timestep: float | None = None
 
     def settings(self, scenario: "Scenario") -> dict[str, Any]:
-        """The same as plain data."""
+        """Return the same as plain data."""
         simulator = (
             self.simulator
             if self.simulator is None or isinstance(self.simulator, str)
@@ -83,7 +83,7 @@ class SearchPlan:
         }
 
     def _goals(self) -> list[dict[str, str | bool | None]] | None:
-        """The objectives as plain data, unless one of them is a function."""
+        """Return the objectives as plain data, unless one of them is a function."""
         if any(item.function is not None for item in self.objectives):
             return None
         return [

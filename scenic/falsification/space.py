@@ -69,7 +69,7 @@ class Coordinate:
         return np.asarray(np.clip(place, first, LAST))
 
     def value(self, place: float) -> float:
-        """The value at a coordinate; of options the place of one."""
+        """Return the value at a coordinate; of options the place of one."""
         if self.normal is not None:
             mean, deviation = self.normal
             number = self.number(np.array([place]))
@@ -83,7 +83,7 @@ class Coordinate:
         return self.low + (self.high - self.low) * place
 
     def coordinate(self, value: float) -> float:
-        """The coordinate of a value; raises `ValueError` for one that is impossible."""
+        """Return the coordinate of a value; raises `ValueError` for one that is impossible."""
         if not self.low <= value <= self.high:
             raise ValueError(f"{value} is no value of {self.label}")
         if self.normal is not None:
@@ -134,12 +134,12 @@ class Space:
 
 
 def worded(label: str, value: float, unit: str) -> str:
-    """A coordinate and its value, for readers."""
+    """Return a coordinate and its value, for readers."""
     return f"{label} = {value:.6g} {unit}".rstrip()
 
 
 def space_of(scenario: "Scenario", wanted: str = "auto") -> Space:
-    """The space of a scenario.
+    """Return the space of a scenario.
 
     Args:
         scenario: the scenario.
@@ -162,7 +162,7 @@ def _drawn(address: int, name: "DrawName") -> Coordinate:
 
 
 def _external(address: int, item: Choosable, name: "DrawName | None") -> Coordinate:
-    """The coordinate of an external parameter; one that nothing holds, as only a behavior uses it, has no name."""
+    """Return the coordinate of an external parameter; one that nothing holds, as only a behavior uses it, has no name."""
     return Coordinate(
         address,
         f"{item.kind} {address:016x}" if name is None else name.text,
@@ -178,7 +178,7 @@ def _external(address: int, item: Choosable, name: "DrawName | None") -> Coordin
 
 
 def shares_of(space: Space, buckets: int) -> Sequence[Floats]:
-    """The first distribution over buckets for each coordinate: its prior, else all alike."""
+    """Return the first distribution over buckets for each coordinate: its prior, else all alike."""
     return [
         np.array(item.shares)
         if item.shares is not None

@@ -52,7 +52,7 @@ class Seen:
     group: Groups
 
     def take(self, index: npt.NDArray[np.intp]) -> "Seen":
-        """Some of the entries."""
+        """Return some of the entries."""
         return Seen(
             self.directions[index],
             self.triangle[index],
@@ -108,7 +108,7 @@ class Lens:
 
 
 def seen(lens: Lens, rays: RayScene) -> Buffer:
-    """The hit of the ray through the middle of each pixel."""
+    """Return the hit of the ray through the middle of each pixel."""
     directions = lens.through_all(1)
     hits = rays.first_hits(_repeated(lens.eye, directions.size // 3), directions.reshape(-1, 3))
     parts = (hits.triangle, np.float32(1) / hits.distance, hits.second, hits.third)
@@ -116,7 +116,7 @@ def seen(lens: Lens, rays: RayScene) -> Buffer:
 
 
 def look(stage: Stage, eye: Singles, directions: Singles) -> Seen:
-    """The first hits of rays from an eye ``(3,)`` or eyes ``(n, 3)`` in directions ``(n, 3)``."""
+    """Return the first hits of rays from an eye ``(3,)`` or eyes ``(n, 3)`` in directions ``(n, 3)``."""
     hits = stage.rays.first_hits(_repeated(eye, len(directions)), directions)
     return grounded(
         stage, eye, directions, hits.triangle, np.float32(1) / hits.distance, hits.second, hits.third
@@ -132,7 +132,7 @@ def grounded(
     second: Singles,
     third: Singles,
 ) -> Seen:
-    """The same of what is known of objects: rays that meet none and fall end on the ground."""
+    """Return the same of what is known of objects: rays that meet none and fall end on the ground."""
     group = stage.group_of(triangle)
     fall = np.float32(stage.ground) - eye[..., 2]
     below = falls(stage, eye, directions) & (triangle < 0)
@@ -148,7 +148,7 @@ def falls(stage: Stage, eye: Singles, directions: Singles) -> npt.NDArray[np.boo
 
 
 def first_groups(stage: Stage, eye: Singles, directions: Singles) -> Groups:
-    """The surfaces alone that rays from one eye meet first."""
+    """Return the surfaces alone that rays from one eye meet first."""
     group = stage.group_of(stage.rays.first_triangles(eye, directions))
     group[(group == SKY) & falls(stage, eye, directions)] = GROUND
     return group

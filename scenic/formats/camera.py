@@ -99,7 +99,7 @@ def framed(scene: Scene, instances: Sequence[Instance], outlook: Outlook) -> Arr
 
 
 def framing(points: Array, aspect: float, outlook: Outlook = STANDARD) -> Camera:
-    """The nearest camera of a direction that sees all points ``(n, 3)``.
+    """Return the nearest camera of a direction that sees all points ``(n, 3)``.
 
     A point with coordinates (r, u, a) along right, up and ahead is in sight of an eye at (R, U, A) if
     ``|r - R| <= t (a - A)`` for the tangent t, and likewise for u: linear bounds on the eye, whose largest A is wanted.

@@ -81,7 +81,7 @@ class Photographer:
         self._surfaces = Surfaces() if surfaces is None else surfaces
 
     def shoot(self, scene: Scene) -> Shot:
-        """The images and labels of a scene."""
+        """Return the images and labels of a scene."""
         point = viewpoint(scene, self._camera, self._size)
         gallery = Gallery(self._classes, self._surfaces)
         observation = observe(scene, point, gallery=gallery, painted=self._previewed)
@@ -148,7 +148,7 @@ def index_of(
     images: Sequence[Mapping[str, Any]],
     annotations: Sequence[Mapping[str, Any]],
 ) -> bytes:
-    """The index of images and their annotations, as JSON."""
+    """Return the index of images and their annotations, as JSON."""
     index = {
         "info": {"description": f"scenes seen by {', '.join(cameras)}", "version": "1"},
         "images": images,

@@ -61,7 +61,7 @@ class ShownCourse:
 
 
 def course_data(course: Course, tape: PoseTape) -> dict[str, Any]:
-    """The data that the page needs of a simulation, all of whose states are on the tape, as plain data."""
+    """Return the data that the page needs of a simulation, all of whose states are on the tape, as plain data."""
     page = Page("")
     poses = tape.poses()
     places = poses[..., :3].reshape(-1, 3).astype(np.float64)
@@ -93,7 +93,7 @@ def course_data(course: Course, tape: PoseTape) -> dict[str, Any]:
 
 
 def course_page(title: str, courses: Sequence[Mapping[str, Any]]) -> str:
-    """The page of simulations, each as `course_data` gives it; at least one."""
+    """Return the page of simulations, each as `course_data` gives it; at least one."""
     together: dict[str, Any] = {
         "meshes": [],
         "outlines": [],

@@ -79,7 +79,7 @@ class StatePictures:
 
     @classmethod
     def of_course(cls, course: Course, tape: PoseTape) -> "StatePictures":
-        """The pictures of a simulation, all of whose states are on the tape."""
+        """Return the pictures of a simulation, all of whose states are on the tape."""
         return cls(ShownCourse(course), tape.poses(), course.timestep, tape.colors)
 
     def __len__(self) -> int:
@@ -173,7 +173,7 @@ def sheet(
 
 
 def _cell(size: tuple[int, int], count: int) -> tuple[int, int]:
-    """The size of each of ``count`` images of a sheet."""
+    """Return the size of each of ``count`` images of a sheet."""
     columns = min(_ACROSS, count)
     rows = math.ceil(count / _ACROSS)
     return max(1, size[0] // columns), max(1, size[1] // rows)

@@ -43,12 +43,12 @@ def embedded_simulation(simulation: Any) -> str:
 
 
 def scene_bundle(scene: Scene) -> dict[str, str]:
-    """A scene by type of media, in the form that notebooks use."""
+    """Return a scene by type of media, in the form that notebooks use."""
     return {"text/html": embedded_scenes([scene], "scene"), "text/plain": repr(scene)}
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    """An HTML table."""
+    """Return an HTML table."""
     lines = [_row("th", head), *(_row("td", row) for row in rows)]
     return f"<table>{''.join(lines)}</table>"
 
@@ -58,7 +58,7 @@ def _row(kind: str, cells: Sequence[object]) -> str:
 
 
 def _image(scene: Scene) -> str:
-    """An image of the scene as an element; nothing without the library that writes images."""
+    """Return an image of the scene as an element; nothing without the library that writes images."""
     try:
         content = png(scene, _IMAGE)
     except MissingLibraryError:

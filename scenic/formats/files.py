@@ -120,7 +120,7 @@ def write(path: Path, content: bytes) -> None:
 
 
 def numbered(path: Path, k: int, count: int) -> Path:
-    """The file of scene ``k`` of ``count``: ``room.glb`` itself for one, ``room-007.glb`` for more."""
+    """Return the file of scene ``k`` of ``count``: ``room.glb`` itself for one, ``room-007.glb`` for more."""
     if count == 1:
         return path
     digits = max(3, len(str(count - 1)))

@@ -36,7 +36,7 @@ _QUARTER: Final = (0.5**0.5, 0.0, 0.0, 0.5**0.5)
 
 
 def glb(scene: Scene) -> bytes:
-    """The scene as the content of a ``.glb`` file."""
+    """Return the scene as the content of a ``.glb`` file."""
     scene_picture = picture([scene])
     buffers = _Buffers()
     primitives = [buffers.surface(surface) for surface in scene_picture.surfaces]
@@ -97,7 +97,7 @@ def glb(scene: Scene) -> bytes:
 
 
 def _cameras(scene: Scene, nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The cameras of a scene, whose nodes are added; they look along -Z of their nodes, with +Y up."""
+    """Return the cameras of a scene, whose nodes are added; they look along -Z of their nodes, with +Y up."""
     cameras: list[dict[str, Any]] = []
     for viewpoint in viewpoints(scene):
         across, upward = viewpoint.camera.tangents
@@ -116,7 +116,7 @@ def _cameras(scene: Scene, nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _sun(scene: Scene, nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The sun of a scene whose parameters tell of it, whose node is added; it shines along -Z of its node."""
+    """Return the sun of a scene whose parameters tell of it, whose node is added; it shines along -Z of its node."""
     if not isinstance(scene.params.get("lighting"), Mapping):
         return []
     scenery = scenery_of(scene.params)
@@ -129,12 +129,12 @@ def _sun(scene: Scene, nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _product(p: object, q: object) -> npt.NDArray[np.float64]:
-    """The product of two quaternions ``(x, y, z, w)``."""
+    """Return the product of two quaternions ``(x, y, z, w)``."""
     return np.asarray(quaternions.multiply(np.asarray(p, np.float64), np.asarray(q, np.float64)))
 
 
 def _node(instance: Instance, index: int, mesh: int, name: str) -> dict[str, Any]:
-    """The node of an object."""
+    """Return the node of an object."""
     return {
         "name": name,
         "mesh": mesh,
@@ -165,7 +165,7 @@ def _material(color: Four) -> dict[str, Any]:
 
 
 def _linear(value: float) -> float:
-    """An sRGB component as linear light, which is what glTF's factors are (IEC 61966-2-1)."""
+    """Return an sRGB component as linear light, which is what glTF's factors are (IEC 61966-2-1)."""
     return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
 
 
@@ -202,7 +202,7 @@ class _Looks:
         return self._images[digest]
 
     def document(self) -> dict[str, Any]:
-        """The parts of the document."""
+        """Return the parts of the document."""
         if not self._image_list:
             return {"materials": self._list}
         return {
@@ -288,7 +288,7 @@ class _Buffers:
 
 
 def _container(document: bytes, binary: bytes) -> bytes:
-    """The two chunks of a GLB file behind its header; chunks are multiples of four bytes."""
+    """Return the two chunks of a GLB file behind its header; chunks are multiples of four bytes."""
     document += b" " * (-len(document) % 4)
     chunks = struct.pack("<II", len(document), 0x4E4F534A) + document
     if binary:

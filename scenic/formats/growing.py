@@ -45,7 +45,7 @@ class GrowingFile:
         return max(self._lines(self.part), self._lines(self.path), key=len)
 
     def _lines(self, path: Path) -> list[bytes]:
-        """The whole lines of a file; none if it is not there."""
+        """Return the whole lines of a file; none if it is not there."""
         try:
             data = path.read_bytes()
         except FileNotFoundError:
@@ -55,7 +55,7 @@ class GrowingFile:
         return data[: data.rfind(b"\n") + 1].splitlines(keepends=True)
 
     def lines_kept(self) -> list[bytes]:
-        """The whole lines that a run which was ended has left."""
+        """Return the whole lines that a run which was ended has left."""
         return [] if self._is_special else self._lines(self.part)
 
     def __enter__(self) -> Self:

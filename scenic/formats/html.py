@@ -123,7 +123,7 @@ class Page:
         return self._outlines.setdefault(text, len(self._outlines))
 
     def data(self) -> dict[str, Any]:
-        """The contents of the page, as plain data."""
+        """Return the contents of the page, as plain data."""
         return {
             "meshes": [_mesh(surface) for surface in self._gallery.surfaces],
             "scenes": self._scenes,
@@ -143,12 +143,12 @@ class Page:
         }
 
     def text(self) -> str:
-        """The text of the page, which needs at least one scene."""
+        """Return the text of the page, which needs at least one scene."""
         return page_text(self._title, self.data())
 
 
 def page_text(title: str, data: Mapping[str, object]) -> str:
-    """The text of a page that holds this data, as `Page.data` gives it."""
+    """Return the text of a page that holds this data, as `Page.data` gives it."""
     text = json.dumps(data, allow_nan=False, separators=(",", ":"))
     parts = {
         "title": markup.escape(title),
@@ -161,7 +161,7 @@ def page_text(title: str, data: Mapping[str, object]) -> str:
 
 
 def page(scenes: Iterable[Scene], title: str) -> str:
-    """The text of a page of these scenes, at least one."""
+    """Return the text of a page of these scenes, at least one."""
     made = Page(title)
     for scene in scenes:
         made.add(scene)
@@ -189,7 +189,7 @@ def _mesh(surface: Surface) -> dict[str, str]:
 
 
 def packed(values: npt.NDArray[Any]) -> str:
-    """An array as text: its bytes in base 64."""
+    """Return an array as text: its bytes in base 64."""
     return base64.b64encode(values.tobytes()).decode("ascii")
 
 
@@ -216,7 +216,7 @@ def _object(instance: Instance) -> dict[str, Any]:
 
 
 def _points(line: Array) -> list[list[float]]:
-    """A line as lists of numbers, to a tenth of a millimetre."""
+    """Return a line as lists of numbers, to a tenth of a millimetre."""
     return [[round(value, 4) for value in point] for point in line.tolist()]
 
 
@@ -237,7 +237,7 @@ def _view(instance: Instance) -> list[list[list[float]]] | None:
 
 
 def _brief(value: object) -> str:
-    """A value in a few words."""
+    """Return a value in a few words."""
     match plain(value, {}):
         case str() as text:
             words = text
@@ -251,7 +251,7 @@ def _brief(value: object) -> str:
 
 
 def _filled(template: str, parts: Mapping[str, str]) -> str:
-    """The template with ``{{name}}`` replaced; what is put in is not searched again."""
+    """Return the template with ``{{name}}`` replaced; what is put in is not searched again."""
     pieces = template.split("{{")
     result = [pieces[0]]
     for piece in pieces[1:]:

@@ -59,7 +59,7 @@ class ImageTexture:
     projection: str
 
     def image(self) -> "_Image":
-        """The pixels; raises `TextureError` where the file cannot be read."""
+        """Return the pixels; raises `TextureError` where the file cannot be read."""
         try:
             status = self.path.stat()
         except OSError as error:
@@ -167,7 +167,7 @@ def _between(pixels: npt.NDArray[np.uint8], coordinates: Singles) -> Singles:
 
 @lru_cache(maxsize=32)
 def _read(path: str, name: str, _stamp: int, _length: int) -> _Image:
-    """The image in a file that has not changed since."""
+    """Return the image in a file that has not changed since."""
     pillow: Any = require_pillow()
     try:
         with pillow.open(path) as file:

@@ -15,7 +15,7 @@ class MissingLibraryError(Located):
 
 
 def require_pillow() -> ModuleType:
-    """The library that writes images; raises ``MissingLibraryError`` with the way to get it."""
+    """Return the library that writes images; raises ``MissingLibraryError`` with the way to get it."""
     try:
         import PIL.Image
     except ImportError as error:

@@ -77,7 +77,7 @@ class Surface:
         return self._known[key]
 
     def face_paints(self) -> Array | None:
-        """The colours of faces, ``(f, 3)``, as ``paints`` has them for corners."""
+        """Return the colours of faces, ``(f, 3)``, as ``paints`` has them for corners."""
         return None if self.paints is None else self.paints[self.faces[:, 0]]
 
     def painted(self) -> list[tuple[Triple | None, npt.NDArray[np.int64]]]:
@@ -121,7 +121,7 @@ class Instance:
         return self.name or ("ego" if self.is_ego else self.class_name)
 
     def matrix(self) -> Array:
-        """The matrix, shape ``(4, 4)``, that takes the unit box to the object."""
+        """Return the matrix, shape ``(4, 4)``, that takes the unit box to the object."""
         matrix = np.eye(4)
         matrix[:3, :3] = rotation_matrix(self.quaternion) * np.asarray(self.size)
         matrix[:3, 3] = self.position
@@ -178,7 +178,7 @@ class Surfaces:
         self._known: dict[tuple[int, Triple], tuple[UnitMesh | Appearance, Surface]] = {}
 
     def of(self, mesh: UnitMesh | Appearance, size: Triple) -> Surface:
-        """The surface of a mesh that is used at a size."""
+        """Return the surface of a mesh that is used at a size."""
         found = self._known.pop((id(mesh), size), None) or (mesh, surface_of(mesh, size))
         self._known[id(mesh), size] = found
         if len(self._known) > self._MOST:
@@ -251,13 +251,13 @@ class Gallery:
         return tuple(instances)
 
     def ground(self, workspace: object, places: Array) -> tuple[GroundPiece, ...]:
-        """The pieces that a workspace shows under objects at places ``(n, 3)``."""
+        """Return the pieces that a workspace shows under objects at places ``(n, 3)``."""
         if not isinstance(workspace, Workspace) or not len(places):
             return ()
         return tuple(self._piece(patch) for patch in workspace.patches(places))
 
     def lamps(self, workspace: object, places: Array) -> tuple["KeyedLamp", ...]:
-        """The lights and signs that a workspace shows around places ``(n, 3)``, switched off."""
+        """Return the lights and signs that a workspace shows around places ``(n, 3)``, switched off."""
         around = getattr(workspace, "lamps", None)
         if around is None or not len(places):
             return ()
@@ -289,7 +289,7 @@ class Gallery:
         return known[1]
 
     def _default_color(self, class_name: str, number: int) -> Triple:
-        """The colour of an object that has none, by its number among those of its class in the scene.
+        """Return the colour of an object that has none, by its number among those of its class in the scene.
 
         A class has one colour in several shades; of plain objects, which have no class of their own, each has another colour.
         """
@@ -325,7 +325,7 @@ def _appearance(scene: Scene, number: int) -> Appearance | None:
 
 
 def picture(scenes: Iterable[Scene], *, ground: bool = False) -> Picture:
-    """The picture of the scenes; with what their workspaces show under the objects if ``ground``."""
+    """Return the picture of the scenes; with what their workspaces show under the objects if ``ground``."""
     gallery = Gallery()
     instances_of_scenes, params, grounds, lamps = [], [], [], []
     for scene in scenes:
@@ -386,7 +386,7 @@ def _color(thing: SceneObject, default: Triple) -> Four:
 
 
 def surface_of(mesh: UnitMesh | Appearance, size: Triple) -> Surface:
-    """The mesh with normals that are shared across smooth edges and split at sharp ones.
+    """Return the mesh with normals that are shared across smooth edges and split at sharp ones.
 
     ``size`` is a size the mesh is used at: angles between faces are those of the mesh at that size. The normals are
     in the unit box, as the vertices are.

@@ -27,12 +27,12 @@ _ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
 
 
 def scene_line(scene: Scene) -> str:
-    """The scene as one line of JSON, without the line's end; equal scenes give equal text."""
+    """Return the scene as one line of JSON, without the line's end; equal scenes give equal text."""
     return SceneLines().line(scene)
 
 
 def scene_document(scene: Scene) -> dict[str, Any]:
-    """The scene as plain data that JSON can hold."""
+    """Return the scene as plain data that JSON can hold."""
     document: dict[str, Any] = json.loads(scene_line(scene))
     return document
 
@@ -70,7 +70,7 @@ class SceneLines:
         self._templates: dict[int, _Template] = {}
 
     def line(self, scene: Scene) -> str:
-        """The scene as one line of JSON, without the line's end."""
+        """Return the scene as one line of JSON, without the line's end."""
         things = scene.objects
         numbers = {id(thing): index for index, thing in enumerate(things)}
         names = scene.names
@@ -89,7 +89,7 @@ class SceneLines:
         return self.line(scene).encode("ascii") + b"\n"
 
     def block(self, _scenario: object, scenes: Iterable[Scene]) -> bytes:
-        """The lines of some scenes, as files hold them."""
+        """Return the lines of some scenes, as files hold them."""
         return b"".join(map(self.encoded, scenes))
 
     def _object(self, scene: Scene, thing: SceneObject, name: str | None, numbers: Mapping[int, int]) -> str:
@@ -181,7 +181,7 @@ def number(value: float) -> float | dict[str, str]:
 
 
 def plain(value: object, numbers: Mapping[int, int], within: tuple[int, ...] = ()) -> Any:
-    """A value as JSON holds it; ``numbers`` maps the ``id`` of each object of the scene to its index.
+    """Return a value as JSON holds it; ``numbers`` maps the ``id`` of each object of the scene to its index.
 
     ``within`` are the ``id``s of the lists and mappings round the value.
     """

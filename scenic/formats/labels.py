@@ -103,7 +103,7 @@ class Observation:
     labels: tuple[Label, ...]
 
     def mask(self, label: Label) -> npt.NDArray[np.bool_]:
-        """The pixels that show an object, ``(height, width)``."""
+        """Return the pixels that show an object, ``(height, width)``."""
         return np.asarray(self.objects == label.index)
 
 
@@ -193,7 +193,7 @@ def _labels(
 
 
 def body_of(thing: SceneObject) -> Body:
-    """An object of a scene as visibility sees it."""
+    """Return an object of a scene as visibility sees it."""
     mesh = thing.shape.mesh
     unit = mesh if isinstance(mesh, Mesh) else Mesh(mesh.vertices, np.asarray(mesh.faces, dtype=np.intp))
     turn = thing.orientation
@@ -247,7 +247,7 @@ def _box(mask: npt.NDArray[np.bool_]) -> Box | None:
 
 
 def document(observation: Observation, scene: Scene) -> dict[str, Any]:
-    """The labels as plain data that JSON can hold (``docs/howto/cameras.md`` describes every field)."""
+    """Return the labels as plain data that JSON can hold (``docs/howto/cameras.md`` describes every field)."""
     viewpoint = observation.viewpoint
     camera = viewpoint.camera
     to_camera = np.eye(4)
@@ -272,7 +272,7 @@ def document(observation: Observation, scene: Scene) -> dict[str, Any]:
 
 
 def _texture(item: Instance) -> dict[str, Any]:
-    """The image on an object, as plain data; nothing where there is none."""
+    """Return the image on an object, as plain data; nothing where there is none."""
     texture = texture_of(item.thing.properties.get("texture"), item.color, item.folder)
     if not isinstance(texture, ImageTexture):
         return {}

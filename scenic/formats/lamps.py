@@ -42,20 +42,20 @@ _WHITE: Final = (0.95, 0.95, 0.95)
 
 
 def color_numbers(keys: Sequence[str], moments: Sequence[Mapping[str, str]]) -> Bytes:
-    """The colours of lamps with keys in all moments, as numbers of `COLORS`, ``(moments, lamps)``."""
+    """Return the colours of lamps with keys in all moments, as numbers of `COLORS`, ``(moments, lamps)``."""
     names = list(COLORS)
     numbers = [[names.index(colors.get(key, "off")) for key in keys] for colors in moments]
     return np.array(numbers, dtype=np.uint8).reshape(len(moments), len(keys))
 
 
 def first_colors(workspace: object, params: Mapping[str, object]) -> Mapping[str, str]:
-    """The colours of a workspace's lights when a simulation of a scene with such parameters begins."""
+    """Return the colours of a workspace's lights when a simulation of a scene with such parameters begins."""
     colors = getattr(workspace, "first_colors", None)
     return {} if colors is None else colors(params)
 
 
 def shown_colors(scene: Any) -> Mapping[str, str]:
-    """The colours of lights in a scene: the present ones, if it is that of a running simulation, else the first ones."""
+    """Return the colours of lights in a scene: the present ones, if it is that of a running simulation, else the first ones."""
     present: Mapping[str, str] | None = getattr(scene, "light_colors", None)
     return first_colors(scene.workspace, scene.params) if present is None else present
 
@@ -71,7 +71,7 @@ def light_colors(simulation: Any) -> Mapping[str, str]:
 
 @cache
 def lamp_form(name: str) -> Appearance:
-    """The mesh of a lamp; traffic sees its side towards -Y."""
+    """Return the mesh of a lamp; traffic sees its side towards -Y."""
     model = Modeller()
     if name == "line":
         model.box((-1, -1, 0), (1, 1, 1))

@@ -38,7 +38,7 @@ class Light:
 
 
 def own_light(stage: Stage, eye: Singles, seen: Seen, pattern: Index) -> Light:
-    """The light on the surfaces that rays from an eye hit, estimated for each ray separately; `pattern` as for `Stage.sunlit`."""
+    """Return the light on the surfaces that rays from an eye hit, estimated for each ray separately; `pattern` as for `Stage.sunlit`."""
     sun, sky = np.zeros(len(pattern), np.float32), np.ones(len(pattern), np.float32)
     lit = np.flatnonzero(seen.group != SKY)
     places = seen.take(lit), pattern[lit]
@@ -120,7 +120,7 @@ def _from_neighbours(
     light: Light,
     pattern: Index,
 ) -> Light:
-    """The light of those neighbours that show the same surface; where they disagree or are none, rays of its own."""
+    """Return the light of those neighbours that show the same surface; where they disagree or are none, rays of its own."""
     count = len(pattern)
     matches, sky, sun = np.zeros((3, count), np.float32)
     low, high = np.full(count, 2, np.float32), np.full(count, -1, np.float32)
@@ -166,7 +166,7 @@ def _pattern(pixels: Index, width: int) -> Index:
 
 
 def _around(values: Singles, choose: np.ufunc) -> Singles:
-    """The least or greatest of the four nodes around each cell."""
+    """Return the least or greatest of the four nodes around each cell."""
     result: Singles = choose(
         choose(values[:-1, :-1], values[1:, :-1]), choose(values[:-1, 1:], values[1:, 1:])
     )

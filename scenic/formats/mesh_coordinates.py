@@ -99,7 +99,7 @@ def _stamp(path: str) -> tuple[int, int]:
 
 @lru_cache(maxsize=64)
 def _read(path: str, _stamp: int, _length: int) -> tuple[_Array, _Array] | None:
-    """The triangles of a file ``(f, 3, 3)`` and their texture coordinates ``(f, 3, 2)``; ``None`` if it has none."""
+    """Return the triangles of a file ``(f, 3, 3)`` and their texture coordinates ``(f, 3, 2)``; ``None`` if it has none."""
     import trimesh
 
     try:

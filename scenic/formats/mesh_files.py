@@ -37,7 +37,7 @@ class MeshPaths:
         self._known: dict[str, dict[str, Any]] = {}
 
     def told(self, source: ShapeSource) -> dict[str, Any]:
-        """A shape as plain data; of a mesh file the path (with ``/``) and, if it can be read, ``sha256``."""
+        """Return a shape as plain data; of a mesh file the path (with ``/``) and, if it can be read, ``sha256``."""
         data = source.as_dict()
         path = data.get("path")
         if path is None:
@@ -60,7 +60,7 @@ class MeshPaths:
 
 
 def resolved(shape: object, folder: Path) -> Any:
-    """A shape as given, with the absolute path of its mesh file; any other value unchanged."""
+    """Return a shape as given, with the absolute path of its mesh file; any other value unchanged."""
     if not isinstance(shape, Mapping) or shape.get("kind") != "mesh" or "path" not in shape:
         return shape
     return {**shape, "path": os.path.normpath(folder.absolute() / shape["path"])}

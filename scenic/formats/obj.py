@@ -17,7 +17,7 @@ _DIGITS: Final = ".9g"
 
 
 def obj(scene: Scene, library: str) -> tuple[bytes, bytes]:
-    """The contents of an ``.obj`` file and of its material library.
+    """Return the contents of an ``.obj`` file and of its material library.
 
     Args:
         scene: the scene.
@@ -48,7 +48,7 @@ def _colors(instance: Instance, surface: Surface) -> list[Four]:
 
 
 def _surface(instance: Instance, surface: Surface, first: int, materials: dict[Four, str]) -> Iterator[str]:
-    """The lines of an object whose corners are numbered from ``first`` on."""
+    """Yield the lines of an object whose corners are numbered from ``first`` on."""
     matrix = instance.matrix()
     corners = surface.vertices @ matrix[:3, :3].T + matrix[:3, 3]
     # Normals of the unit box turn and scale by the inverse transpose.

@@ -52,7 +52,7 @@ _CATEGORIES: Final = (
 
 
 def openscenario_support() -> Any:
-    """The module ``scenariogeneration.xosc``; raises `UnsupportedError` without it. It is met here alone."""
+    """Return the module ``scenariogeneration.xosc``; raises `UnsupportedError` without it. It is met here alone."""
     try:
         from scenariogeneration import xosc  # optional
     except ImportError as error:
@@ -85,7 +85,7 @@ def openscenario_document(
     properties: Mapping[str, str] | None = None,
     offset: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0),
 ) -> Any:
-    """A ``scenariogeneration.xosc.Scenario`` of a simulation.
+    """Return a ``scenariogeneration.xosc.Scenario`` of a simulation.
 
     Args:
         things: the objects, with their names, sizes and what cars say of their axles.

@@ -16,7 +16,7 @@ _TINT: Final = 0.4
 
 
 def overlay(found: Observation) -> npt.NDArray[np.uint8]:
-    """The colours that a camera sees, with the labels drawn into them, ``(height, width, 3)``.
+    """Return the colours that a camera sees, with the labels drawn into them, ``(height, width, 3)``.
 
     Each object that has pixels has a colour of its own: its mask is tinted with it, its box is an outline of it, and beside
     that stand its variable or class and the part of it that is hidden.

@@ -48,7 +48,7 @@ class Modeller:
         self._count = 0
 
     def appearance(self) -> Appearance:
-        """The whole, in the unit box."""
+        """Return the whole, in the unit box."""
         vertices = np.concatenate(self._vertices)
         low, high = vertices.min(axis=0), vertices.max(axis=0)
         width, length, height = (high - low).tolist()

@@ -20,7 +20,7 @@ _RUNS: Final = 3
 
 
 def png(scene: Scene, size: tuple[int, int] = SIZE, outlook: Outlook = STANDARD) -> bytes:
-    """An image of the scene, by default seen from above the south-east, as the content of a PNG file.
+    """Return an image of the scene, by default seen from above the south-east, as the content of a PNG file.
 
     Raises ``MissingLibraryError`` if Pillow is not installed.
     """

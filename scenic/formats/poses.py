@@ -12,7 +12,7 @@ Four = tuple[float, float, float, float]
 
 
 def quaternion_of(thing: SceneObject) -> Four:
-    """The global orientation as a quaternion ``(x, y, z, w)``, of the two signs that with ``w >= 0``."""
+    """Return the global orientation as a quaternion ``(x, y, z, w)``, of the two signs that with ``w >= 0``."""
     rotation = thing.orientation
     x, y, z, w = (float(value) for value in (rotation.x, rotation.y, rotation.z, rotation.w))
     sign = -1.0 if w < 0 else 1.0
@@ -21,7 +21,7 @@ def quaternion_of(thing: SceneObject) -> Four:
 
 
 def rotation_matrix(quaternion: Four) -> npt.NDArray[np.float64]:
-    """The rotation matrix, shape ``(3, 3)``, of a unit quaternion ``(x, y, z, w)``."""
+    """Return the rotation matrix, shape ``(3, 3)``, of a unit quaternion ``(x, y, z, w)``."""
     x, y, z, w = quaternion
     return np.array(
         [

@@ -60,7 +60,7 @@ class ReadScene:
 
 
 def read_scenes(path: str | Path) -> Iterator[ReadScene]:
-    """The scenes of a file that ``scenic sample -o FILE.jsonl`` has written, one after the other.
+    """Yield the scenes of a file that ``scenic sample -o FILE.jsonl`` has written, one after the other.
 
     Raises:
         MissingFileError: if the file cannot be read.
@@ -79,7 +79,7 @@ def read_scenes(path: str | Path) -> Iterator[ReadScene]:
 
 
 def _mesh_folder(folder: Path) -> Path:
-    """The folder that paths of mesh files are relative to: that of the file, in a data set that of the program."""
+    """Return the folder that paths of mesh files are relative to: that of the file, in a data set that of the program."""
     try:
         manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
         return Path(folder, manifest["source"]).parent
@@ -88,7 +88,7 @@ def _mesh_folder(folder: Path) -> Path:
 
 
 def scenes_of(lines: Iterable[str], name: str, folder: Path = Path()) -> Iterator[ReadScene]:
-    """The scenes of lines of text; ``name`` is where they come from, ``folder`` what paths of meshes are relative to.
+    """Yield the scenes of lines of text; ``name`` is where they come from, ``folder`` what paths of meshes are relative to.
 
     Raises ``SceneFileError`` at a line that holds none.
     """

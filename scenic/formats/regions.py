@@ -166,7 +166,7 @@ def _height(region: PlanarRegion) -> float:
 
 
 def _rings(polygons: Any, z: float) -> list[Array]:
-    """The borders of shapely polygons at a height."""
+    """Return the borders of shapely polygons at a height."""
     rings = [ring for part in polygons.geoms for ring in (part.exterior, *part.interiors)]
     return [_at_height(np.array(ring.coords)[:, :2], z) for ring in rings]
 
@@ -232,7 +232,7 @@ def _longest(lines: list[Array]) -> list[Array]:
 
 
 def _cell_edges(filled: npt.NDArray[np.bool_]) -> list[Array]:
-    """The edges ``(2, 3)`` of filled cells of side 1, along each axis joined to lines; none within flat faces."""
+    """Return the edges ``(2, 3)`` of filled cells of side 1, along each axis joined to lines; none within flat faces."""
     lines = []
     for axis in range(3):
         cells = np.pad(np.moveaxis(filled, axis, 2), 1)

@@ -44,7 +44,7 @@ def render(
     camera: Camera | None = None,
     around: Array | None = None,
 ) -> Bytes:
-    """An image of scene ``number`` of the picture; shape ``(height, width, 3)``, sRGB.
+    """Return an image of scene ``number`` of the picture; shape ``(height, width, 3)``, sRGB.
 
     Without a camera, the nearest one of the standard direction that sees every object whole. ``around`` are points ``(n, 3)`` that
     the ground surrounds, by default the corners of the objects.
@@ -59,7 +59,7 @@ def render(
 
 
 def paint(stage: Stage, lens: Lens, known: Buffer | None = None) -> Bytes:
-    """The image that a lens makes; shape ``(height, width, 3)``, sRGB.
+    """Return the image that a lens makes; shape ``(height, width, 3)``, sRGB.
 
     Args:
         stage: the scene.
@@ -240,7 +240,7 @@ class _Drawing:
         image[pixels] = encoded(total)
 
     def _corner_colors(self, row: Index, column: Index) -> Singles:
-        """An eighth of the linear colours ``(n, 3)`` at corners between pixels: above and to the left of those given.
+        """Return an eighth of the linear colours ``(n, 3)`` at corners between pixels: above and to the left of those given.
 
         It is the mean of the pixels around the corner that show the surface which a ray through it meets.
         """
@@ -301,7 +301,7 @@ def _between(beside: Mask, below: Mask, shape: tuple[int, int]) -> Mask:
 
 
 def _twice(values: Mask, shape: tuple[int, int]) -> Mask:
-    """A coarse image at its size: two by two pixels for each."""
+    """Return a coarse image at its size: two by two pixels for each."""
     result = np.zeros(shape, np.bool_)
     for down in (0, 1):
         for right in (0, 1):

@@ -48,7 +48,7 @@ class RevivedScene:
         )
 
     def origin(self, thing: RevivedObject) -> "RevivedOrigin":
-        """The facts about an object: the properties in its line."""
+        """Return the facts about an object: the properties in its line."""
         return RevivedOrigin(thing)
 
 
@@ -61,7 +61,7 @@ class RevivedOrigin:
         self.names = self.given = tuple(sorted(thing.properties))
 
     def read(self, thing: RevivedObject, name: str) -> object:
-        """The value of a property, as plain data."""
+        """Return the value of a property, as plain data."""
         return thing.properties[name]
 
 
@@ -79,7 +79,7 @@ class Revival:
         self._classes: dict[str, type[RevivedObject]] = {}
 
     def revive(self, scene: ReadScene) -> RevivedScene:
-        """The scene with its meshes; where one cannot be had, the object's box stands for it (`substituted`).
+        """Return the scene with its meshes; where one cannot be had, the object's box stands for it (`substituted`).
 
         Raises ``ChangedMeshError`` where a mesh file is not the one that the scene was made with.
         """
@@ -108,7 +108,7 @@ class Revival:
 
 
 def _shape_of(told: Mapping[str, Any]) -> Shape:
-    """The shape of a ``shape`` entry of the file; raises ``MeshError`` where its mesh cannot be had."""
+    """Return the shape of a ``shape`` entry of the file; raises ``MeshError`` where its mesh cannot be had."""
     fields = dict(told)
     kind = fields.pop("kind", None)
     if "initial_rotation" in fields:

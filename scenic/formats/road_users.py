@@ -32,7 +32,7 @@ class AppearanceError(Located):
 
 
 def appearance_of(thing: Any) -> Appearance | None:
-    """The form that pictures show in place of an object's shape; ``None`` where they show the shape.
+    """Return the form that pictures show in place of an object's shape; ``None`` where they show the shape.
 
     The property ``appearance`` names it. A shape that the program gives, other than a box, is shown itself.
 

@@ -82,7 +82,7 @@ class SceneTable:
         """The Arrow schema; equal programs have equal ones."""
 
     def batch(self, scenes: Sequence[Scene]) -> Any:
-        """The rows of some scenes, as a ``pyarrow.RecordBatch``."""
+        """Return the rows of some scenes, as a ``pyarrow.RecordBatch``."""
         arrow = self._arrow
         params = [field.array(scenes, [True]) for field in self._params.values()]
         columns = [
@@ -94,14 +94,14 @@ class SceneTable:
         return arrow.RecordBatch.from_arrays(columns, schema=self.schema)
 
     def encoded(self, scenes: Sequence[Scene]) -> bytes:
-        """The rows of some scenes, as the bytes of an Arrow stream."""
+        """Return the rows of some scenes, as the bytes of an Arrow stream."""
         sink = self._arrow.BufferOutputStream()
         with self._arrow.ipc.new_stream(sink, self.schema) as stream:
             stream.write_batch(self.batch(scenes))
         return bytes(sink.getvalue())
 
     def writer(self, stream: BinaryIO, manifest: Mapping[str, Any] | None = None) -> Any:
-        """A ``pyarrow.parquet.ParquetWriter`` of such rows; equal rows and manifests give equal files."""
+        """Return a ``pyarrow.parquet.ParquetWriter`` of such rows; equal rows and manifests give equal files."""
         metadata = {FORMAT: str(VERSION)}
         if manifest is not None:
             metadata["manifest"] = _json(manifest)
@@ -180,7 +180,7 @@ class _Field:
         self.type = _type(arrow, self._word)
 
     def array(self, scenes: Sequence[Scene], has: Sequence[bool]) -> Any:
-        """The values, scene by scene; null where an object lacks the property.
+        """Return the values, scene by scene; null where an object lacks the property.
 
         Args:
             scenes: the scenes.
@@ -251,7 +251,7 @@ def _names_objects(value: object) -> bool:
 
 
 def _word(column: ValueColumn) -> str:
-    """The type of a column's values, in a word."""
+    """Return the type of a column's values, in a word."""
     if column.kind is not None:
         return _KINDS[column.kind]
     values = (column.value,) if column.is_fixed else column.options
@@ -259,7 +259,7 @@ def _word(column: ValueColumn) -> str:
 
 
 def _common(words: set[str]) -> str:
-    """The type that holds values of all of these types."""
+    """Return the type that holds values of all of these types."""
     if words == {"integer", "real"}:
         return "real"
     return next(iter(words)) if len(words) == 1 else _JSON

@@ -66,7 +66,7 @@ USUAL: Final = Scenery()
 
 
 def scenery_of(params: Mapping[str, object]) -> Scenery:
-    """The scenery that a scene's parameters say.
+    """Return the scenery that a scene's parameters say.
 
     Raises:
         SceneryError: a value has no meaning, or there is no such key.

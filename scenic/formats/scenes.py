@@ -94,14 +94,14 @@ class Origin(Protocol):
         """The properties that are the same in every scene."""
 
     def read(self, thing: Any, name: str) -> object:
-        """The value of a property of the object in one scene."""
+        """Return the value of a property of the object in one scene."""
 
 
 class Scene(Protocol):
     """A sampled scene."""
 
     def origin(self, thing: Any) -> Origin:
-        """The description of an object of the scene in all scenes."""
+        """Return the description of an object of the scene in all scenes."""
 
     @property
     def seed(self) -> int: ...

@@ -80,7 +80,7 @@ class Viewpoint:
 
 
 def viewpoint(scene: Scene, name: str, size: tuple[int, int] | None) -> Viewpoint:
-    """The camera of that name: a sensor of some object, the ego's first, or an object itself.
+    """Return the camera of that name: a sensor of some object, the ego's first, or an object itself.
 
     Raises:
         CameraError: the scene has no such camera.
@@ -145,14 +145,14 @@ def _sensors(scene: Scene) -> dict[str, tuple[SceneObject, CameraSensor]]:
 
 
 def viewpoints(scene: Scene) -> list[Viewpoint]:
-    """All cameras of a scene that are sensors, each of their own size; of one name the first."""
+    """Return all cameras of a scene that are sensors, each of their own size; of one name the first."""
     return [sensor_viewpoint(name, owner, sensor) for name, (owner, sensor) in _sensors(scene).items()]
 
 
 def sensor_viewpoint(
     name: str, owner: SceneObject, sensor: CameraSensor, size: tuple[int, int] | None = None
 ) -> Viewpoint:
-    """The camera that is a sensor of an object; ``size`` in pixels instead of its own."""
+    """Return the camera that is a sensor of an object; ``size`` in pixels instead of its own."""
     offset = sensor.offset
     if offset is None:
         offset = _triple(owner.properties.get("visionSensorOffset", (0.0, owner.length / 2, 0.0)))

@@ -15,7 +15,7 @@ END: Final = bytes(2 * tarfile.BLOCKSIZE)
 
 
 def member(name: str, content: bytes) -> bytes:
-    """A file as a member of a tar file: header and content, filled up to whole blocks."""
+    """Return a file as a member of a tar file: header and content, filled up to whole blocks."""
     info = tarfile.TarInfo(name)
     info.size = len(content)
     padding = -len(content) % tarfile.BLOCKSIZE

@@ -197,7 +197,7 @@ class Stage:
     def openness(
         self, places: Singles, normals: Singles, pattern: npt.NDArray[np.int64], rays: int
     ) -> Singles:
-        """The part of the sky, weighed by the cosine, that nothing near hides."""
+        """Return the part of the sky, weighed by the cosine, that nothing near hides."""
         ball = _ball()
         total = np.zeros(len(places), np.float32)
         start = places + normals * np.float32(self.reach * 2e-4)
@@ -256,7 +256,7 @@ def _paint(surfaces: Sequence[Surface], albedo: npt.NDArray[np.float32]) -> npt.
 
 
 def _textures(instances: Sequence[Instance]) -> dict[int, Texture | ImageTexture]:
-    """The textures of instances that have one, by their numbers; their files can be read."""
+    """Return the textures of instances that have one, by their numbers; their files can be read."""
     texture_of_instance = {}
     for number, item in enumerate(instances):
         try:
@@ -280,7 +280,7 @@ def ground_light(albedo: Singles, sun: Singles, sky: Singles, scenery: Scenery =
 
 
 def _colors(scenery: Scenery) -> tuple[Array, Array, Array]:
-    """The linear colours of the light of the sun, of the sky and of the ground."""
+    """Return the linear colours of the light of the sun, of the sky and of the ground."""
     sun, sky = scenery.exposure * scenery.sunlight, scenery.exposure * scenery.skylight
     return _SUN_COLOR * sun, _SKY_COLOR * sky, _BOUNCE_COLOR * sky
 

@@ -16,7 +16,7 @@ def is_image_name(text: str) -> bool:
 
 
 def image_name(value: object) -> str | None:
-    """The image file that a texture names; ``None`` for other textures."""
+    """Return the image file that a texture names; ``None`` for other textures."""
     if isinstance(value, Mapping):
         value = value.get("image")
         return str(value) if isinstance(value, str | Path) else None

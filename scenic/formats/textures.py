@@ -91,7 +91,7 @@ class Texture:
 def texture_of(
     value: Any, color: tuple[float, ...], folder: Path | None = None
 ) -> Texture | ImageTexture | None:
-    """The texture that a property describes, for an object of a colour; ``None`` for no texture.
+    """Return the texture that a property describes, for an object of a colour; ``None`` for no texture.
 
     Args:
         value: the value of the property.

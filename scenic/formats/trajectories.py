@@ -40,7 +40,7 @@ class Course(RunningSimulation, Protocol):
 
 
 def course_document(course: Course, *, k: int, tries: int) -> dict[str, Any]:
-    """The facts about the whole simulation."""
+    """Return the facts about the whole simulation."""
     numbers = {id(thing): index for index, thing in enumerate(course.objects)}
     names = course.scene.names
     result = course.result

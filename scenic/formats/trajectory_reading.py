@@ -60,7 +60,7 @@ class Trajectory:
         return self.positions[:, self.index(name)]
 
     def orientation(self, name: str | int) -> Array:
-        """The orientations of the object, ``(s, 4)``: quaternions x, y, z, w."""
+        """Return the orientations of the object, ``(s, 4)``: quaternions x, y, z, w."""
         return self.orientations[:, self.index(name)]
 
     def size(self, name: str | int) -> tuple[float, float, float]:
@@ -69,7 +69,7 @@ class Trajectory:
         return width, length, height
 
     def record(self, name: str) -> Any:
-        """The values that a ``record`` statement saved: of a series, which is kept as pairs of step and value, the values alone."""
+        """Return the values that a ``record`` statement saved: of a series, which is kept as pairs of step and value, the values alone."""
         found = self.about["records"][name]
         is_series = isinstance(found, list) and all(
             isinstance(item, list) and len(item) == 2 for item in found
@@ -78,7 +78,7 @@ class Trajectory:
 
 
 def read_trajectory(path: str | Path) -> Trajectory:
-    """The simulation in a file.
+    """Return the simulation in a file.
 
     Raises:
         MissingFileError: the file cannot be read.

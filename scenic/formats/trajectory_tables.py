@@ -27,7 +27,7 @@ _TURNS: Final = ("qx", "qy", "qz", "qw")
 
 
 def parquet_support() -> tuple[Any, Any]:
-    """The modules ``pyarrow`` and ``pyarrow.parquet``; raises `UnsupportedError` without them. They have no types, hence `Any`."""
+    """Return the modules ``pyarrow`` and ``pyarrow.parquet``; raises `UnsupportedError` without them. They have no types, hence `Any`."""
     try:
         import pyarrow
         import pyarrow.parquet  # optional, and slow to import
@@ -101,7 +101,7 @@ class ParquetFile:
 
 
 def parquet_about(path: Path) -> dict[str, Any]:
-    """The facts about the whole simulation; raises ``ValueError`` for a file of another kind."""
+    """Return the facts about the whole simulation; raises ``ValueError`` for a file of another kind."""
     pyarrow, parquet = parquet_support()
     try:
         metadata = parquet.read_schema(path).metadata or {}

@@ -76,7 +76,7 @@ def webots_world(
     program: str | Path | None = None,
     params: Mapping[str, object] = MappingProxyType({}),
 ) -> World:
-    """A scene as a world.
+    """Return a scene as a world.
 
     Objects with a property ``webotsProto`` become nodes of that PROTO (a name, found in ``../protos``, or an address that ends
     in ``NAME.proto``) with their ``controller``, ``customData`` and ``battery``. All others are a ``Solid`` of their shape and
@@ -214,7 +214,7 @@ def solid(
     physics: bool | None = None,
     frame: Array | None = None,
 ) -> str:
-    """A ``Solid`` of an object.
+    """Return a ``Solid`` of an object.
 
     Args:
         thing: the object.
@@ -321,7 +321,7 @@ def _node(kind: str, thing: Any, name: str, lines: Sequence[str], frame: Array |
 
 
 def _surroundings(scene: Scene, instances: Sequence[Instance]) -> str:
-    """The nodes of a world beside its objects: settings, view, sky, light and floor."""
+    """Return the nodes of a world beside its objects: settings, view, sky, light and floor."""
     from scipy.spatial.transform import Rotation
 
     points = corners(instances) if instances else np.zeros((1, 3))
@@ -347,7 +347,7 @@ def _surroundings(scene: Scene, instances: Sequence[Instance]) -> str:
 
 
 def _supervisor(scene: Scene, program: Path, params: Mapping[str, object], files: dict[str, bytes]) -> str:
-    """A robot that runs the program's behaviors in this world, and its controller."""
+    """Return a robot that runs the program's behaviors in this world, and its controller."""
     script = f'''"""Runs the behaviors of a Scenic program in this world, on its scene {scene.k} of seed {scene.seed}."""
 
 from controller import Supervisor

@@ -63,11 +63,11 @@ class WorldNode:
         return float(self.vector(field, [default])[0])
 
     def flag(self, field: str, default: bool) -> bool:
-        """A truth value."""
+        """Return a truth value."""
         return bool(self.fields.get(field, default))
 
     def inner(self) -> "Iterator[WorldNode]":
-        """The node, and the nodes in its fields."""
+        """Yield the node, and the nodes in its fields."""
         yield self
         for value in self.fields.values():
             for item in value if isinstance(value, list) else [value]:
@@ -134,7 +134,7 @@ def read_world(path: str | Path) -> WorldFile:
 
 
 def parse_nodes(text: str, path: str = "") -> tuple[WorldNode, ...]:
-    """The nodes of a text without its header; ``path`` is for messages."""
+    """Return the nodes of a text without its header; ``path`` is for messages."""
     return tuple(_Reader(text, path).nodes())
 
 
@@ -147,7 +147,7 @@ class _Reader:
         self._defined: dict[str, WorldNode] = {}
 
     def nodes(self) -> Iterator[WorldNode]:
-        """The nodes of the top level."""
+        """Yield the nodes of the top level."""
         while (word := self._next()) is not None:
             if word in ("EXTERNPROTO", "IMPORTABLE"):
                 self._take() if word == "EXTERNPROTO" else None

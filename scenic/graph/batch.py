@@ -212,7 +212,7 @@ class Batch:
         return self._operand(gather)[0]
 
     def value(self, node: Node, lane: int = 0) -> Any:
-        """The Python value of ``node`` in one lane; the same object on every call."""
+        """Return the Python value of ``node`` in one lane; the same object on every call."""
         return self.read(lane, node)
 
     def read(self, lane: int, node: Node) -> Any:
@@ -221,7 +221,7 @@ class Batch:
         return values[lane if len(values) > 1 else 0]
 
     def tuples(self, nodes: tuple[Node, ...]) -> list[tuple[Any, ...]]:
-        """The values of several nodes lane by lane, the objects that `read` gives; one row where all lanes agree."""
+        """Return the values of several nodes lane by lane, the objects that `read` gives; one row where all lanes agree."""
         entry = self._tuples.get(id(nodes))
         if entry is None:
             columns = self.lists(nodes)
@@ -236,7 +236,7 @@ class Batch:
         return entry[1]
 
     def lists(self, nodes: Sequence[Node]) -> list[list[Any]]:
-        """The values of several nodes, lane by lane, the objects that `read` gives; one where all lanes agree."""
+        """Return the values of several nodes, lane by lane, the objects that `read` gives; one where all lanes agree."""
         return [[node.value] if node.is_constant else self._values_of(node) for node in nodes]
 
     def _values_of(self, node: Node) -> list[Any]:
@@ -339,7 +339,7 @@ class Batch:
         return _Group(column, status, self._generation)
 
     def _operand(self, gather: Gather) -> tuple[Column, Status | None]:
-        """The columns of an operand over the members, and their statuses."""
+        """Return the columns of an operand over the members, and their statuses."""
         if isinstance(gather, Fixed):
             return gather.column, None
         if isinstance(gather, ColumnRun):

@@ -35,16 +35,16 @@ class Bounds:
         return Bounds(array, array)
 
     def empty(self) -> NDArray[np.bool_]:
-        """The mask of the boxes that admit no value, shape ``(m,)``."""
+        """Return the mask of the boxes that admit no value, shape ``(m,)``."""
         bad: NDArray[np.bool_] = np.logical_not(self.lower <= self.upper)
         return np.asarray(bad.reshape(len(bad), -1).any(axis=1))
 
     def meet(self, other: "Bounds") -> "Bounds":
-        """The intersection."""
+        """Return the intersection."""
         return Bounds(np.maximum(self.lower, other.lower), np.minimum(self.upper, other.upper))
 
     def hull(self, other: "Bounds") -> "Bounds":
-        """The smallest bounds that hold both."""
+        """Return the smallest bounds that hold both."""
         return Bounds(np.minimum(self.lower, other.lower), np.maximum(self.upper, other.upper))
 
 

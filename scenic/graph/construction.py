@@ -16,7 +16,7 @@ from scenic.graph.operation import Operation
 def make_node(
     operation: Operation, operands: Sequence[Node], payload: object = None, span: Hashable | None = None
 ) -> Node:
-    """The node of ``operation`` over ``operands``, of the kind that the operation's rule gives."""
+    """Return the node of ``operation`` over ``operands``, of the kind that the operation's rule gives."""
     if operation.rewrite is not None:
         simpler = operation.rewrite(operands, payload)
         if simpler is not None:

@@ -61,7 +61,7 @@ class Domain:
 
     @classmethod
     def whole(cls, dimension: int) -> Self:
-        """The whole cube."""
+        """Return the whole cube."""
         return cls(np.zeros((1, dimension)), np.ones((1, dimension)))
 
     @property
@@ -124,7 +124,7 @@ class Domain:
         ]
 
     def freed(self, axes: NDArray[np.bool_]) -> "Domain":
-        """A domain that holds this one and narrows none of some axes ``(dimension,)``."""
+        """Return a domain that holds this one and narrows none of some axes ``(dimension,)``."""
 
         def part(one: "Domain") -> tuple[Floats, Floats]:
             lower, upper = one.lower, one.upper
@@ -152,7 +152,7 @@ class Domain:
         return result
 
     def along(self, axes: NDArray[np.intp]) -> tuple["Domain", dict[int, int]]:
-        """The domain as far as it narrows some axes, which it draws jointly with no others.
+        """Return the domain as far as it narrows some axes, which it draws jointly with no others.
 
         Returns:
             That domain, and for the addresses by which it chooses boxes those by which this one does.
@@ -175,7 +175,7 @@ class Domain:
         return result, new_addresses
 
     def with_finite(self, finite: tuple[Finite, ...]) -> "Domain":
-        """The domain in which the axes of finite parts are chosen by these."""
+        """Return the domain in which the axes of finite parts are chosen by these."""
         axes = np.zeros(self.dimension, dtype=np.bool_)
         for one in finite:
             axes[one.axes] = True
@@ -282,7 +282,7 @@ class Domain:
 
     @classmethod
     def from_data(cls, data: dict[str, Any]) -> Self:
-        """The domain of `to_data`; raises ``ValueError`` for data that describes none."""
+        """Return the domain of `to_data`; raises ``ValueError`` for data that describes none."""
         try:
             dimension, boxes = int(data["dimension"]), data["boxes"]
             factors = tuple(

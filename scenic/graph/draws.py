@@ -49,13 +49,13 @@ BOX: Final = address("box of the domain")
 
 
 def box_addresses(parts: int) -> Words:
-    """The addresses of which box is drawn from in each of the factors of a domain."""
+    """Return the addresses of which box is drawn from in each of the factors of a domain."""
     others = [address("box of the domain", number) for number in range(1, parts)]
     return np.array([BOX, *others], dtype=np.uint64)
 
 
 def seed_word(seed: int) -> np.uint64:
-    """The 64-bit word that stands for a seed, which may be any integer: ``address("seed", seed)``."""
+    """Return the 64-bit word that stands for a seed, which may be any integer: ``address("seed", seed)``."""
     word: np.uint64 = seed_words([seed])[0]
     return word
 
@@ -67,7 +67,7 @@ def seed_words(seeds: Iterable[int]) -> Words:
 
 
 def scene_keys(seeds: Words, scenes: NDArray[np.int64]) -> Words:
-    """The keys ``(n,)`` of scenes: scene ``scenes[i]`` of the seed with the word ``seeds[i]``."""
+    """Return the keys ``(n,)`` of scenes: scene ``scenes[i]`` of the seed with the word ``seeds[i]``."""
     return mix(mix(seeds) + scenes.astype(np.uint64))
 
 
@@ -77,7 +77,7 @@ def attempt_keys(scene_keys: Words, attempts: NDArray[np.int64]) -> Words:
 
 
 def words_of(keys: Words, addresses: Words) -> Words:
-    """The random word of each address in each lane, ``(addresses, lanes)``."""
+    """Return the random word of each address in each lane, ``(addresses, lanes)``."""
     with np.errstate(over="ignore"):
         return mix(keys + addresses[:, np.newaxis])
 
@@ -100,7 +100,7 @@ class Source(Protocol):
         """The number of lanes."""
 
     def take(self, lanes: NDArray[np.intp]) -> "Source":
-        """The source of some of the lanes."""
+        """Return the source of some of the lanes."""
 
     def uniforms(self, addresses: Words) -> Floats:
         """Numbers of the open unit interval, ``(addresses, lanes)``."""
@@ -126,13 +126,13 @@ class Lanes:
 
     @classmethod
     def of(cls, seed: int, scene: int, attempt: int) -> Self:
-        """One lane."""
+        """Return one lane."""
         seeds, scenes = np.array([seed_word(seed)]), np.array([scene], dtype=np.int64)
         attempts = np.array([attempt], dtype=np.int64)
         return cls(seeds, scenes, attempts, attempt_keys(scene_keys(seeds, scenes), attempts))
 
     def take(self, lanes: NDArray[np.intp]) -> "Lanes":
-        """Some of the lanes."""
+        """Return some of the lanes."""
         return Lanes(self.seeds[lanes], self.scenes[lanes], self.attempts[lanes], self.keys[lanes])
 
 

@@ -32,10 +32,10 @@ class FiniteLaw(Protocol):
         """The number of uniform numbers that choose a combination."""
 
     def choose(self, draws: Floats) -> Cells:
-        """The combinations ``(variables, n)`` that uniform numbers ``(numbers, n)`` choose."""
+        """Return the combinations ``(variables, n)`` that uniform numbers ``(numbers, n)`` choose."""
 
     def arrays(self) -> Sequence[NDArray[np.generic]]:
-        """The arrays that the law is made of, for digests."""
+        """Return the arrays that the law is made of, for digests."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -196,12 +196,12 @@ def total(terms: Sequence[Bounds]) -> Bounds:
 
 
 def component(a: Bounds, index: int) -> Bounds:
-    """One component of a vector's bounds."""
+    """Return one component of a vector's bounds."""
     return Bounds(a.lower[:, index], a.upper[:, index])
 
 
 def components(a: Bounds) -> list[Bounds]:
-    """All components of a vector's or quaternion's bounds."""
+    """Return all components of a vector's or quaternion's bounds."""
     return [component(a, index) for index in range(a.lower.shape[1])]
 
 
@@ -223,5 +223,5 @@ def relaxed(a: Bounds, relative: float) -> Bounds:
 
 
 def size(a: Bounds) -> Floats:
-    """The largest absolute value in the bounds."""
+    """Return the largest absolute value in the bounds."""
     return np.maximum(np.abs(a.lower), np.abs(a.upper))

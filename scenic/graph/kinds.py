@@ -52,7 +52,7 @@ class Kind(Enum):
 
 
 def join(*kinds: Kind) -> Kind:
-    """The kind of a value that may be of any of ``kinds``: the common one, or `Kind.OTHER`.
+    """Return the kind of a value that may be of any of ``kinds``: the common one, or `Kind.OTHER`.
 
     An integer and a scalar join to `Kind.OTHER`, since Python keeps the difference (``1`` prints otherwise
     than ``1.0``, and ``//`` of large integers is exact).
@@ -68,10 +68,10 @@ class Codec(Protocol):
     """
 
     def decode(self, kind: Kind, column: Column) -> list[Any]:
-        """The Python values of a column, lane by lane."""
+        """Return the Python values of a column, lane by lane."""
 
     def encode(self, kind: Kind, value: object) -> Any:
-        """The row for a Python value; raises ``TypeError`` when it does not fit the kind."""
+        """Return the row for a Python value; raises ``TypeError`` when it does not fit the kind."""
 
 
 def boxed(values: list[Any]) -> Column:

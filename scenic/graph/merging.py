@@ -58,7 +58,7 @@ class _Choice:
         self._known: dict[tuple[Node, ...], Node] = {}
 
     def among(self, options: Sequence[Node], depth: int) -> Node:
-        """The value of the option that is chosen."""
+        """Return the value of the option that is chosen."""
         key = tuple(options)
         found = self._known.get(key)
         if found is None:

@@ -135,7 +135,7 @@ KEY: Final = Operation(
 
 
 def constant(value: Any, kind: Kind, row: Any, span: Hashable | None = None) -> Node:
-    """A constant node; ``row`` is the encoded value (see `Codec`)."""
+    """Return a constant node; ``row`` is the encoded value (see `Codec`)."""
     column = boxed([row]) if kind.is_boxed else np.asarray([row], dtype=kind.dtype)
     limits = (int(row), int(row)) if kind is Kind.INTEGER else None
     key = (kind, id(value)) if kind.is_boxed else (kind, column.tobytes())
@@ -143,7 +143,7 @@ def constant(value: Any, kind: Kind, row: Any, span: Hashable | None = None) -> 
 
 
 def axis(span: Hashable | None = None, place: int | None = None) -> Node:
-    """A new axis of the unit cube: uniform on the open interval (0, 1), independent of all others.
+    """Return a new axis of the unit cube: uniform on the open interval (0, 1), independent of all others.
 
     ``place`` is its address; without one a graph gives the axis an address by its number in the graph.
     """
@@ -151,7 +151,7 @@ def axis(span: Hashable | None = None, place: int | None = None) -> Node:
 
 
 def key(span: Hashable | None = None, place: int | None = None) -> Node:
-    """A new key at an address: a random word of its own in every lane."""
+    """Return a new key at an address: a random word of its own in every lane."""
     return Node(KEY, (), Kind.KEY, place, span)
 
 
@@ -182,7 +182,7 @@ class Graph:
         return len(self.axes)
 
     def address(self, node: Node) -> int:
-        """The address of an axis or key."""
+        """Return the address of an axis or key."""
         return address("unnamed", self.index[node]) if node.payload is None else int(node.payload)
 
     @cached_property
@@ -191,11 +191,11 @@ class Graph:
         return frozenset(self.address(node) for node in self.nodes if node.is_drawn)
 
     def addresses(self, nodes: Iterable[Node]) -> Words:
-        """The addresses of axes or keys."""
+        """Return the addresses of axes or keys."""
         return np.array([self.address(node) for node in nodes], dtype=np.uint64)
 
     def order(self, root: Node) -> list[Node]:
-        """The nodes that ``root`` needs, in evaluation order, ``root`` last; constants and draws left out."""
+        """Return the nodes that ``root`` needs, in evaluation order, ``root`` last; constants and draws left out."""
         return [node for node in _postorder(root, ()) if not node.is_drawn and not node.is_constant]
 
 

@@ -79,7 +79,7 @@ class Call:
         return self.shape[-1]
 
     def everywhere(self, *, value: bool) -> Column:
-        """A truth value that is the same in every lane."""
+        """Return a truth value that is the same in every lane."""
         return np.full((1,) * len(self.shape), value, dtype=np.bool_)
 
     def reject(self, mask: Column) -> None:
@@ -123,22 +123,22 @@ class Terms(Protocol):
     """
 
     def real(self, value: float) -> Any:
-        """The exact rational value of a float."""
+        """Return the exact rational value of a float."""
 
     def number(self, term: Any) -> Any:
-        """A truth value as 0 or 1; a number unchanged."""
+        """Return a truth value as 0 or 1; a number unchanged."""
 
     def constant(self, term: Any) -> float | None:
-        """The value of a term that is a fixed number."""
+        """Return the value of a term that is a fixed number."""
 
     def either(self, condition: Any, then: Any, otherwise: Any) -> Any:
         """``then`` where ``condition`` holds, else ``otherwise``."""
 
     def fresh(self, kind: Kind) -> Any:
-        """A term about which nothing is known; always a sound encoding of any value."""
+        """Return a term about which nothing is known; always a sound encoding of any value."""
 
     def integer_part(self, term: Any) -> Any:
-        """The floor of a real term."""
+        """Return the floor of a real term."""
 
     def define(self, condition: Any) -> None:
         """Assert what holds of a fresh term by its meaning; every other value must allow some value of that term."""
@@ -243,7 +243,7 @@ class Operation:
         return self.rejects(operands, payload) if callable(self.rejects) else self.rejects
 
     def bounding(self, operands: Sequence[_Operand], payload: Any) -> Sequence[_Operand]:
-        """The operands that readings of bounds look at."""
+        """Return the operands that readings of bounds look at."""
         return operands if self.looks_at is None else operands[self.looks_at(payload)]
 
     def is_python(self, operands: Sequence[Operand], kind: Kind) -> bool:
@@ -258,10 +258,10 @@ class Operation:
 
 
 def by_lane(_call: Call, *_columns: Column) -> Column:
-    """The NumPy reading of an operation that is only ever evaluated by its ``python`` function, lane by lane."""
+    """Return the NumPy reading of an operation that is only ever evaluated by its ``python`` function, lane by lane."""
     raise AssertionError("evaluated lane by lane")
 
 
 def always(kind: Kind) -> KindRule:
-    """The rule of an operation whose result is of one kind whatever its operands."""
+    """Return the rule of an operation whose result is of one kind whatever its operands."""
     return lambda _operands, _payload: kind

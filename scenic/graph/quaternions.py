@@ -28,7 +28,7 @@ _GIMBAL: Final = 1e-9
 
 
 def multiply(p: npt.ArrayLike, q: npt.ArrayLike) -> Array:
-    """The composition ``p q`` of quaternions ``(..., 4)``: q expressed in the frame p."""
+    """Return the composition ``p q`` of quaternions ``(..., 4)``: q expressed in the frame p."""
     a, b = _rows(p), _rows(q)
     p_parts = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
     q_parts = b[..., 0], b[..., 1], b[..., 2], b[..., 3]
@@ -50,7 +50,7 @@ def product(p: Parts, q: Parts) -> Parts:
 
 
 def conjugate(q: npt.ArrayLike) -> Array:
-    """The conjugate of quaternions ``(..., 4)``: the inverse rotation of unit ones."""
+    """Return the conjugate of quaternions ``(..., 4)``: the inverse rotation of unit ones."""
     result = np.negative(_rows(q))
     result[..., 3] = np.negative(result[..., 3])
     return result
@@ -79,7 +79,7 @@ def turned(q: Parts, v: Triple) -> Triple:
 
 
 def from_euler(yaw: npt.ArrayLike, pitch: npt.ArrayLike, roll: npt.ArrayLike) -> Array:
-    """The quaternions ``(..., 4)`` of Euler angles in radians, each of shape ``(...)``."""
+    """Return the quaternions ``(..., 4)`` of Euler angles in radians, each of shape ``(...)``."""
     angles = tuple(_rows(angle) for angle in (yaw, pitch, roll))
     result = _empty(np.broadcast_shapes(*(angle.shape for angle in angles)), 4)
     result[..., 0], result[..., 1], result[..., 2], result[..., 3] = of_euler(*angles)
@@ -109,7 +109,7 @@ def _cos_and_sin(angle: Any) -> tuple[Any, Any]:
 
 
 def from_yaw(yaw: npt.ArrayLike) -> Array:
-    """The quaternions ``(..., 4)`` of rotations about Z by angles ``(...)`` in radians."""
+    """Return the quaternions ``(..., 4)`` of rotations about Z by angles ``(...)`` in radians."""
     half = _rows(yaw) * 0.5
     result = _empty(half.shape, 4)
     result[..., 0] = result[..., 1] = 0.0
@@ -119,7 +119,7 @@ def from_yaw(yaw: npt.ArrayLike) -> Array:
 
 
 def to_euler(q: npt.ArrayLike) -> tuple[Array, Array, Array]:
-    """The angles (yaw, pitch, roll), each ``(...)``, of quaternions ``(..., 4)`` of any non-zero norm.
+    """Return the angles (yaw, pitch, roll), each ``(...)``, of quaternions ``(..., 4)`` of any non-zero norm.
 
     yaw and roll lie in [-π, π], pitch in [-π/2, π/2]. Where pitch is ±π/2 only yaw ± roll is determined;
     roll is then 0. The half sum and the half difference of yaw and roll come from two independent pairs of
@@ -143,7 +143,7 @@ def to_euler(q: npt.ArrayLike) -> tuple[Array, Array, Array]:
 
 
 def euler_angle(q: Parts, index: int) -> float:
-    """One of the angles of `to_euler` of a quaternion of plain floats; equal to it in every bit."""
+    """Return one of the angles of `to_euler` of a quaternion of plain floats; equal to it in every bit."""
     x, y, z, w = q
     if (
         index == 0 and x == 0 == y and z != 0
@@ -153,7 +153,7 @@ def euler_angle(q: Parts, index: int) -> float:
 
 
 def euler_angles(q: Parts) -> tuple[float, float, float]:
-    """All three angles of `to_euler` of a quaternion of plain floats; equal to it in every bit."""
+    """Return all three angles of `to_euler` of a quaternion of plain floats; equal to it in every bit."""
     x, y, z, w = q
     sum_sine, sum_cosine = z + y, w + x
     difference_sine, difference_cosine = z - y, w - x
@@ -190,7 +190,7 @@ def normal_angle(angle: float) -> float:
 
 
 def to_matrix(q: npt.ArrayLike) -> Array:
-    """The rotation matrices ``(..., 3, 3)`` of unit quaternions ``(..., 4)``; columns are the turned axes."""
+    """Return the rotation matrices ``(..., 3, 3)`` of unit quaternions ``(..., 4)``; columns are the turned axes."""
     a = _rows(q)
     x, y, z, w = a[..., 0], a[..., 1], a[..., 2], a[..., 3]
     # Stored coefficient by coefficient, which suits the elementwise work that follows.
@@ -208,7 +208,7 @@ def to_matrix(q: npt.ArrayLike) -> Array:
 
 
 def from_axes(x: npt.ArrayLike, y: npt.ArrayLike, z: npt.ArrayLike) -> Array:
-    """The quaternions ``(..., 4)`` of right-handed frames with these unit axes ``(..., 3)``.
+    """Return the quaternions ``(..., 4)`` of right-handed frames with these unit axes ``(..., 3)``.
 
     Shepperd's method ("Quaternion from rotation matrix", J. Guidance and Control 1(3), 1978): the largest
     component is found first, so that no division is ill-conditioned.
@@ -258,7 +258,7 @@ def _empty(shape: tuple[int, ...], components: int) -> Array:
 
 
 def components_last(array: Array) -> Array:
-    """An array ``(components, ...)`` seen as ``(..., components)``; ``np.moveaxis`` takes ten times as long."""
+    """Return an array ``(components, ...)`` seen as ``(..., components)``; ``np.moveaxis`` takes ten times as long."""
     return array.transpose(*range(1, array.ndim), 0)
 
 

@@ -141,7 +141,7 @@ class Scheduler:
         return _START
 
     def after(self, before: Schedule, roots: tuple[Node, ...]) -> Schedule:
-        """The schedule that gets ``roots`` once ``before``, which keeps all, has been done."""
+        """Return the schedule that gets ``roots`` once ``before``, which keeps all, has been done."""
         key = (id(before), roots)
         schedule = self._known.get(key)
         if schedule is None:
@@ -183,7 +183,7 @@ class Scheduler:
         )
 
     def below(self, roots: Iterable[Node]) -> frozenset[Node]:
-        """The nodes that are evaluated to get some nodes when nothing is there."""
+        """Return the nodes that are evaluated to get some nodes when nothing is there."""
         return frozenset(self._missing(roots, {}))
 
     def without_python(self, roots: Sequence[Node]) -> tuple[Node, ...]:
@@ -241,7 +241,7 @@ class Scheduler:
         return node.operands[:1] if self._grouped and is_choice_of_draws(node) else node.operands
 
     def _missing(self, roots: Iterable[Node], there: Mapping[Node, ColumnPlace]) -> list[Node]:
-        """The nodes below ``roots`` that are neither there nor constant, operands first."""
+        """Return the nodes below ``roots`` that are neither there nor constant, operands first."""
         result: dict[Node, None] = {}
         for root in roots:
             if root.is_constant or root in there or root in result:

@@ -15,7 +15,7 @@ __all__ = ["diagnostic_data", "span_data"]
 
 
 def diagnostic_data(diagnostic: Diagnostic) -> dict[str, Any]:
-    """A diagnostic as plain data."""
+    """Return a diagnostic as plain data."""
     return {
         "code": diagnostic.code,
         "severity": diagnostic.severity.value,

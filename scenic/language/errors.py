@@ -38,7 +38,7 @@ class Finding(Exception):
             self.code = code
 
     def diagnostic(self) -> Diagnostic:
-        """The same as plain data."""
+        """Return the same as plain data."""
         return Diagnostic(
             self.code,
             self.message,
@@ -57,7 +57,7 @@ class Located(Finding):
     """The text that the place is in, where it is not in a file."""
 
     def at(self, place: "tuple[Span | None, str | None]") -> Self:
-        """The same problem; at a place, span and file, unless it has one."""
+        """Return the same problem; at a place, span and file, unless it has one."""
         if self.span is None:
             self.span, self.filename = place
         return self
@@ -151,7 +151,7 @@ _BY_CODE: Mapping[str, type[ScenicSyntaxError]] = MappingProxyType(
 
 
 def compile_error(diagnostics: Sequence[Diagnostic], *, filename: str | None = None) -> ScenicSyntaxError:
-    """The exception of a program that cannot be compiled, of the class for its first problem."""
+    """Return the exception of a program that cannot be compiled, of the class for its first problem."""
     return _BY_CODE.get(diagnostics[0].code, ScenicSyntaxError)(diagnostics, filename=filename)
 
 

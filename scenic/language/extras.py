@@ -48,5 +48,5 @@ EXTRAS: Final[Mapping[str, Extra]] = MappingProxyType(
 
 
 def installation(extra: str) -> str:
-    """The command that installs an extra; quoted, since shells read brackets as patterns."""
+    """Return the command that installs an extra; quoted, since shells read brackets as patterns."""
     return f"pip install 'scenic-lang[{EXTRAS[extra].name}]'"

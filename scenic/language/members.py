@@ -121,5 +121,5 @@ INSTANCE_METHODS: Final[Mapping[str, Member]] = _read(_OF_INSTANCES)
 
 
 def members_of(kind: str) -> Mapping[str, Member]:
-    """The members of the values of a kind; none if they are not declared."""
+    """Return the members of the values of a kind; none if they are not declared."""
     return MEMBERS.get("region" if kind == "workspace" else kind, MappingProxyType({}))

@@ -539,7 +539,7 @@ _ALL = (
 
 
 def _functions_of_elements() -> Iterator[Name]:
-    """The functions of the established Python API that do what operators and specifiers do."""
+    """Yield the functions of the established Python API that do what operators and specifiers do."""
     elements: list[Operator | SpecifierDeclaration] = [*OPERATORS.values(), *SPECIFIERS.values()]
     for element in elements:
         forms = " or ".join(f"`{form}`" for form in element.forms)

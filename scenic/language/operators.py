@@ -103,12 +103,12 @@ class Operator:
         return any(operand.may_be_ego for operand in self.operands)
 
     def label(self, operand: Operand) -> str:
-        """The operator as messages about an operand name it; see `label`."""
+        """Return the operator as messages about an operand name it; see `label`."""
         return label(self.forms, self.operands, operand)
 
 
 def label(forms: Sequence[str], operands: Sequence[Operand], operand: Operand) -> str:
-    """An operator or specifier as messages about an operand name it: its first words, and those before the operand.
+    """Return an operator or specifier as messages about an operand name it: its first words, and those before the operand.
 
     The words that follow an operand name it where the text begins with it.
     """

@@ -120,7 +120,7 @@ _P = BuiltinProperty
 
 
 def _words(name: str) -> Type:
-    """A type whose values the text of a program does not show."""
+    """Return a type whose values the text of a program does not show."""
     return Type(name, name)
 
 

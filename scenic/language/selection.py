@@ -25,7 +25,7 @@ def is_selector(text: str) -> bool:
 
 
 def similar_selector(text: str) -> str | None:
-    """The code or beginning of codes that was probably meant."""
+    """Return the code or beginning of codes that was probably meant."""
     for meant in (text.strip().upper(), f"SC{text.strip()}"):
         if meant != text and is_selector(meant):
             return meant
@@ -42,7 +42,7 @@ def is_lasting(diagnostic: Diagnostic) -> bool:
 
 
 def longest_match(code: str, selectors: Iterable[str]) -> int:
-    """The length of the longest of the selectors that ``code`` begins with, or -1."""
+    """Return the length of the longest of the selectors that ``code`` begins with, or -1."""
     return max((len(each) for each in selectors if code.startswith(each)), default=-1)
 
 

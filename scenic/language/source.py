@@ -39,7 +39,7 @@ class Source:
 
     @staticmethod
     def decode(data: bytes, filename: str) -> str:
-        """The text of a source file; encodings other than UTF-8 are not supported.
+        """Return the text of a source file; encodings other than UTF-8 are not supported.
 
         Raises `ScenicError` with code SC107 and the place of the first bad byte.
         """
@@ -53,7 +53,7 @@ class Source:
         return self.lines[number - 1] if 1 <= number <= len(self.lines) else ""
 
     def character(self, line: int, byte: int) -> int:
-        """The column in characters of a column in UTF-8 bytes; past the end of the line, its length.
+        """Return the column in characters of a column in UTF-8 bytes; past the end of the line, its length.
 
         Inside a character, the column of that character.
         """
@@ -63,7 +63,7 @@ class Source:
         return len(content.encode("utf-8", "surrogatepass")[:byte].decode("utf-8", "ignore"))
 
     def byte(self, line: int, character: int) -> int:
-        """The column in UTF-8 bytes of a column in characters; past the end of the line, its length."""
+        """Return the column in UTF-8 bytes of a column in characters; past the end of the line, its length."""
         return len(self.line(line)[:character].encode("utf-8", "surrogatepass"))
 
     def span(self, node: ast.AST) -> Span:

@@ -73,7 +73,7 @@ class SpecifierDeclaration:
         return self.reads_ego or any(operand.may_be_ego for operand in self.operands)
 
     def label(self, operand: Operand) -> str:
-        """The specifier as messages about an operand name it."""
+        """Return the specifier as messages about an operand name it."""
         return label(self.forms, self.operands, operand)
 
 

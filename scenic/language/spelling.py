@@ -63,7 +63,7 @@ def _digits(name: str) -> str:
 
 
 def nearest(name: str, candidates: Iterable[str], *, limit: int | None = None) -> str | None:
-    """The candidate closest to ``name``, or ``None`` if none is close.
+    """Return the candidate closest to ``name``, or ``None`` if none is close.
 
     Close means at most ``limit`` edits away; without a limit, a third of the name's length. So names of one or two
     letters are close to nothing but themselves in other letter case.
@@ -85,7 +85,7 @@ _WORD: Final = re.compile(r"[A-Z]?[a-z0-9]+|[A-Z]+(?![a-z])")
 
 
 def related(name: str, candidates: Iterable[str]) -> str | None:
-    """The only candidate that has all words of ``name``, or whose words ``name`` all has: ``leftLane`` for ``laneToLeft``.
+    """Return the only candidate that has all words of ``name``, or whose words ``name`` all has: ``leftLane`` for ``laneToLeft``.
 
     Words are those of names written in capitals or with underscores. ``None`` if several candidates are equally near.
     """
@@ -113,7 +113,7 @@ def _words(name: str) -> frozenset[str]:
 
 
 def nearest_option(name: str, options: Iterable[str]) -> str | None:
-    """The one of a few options that is probably meant: the only one that begins so, or the nearest, one edit away if it is short."""
+    """Return the one of a few options that is probably meant: the only one that begins so, or the nearest, one edit away if it is short."""
     known = list(options)
     begun = [each for each in known if name and each.lower().startswith(name.lower())]
     if len(begun) == 1:
@@ -122,7 +122,7 @@ def nearest_option(name: str, options: Iterable[str]) -> str | None:
 
 
 def nearest_property(name: str, known: Iterable[str]) -> str | None:
-    """The property that is probably meant by a name that is none: at most two edits away, unless the name is very short."""
+    """Return the property that is probably meant by a name that is none: at most two edits away, unless the name is very short."""
     return nearest(name, known, limit=2) if len(name) > _SHORTEST else None
 
 
@@ -131,7 +131,7 @@ _SHORTEST = 3
 
 
 def nearest_attribute(error: BaseException) -> str | None:
-    """The public attribute that is probably meant where one is missing; ``None`` for errors of other kinds."""
+    """Return the public attribute that is probably meant where one is missing; ``None`` for errors of other kinds."""
     if not isinstance(error, AttributeError) or not isinstance(error.name, str) or error.obj is None:
         return None
     return nearest(error.name, (name for name in dir(error.obj) if not name.startswith("_")))

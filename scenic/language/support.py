@@ -12,7 +12,7 @@ __all__ = ["refused_features"]
 
 
 def refused_features() -> Iterator[str]:
-    """Every feature that this version refuses, one line of text each, in order of declaration."""
+    """Yield every feature that this version refuses, one line of text each, in order of declaration."""
     for operator in OPERATORS.values():
         if not operator.available:
             yield f"operator {operator.name}"

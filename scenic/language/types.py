@@ -205,7 +205,7 @@ def listed(types: Sequence[Type]) -> str:
 
 
 def wanted(types: Sequence[Type]) -> tuple[str, str | None]:
-    """The noun of several types, any of which will do, and the advice of all of them."""
+    """Return the noun of several types, any of which will do, and the advice of all of them."""
     noun = _alternatives([each.noun for each in types])
     if len(types) == 1:
         return noun, types[0].advice or None

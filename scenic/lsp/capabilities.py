@@ -88,7 +88,7 @@ def options_for(client: types.ClientCapabilities) -> Mapping[str, Any]:
 
 
 def _modules_and_folders() -> types.FileOperationRegistrationOptions:
-    """The files and folders whose creation, renaming and deletion matter."""
+    """Return the files and folders whose creation, renaming and deletion matter."""
     kinds = types.FileOperationPatternKind
     patterns = (
         types.FileOperationPattern("**/*.{scenic,sc,py}", matches=kinds.File),

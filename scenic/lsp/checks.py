@@ -219,7 +219,7 @@ class Checks:
 
 
 def finder(session: Session, document: Document) -> Callable[[GoOn], Found]:
-    """A function that finds the problems of a document, in any thread. To be called in the loop's thread."""
+    """Return a function that finds the problems of a document, in any thread. To be called in the loop's thread."""
     project, stamp = session.project_beside(document), session.generation
 
     return lambda go_on: found_in_document(session, document, project, stamp, go_on)
@@ -228,7 +228,7 @@ def finder(session: Session, document: Document) -> Callable[[GoOn], Found]:
 def found_in_document(
     session: Session, document: Document, project: Project, stamp: int, go_on: GoOn
 ) -> Found:
-    """The faults of a document, and of its settings; ``stamp`` is the generation that ``project`` is of."""
+    """Return the faults of a document, and of its settings; ``stamp`` is the generation that ``project`` is of."""
     if not document.programs:
         return [], ()
     configurations, rules = session.rules(document.snapshot.filename)

@@ -40,7 +40,7 @@ class Encoding(StrEnum):
 
 
 def units(text: str, encoding: Encoding) -> int:
-    """The length of a text in code units."""
+    """Return the length of a text in code units."""
     if encoding is Encoding.UTF32 or text.isascii():
         return len(text)
     if encoding is Encoding.UTF8:
@@ -70,13 +70,13 @@ class Lines:
         return types.Position(self.before + line - 1, character + (self._lead if line == 1 else 0))
 
     def to_range(self, span: Span) -> types.Range:
-        """A span as a range."""
+        """Return a span as a range."""
         return types.Range(
             self.to_position(span.line, span.column), self.to_position(span.end_line, span.end_column)
         )
 
     def from_position(self, position: types.Position) -> tuple[int, int]:
-        """A position as line and column.
+        """Return a position as line and column.
 
         Inside a character, the column of that character; past the end of a line, its end; past the end of the text,
         the end of that.
@@ -99,7 +99,7 @@ class Lines:
         return line + 1, len(content)
 
     def from_range(self, found: types.Range) -> Span:
-        """A range as a span; one that ends before it starts is empty."""
+        """Return a range as a span; one that ends before it starts is empty."""
         first = self.from_position(found.start)
         return Span(*first, *max(first, self.from_position(found.end)))
 
@@ -118,7 +118,7 @@ def to_diagnostic(
     tags: bool = True,
     pages: bool = False,
 ) -> types.Diagnostic:
-    """A diagnostic as the protocol has it: the help is a line of the message, labels are related places.
+    """Return a diagnostic as the protocol has it: the help is a line of the message, labels are related places.
 
     ``elsewhere`` gives the places in other files; without it, they are left out.
     ``related`` and ``tags`` tell whether the client shows such, ``pages`` whether it opens the page of a code.

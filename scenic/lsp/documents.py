@@ -66,7 +66,7 @@ class Document:
         )
 
     def at(self, line: int) -> "Document":
-        """The program on a line, counted from 0 as the protocol does; else the document itself."""
+        """Return the program on a line, counted from 0 as the protocol does; else the document itself."""
         for each in self.programs:
             if each.before <= line < each.before + each.text.count("\n"):
                 return each
@@ -99,7 +99,7 @@ class Document:
 
 
 def snapshot_of(text: str, uri: str, language: str = "scenic") -> Snapshot:
-    """The snapshot of a text; of a Markdown text, that of an empty program."""
+    """Return the snapshot of a text; of a Markdown text, that of an empty program."""
     if is_markdown(uri, language):
         text = ""
     # What is no file gets a name that is none either, and that no file has.

@@ -31,7 +31,7 @@ _REQUIRED_INSIDE: Final[Mapping[str, Mapping[str, Any]]] = MappingProxyType(
 
 
 def completed(method: str, params: object) -> Any:
-    """The parameters of a message, with the fields that some clients leave out."""
+    """Return the parameters of a message, with the fields that some clients leave out."""
     if not isinstance(params, dict):
         return params
     defaults = _REQUIRED.get(method, {})

@@ -51,7 +51,7 @@ takes form feeds for line ends."""
 
 
 def _strictly(value: Any, kind: Any) -> Any:
-    """A plain value, or a member of an enumeration of such, as a message has it."""
+    """Return a plain value, or a member of an enumeration of such, as a message has it."""
     if issubclass(kind, Enum):
         return kind(value)
     if kind is int and isinstance(value, float) and value.is_integer():

@@ -36,7 +36,7 @@ class MessageReader:
     # What the loop of pygls asks for
 
     async def readline(self) -> bytes:
-        """A line of the next header; empty at the end of the stream."""
+        """Return a line of the next header; empty at the end of the stream."""
         if self._body is not None:
             return b"\r\n"
         if self._messages.empty():
@@ -46,7 +46,7 @@ class MessageReader:
         return b"" if self._body is None else b"Content-Length: %d\r\n" % len(self._body)
 
     async def readexactly(self, _count: int) -> bytes:
-        """The message after the header."""
+        """Return the message after the header."""
         body, self._body = self._body, None
         return body or _NO_JSON
 
@@ -69,7 +69,7 @@ class MessageReader:
 
 
 def _message(stream: BinaryIO) -> bytes | None:
-    """The next message; ``None`` at the end of the stream."""
+    """Return the next message; ``None`` at the end of the stream."""
     fields: dict[str, str] = {}
     while True:
         line = stream.readline(_LONGEST_HEADER)

@@ -67,7 +67,7 @@ class Server(LanguageServer):
             parent.watch(params.process_id, self._abandoned)
 
     def _handler(self, method: str) -> Callable[[Any], Any]:
-        """The handler of a method, whose module is imported when it is first called."""
+        """Return the handler of a method, whose module is imported when it is first called."""
         return lambda params: handler(method)(self.session, params)
 
     def _abandoned(self) -> None:
@@ -172,7 +172,7 @@ def _serve(server: Server, start: Callable[[Server], None]) -> int:
 
 
 def _version() -> str:
-    """The version that is installed, read off the name of a folder: asking for it takes longer than to start."""
+    """Return the version that is installed, read off the name of a folder: asking for it takes longer than to start."""
     for folder in sys.path:
         try:
             names = os.listdir(folder or os.curdir)

@@ -122,7 +122,7 @@ class Session:
         return get_capability(self.client, path) is not None
 
     def lists(self, path: str) -> frozenset[str]:
-        """The texts listed at a path of its capabilities."""
+        """Return the texts listed at a path of its capabilities."""
         return frozenset(get_capability(self.client, path) or ())
 
     # Documents
@@ -140,7 +140,7 @@ class Session:
         return document_here
 
     def file(self, uri: str) -> Document | None:
-        """A file that is not open, if it can be read."""
+        """Return a file that is not open, if it can be read."""
         path = to_path(uri)
         if path is None:
             return None
@@ -214,7 +214,7 @@ class Session:
         return self.project
 
     def workspace_snapshots(self) -> list[tuple[str, Callable[[], Snapshot]]]:
-        """The files of the workspace, each with a function that returns its snapshot, made on first use."""
+        """Return the files of the workspace, each with a function that returns its snapshot, made on first use."""
         opened = {
             each.snapshot.filename: each.snapshot for each in self.documents.values() if each.is_program
         }
@@ -245,12 +245,12 @@ class Session:
     # From here on: also called by work beside the loop.
 
     def uri_of(self, filename: str) -> str:
-        """The address of a file, as the client has it if it is open."""
+        """Return the address of a file, as the client has it if it is open."""
         opened = self._opened_as(filename)
         return to_uri(filename) if opened is None else opened.uri
 
     def lines_of(self, filename: str) -> Lines:
-        """The lines of a file, as the project knows it."""
+        """Return the lines of a file, as the project knows it."""
         opened = self._opened_as(filename)
         if opened is not None:
             return opened.lines
@@ -262,7 +262,7 @@ class Session:
         return types.Location(self.uri_of(filename), self.lines_of(filename).to_range(span))
 
     def lines_of_source(self, filename: str, source: Source) -> Lines:
-        """The lines of a file of which the source is at hand."""
+        """Return the lines of a file of which the source is at hand."""
         opened = self._opened_as(filename)
         return Lines(source, self.encoding) if opened is None else opened.lines
 

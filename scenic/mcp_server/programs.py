@@ -28,20 +28,20 @@ class Programs:
         self.folder = os.path.realpath(folder)
 
     def place(self, filename: str) -> str:
-        """The path of a file of the folder; `RequestError` if it is outside."""
+        """Return the path of a file of the folder; `RequestError` if it is outside."""
         path = os.path.realpath(os.path.join(self.folder, filename))
         if path != self.folder and not path.startswith(self.folder + os.sep):
             raise RequestError(f"'{filename}' is outside the folder of this server")
         return path
 
     def accept(self, text: str) -> str:
-        """The text of a program, unless it is too long."""
+        """Return the text of a program, unless it is too long."""
         if len(text) > LONGEST:
             raise RequestError(f"the program has {len(text):,} characters; at most {LONGEST:,} are read")
         return text
 
     def check(self, text: str, filename: str) -> dict[str, Any]:
-        """The problems of a program."""
+        """Return the problems of a program."""
         path = self.place(filename)
         surroundings_of = surroundings_in(Project([self.folder]))
         found = check_text(self.accept(text), filename=path, surroundings_of=surroundings_of)
@@ -60,7 +60,7 @@ class Programs:
         return {"text": repair_result.text, "repairs": repair_result.count, **check_result}
 
     def format(self, text: str) -> dict[str, Any]:
-        """The program in the usual style."""
+        """Return the program in the usual style."""
         from scenic.ide.formatting import format_text
 
         formatted = format_text(self.accept(text))

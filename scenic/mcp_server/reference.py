@@ -42,7 +42,7 @@ _KINDS: Final[Mapping[str, NameKind]] = {
 
 
 def reference_text(topic: str) -> str | None:
-    """The text about a topic or an element of the language; ``None`` if there is none."""
+    """Return the text about a topic or an element of the language; ``None`` if there is none."""
     words = " ".join(topic.lower().replace("_", " ").split()).strip("`")
     if not words:
         return "\n".join(f"- {name}" for name in TOPICS)
@@ -58,12 +58,12 @@ def reference_text(topic: str) -> str | None:
 
 
 def similar_topic(topic: str) -> str | None:
-    """The topic or element that is probably meant."""
+    """Return the topic or element that is probably meant."""
     return nearest(topic, {*TOPICS, *(name for each in TOPICS for name, _ in _topic(each))})
 
 
 def _topic(topic: str) -> Iterator[tuple[str, str]]:
-    """The elements of a topic, each with its text."""
+    """Yield the elements of a topic, each with its text."""
     if topic == "statements":
         for statement in STATEMENTS.values():
             places = ", ".join(sorted(place.value for place in statement.places))
@@ -114,7 +114,7 @@ def explain_code(code: str) -> str | None:
 
 @cache
 def snippets() -> tuple[Mapping[str, Any], ...]:
-    """The checked examples of the documentation."""
+    """Return the checked examples of the documentation."""
     text = resources.files("scenic.language").joinpath("snippets.jsonl").read_text(encoding="utf-8")
     return tuple(json.loads(line) for line in text.splitlines())
 
@@ -123,7 +123,7 @@ _WEIGHTS: Final = (("topic", 5), ("section", 2), ("program", 2), ("text", 1))
 
 
 def search_examples(query: str, count: int = 5) -> list[dict[str, str]]:
-    """The examples that match the words of a query best; none if no word occurs."""
+    """Return the examples that match the words of a query best; none if no word occurs."""
     words = {word.lower() for word in re.findall(r"\w+", query) if len(word) > 1}
     scores = []
     for number, snippet in enumerate(snippets()):

@@ -31,7 +31,7 @@ async def run_command(
     seconds: float,
     progress: Callable[[float, float], Awaitable[None]],
 ) -> tuple[int, str, str]:
-    """The exit code, output and error output of a command that reads ``text`` and runs in ``folder``.
+    """Return the exit code, output and error output of a command that reads ``text`` and runs in ``folder``.
 
     ``progress`` is called with the seconds passed and the limit. Raises `RunLimitError`. Whatever happens, no process is left.
     """

@@ -49,7 +49,7 @@ _Result = TypeVar("_Result")
 
 
 def build_server(folder: str, *, run: bool = False) -> MCPServer:
-    """The server for the programs of a folder; with ``run`` it has tools that run programs."""
+    """Return the server for the programs of a folder; with ``run`` it has tools that run programs."""
     try:
         package_version = version("scenic-lang")
     except PackageNotFoundError:
@@ -147,7 +147,7 @@ class _Runs:
         self._context = context
 
     async def command(self, arguments: list[str], text: str, seconds: float) -> tuple[int, str, str]:
-        """The exit code, output and error output of a command, which reports its progress."""
+        """Return the exit code, output and error output of a command, which reports its progress."""
         try:
             return await run_command(
                 arguments,

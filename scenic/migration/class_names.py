@@ -74,7 +74,7 @@ class DefinedClass:
 
 
 def definitions(tokens: Sequence[Token]) -> Iterator[DefinedClass]:
-    """The classes that a text defines, of either dialect."""
+    """Yield the classes that a text defines, of either dialect."""
     for index, token in enumerate(tokens):
         if token.text not in ("class", "constructor") or not _begins(tokens, index):
             continue
@@ -197,7 +197,7 @@ class Library:
 
 
 def _info(definition: DefinedClass, names: ModuleNames, filename: str) -> ClassInfo | None:
-    """The class of objects that a definition makes; ``None`` if it is a plain class of Python."""
+    """Return the class of objects that a definition makes; ``None`` if it is a plain class of Python."""
     if not definition.bases:
         return ClassInfo("Object", definition.pinned, (filename,))
     for base in definition.bases:

@@ -91,7 +91,7 @@ class Converter:
 
 
 def _checked(text: str, edits: list[TextEdit], filename: str) -> str | Diagnostic:
-    """The text with the edits, or the error that the parser finds in it."""
+    """Return the text with the edits, or the error that the parser finds in it."""
     if not edits:
         return text
     result = edited(text, edits)
@@ -99,5 +99,5 @@ def _checked(text: str, edits: list[TextEdit], filename: str) -> str | Diagnosti
 
 
 def first_error(parsed: ParseResult) -> Diagnostic | None:
-    """The first error of syntax."""
+    """Return the first error of syntax."""
     return next((each for each in parsed.diagnostics if each.severity is Severity.ERROR), None)

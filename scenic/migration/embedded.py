@@ -198,7 +198,7 @@ def _escaped(body: str, quote: str) -> Callable[[str], str | None]:
 
 
 def _escape(text: str, quote: str, *, real: bool) -> str:
-    """The text as it is written between quotes; ``real`` keeps line ends as they are."""
+    """Return the text as it is written between quotes; ``real`` keeps line ends as they are."""
     text = text.replace("\\", "\\\\").replace(quote, "\\" + quote)
     text = text.replace("\t", "\\t").replace("\r", "\\r")
     return text if real else text.replace("\n", "\\n")

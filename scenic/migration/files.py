@@ -132,7 +132,7 @@ def _left(file: File, code: str, reason: str, help_: str) -> Diagnostic:
 
 
 def lines_of(file: File) -> tuple[list[str], list[str]]:
-    """The lines of both texts, for a comparison."""
+    """Return the lines of both texts, for a comparison."""
     return (
         Source(file.before, file.name).text.splitlines(keepends=True),
         Source(file.after, file.name).text.splitlines(keepends=True),

@@ -80,7 +80,7 @@ class Dialect:
 
 
 def dialect_of(tokens: Sequence[Token], names: ModuleNames) -> Dialect:
-    """The dialect of a text, judged by its tokens."""
+    """Return the dialect of a text, judged by its tokens."""
     signs: list[int] = []
     is_new = False
     for index, token in enumerate(tokens):

@@ -44,7 +44,7 @@ class TextPiece:
         self.starts = line_starts(self.source)
 
     def place(self, node: ast.AST) -> tuple[int, int]:
-        """The offsets at which a node begins and ends."""
+        """Return the offsets at which a node begins and ends."""
         span = self.source.span(node)
         return (
             self.starts[span.line - 1] + span.column,
@@ -52,12 +52,12 @@ class TextPiece:
         )
 
     def text(self, node: ast.AST) -> str:
-        """The text of a node."""
+        """Return the text of a node."""
         start, end = self.place(node)
         return self.source.text[start:end]
 
     def line(self, node: ast.AST) -> int:
-        """The line on which a node begins."""
+        """Return the line on which a node begins."""
         return self.source.span(node).line
 
     def edit(self, rule: str, node: ast.AST, start: int, end: int, text: str) -> None:
@@ -90,17 +90,17 @@ class TextPiece:
         return (node for node in self.nodes if isinstance(node, kinds))
 
     def cls(self, new: scenic.New) -> ClassInfo | None:
-        """The class of a new object, as far as it is known."""
+        """Return the class of a new object, as far as it is known."""
         return self.names.classes.get(new.cls.id)
 
     def ancestors(self, node: ast.AST) -> Iterator[ast.AST]:
-        """The nodes around a node, the innermost first."""
+        """Yield the nodes around a node, the innermost first."""
         while node in self.parents:
             node = self.parents[node]
             yield node
 
     def indentation(self, line: int) -> str:
-        """The white space at the beginning of a line."""
+        """Return the white space at the beginning of a line."""
         text = self.source.line(line)
         return text[: len(text) - len(text.lstrip())]
 

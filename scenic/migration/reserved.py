@@ -58,7 +58,7 @@ _STATEMENTS: Final = frozenset({"do", "require"})
 
 
 def renamings(tokens: Sequence[Token]) -> Iterator[tuple[int, TextEdit]]:
-    """The edits that rename what a text calls by a reserved name, each with its line."""
+    """Yield the edits that rename what a text calls by a reserved name, each with its line."""
     places: list[tuple[int, str]] = []
     bound: set[str] = set()
     for index, token in enumerate(tokens):

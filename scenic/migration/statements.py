@@ -54,7 +54,7 @@ def _monitors(piece: TextPiece) -> None:
 
 
 def _block_of(piece: TextPiece, node: ast.AST) -> list[ast.stmt]:
-    """The block of statements that a statement is in."""
+    """Return the block of statements that a statement is in."""
     parent = piece.parents[node]
     blocks = (getattr(parent, name, None) for name in parent._fields)
     return next(block for block in blocks if isinstance(block, list) and node in block)
@@ -242,7 +242,7 @@ def _maps(piece: TextPiece) -> None:
 
 
 def _paths(piece: TextPiece) -> Iterator[tuple[str, ast.Constant]]:
-    """The paths that a program gives to ``localPath`` and ``setLocalWorld``."""
+    """Yield the paths that a program gives to ``localPath`` and ``setLocalWorld``."""
     for node in piece.of(ast.Call):
         match node:
             case ast.Call(func=ast.Name(id="localPath"), args=[ast.Constant(value=str(value)) as literal]):

@@ -43,7 +43,7 @@ class TextEdit(NamedTuple):
 
 
 def tokens_of(source: Source) -> list[Token]:
-    """The tokens of a text, without comments."""
+    """Return the tokens of a text, without comments."""
     tokens = lex(source.text, WORDS)
     starts = line_starts(source)
     last = len(source.lines)
@@ -74,14 +74,14 @@ def line_starts(source: Source) -> list[int]:
 
 
 def first_of_line(tokens: list[Token], index: int) -> int:
-    """The index of the first token of the logical line that contains a token."""
+    """Return the index of the first token of the logical line that contains a token."""
     while index > 0 and not tokens[index - 1].is_layout:
         index -= 1
     return index
 
 
 def edited(text: str, edits: Iterable[TextEdit]) -> str:
-    """The text with all edits, which must not overlap; insertions at one place are made in the order given."""
+    """Return the text with all edits, which must not overlap; insertions at one place are made in the order given."""
     pieces: list[str] = []
     position = 0
     for edit in sorted(edits, key=lambda each: (each.start, each.end)):

@@ -22,7 +22,7 @@ _STRING = "[rRbBuUfF]{0,2}"
 
 
 def language() -> dict[str, Any]:
-    """The rules of Monaco's tokenizer (Monarch) and the configuration of the language, as JSON can hold them."""
+    """Return the rules of Monaco's tokenizer (Monarch) and the configuration of the language, as JSON can hold them."""
     return {"tokens": _tokenizer(), "configuration": language_configuration()}
 
 

@@ -31,13 +31,13 @@ class Cameras:
                 sensor.deliver_when_read(partial(self._image, now, obj, name, sensor))
 
     def _present(self, simulation: Any) -> "Present":
-        """The objects now; their classes get numbers, whether or not an image shows them."""
+        """Return the objects now; their classes get numbers, whether or not an image shows them."""
         for obj in simulation.objects:
             self._classes.setdefault(type(obj).__name__, len(self._classes) + 1)
         return Present(simulation)
 
     def _image(self, now: "Present", owner: Any, name: str, sensor: CameraSensor) -> Any:
-        """The image of one camera; a dictionary of images for one that gives several."""
+        """Return the image of one camera; a dictionary of images for one that gives several."""
         observation = observe(
             now, sensor_viewpoint(name, owner, sensor), gallery=self._gallery, labelled=False
         )
@@ -51,7 +51,7 @@ class Cameras:
 
 
 def carried(objects: Any) -> Iterator[tuple[Any, str, CameraSensor]]:
-    """The cameras of objects that wait for images: owner, name and camera."""
+    """Yield the cameras of objects that wait for images: owner, name and camera."""
     for obj in objects:
         for name, sensor in obj.sensors.items():
             if isinstance(sensor, CameraSensor) and type(sensor).getObservation is Sensor.getObservation:

@@ -46,7 +46,7 @@ class Command(Action):
 
     @abstractmethod
     def commands(self) -> Mapping[str, float]:
-        """The settings that it makes, by name."""
+        """Return the settings that it makes, by name."""
 
 
 class SetVelocity(Command):
@@ -151,5 +151,5 @@ class Fly(Command):
 
 
 def model_of(obj: object) -> str:
-    """The model of an object."""
+    """Return the model of an object."""
     return str(getattr(obj, "dynamics", "point"))

@@ -36,7 +36,7 @@ class DummySimulation(Simulation):
                 obj.__dict__["position"] = Vector.of((x, y + self.drift, z))
 
     def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
-        """The values of the properties."""
+        """Return the values of the properties."""
         stored = obj.__dict__
         return {name: stored[name] for name in properties}
 
@@ -60,6 +60,6 @@ class DummySimulator(Simulator):
     def createSimulation(
         self, scene: Scene, *, timestep: float | None = None, **options: Any
     ) -> DummySimulation:
-        """A simulation that has run."""
+        """Return a simulation that has run."""
         seconds = self.timestep if timestep is None else timestep
         return DummySimulation(scene, drift=self.drift, timestep=seconds, **options)

@@ -250,7 +250,7 @@ class KinematicSimulator(Simulator):
         self.timestep = timestep
 
     def createSimulation(self, scene: Scene, **options: Any) -> KinematicSimulation:
-        """A simulation that has run."""
+        """Return a simulation that has run."""
         if options.get("timestep") is None:
             options["timestep"] = self.timestep
         return KinematicSimulation(scene, **options)

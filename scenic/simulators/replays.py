@@ -190,7 +190,7 @@ class Tape:
         return any(abs(one - other) > self._tolerance for one, other in zip(first, second, strict=True))
 
     def replay(self) -> Replay:
-        """The recording of the simulation."""
+        """Return the recording of the simulation."""
         made = [] if self.draws is None or not self._keep_draws else list(self.draws.made)
         return Replay(self._key, made, self._states)
 

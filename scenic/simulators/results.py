@@ -104,7 +104,7 @@ class Latest(Sequence[Any]):
 
 
 def kept(series: Sequence[object]) -> Sequence[Any]:
-    """The kept part of a series."""
+    """Return the kept part of a series."""
     return series.newest if isinstance(series, Latest) else series
 
 

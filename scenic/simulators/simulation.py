@@ -53,7 +53,7 @@ OnState: TypeAlias = Callable[["Simulation", Poses, ActionsTaken], None]
 
 
 def _tape(replay: bytes | None, key: bytes | None, **options: Any) -> Tape:
-    """The tape of a simulation: of an earlier one, with its key, where there is one."""
+    """Return the tape of a simulation: of an earlier one, with its key, where there is one."""
     earlier = None if replay is None else Replay.decoded(replay)
     if earlier is not None:
         key = earlier.key
@@ -299,7 +299,7 @@ class Simulation(ABC):
             self._destroy_once()
 
     def _where_now(self, frame: FrameType) -> tuple[str | None, str | None]:
-        """The behavior, monitor or scenario whose code a frame runs, and the line of the program."""
+        """Return the behavior, monitor or scenario whose code a frame runs, and the line of the program."""
         place = self._run.context.locator(frame)
         runner = running_in(frame)
         words = None if runner is None else f"{runner._kind} {runner._definition.name!r}"
@@ -349,7 +349,7 @@ class Simulation(ABC):
             )
 
     def _details(self, error: RejectionException, place: Span | None) -> str:
-        """The object that a rejection is about, the time and the line of the program, in words."""
+        """Return the object that a rejection is about, the time and the line of the program, in words."""
         subject = error.subject
         parts = []
         if subject is not None:
@@ -393,7 +393,7 @@ class Simulation(ABC):
 
     @abstractmethod
     def getProperties(self, obj: object, properties: object) -> Mapping[str, Any]:
-        """The present values of exactly these properties of an object."""
+        """Return the present values of exactly these properties of an object."""
 
     def scheduleForAgents(self) -> Sequence[Any]:
         """The agents, in the order in which they choose their actions."""
@@ -515,7 +515,7 @@ class Simulation(ABC):
     # Dynamic properties
 
     def _dynamic(self, cls: type) -> tuple[str, ...]:
-        """The properties that the simulator decides."""
+        """Return the properties that the simulator decides."""
         names = self._properties.get(cls)
         if names is None:
             entries = cls.scenic_properties.items()  # type: ignore[attr-defined] # classes of objects have them
@@ -563,7 +563,7 @@ class Simulation(ABC):
         self._tape.note(self, obj, names)
 
     def _checked(self, obj: object, name: str, old: Any, value: Any) -> Any:
-        """The value as the object stores it; raises ``RuntimeError`` for one of another type than before."""
+        """Return the value as the object stores it; raises ``RuntimeError`` for one of another type than before."""
         kind, old_kind = kind_of(value), kind_of(old)
         if (
             old_kind.is_number

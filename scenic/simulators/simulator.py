@@ -115,7 +115,7 @@ class Simulator(ABC):
     def simulateStepped(
         self, scene: Scene, maxSteps: int | None = None, *, name: str | None = None, **options: Any
     ) -> SteppedSimulation:
-        """A simulation that the caller advances. It is a context manager: it begins on entry, and is cleaned up on exit.
+        """Return a simulation that the caller advances. It is a context manager: it begins on entry, and is cleaned up on exit.
 
         Args:
             scene: what to simulate.

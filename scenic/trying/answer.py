@@ -145,7 +145,7 @@ class _Answer:
 
 
 def _explained(diagnostic: Diagnostic) -> dict[str, Any]:
-    """A diagnostic with the title and the page of its code."""
+    """Return a diagnostic with the title and the page of its code."""
     page = f"reference/errors.html#{diagnostic.code.lower()}"
     return {**diagnostic_data(diagnostic), "title": CODES[diagnostic.code], "page": page}
 

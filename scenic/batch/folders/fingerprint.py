@@ -48,7 +48,7 @@ def file_digests(scenario: Scenario, *, modules: bool = True) -> dict[str, str]:
 
 
 def files_of_origin(scenario: Scenario) -> dict[str, dict[str, str]]:
-    """The entry ``files`` of a description of how to load a program; none where no file decides its scenes."""
+    """Return the entry ``files`` of a description of how to load a program; none where no file decides its scenes."""
     files = file_digests(scenario)
     return {"files": files} if files else {}
 
@@ -86,7 +86,7 @@ def _is_installed(path: Path, folder: Path) -> bool:
 
 
 def module_files(names: Iterable[str], folder: Path) -> Iterator[Path]:
-    """The files of modules of Python and of all modules that they import, as far as they lie in a folder of the user's.
+    """Yield the files of modules of Python and of all modules that they import, as far as they lie in a folder of the user's.
 
     Args:
         names: full names of modules, or of what is imported from them.

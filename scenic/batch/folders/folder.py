@@ -127,7 +127,7 @@ class WrittenFolder:
         return (self.path / NAME).exists()
 
     def document(self) -> dict[str, Any]:
-        """The manifest as plain data; see `FolderKind.document`."""
+        """Return the manifest as plain data; see `FolderKind.document`."""
         return self.kind.document(self.path)
 
     def save(self, content: Mapping[str, object]) -> None:

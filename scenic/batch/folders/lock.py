@@ -149,7 +149,7 @@ class Lock:
         return BusyError(f"another command is writing '{self._target}'{words}", help=help)
 
     def _holder(self) -> "_Holder | None":
-        """The process that the file names, if it names one."""
+        """Return the process that the file names, if it names one."""
         with suppress(OSError, ValueError, TypeError):
             return _Holder(**json.loads(self._path.read_bytes()))
         return None

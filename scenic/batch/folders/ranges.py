@@ -16,7 +16,7 @@ def part_name(numbers: Range) -> str:
 
 
 def gaps(whole: Range, parts: Iterable[Range]) -> list[Range]:
-    """The ranges of ``whole`` that no part holds; the parts do not overlap."""
+    """Return the ranges of ``whole`` that no part holds; the parts do not overlap."""
     first, last = whole
     bounds = [(first, first), *sorted(parts), (last, last)]
     return [

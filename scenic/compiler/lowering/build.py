@@ -40,7 +40,7 @@ def at(node: _Node, origin: ast.AST) -> _Node:
 
 
 def sliceable(node: ast.Subscript) -> ast.expr:
-    """The container of a subscript whose value is read; of a slice one that takes bounds which are random or lazy."""
+    """Return the container of a subscript whose value is read; of a slice one that takes bounds which are random or lazy."""
     bounds = node.slice
     if not isinstance(bounds, ast.Slice) or not isinstance(node.ctx, ast.Load):
         return node.value
@@ -151,7 +151,7 @@ def function(
 
 
 def statement(value: ast.expr, origin: ast.AST) -> ast.Expr:
-    """An expression as a statement."""
+    """Return an expression as a statement."""
     return at(ast.Expr(value), origin)
 
 

@@ -81,7 +81,7 @@ class Conditions:
         }
 
     def condition(self, node: ast.expr) -> ast.expr:
-        """The argument of the prelude's ``require``."""
+        """Return the argument of the prelude's ``require``."""
         return self._split(node)
 
     def _split(self, node: ast.expr) -> ast.expr:
@@ -229,7 +229,7 @@ class Conditions:
         return position(binding.first_site) >= end
 
     def _statement_of(self, part: ast.AST) -> ast.stmt | None:
-        """The statement of the module around a node."""
+        """Return the statement of the module around a node."""
         statements: list[ast.stmt] = self._resolution.module.node.body  # type: ignore[attr-defined]
         place = bisect_right(statements, position(part), key=position) - 1
         return statements[place] if place >= 0 else None
@@ -240,7 +240,7 @@ class Conditions:
 
 
 def implicit_ego(node: scenic.Operation) -> list[int]:
-    """The operands that are left out and mean the ego, by index."""
+    """Return the operands that are left out and mean the ego, by index."""
     declared = OPERATORS[node.operator].operands
     return [
         index
@@ -250,7 +250,7 @@ def implicit_ego(node: scenic.Operation) -> list[int]:
 
 
 def _unwritten_ego(node: ast.expr) -> list[ast.Name]:
-    """The ego, at the first operator that means it without naming it."""
+    """Return the ego, at the first operator that means it without naming it."""
     for part in walk(node):
         if isinstance(part, scenic.Operation) and implicit_ego(part):
             return [start_of(ast.Name("ego", ast.Load()), part)]
@@ -409,7 +409,7 @@ class _Symbolic:
         return pairs[0] if len(pairs) == 1 else prelude_call("all_of", pairs, node)
 
     def _unrolled(self, node: ast.ListComp | ast.GeneratorExp, test_function: str) -> ast.expr:
-        """The elements of a comprehension: calls of the prelude with what it iterates over, and a function of an element.
+        """Return the elements of a comprehension: calls of the prelude with what it iterates over, and a function of an element.
 
         ``test_function`` of the prelude makes the elements behind an ``if``.
         """
@@ -454,7 +454,7 @@ class _Symbolic:
         return prelude_call("new", [self._provided(node.cls), *specifiers], node)
 
     def _construct(self, callee: ast.Name, node: ast.Call) -> ast.expr:
-        """A region or vector that the condition makes."""
+        """Return a region or vector that the condition makes."""
         if self._resolution.binding(callee) is not None or any(item.arg is None for item in node.keywords):
             raise _OpaqueError
         call = prelude_call("construct", [constant(callee.id, callee), callee, *self._all(node.args)], node)
@@ -524,7 +524,7 @@ class _TruthValue(_Symbolic):
 
 
 def truth_value(node: ast.expr, resolution: Resolution, ordinary: _Lowering) -> ast.expr:
-    """An expression that gives a truth value, random where its parts are."""
+    """Return an expression that gives a truth value, random where its parts are."""
     return _TruthValue(resolution, ordinary).expression(node)
 
 
@@ -539,7 +539,7 @@ def _over_elements(node: ast.Call) -> tuple[ast.Name, ast.expr] | None:
 
 
 def _counted(node: ast.Call) -> ast.ListComp | None:
-    """The comprehension of ``len([x for x in values if condition])``, whose elements are names or constants."""
+    """Return the comprehension of ``len([x for x in values if condition])``, whose elements are names or constants."""
     match node.args:
         case [ast.ListComp(elt=ast.Name() | ast.Constant()) as counted]:
             return counted

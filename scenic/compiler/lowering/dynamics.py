@@ -42,25 +42,25 @@ class Lowerer(Protocol):
     blocks: "Blocks"
 
     def expression(self, node: ast.expr) -> ast.expr:
-        """A lowered expression."""
+        """Return a lowered expression."""
 
     def block(self, statements: Sequence[ast.stmt]) -> list[ast.stmt]:
-        """A lowered suite."""
+        """Return a lowered suite."""
 
     def copy(self, node: ast.AST, **changes: Any) -> Any:
-        """A node with its fields lowered."""
+        """Return a node with its fields lowered."""
 
     def handlers(self, nodes: Sequence[ast.ExceptHandler]) -> list[ast.ExceptHandler]:
         """Lowered ``except`` clauses."""
 
     def specifier(self, node: scenic.SpecifierPhrase) -> ast.expr:
-        """A lowered specifier."""
+        """Return a lowered specifier."""
 
     def label(self, name: str | ast.expr | None) -> str | ast.expr | None:
         """The name of a statement, lowered if it is an expression."""
 
     def conditions(self) -> Conditions:
-        """The lowering of conditions that are kept."""
+        """Return the lowering of conditions that are kept."""
 
 
 class Blocks:
@@ -106,7 +106,7 @@ class Blocks:
             self.instances.pop()
 
     def leaves(self, *, loops: bool) -> "set[str] | None":
-        """The block that a ``return`` (with ``loops``: ``break`` or ``continue``) here would leave, if it would."""
+        """Return the block that a ``return`` (with ``loops``: ``break`` or ``continue``) here would leave, if it would."""
         for frame in reversed(self.frames):
             if isinstance(frame, set):
                 return frame
@@ -162,7 +162,7 @@ def guards(lowerer: Lowerer, node: Any, extra: Sequence[str]) -> list[ast.expr]:
 
 
 def compose(lowerer: Lowerer, node: scenic.ScenarioDef) -> tuple[list[ast.stmt], ast.expr]:
-    """The function of a compose block, and an expression for it (``None`` if there is no such block)."""
+    """Return the function of a compose block, and an expression for it (``None`` if there is no such block)."""
     if node.compose is None:
         return [], start_of(ast.Constant(None), node)
     identifier = lowerer.blocks.fresh("compose")
@@ -214,7 +214,7 @@ def _delegate(function: str, args: Sequence[ast.expr], lowerer: Lowerer, node: a
 
 
 def _limit(lowerer: Lowerer, duration: scenic.Duration | None, until: ast.expr | None) -> list[ast.expr]:
-    """The arguments that say when to stop."""
+    """Return the arguments that say when to stop."""
     if duration is not None:
         return [lowerer.expression(duration.value), constant(duration.unit, duration)]
     if until is not None:

@@ -11,7 +11,7 @@ _RUNNING: Final = frozenset({ScopeKind.SCENARIO, ScopeKind.BEHAVIOR, ScopeKind.M
 
 
 def instance_name(scope: Scope) -> str:
-    """The parameter that holds the running instance; definitions inside others have their own."""
+    """Return the parameter that holds the running instance; definitions inside others have their own."""
     depth = sum(outer.kind in _RUNNING for outer in scope.ancestors()) - 1
     return f"__instance_{depth}__" if depth else "__instance__"
 

@@ -34,7 +34,7 @@ __all__ = ["lower"]
 
 
 def lower(tree: ast.Module, resolution: Resolution) -> ast.Module:
-    """The Python module for a program without errors; ``tree`` stays as it is.
+    """Return the Python module for a program without errors; ``tree`` stays as it is.
 
     Raises `RecursionError` if the tree is nested more deeply than the interpreter's stack allows.
     """
@@ -75,7 +75,7 @@ class _Program:
         return lowered
 
     def block(self, statements: Sequence[ast.stmt]) -> list[ast.stmt]:
-        """A suite; some statements become several."""
+        """Return a suite; some statements become several."""
         lowered: list[ast.stmt] = []
         for node in statements:
             result = self._lower(node)
@@ -131,7 +131,7 @@ class _Program:
         return node if instance is None else instance_attribute(instance, node.id, node, node.ctx)
 
     def _instance(self, node: ast.Name) -> str | None:
-        """The running instance that a name is an attribute of."""
+        """Return the running instance that a name is an attribute of."""
         binding = self._resolution.binding(node)
         return instance_name(binding.scope) if binding is not None and is_kept(binding) else None
 
@@ -250,7 +250,7 @@ class _Program:
         return self.expression(name) if isinstance(name, ast.expr) else name
 
     def conditions(self) -> Conditions:
-        """The lowering of conditions."""
+        """Return the lowering of conditions."""
         if self._conditions is None:
             self._conditions = Conditions(
                 self._resolution, self.expression, _Program(self._resolution, captured=True).expression
@@ -298,7 +298,7 @@ class _Program:
         )
 
     def _presence(self, node: ast.expr) -> ast.expr:
-        """A value of ``present``: comparisons, ``and``, ``or`` and ``not`` of random values give one here."""
+        """Return a value of ``present``: comparisons, ``and``, ``or`` and ``not`` of random values give one here."""
         if not isinstance(node, ast.Compare | ast.BoolOp | ast.UnaryOp) or assigns(node):
             return self.expression(node)
         truth = truth_value(node, self._resolution, self.expression)
@@ -359,7 +359,7 @@ class _Program:
         return [*functions, *statements] if isinstance(statements, list) else [*functions, statements]
 
     def _with_instance(self, args: ast.arguments, node: Any, *own: str) -> ast.arguments:
-        """The parameters of a definition, after those for the running instance and its agent."""
+        """Return the parameters of a definition, after those for the running instance and its agent."""
         lowered: ast.arguments = self._lower(args)
         first = [start_of(ast.arg(identifier, None), node) for identifier in own]
         return rebuilt(lowered, posonlyargs=[*first, *lowered.posonlyargs])
@@ -367,7 +367,7 @@ class _Program:
     # Local names of running instances that other nodes than names bind
 
     def _kept(self, site: ast.AST, lowered: object) -> Any:
-        """A definition, stored on the running instance if it is local to one."""
+        """Return a definition, stored on the running instance if it is local to one."""
         return [lowered, self._store(site)] if site in self._bound_by else lowered
 
     def _store(self, site: ast.AST) -> ast.stmt:
@@ -412,7 +412,7 @@ class _Program:
         )
 
     def handlers(self, nodes: Sequence[ast.ExceptHandler]) -> list[ast.ExceptHandler]:
-        """The ``except`` clauses of a statement."""
+        """Return the ``except`` clauses of a statement."""
         return [self.exception_handler(node) for node in nodes]
 
     def exception_handler(self, node: ast.ExceptHandler) -> ast.ExceptHandler:

@@ -71,7 +71,7 @@ class Bayesian:
         return rows
 
     def _best(self) -> Floats:
-        """The candidate of the greatest expected improvement."""
+        """Return the candidate of the greatest expected improvement."""
         from scipy.stats import norm
 
         points, values = self._known()

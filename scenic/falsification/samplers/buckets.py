@@ -56,7 +56,7 @@ class _Buckets:
         self.generator = np.random.default_rng(seed)
 
     def drawn(self) -> list[int]:
-        """The next buckets, one for each coordinate."""
+        """Return the next buckets, one for each coordinate."""
         return [int(self.generator.choice(len(item), p=item)) for item in self.distributions]
 
     def ask(self, count: int) -> Floats:
@@ -70,7 +70,7 @@ class _Buckets:
         return rows
 
     def buckets_of(self, point: Floats) -> list[int]:
-        """The buckets that a point lies in."""
+        """Return the buckets that a point lies in."""
         return [
             min(int(place * len(shares)), len(shares) - 1)
             for place, shares in zip(point.tolist(), self.distributions, strict=True)
@@ -116,7 +116,7 @@ class EpsilonGreedy(CrossEntropy):
         return 0.5 * 0.5 ** (self._updates // _HALVED)
 
     def drawn(self) -> list[int]:
-        """The next buckets, one for each coordinate."""
+        """Return the next buckets, one for each coordinate."""
         if self.generator.random() < self.epsilon:
             return [int(self.generator.integers(len(item))) for item in self.distributions]
         return super().drawn()
@@ -143,7 +143,7 @@ class Bandit(_Buckets):
         self._waiting: list[NDArray[np.float64]] = [np.zeros(len(item)) for item in self.distributions]
 
     def drawn(self) -> list[int]:
-        """The next buckets, one for each coordinate.
+        """Return the next buckets, one for each coordinate.
 
         Points that were asked for and not told yet count as drawn, so that those of a batch differ.
         """
@@ -153,7 +153,7 @@ class Bandit(_Buckets):
         return chosen
 
     def bounds(self) -> list[Floats]:
-        """The upper confidence bounds of the buckets of each coordinate."""
+        """Return the upper confidence bounds of the buckets of each coordinate."""
         found = []
         for counts, errors, waiting in zip(self.counts, self.errors, self._waiting, strict=True):
             tried = counts + waiting

@@ -34,7 +34,7 @@ class Sampler(Protocol):
 
 
 def options(given: object, defaults: Mapping[str, object], name: str) -> dict[str, Any]:
-    """The options of a sampler, from a mapping or from the attributes of an object.
+    """Return the options of a sampler, from a mapping or from the attributes of an object.
 
     Raises `SamplerError` for an option that the sampler does not have.
     """

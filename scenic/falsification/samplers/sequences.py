@@ -59,7 +59,7 @@ class Halton:
 
 
 def _primes(count: int) -> list[int]:
-    """The first primes."""
+    """Return the first primes."""
     found: list[int] = []
     candidates = itertools.count(2)
     while len(found) < count:

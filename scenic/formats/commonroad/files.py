@@ -43,7 +43,7 @@ def commonroad_document(
     colors: Sequence[Mapping[str, str]] = (),
     ego_moves: bool = False,
 ) -> ElementTree.Element:
-    """The document of a scene whose objects move along courses.
+    """Return the document of a scene whose objects move along courses.
 
     The ego becomes the planning problem. Every other object is an obstacle.
 
@@ -128,7 +128,7 @@ def _lit(records: RoadRecords, colors: Sequence[Mapping[str, str]], timestep: fl
 
 
 def document_text(root: ElementTree.Element, comment: str | None = None) -> bytes:
-    """The content of a file: a document, perhaps with a comment before it."""
+    """Return the content of a file: a document, perhaps with a comment before it."""
     ElementTree.indent(root)
     head = b'<?xml version="1.0" encoding="UTF-8"?>\n'
     if comment is not None:

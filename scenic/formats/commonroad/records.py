@@ -150,10 +150,10 @@ class RoadSource(Protocol):
     """A workspace that knows its roads (`scenic.domains.driving.workspace.DrivingWorkspace`)."""
 
     def commonroad_records(self, params: Mapping[str, object]) -> RoadRecords:
-        """The roads, with traffic lights by the parameters of a scene."""
+        """Return the roads, with traffic lights by the parameters of a scene."""
 
     def lanelets_at(self, place: tuple[float, float]) -> tuple[str, ...]:
-        """The keys of the lanelets for cars that contain a place."""
+        """Return the keys of the lanelets for cars that contain a place."""
 
     def light_colors(self, simulation: object) -> Mapping[str, str]:
         """The colours of traffic lights at the present step of a simulation, by their keys."""

@@ -194,7 +194,7 @@ def cubic_values(cubics: Sequence[Cubic], s: Floats, *, before: float = 0.0) -> 
 
 
 def cubic_bend(cubics: Sequence[Cubic], length: float) -> float:
-    """The largest second derivative of a piecewise cubic, over pieces that are at most ``length`` long."""
+    """Return the largest second derivative of a piecewise cubic, over pieces that are at most ``length`` long."""
     ends = [*(cubic.start for cubic in cubics[1:]), length + (cubics[0].start if cubics else 0)]
     bends = (
         [

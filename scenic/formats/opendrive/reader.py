@@ -126,7 +126,7 @@ class _Reader:
         )
 
     def _roads(self, root: Element) -> tuple[Road, ...]:
-        """The roads that can be used, without those of a number that is taken."""
+        """Return the roads that can be used, without those of a number that is taken."""
         roads: dict[str, Road] = {}
         for element in root.all("road"):
             try:
@@ -149,7 +149,7 @@ class _Reader:
         return tuple(roads.values())
 
     def _junctions(self, root: Element) -> tuple[Junction, ...]:
-        """The junctions that can be used, without those of a number that is taken."""
+        """Return the junctions that can be used, without those of a number that is taken."""
         junctions: dict[str, Junction] = {}
         groups = junction_groups(root)
         for element in root.all("junction"):
@@ -181,7 +181,7 @@ class _Reader:
         )
 
     def _told(self) -> list[MapProblem]:
-        """All problems: what was left out or changed, then faults without further effect."""
+        """Return all problems: what was left out or changed, then faults without further effect."""
         faults = [
             MapProblem(_CODES[fault.where], fault.message, fault.line, f"{element.tag} {part}")
             for (element, part), fault in self._faults.items()
@@ -240,7 +240,7 @@ class _Reader:
         )
 
     def _crossfall(self, profile: Element | None) -> tuple[tuple[Cubic, ...], tuple[Cubic, ...]]:
-        """The crossfall of the left and of the right side."""
+        """Return the crossfall of the left and of the right side."""
         if profile is None:
             return (), ()
         left, right = (

@@ -229,7 +229,7 @@ class _Rule:
 
 
 def _rules() -> _Rule:
-    """The rule of the root, from which those of all others are reached."""
+    """Return the rule of the root, from which those of all others are reached."""
     rules = {path: _Rule(*declaration) for path, declaration in _DECLARED.items()}
     for path, rule in rules.items():
         for child in rule.children:
@@ -281,7 +281,7 @@ def _name(child: Element, name: str) -> str:
 def _faults(
     element: Element, rule: _Rule, name: str, where: str
 ) -> Iterator[tuple[tuple[Element, str], Fault]]:
-    """The violations in an element and all that it holds."""
+    """Yield the violations in an element and all that it holds."""
     yield from _faults_of_attributes(element, rule, name, where)
     if not rule.children and not rule.inner:
         return

@@ -195,7 +195,7 @@ def _outer(
     side: int,
     tell: Callable[[MapProblem], None],
 ) -> Floats:
-    """The outer boundary of a lane whose inner one is known."""
+    """Return the outer boundary of a lane whose inner one is known."""
     if lane.widths:
         width = cubic_values(lane.widths, ds)
     else:

@@ -33,16 +33,16 @@ class Element:
         self.children = list(children)
 
     def all(self, tag: str) -> Iterator["Element"]:
-        """The elements of that name directly in this one."""
+        """Return the elements of that name directly in this one."""
         return (child for child in self.children if child.tag == tag)
 
     def first(self, tag: str) -> "Element | None":
-        """The first element of that name directly in this one."""
+        """Return the first element of that name directly in this one."""
         return next(self.all(tag), None)
 
 
 def read_tree(content: bytes, filename: str) -> tuple[Element, str]:
-    """The root of an XML document, and the text of its ``geoReference``.
+    """Return the root of an XML document, and the text of its ``geoReference``.
 
     Raises `MapError` where the text is not XML, or wants entities expanded.
     """

@@ -11,12 +11,12 @@ from scenic.graph.operation import OK, Call
 
 
 def joined_kind(operands: Sequence[Node], _payload: object) -> Kind:
-    """The kind of a value that is one of ``operands``."""
+    """Return the kind of a value that is one of ``operands``."""
     return join(*(operand.kind for operand in operands))
 
 
 def choose(call: Call, masks: Sequence[Column], columns: Sequence[Column], *, first: int) -> Column:
-    """The column that takes the lanes of ``masks[i]`` (all of shape ``(n,)``, disjoint) from ``columns[i]``.
+    """Return the column that takes the lanes of ``masks[i]`` (all of shape ``(n,)``, disjoint) from ``columns[i]``.
 
     ``columns[i]`` belongs to operand ``first + i``, whose status counts in those lanes. Where the operands' kinds
     differ the result holds decoded values, so that the program sees each option as what it is.

@@ -152,7 +152,7 @@ def _lookup(call: Call, index: Column) -> Column:
 
 
 def _within(payload: Table, index: Bounds) -> tuple[Bounds, Mask]:
-    """The table's values, one a row, and which of them each box admits, ``(m, values)``."""
+    """Return the table's values, one a row, and which of them each box admits, ``(m, values)``."""
     places = np.arange(len(payload.column))
     mask = (index.lower[:, np.newaxis] <= places) & (places <= index.upper[:, np.newaxis])
     values = payload.column.astype(np.float64)
@@ -465,7 +465,7 @@ def _position_bounds(axis: Bounds, cumulative: _Shares) -> Bounds:
 
 
 def _position_inverse(result: Bounds, cumulative: _Shares) -> Bounds:
-    """The stretch of the axis that draws the options within ``result``; exact, since nothing is rounded."""
+    """Return the stretch of the axis that draws the options within ``result``; exact, since nothing is rounded."""
     limits = np.asarray(cumulative, dtype=np.float64)
     last = int(np.searchsorted(limits, limits[-1], side="left"))
     starts = np.concatenate([[0.0], limits])

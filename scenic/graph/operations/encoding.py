@@ -30,7 +30,7 @@ def componentwise(function: Callable[..., Any], *vectors: tuple[bool, ...]) -> S
 
 
 def conjunction(conditions: Sequence[Any]) -> Any:
-    """All of one or more boolean terms."""
+    """Return all of one or more boolean terms."""
     result = conditions[0]
     for condition in conditions[1:]:
         result = result & condition
@@ -53,7 +53,7 @@ def within(terms: Terms, low: float, high: float) -> Any:
 
 
 def root_of_squares(terms: Terms, parts: Sequence[Any]) -> Any:
-    """The length of a vector: the number that is not negative and whose square is the sum of the squares."""
+    """Return the length of a vector: the number that is not negative and whose square is the sum of the squares."""
     total = parts[0] * parts[0]
     for part in parts[1:]:
         total = total + part * part
@@ -69,7 +69,7 @@ def root_of_squares(terms: Terms, parts: Sequence[Any]) -> Any:
 
 
 def chain(terms: Terms, index: object, options: Sequence[Any]) -> Any:
-    """The option that a whole number points at; ``None`` where options have no common form."""
+    """Return the option that a whole number points at; ``None`` where options have no common form."""
     if any(option is None for option in options):
         return None
     if any(isinstance(option, tuple) for option in options):

@@ -125,7 +125,7 @@ def _normalize_bounds(_payload: object, angle: Bounds) -> Bounds:
 
 
 def _normalize_inverse(_payload: object, result: Bounds, angle: Bounds) -> list[Bounds]:
-    """The angles within the bounds known so far that whole turns move into the result's."""
+    """Return the angles within the bounds known so far that whole turns move into the result's."""
     margin = 1e-12 * (1 + intervals.size(angle))
     low, high = result.lower - margin, result.upper + margin
     first = np.ceil((angle.lower - high) / math.tau)

@@ -128,7 +128,7 @@ def _power_bounds(_payload: object, a: Bounds, b: Bounds) -> Bounds:
 
 
 def _power_inverse(_payload: object, result: Bounds, a: Bounds, b: Bounds) -> list[Bounds | None]:
-    """The root, where the exponent is one positive number."""
+    """Return the root, where the exponent is one positive number."""
     has_one_exponent = (b.lower == b.upper) & (b.lower > 0)
     exponent = np.where(has_one_exponent, b.lower, 1.0)
     odd = np.mod(exponent, 2) == 1

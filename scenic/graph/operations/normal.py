@@ -15,7 +15,7 @@ _FAR: Final = 1e4
 
 
 def conditioned_quantile(a: Floats, b: Floats, u: Floats) -> Floats:
-    """The quantile ``u`` of the standard normal law conditioned to ``[a, b]``; elementwise, with broadcasting.
+    """Return the quantile ``u`` of the standard normal law conditioned to ``[a, b]``; elementwise, with broadcasting.
 
     Near the mean through the distribution function, deep in a tail through its logarithm, and far out, where that
     cancels too, through the exponential that the tail then is.
@@ -41,7 +41,7 @@ def conditioned_quantile(a: Floats, b: Floats, u: Floats) -> Floats:
 
 
 def conditioned_cumulative(a: Floats, b: Floats, z: Floats) -> tuple[Floats, Floats]:
-    """The probability below ``z`` under the standard normal law conditioned to ``[a, b]``, and a bound on its error.
+    """Return the probability below ``z`` under the standard normal law conditioned to ``[a, b]``, and a bound on its error.
 
     ``z`` lies in ``[a, b]``. Ratios of probabilities are taken through logarithms; the error grows where those are large
     or the interval is narrow.

@@ -14,7 +14,7 @@ _PACKAGE: Final = "scipy.special"
 
 @cache
 def _functions() -> Any:
-    """The module of compiled functions, or the package where SciPy is laid out otherwise."""
+    """Return the module of compiled functions, or the package where SciPy is laid out otherwise."""
     if _PACKAGE not in sys.modules:
         import scipy
 
@@ -34,20 +34,20 @@ def _functions() -> Any:
 
 
 def ndtr(value: Any) -> Any:
-    """The distribution function of the standard normal law."""
+    """Return the distribution function of the standard normal law."""
     return _functions().ndtr(value)
 
 
 def ndtri(probability: Any) -> Any:
-    """The inverse of `ndtr`."""
+    """Return the inverse of `ndtr`."""
     return _functions().ndtri(probability)
 
 
 def log_ndtr(value: Any) -> Any:
-    """The logarithm of `ndtr`."""
+    """Return the logarithm of `ndtr`."""
     return _functions().log_ndtr(value)
 
 
 def ndtri_exp(logarithm: Any) -> Any:
-    """The inverse of `log_ndtr`."""
+    """Return the inverse of `log_ndtr`."""
     return _functions().ndtri_exp(logarithm)

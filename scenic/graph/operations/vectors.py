@@ -53,7 +53,7 @@ def _length(x: Column, y: Column, z: Column) -> Column:
 
 
 def _scaled_length(x: Column | float, y: Column | float, z: Column | float) -> Column:
-    """The length by way of components whose squares are of a usual size; scaling by powers of two rounds nothing."""
+    """Return the length by way of components whose squares are of a usual size; scaling by powers of two rounds nothing."""
     largest = np.maximum(np.maximum(np.abs(x), np.abs(y)), np.abs(z))
     # Tiny ones all grow by the same factor: that of the largest component might overflow.
     _, exponent = np.frexp(np.where(np.isfinite(largest) & (largest > 0), largest, 1.0))
@@ -291,7 +291,7 @@ def _normalized_solver(terms: Terms, _payload: object, _vector: object) -> Any:
 
 
 def _part_of_vector(operands: Sequence[Node], payload: int) -> Node | None:
-    """A component of a vector that was made of numbers is that number."""
+    """Return a component of a vector that was made of numbers is that number."""
     (vector,) = operands
     if vector.operation.name != "vector":
         return None

@@ -40,13 +40,13 @@ class Explanation:
 
 
 def explanation_file(code: str) -> str | None:
-    """The file with the page of ``code``; ``None`` if there is none, or if the package is not a folder."""
+    """Return the file with the page of ``code``; ``None`` if there is none, or if the package is not a folder."""
     page = resources.files(__name__).joinpath(f"{code}.md")
     return os.fspath(page) if isinstance(page, Path) and page.is_file() else None
 
 
 def explanation(code: str) -> Explanation:
-    """The page of ``code``.
+    """Return the page of ``code``.
 
     Raises `KeyError` if there is no such code, and `ValueError` if its page is not as pages have to be.
     """

@@ -94,7 +94,7 @@ METHODS: Final = tuple(_THEME_OF)
 
 
 def handler(method: str) -> Callable[[Session, Any], Any]:
-    """The handler of a method, or of ``initialize``."""
+    """Return the handler of a method, or of ``initialize``."""
     module = import_module(f"{__name__}.{_THEME_OF.get(method, 'lifecycle')}")
     found: Callable[[Session, Any], Any] = module.HANDLERS[method]
     return found

@@ -64,7 +64,7 @@ def _workspace(
 
 
 def _programs(project: Project) -> Iterator[str]:
-    """The programs of the workspace, but for those that its settings leave out."""
+    """Yield the programs of the workspace, but for those that its settings leave out."""
     configurations = Configurations()
     for path in project.files():
         if path.endswith(SUFFIXES) and not configurations.of_file(path).excludes(path):

@@ -98,7 +98,7 @@ def _quick_fixes(
 
 
 def _of_document(session: Session, document: Document, kind: str, title: str) -> list[types.CodeAction]:
-    """An action on the whole document; its changes are worked out when it is chosen, if the client can wait."""
+    """Return an action on the whole document; its changes are worked out when it is chosen, if the client can wait."""
     can_wait = "edit" in session.lists("text_document.code_action.resolve_support.properties")
     if can_wait and session.can("text_document.code_action.data_support"):
         data = {"uri": document.uri, "version": document.version, "kind": kind, "line": document.before}
@@ -160,7 +160,7 @@ def _action(
     edits: Sequence[Edit],
     item: Diagnostic | None = None,
 ) -> types.CodeAction:
-    """An action, and the diagnostic that it answers."""
+    """Return an action, and the diagnostic that it answers."""
     answers = None
     if item is not None:
         answers = [to_diagnostic(item, document.lines, document.uri, elsewhere=session.location)]

@@ -40,7 +40,7 @@ class Placed(Protocol):
 
 
 def place_of(session: Session, params: Placed) -> tuple[Document, int, int]:
-    """The document that a request is about, or its block, and the line and column in it."""
+    """Return the document that a request is about, or its block, and the line and column in it."""
     document = session.document(params.text_document.uri).at(params.position.line)
     return document, *document.lines.from_position(params.position)
 

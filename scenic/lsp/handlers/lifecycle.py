@@ -19,7 +19,7 @@ def _initialize(session: Session, params: types.InitializeParams) -> None:
 
 
 def _folders(params: types.InitializeParams) -> dict[str, str]:
-    """The folders of the workspace; older clients name only one."""
+    """Return the folders of the workspace; older clients name only one."""
     uris = [each.uri for each in params.workspace_folders or ()]
     if not uris and params.root_uri is not None:
         uris = [params.root_uri]

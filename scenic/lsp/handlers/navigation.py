@@ -111,7 +111,7 @@ def _highlights(session: Session, params: types.DocumentHighlightParams) -> list
 
 
 def _item(session: Session, symbol: Symbol, make: type[_Item]) -> _Item:
-    """A function or class as an item of a hierarchy."""
+    """Return a function or class as an item of a hierarchy."""
     assert symbol.filename is not None
     assert symbol.span is not None
     lines = session.lines_of(symbol.filename)

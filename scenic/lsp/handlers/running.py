@@ -99,7 +99,7 @@ def _remark(session: Session, document: Document, scenario: str | None) -> None:
 
 
 def _permission(session: Session, document: Document) -> Callable[[GoOn], None]:
-    """A function that returns when the program may be run, and raises if it may not."""
+    """Return a function that returns when the program may be run, and raises if it may not."""
     if not session.trusting:
         raise _failed(_NOT_HERE)
     if session.trusted is None and session.has("window.show_message"):

@@ -85,7 +85,7 @@ def negated(part: Condition) -> Condition:
 
 
 def in_time(operator: str, parts: Sequence[Condition]) -> Condition:
-    """A temporal operator. A scene alone decides it only as far as the first state does."""
+    """Return a temporal operator. A scene alone decides it only as far as the first state does."""
     tree: Tree = (operator, *(part.tree for part in parts))
     if operator == "implies":
         either = connected("or", [negated(parts[0]), parts[1]])
@@ -118,7 +118,7 @@ def leaf(
     awaits: bool = False,
     indices: Indices | None = None,
 ) -> Callable[[], Node]:
-    """A function that builds the node of one leaf of a condition; if the leaf ``awaits`` names, again when the program has ended.
+    """Return a function that builds the node of one leaf of a condition; if the leaf ``awaits`` names, again when the program has ended.
 
     ``indices`` tells which items it reads of what is captured, where it does not read all.
     """
@@ -173,7 +173,7 @@ def picked(captured: Sequence[object], indices: Indices) -> Sequence[object]:
 
 
 def truth(value: object) -> Node:
-    """The truth value of a value, as a node; raises `NotSymbolicError` if only a sample decides it."""
+    """Return the truth value of a value, as a node; raises `NotSymbolicError` if only a sample decides it."""
     if is_answered_by_code(value, _OF_TRUTH):
         raise NotSymbolicError
     node = as_node(value)
@@ -190,7 +190,7 @@ def connect(operation: str, conditions: Sequence[Node]) -> Node:
 
 
 def presence(symbolic: Callable[[], Any], now: Callable[[], Any]) -> Any:
-    """The value of ``with present condition``: a truth value, random where its parts are."""
+    """Return the value of ``with present condition``: a truth value, random where its parts are."""
     context = current.get()
     if context is None or context.is_symbolic:
         # What has no random truth value gives what Python says, or its error.

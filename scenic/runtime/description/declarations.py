@@ -48,7 +48,7 @@ class Copier(Protocol):
     """Gives the values of a program in a simulation."""
 
     def value(self, value: object) -> Any:
-        """The value in the simulation."""
+        """Return the value in the simulation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +63,7 @@ class Closure:
     margin: Callable[..., Any] | None = None
 
     def within(self, copier: Copier) -> "Closure":
-        """The same over the values of a simulation."""
+        """Return the same over the values of a simulation."""
         return Closure(
             copier.value(self.function),
             [copier.value(item) for item in self.captured],
@@ -93,13 +93,13 @@ class Required:
     filename: str | None = None
 
     def within(self, copier: Copier) -> "Required":
-        """The same over the values of a simulation."""
+        """Return the same over the values of a simulation."""
         atoms = [atom.within(copier) for atom in self.atoms]
         return Required(self.formula, atoms, self.label, self.span, self.filename)
 
 
 def required(tree: Tree, label: str, span: Span | None, filename: str | None) -> Required:
-    """The requirement of a condition."""
+    """Return the requirement of a condition."""
     atoms: list[Closure] = []
 
     def formula(part: Tree) -> Formula:
@@ -121,7 +121,7 @@ class End:
     simulation: bool
 
     def within(self, copier: Copier) -> "End":
-        """The same over the values of a simulation."""
+        """Return the same over the values of a simulation."""
         return End(self.condition.within(copier), self.label, self.simulation)
 
 
@@ -147,7 +147,7 @@ class RecordUse:
     filename: str | None = None
 
     def within(self, copier: Copier) -> "RecordUse":
-        """The same over the values of a simulation."""
+        """Return the same over the values of a simulation."""
         return replace(self, value=self.value.within(copier), to=copier.value(self.to))
 
 
@@ -162,7 +162,7 @@ class Declared:
     """Of ``terminate after``: numbers with their units; the earliest counts."""
 
     def within(self, copier: Copier) -> "Declared":
-        """The same over the values of a simulation."""
+        """Return the same over the values of a simulation."""
         return Declared(
             [item.within(copier) for item in self.ends],
             [MonitorUse(copier.value(item.monitor), item.label) for item in self.monitors],

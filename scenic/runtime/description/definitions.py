@@ -119,7 +119,7 @@ class Invocable:
         return [*self._arguments.arguments.values(), *self.__dict__.values(), *self._definition.functions]
 
     def sampled(self, sample: Any) -> "Invocable":
-        """The same with sampled arguments and attributes."""
+        """Return the same with sampled arguments and attributes."""
         copy = object.__new__(type(self))
         copy._activation = None
         if hasattr(sample, "remember"):
@@ -218,7 +218,7 @@ def _need_time(instance: Invocable) -> None:
 
 
 def define(base: type[Invocable], definition: Definition, documentation: str | None, module: str) -> Any:
-    """The class for a definition, derived from ``base``."""
+    """Return the class for a definition, derived from ``base``."""
     members = {
         "__slots__": (),
         "__doc__": documentation,
@@ -230,7 +230,7 @@ def define(base: type[Invocable], definition: Definition, documentation: str | N
 
 
 def behavior_of(value: object) -> Any:
-    """The value of the property ``behavior``: a class stands for an instance without arguments.
+    """Return the value of the property ``behavior``: a class stands for an instance without arguments.
 
     Raises `ScenicTypeError` for what is no behavior, nor a random value that may be one.
     """

@@ -87,7 +87,7 @@ def _mutate(instance: Point, scale: object) -> bool:
 
 
 def _by_python(instance: Point, mutators: list[Any]) -> Mapping[str, Any]:
-    """The properties after mutators of the program: one call on each sample."""
+    """Return the properties after mutators of the program: one call on each sample."""
     names = _free(instance)
     result = call_later(_applied, _copy(instance), tuple(mutators), tuple(names))
     changes: dict[str, Any] = {}
@@ -115,7 +115,7 @@ def _settle(instance: Point, changed: object) -> None:
 
 
 def _free(instance: Point) -> list[str]:
-    """The properties that do not always follow from others."""
+    """Return the properties that do not always follow from others."""
     derived = {name for name, entry in instance.scenic_properties.items() if entry.dynamic and entry.final}
     return [name for name in instance.properties if name not in derived]
 

@@ -36,7 +36,7 @@ class Requirement:
     """The requirement as simulations follow it."""
 
     def rebuilt(self) -> "Requirement":
-        """The requirement about the objects as they are now."""
+        """Return the requirement about the objects as they are now."""
         return self if self.build is None else replace(self, condition=self.build())
 
 
@@ -104,7 +104,7 @@ class Program:
                 yield
 
     def parameter(self, name: str, default: object = None) -> Any:
-        """A global parameter as it is so far, or else a default."""
+        """Return a global parameter as it is so far, or else a default."""
         self.read_parameters.add(name)
         return self.overrides.get(name, self.parameters.get(name, default))
 

@@ -79,7 +79,7 @@ class Activation(Guarded):
         self.instance._activation = self
 
     def resume(self) -> Yielded | None:
-        """The next value that it yields; ``None`` if it has ended. Raises what its code raises, and guard violations."""
+        """Return the next value that it yields; ``None`` if it has ended. Raises what its code raises, and guard violations."""
         generator = self.generator
         if generator is None:
             return None

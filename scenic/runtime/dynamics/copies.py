@@ -122,7 +122,7 @@ class Copies(Sample):
         return vars(self._space(function.__globals__))
 
     def _space(self, names: dict[str, Any]) -> ModuleType:
-        """The module whose names functions over these names read and write, so that both ways to them lead to the same."""
+        """Return the module whose names functions over these names read and write, so that both ways to them lead to the same."""
         module = self._modules.get(id(names))
         if module is None:
             module = self._modules[id(names)] = ModuleType("")

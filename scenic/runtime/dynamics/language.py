@@ -62,7 +62,7 @@ class Dynamics:
     def behavior(
         self, preconditions: Sequence[Guard], invariants: Sequence[Guard]
     ) -> Callable[[Callable[..., Any]], Any]:
-        """A behavior definition, given its guards; the function takes the instance, the agent and the arguments."""
+        """Return a behavior definition, given its guards; the function takes the instance, the agent and the arguments."""
 
         def make(body: Callable[..., Any]) -> Any:
             definition = Definition(
@@ -73,7 +73,7 @@ class Dynamics:
         return make
 
     def monitor(self) -> Callable[[Callable[..., Any]], Any]:
-        """A monitor definition; the function takes the instance and the arguments."""
+        """Return a monitor definition; the function takes the instance and the arguments."""
 
         def make(body: Callable[..., Any]) -> Any:
             definition = Definition(body.__name__, _signature(body, 1), body, span=here())
@@ -88,7 +88,7 @@ class Dynamics:
         compose: Callable[..., Any] | None,
         sets_up: bool,
     ) -> Callable[[Callable[..., Any]], Any]:
-        """A scenario definition, given guards and compose block; the function is its set-up, which may be empty."""
+        """Return a scenario definition, given guards and compose block; the function is its set-up, which may be empty."""
 
         def make(setup: Callable[..., Any]) -> Any:
             definition = Definition(
@@ -272,6 +272,6 @@ def _numbered(what: str) -> str:
 
 
 def _signature(function: Callable[..., Any], own: int) -> inspect.Signature:
-    """The signature of a definition, without the parameters that the compiler adds."""
+    """Return the signature of a definition, without the parameters that the compiler adds."""
     signature = inspect.signature(function)
     return signature.replace(parameters=list(signature.parameters.values())[own:])

@@ -30,7 +30,7 @@ __all__ = ["margin"]
 
 
 def margin(symbols: Sequence[str], operands: Sequence[object]) -> float | None:
-    """The least margin of ``a SYMBOL b SYMBOL c ...``; ``None`` where one of the parts has none.
+    """Return the least margin of ``a SYMBOL b SYMBOL c ...``; ``None`` where one of the parts has none.
 
     Args:
         symbols: comparisons, ``in``, ``not in``, ``intersects``, ``can see`` or a direction such as ``is ahead of``.
@@ -109,7 +109,7 @@ def _clearance(item: Object, region: Region) -> float:
 
 
 def _corners(item: Object) -> Floats:
-    """The corners of the convex hull of an object, ``(n, 3)``."""
+    """Return the corners of the convex hull of an object, ``(n, 3)``."""
     body = placed_of(item)
     return np.array(item.corners) if body is None else body.hull()
 

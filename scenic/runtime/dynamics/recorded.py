@@ -11,7 +11,7 @@ __all__ = ["as_array", "as_pixels", "plain"]
 
 
 def plain(value: Any) -> Any:
-    """A recorded value as data of JSON: numbers, text, lists and dictionaries; anything else as text."""
+    """Return a recorded value as data of JSON: numbers, text, lists and dictionaries; anything else as text."""
     if value is None or isinstance(value, bool | int | float | str):
         return value
     if isinstance(value, np.generic):
@@ -39,7 +39,7 @@ def as_array(value: object) -> Any:
 
 
 def as_pixels(value: object) -> Any:
-    """An image as bytes: intensities or RGB, integers from 0 to 255 or floats from 0 to 1; what lies beyond is cut off."""
+    """Return an image as bytes: intensities or RGB, integers from 0 to 255 or floats from 0 to 1; what lies beyond is cut off."""
     array = np.asarray(value)
     if not (array.ndim == 2 or (array.ndim == 3 and array.shape[2] in (3, 4))):
         raise ScenicValueError(

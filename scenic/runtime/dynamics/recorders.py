@@ -83,7 +83,7 @@ class _Pattern(Recorder):
         return Path(self.globalParams.get("recordFolder", "."), name)
 
     def _place(self, step: int) -> Path:
-        """The same, when its folder has been made."""
+        """Return the same, when its folder has been made."""
         path = self.path(step)
         path.parent.mkdir(parents=True, exist_ok=True)
         return path
@@ -159,7 +159,7 @@ class Files(_Pattern):
 
 
 def for_pattern(pattern: str | os.PathLike[str]) -> Recorder:
-    """The recorder that a pattern of file names means: one file a value if the name depends on the step."""
+    """Return the recorder that a pattern of file names means: one file a value if the name depends on the step."""
     from string import Formatter  # slow to import
 
     fields = [field for _, field, _, _ in Formatter().parse(os.fspath(pattern)) if field is not None]

@@ -90,7 +90,7 @@ class Recording:
 
 
 def _as_it_is(value: Any, made: dict[int, Any]) -> Any:
-    """A value whose containers the simulation, or the next one, does not change any more."""
+    """Return a value whose containers the simulation, or the next one, does not change any more."""
     cls = type(value)
     if cls not in (list, tuple, dict, set, deque) and not (
         cls.__module__ == "numpy" and cls.__name__ == "ndarray"

@@ -85,7 +85,7 @@ class RunContext(Context):
         return tuple(self.run.simulation.objects)
 
     def settled(self, function: Callable[..., Any]) -> Callable[..., Any]:
-        """A function of the program over the values of the simulation."""
+        """Return a function of the program over the values of the simulation."""
         own: Callable[..., Any] = self.run.copies.value(function)
         return own
 

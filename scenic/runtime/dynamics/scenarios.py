@@ -218,7 +218,7 @@ class ScenarioActivation(Guarded):
 
 
 def not_a_monitor(value: Any) -> Exception:
-    """The error for something else where a monitor belongs."""
+    """Return the error for something else where a monitor belongs."""
     is_class = isinstance(value, type) and issubclass(value, Monitor)
     hint = (
         f"write `require monitor {value.__name__}()`" if is_class else "monitors are defined with `monitor`"

@@ -170,7 +170,7 @@ def shuffle(owner: Running, targets: Sequence[object]) -> Steps:
 
 
 def _weighted(targets: Sequence[object], what: str) -> list[tuple[Any, float]]:
-    """The targets with their weights."""
+    """Return the targets with their weights."""
     if len(targets) == 1 and isinstance(targets[0], dict):
         options = list(targets[0].items())
         for _, weight in options:

@@ -42,7 +42,7 @@ _BUCKETS: Final = 5
 
 
 def _make(operation: str, operands: Sequence[object], payload: object, choosable: Choosable) -> Any:
-    """A value whose axis a search may choose; in a simulation it is drawn at once."""
+    """Return a value whose axis a search may choose; in a simulation it is drawn at once."""
     context = current.get()
     if context is None or not context.is_symbolic or context.evaluating:
         return primitive(operation, *operands, payload=payload)
@@ -64,7 +64,7 @@ class _Kind(type):
 
 
 def choosable_of(value: object) -> Choosable | None:
-    """The values that may be chosen, if a value is an external parameter itself."""
+    """Return the values that may be chosen, if a value is an external parameter itself."""
     context = current.get()
     if context is None or not isinstance(value, Random):
         return None
@@ -93,7 +93,7 @@ class VerifaiParameter(ExternalParameter):
 
     @staticmethod
     def withPrior(dist: object, buckets: int | None = None) -> Any:
-        """An external parameter whose prior is a primitive distribution, in buckets (5 unless given).
+        """Return an external parameter whose prior is a primitive distribution, in buckets (5 unless given).
 
         Samplers choose among the buckets and places in them; within a bucket the law is that of the prior. Buckets of a normal law
         are one deviation wide, the outer two endless; all others divide the values evenly.
@@ -287,7 +287,7 @@ def _differences(sums: Sequence[float]) -> list[float]:
 
 
 def _normal(operation: str, law: Sequence[float], window: Any, edges: Sequence[float]) -> Any:
-    """A parameter with a normal prior; the edges of its buckets are deviations from the mean."""
+    """Return a parameter with a normal prior; the edges of its buckets are deviations from the mean."""
     mean, deviation = law
     below = [0.5 * math.erfc(-edge / math.sqrt(2)) for edge in edges]
     whole = below[-1] - below[0]
@@ -336,7 +336,7 @@ class Series:
 
 
 def TimeSeries(param: Any) -> Any:
-    """An external parameter that has another value at each step of a simulation: `Series`.
+    """Return an external parameter that has another value at each step of a simulation: `Series`.
 
     The parameter ``timeBound`` of the program is the number of steps.
     """

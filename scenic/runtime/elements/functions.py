@@ -112,7 +112,7 @@ def len(value: Any) -> Any:
 
 
 def filter(function: Callable[[Any], Any] | None, values: Any) -> Any:
-    """The elements for which ``function`` holds, as a list; ``values`` may be random."""
+    """Return the elements for which ``function`` holds, as a list; ``values`` may be random."""
     if is_lazy(values):
         return defer(filter, function, values)
     if not is_later(function, values):

@@ -129,7 +129,7 @@ def _is(type_: Type, value: object) -> bool:
 
 
 def type_of(value: object, types: Sequence[Type], label: str) -> Type | None:
-    """The first of the types that a value has, all of its options where it is a choice; ``None`` where only the draw shows it.
+    """Return the first of the types that a value has, all of its options where it is a choice; ``None`` where only the draw shows it.
 
     Raises:
         ScenicTypeError: if it has none of them; ``label`` names the operand.
@@ -163,7 +163,7 @@ def is_unknown(value: object, cls: type[Point] = Object) -> bool:
 
 
 def _to_yaw(value: object, label: str) -> Any:
-    """A heading; here three numbers are Euler angles, as wherever an orientation is wanted."""
+    """Return a heading; here three numbers are Euler angles, as wherever an orientation is wanted."""
     if not isinstance(value, Point) and is_vector(value):
         value = to_orientation(value, label)
     return to_heading(value, label)
@@ -188,7 +188,7 @@ _COERCED: Final[Mapping[Type, tuple[frozenset[type], Callable[[Any, str], Any]]]
 
 
 def reader(types: Sequence[Type], label: str) -> Read:
-    """The function that reads an operand of these types; see the module's text.
+    """Return the function that reads an operand of these types; see the module's text.
 
     Raises:
         ScenicTypeError: when it is called with a value of a wrong type.
@@ -237,7 +237,7 @@ def _reading_places(types: Sequence[Type], label: str) -> Read:
 
 
 def region_of(value: Any, label: str) -> Region:
-    """A region; raises `ScenicTypeError` for anything else."""
+    """Return a region; raises `ScenicTypeError` for anything else."""
     region = as_region(value)
     if region is not None:
         return region
@@ -265,7 +265,7 @@ _CONVERTED: Final[Mapping[Type, Callable[[Any, str], Any]]] = MappingProxyType(
 
 
 def converter(types: Sequence[Type], label: str) -> Read | None:
-    """The function that converts an operand of a specifier: a lazy value gives a lazy one, as it is read with the instance.
+    """Return the function that converts an operand of a specifier: a lazy value gives a lazy one, as it is read with the instance.
 
     ``None`` for operands of several types, and for those of a type that depends on where the instance is: they stay as they are.
 
@@ -278,7 +278,7 @@ def converter(types: Sequence[Type], label: str) -> Read | None:
 
 
 def bound(declared: Operator, function: Callable[..., Any], drawn: Callable[..., Any]) -> Bound:
-    """An operator as programs use it, from its implementation: a function of the typed operands.
+    """Return an operator as programs use it, from its implementation: a function of the typed operands.
 
     ``drawn`` gives its result in a sample, from its name and the drawn operands; it is not part of the result, so that
     what a sample reads stays small.

@@ -134,7 +134,7 @@ def _not_visible(region: Any, viewer: Any) -> Region:
 
 
 def _attribute(side: str) -> str:
-    """The attribute of objects for a side: ``frontLeft`` for ``front left``."""
+    """Return the attribute of objects for a side: ``frontLeft`` for ``front left``."""
     first, *others = side.split()
     return first + "".join(map(str.capitalize, others))
 

@@ -35,7 +35,7 @@ class ResolutionStep:
     """The default, where it is the language's own: it is never lazy, and always fits its property."""
 
     def specifier(self, given: Sequence[Specifier]) -> Specifier:
-        """The specifier, ``given`` those of the statement."""
+        """Return the specifier, ``given`` those of the statement."""
         if self.default is not None:
             return self.default
         assert self.number is not None
@@ -63,7 +63,7 @@ class Resolution:
     """True if a name looks misspelt, which causes a warning each time."""
 
     def provider(self, name: str, reader: Specifier) -> ResolutionStep:
-        """The specifier that provides a property which ``reader`` reads."""
+        """Return the specifier that provides a property which ``reader`` reads."""
         provider = self.providers.get(name)
         if provider is None:
             raise SpecifierError(
@@ -83,7 +83,7 @@ _PLAIN = frozenset({bool, int, float, str, type(None), Vector, Orientation})
 
 
 def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = False) -> Any:
-    """A new instance of ``cls``.
+    """Return a new instance of ``cls``.
 
     Raises `SpecifierError` where the specifiers do not fit together or to the class, `ScenicTypeError` and
     `ScenicValueError` where a value does not fit its property.
@@ -152,7 +152,7 @@ def build(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d: bool = 
 
 
 def _reads(offered: Mapping[str, object], names: Sequence[str]) -> frozenset[str]:
-    """The properties that lazy values among those offered read."""
+    """Return the properties that lazy values among those offered read."""
     lazy = [value for name in names if type(value := offered[name]) not in _PLAIN]
     return reads_of(lazy) if lazy else frozenset()
 
@@ -175,7 +175,7 @@ def resolution_of(cls: type[Point], specifiers: Sequence[Specifier], *, mode_2d:
 
 
 def class_defaults(cls: type[Point], *, mode_2d: bool) -> dict[str, Property]:
-    """The properties of a class, with the defaults of the mode."""
+    """Return the properties of a class, with the defaults of the mode."""
     properties = dict(cls.scenic_properties)
     if mode_2d and issubclass(cls, Object):
         for name, definition in TWO_D_DEFAULTS.items():
@@ -359,7 +359,7 @@ def _builtin_default(properties: Mapping[str, Property], name: str) -> Callable[
 def _constants(
     cls: type[Point], steps: Iterable[ResolutionStep], properties: Mapping[str, Property]
 ) -> dict[str, Any]:
-    """The built-in defaults that are the same for every instance: those that read nothing but one another.
+    """Return the built-in defaults that are the same for every instance: those that read nothing but one another.
 
     ``steps`` are in the order in which they are evaluated.
     """

@@ -17,7 +17,7 @@ class Sensor:
     """A device that observes the world from an object; a simulator gives it the latest of each step."""
 
     def getObservation(self) -> Any:
-        """The latest observation; ``None`` as long as nothing has delivered one."""
+        """Return the latest observation; ``None`` as long as nothing has delivered one."""
         look = self.__dict__.pop("_look", None)
         if look is not None:
             self._observation = look()
@@ -114,7 +114,7 @@ class GroundTruthSensor(Carrier, Sensor):
         self.value = value
 
     def getObservation(self) -> Any:
-        """The value now."""
+        """Return the value now."""
         return self.value() if callable(self.value) else self.value
 
 
@@ -130,7 +130,7 @@ class CallbackSensor(Sensor):
         self._observation = defaultValue
 
     def process(self, data: object) -> Any:
-        """The observation that data come to."""
+        """Return the observation that data come to."""
         raise NotImplementedError(f"{type(self).__name__} does not say how data are processed (`process`)")
 
     def onData(self, data: object) -> None:

@@ -94,7 +94,7 @@ class Specifier:
 def kind_of_specifier(
     name: str, priorities: Mapping[str, int], dependencies: frozenset[str], modifiable: frozenset[str]
 ) -> Hashable:
-    """The key by which a class keeps how a specifier is resolved (`Specifier.kind`)."""
+    """Return the key by which a class keeps how a specifier is resolved (`Specifier.kind`)."""
     return name, tuple(priorities.items()), dependencies, modifiable
 
 
@@ -157,7 +157,7 @@ _DECLARED = MappingProxyType({name: _Declared.of(declared) for name, declared in
 def _specifier(
     name: str, evaluate: Evaluate, *reads: str, conditional: bool = True, **options: Any
 ) -> Specifier:
-    """A specifier as declared.
+    """Return a specifier as declared.
 
     ``reads`` are the properties that it needs beside the declared ones; ``conditional`` tells whether it gives what is
     declared under a condition.
@@ -178,7 +178,7 @@ def _specifier(
 
 
 def with_(property: str, value: object) -> Specifier:
-    """The one specifier that declares no priority: giving a property by name is the strongest way."""
+    """Return the one specifier that declares no priority: giving a property by name is the strongest way."""
     name, priorities, kind = _giving(property)
     return Specifier(name, priorities, _NOTHING, lambda _: {property: value}, kind=kind)
 
@@ -227,7 +227,7 @@ def resting_on(target: object) -> Specifier:
 
 
 def _standing(name: str, target: Any, base: Callable[[Any], tuple[Any, Mapping[str, Any]]]) -> Specifier:
-    """A specifier that puts an object on a surface.
+    """Return a specifier that puts an object on a surface.
 
     ``base`` gives the place of the object's middle above the surface, in the frame of its parent, and further properties.
     """
@@ -312,7 +312,7 @@ def beyond(place: object, offset: object, observer: Any) -> Specifier:
 
 
 def scalar_or_vector(value: Any, what: str, *, axis: int) -> Any:
-    """A displacement: a vector, or a number along one axis."""
+    """Return a displacement: a vector, or a number along one axis."""
     if isinstance(value, Lazy):
         return defer(scalar_or_vector, value, what, axis=axis)
     if is_number(value) or (isinstance(value, Random) and value.node.kind.is_number):
@@ -561,7 +561,7 @@ def _converted(declared: _Declared, ego: Ego, workspace: Space, operands: Sequen
 
 
 def specify(name: str, ego: Ego, workspace: Space, *operands: Any, site: Site | None = None) -> Specifier:
-    """One specifier; what lazy operands read, it depends on.
+    """Return one specifier; what lazy operands read, it depends on.
 
     ``ego`` and ``workspace`` are functions: a program without an ego fails only where one is needed. They stand in for
     the operands that the text leaves out (``None``), as declared. A wrong operand is told before a missing ego. ``site`` is the call

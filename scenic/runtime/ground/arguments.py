@@ -8,7 +8,7 @@ __all__ = ["check_limits", "check_seconds", "whole_number"]
 
 
 def whole_number(value: Any, name: str, least: int | None = None) -> int:
-    """The integer that an argument is, also one of NumPy.
+    """Return the integer that an argument is, also one of NumPy.
 
     Raises:
         ValueError: if it is not an integer, or less than ``least``; the message names the argument and says what is allowed.

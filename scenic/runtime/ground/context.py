@@ -160,7 +160,7 @@ class Context:
         return [self.sample.value(item) for item in self.objects]
 
     def settled(self, function: Callable[..., Any]) -> Callable[..., Any]:
-        """A function of the program over the values of what is running."""
+        """Return a function of the program over the values of what is running."""
         return function
 
     @property
@@ -203,7 +203,7 @@ class Context:
         return None if frame is None else self._locate(frame)
 
     def file(self) -> str | None:
-        """The file of whoever called the runtime, if that is generated code."""
+        """Return the file of whoever called the runtime, if that is generated code."""
         frame = sys._getframe(1)
         found = self._locate(frame)
         if found is None:

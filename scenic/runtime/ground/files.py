@@ -40,7 +40,7 @@ def is_special(path: Path) -> bool:
 
 
 def unnamed(path: Path) -> BinaryIO:
-    """A file in the folder of another one."""
+    """Return a file in the folder of another one."""
     import tempfile  # slow to import
 
     with naming(path):

@@ -44,11 +44,11 @@ class _NormalNoise(Mutator):
         return _sampled_noise(self, instance)
 
     def random_parts(self) -> list[Any]:
-        """The deviations, for sampling."""
+        """Return the deviations, for sampling."""
         return [self.stddevs]
 
     def sampled(self, sample: Any) -> "_NormalNoise":
-        """The mutator with sampled deviations."""
+        """Return the mutator with sampled deviations."""
         return type(self)(sample.value(self.stddevs))
 
     def __eq__(self, other: object) -> bool:
@@ -65,7 +65,7 @@ class PositionMutator(_NormalNoise):
     """Normal noise on the position; ``stddevs`` per axis, in metres, for a scale of 1."""
 
     def noisy(self, instance: Any, scale: object) -> Mapping[str, Any]:
-        """The properties that change."""
+        """Return the properties that change."""
         return {"position": operate("add", instance.position, vector(*_noise(self.stddevs, scale)))}
 
 
@@ -73,7 +73,7 @@ class OrientationMutator(_NormalNoise):
     """Normal noise on yaw, pitch and roll; ``stddevs`` of each, in radians, for a scale of 1."""
 
     def noisy(self, instance: object, scale: object) -> Mapping[str, Any]:
-        """The properties that change."""
+        """Return the properties that change."""
         noise = _noise(self.stddevs, scale)
         names = ("yaw", "pitch", "roll")
         return {

@@ -50,7 +50,7 @@ from scenic.runtime.values.values import (
 
 
 def _definitions(name: str, computed: Mapping[str, Callable[[Any], Any]]) -> dict[str, PropertyDefinition]:
-    """The properties of a built-in class as declared in `scenic.language.properties`; ``computed`` are the defaults that vary."""
+    """Return the properties of a built-in class as declared in `scenic.language.properties`; ``computed`` are the defaults that vary."""
     return {
         each.name: PropertyDefinition(
             each.name,
@@ -64,7 +64,7 @@ def _definitions(name: str, computed: Mapping[str, Callable[[Any], Any]]) -> dic
 
 
 def _constant(declared: BuiltinProperty) -> Callable[[Any], Any]:
-    """The function of a constant default: a new object for each instance where it can be changed."""
+    """Return the function of a constant default: a new object for each instance where it can be changed."""
     assert isinstance(declared.given, ConstantDefault)
     value = declared.given.value
     if declared.types == (VECTOR,):
@@ -125,7 +125,7 @@ class Point(Instance):
 
     @classmethod
     def _make(cls, values: Mapping[str, object]) -> Self:
-        """An instance with these property values; for the runtime, not for programs."""
+        """Return an instance with these property values; for the runtime, not for programs."""
         instance = object.__new__(cls)
         instance.__dict__ = dict(
             values
@@ -204,7 +204,7 @@ class Point(Instance):
         return self._alike(self._copied())
 
     def _alike(self, values: Mapping[str, object]) -> Self:
-        """An instance with these values whose methods see the same sample."""
+        """Return an instance with these values whose methods see the same sample."""
         made = self._make(values)
         if "_sample" in self.__dict__:
             made.__dict__["_sample"] = self.__dict__["_sample"]
@@ -215,11 +215,11 @@ class Point(Instance):
         return {**self.properties, **{name: self._all()[name] for name in _KNOWN if name in self._all()}}
 
     def toVector(self) -> Any:
-        """The position."""
+        """Return the position."""
         return self.position
 
     def sample(self, subsamples: object = None) -> Any:
-        """The instance with its random properties drawn now, independent of all scenes."""
+        """Return the instance with its random properties drawn now, independent of all scenes."""
         return sample_of(self)
 
     def canSee(self, other: object, occludingObjects: object = (), *, certain: bool = False) -> Any:
@@ -279,15 +279,15 @@ class OrientedPoint(Point):
     )
 
     def toHeading(self) -> Any:
-        """The global yaw, in radians."""
+        """Return the global yaw, in radians."""
         return self.heading
 
     def toOrientation(self) -> Any:
-        """The global orientation."""
+        """Return the global orientation."""
         return self.orientation
 
     def relativePosition(self, offset: object) -> Any:
-        """The global position of ``offset``, a vector given in this frame."""
+        """Return the global position of ``offset``, a vector given in this frame."""
         return operate("add", self.position, operate("rotate", self.orientation, to_vector(offset)))
 
     def relativize(self, offset: object) -> "OrientedPoint":

@@ -32,7 +32,7 @@ def may_mutate(code: CodeType) -> bool:
 
 
 def stand_in(instance: object) -> Any:
-    """An instance with the values of another after mutation; the instance itself where nothing is mutated."""
+    """Return an instance with the values of another after mutation; the instance itself where nothing is mutated."""
     context = current.get()
     if context is None or not context.is_symbolic or context.sample is not None:
         return instance
@@ -56,7 +56,7 @@ def _made(instance: Point) -> Point:
 
 
 def _late(value: object) -> Any:
-    """A value of which only the kind is known so far; the value itself if it is not a number, vector or orientation."""
+    """Return a value of which only the kind is known so far; the value itself if it is not a number, vector or orientation."""
     if isinstance(value, bool) or value is None or isinstance(value, str | tuple | list | dict):
         return value
     node = as_node(value)
@@ -66,7 +66,7 @@ def _late(value: object) -> Any:
 
 
 def _of_any_kind(value: object) -> Any:
-    """A value of which nothing is known: a mutator of the program's own may give anything, but leaves places what they are."""
+    """Return a value of which nothing is known: a mutator of the program's own may give anything, but leaves places what they are."""
     kind = as_node(value).kind
     if kind not in (Kind.VECTOR, Kind.ORIENTATION):
         kind = Kind.OTHER

@@ -80,7 +80,7 @@ class Property:
         object.__setattr__(self, "dependencies", frozenset(names))
 
     def default(self, instance: object) -> Any:
-        """The default for one instance; additive properties give all definitions, most derived first."""
+        """Return the default for one instance; additive properties give all definitions, most derived first."""
         if self.additive:
             return tuple(definition.compute(instance) for definition in self.definitions)
         return self.definitions[0].compute(instance)
@@ -160,7 +160,7 @@ def _combine(name: str, definitions: Sequence[PropertyDefinition]) -> Property:
 
 
 def normalised(name: str, value: object) -> Any:
-    """A property's value as instances store it: vectors, scalars and angles in (-pi, pi] by name."""
+    """Return a property's value as instances store it: vectors, scalars and angles in (-pi, pi] by name."""
     normalise = NORMAL.get(name)
     return value if normalise is None else normalise(name, value)
 

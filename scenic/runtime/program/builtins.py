@@ -17,7 +17,7 @@ from scenic.runtime.regions import algebra as algebra  # registers what regions 
 
 
 def running_simulation() -> Any:
-    """The simulation that is running; raises `InvalidScenarioError` where none is."""
+    """Return the simulation that is running; raises `InvalidScenarioError` where none is."""
     context = current.get()
     if not isinstance(context, RunContext):
         raise InvalidScenarioError(
@@ -34,7 +34,7 @@ def is_simulating() -> bool:
 
 
 def present_objects() -> Sequence[Any]:
-    """The objects of the running simulation, or those of the scene whose requirements are evaluated.
+    """Return the objects of the running simulation, or those of the scene whose requirements are evaluated.
 
     Raises `InvalidScenarioError` where there is neither.
     """
@@ -106,11 +106,11 @@ def provided(name: str) -> Any:
 
 
 def builtin_names(program: Program, filename: str, importer: Callable[..., Any]) -> dict[str, Any]:
-    """The builtins of one module: Python's, the language's, and what depends on the module's place."""
+    """Return the builtins of one module: Python's, the language's, and what depends on the module's place."""
     folder = Path(filename).parent
 
     def local_path(relative: str) -> Path:
-        """A path relative to the file that the program is in."""
+        """Return a path relative to the file that the program is in."""
         path = folder / relative
         if isinstance(path, Path):  # not a random one
             note_file(path)

@@ -40,7 +40,7 @@ def emptied_error(context: Context, emptied: Emptied) -> InvalidScenarioError:
 
 
 def _counts(context: Context, emptied: Emptied) -> Iterator[tuple[str, int]]:
-    """The conditions that a lambda joins by ``and``, as text, each with how many elements meet it."""
+    """Yield the conditions that a lambda joins by ``and``, as text, each with how many elements meet it."""
     function, condition = emptied.function, _lambda_of(context, emptied.place)
     if not isinstance(function, FunctionType) or condition is None:
         return
@@ -57,7 +57,7 @@ def _counts(context: Context, emptied: Emptied) -> Iterator[tuple[str, int]]:
 
 
 def _lambda_of(context: Context, place: Span | None) -> ast.Lambda | None:
-    """The lambda that the call of a filter has in the program's text; ``None`` if it has operators of the language."""
+    """Return the lambda that the call of a filter has in the program's text; ``None`` if it has operators of the language."""
     quotation = None if place is None else context.quote(place)
     try:
         tree = ast.parse(f"({quotation[1]})", mode="eval") if quotation else None

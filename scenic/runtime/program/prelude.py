@@ -72,10 +72,10 @@ class Modules(Protocol):
     """Finds and compiles modules of Scenic code (`scenic.compiler.loader`, passed in)."""
 
     def find(self, name: str) -> Path | None:
-        """The file of a module, or ``None`` if no Scenic module of that name exists."""
+        """Return the file of a module, or ``None`` if no Scenic module of that name exists."""
 
     def code(self, path: Path) -> CodeType:
-        """The compiled code of a file; raises `ScenicSyntaxError`."""
+        """Return the compiled code of a file; raises `ScenicSyntaxError`."""
 
 
 class Prelude(Symbolic, Dynamics):
@@ -102,11 +102,11 @@ class Prelude(Symbolic, Dynamics):
         return Prelude(self._compilation, self._program, replace(self._module), self._modules)
 
     def random_parts(self) -> list[Any]:
-        """The ego, for sampling."""
+        """Return the ego, for sampling."""
         return [self._module.ego]
 
     def sampled(self, sample: Sample) -> "Prelude":
-        """The prelude whose ego is that of a sample."""
+        """Return the prelude whose ego is that of a sample."""
         module = replace(self._module, ego=sample.value(self._module.ego))
         return Prelude(self._compilation, self._program, module, self._modules)
 
@@ -191,7 +191,7 @@ class Prelude(Symbolic, Dynamics):
             self._module.workspace = value
 
     def _known_workspace(self) -> Workspace | None:
-        """The workspace of the scenario that is running, else of the module, if it is set."""
+        """Return the workspace of the scenario that is running, else of the module, if it is set."""
         run = self._run
         own: Workspace | None = None if run is None else run.current.workspace
         return self._module.workspace if own is None else own
@@ -199,7 +199,7 @@ class Prelude(Symbolic, Dynamics):
     # Instances
 
     def specifier(self, name: str, *operands: Any, property: str | None = None) -> Specifier:
-        """One specifier of ``new``."""
+        """Return one specifier of ``new``."""
         caller = sys._getframe(1)
         # Functions of the established API call this, too: then the place is further up.
         site = Site(caller, caller.f_lasti) if PRELUDE in caller.f_globals else None
@@ -216,7 +216,7 @@ class Prelude(Symbolic, Dynamics):
         return specify(name, self._ego, self._space, *operands, site=site)
 
     def new(self, cls: object, *specifiers: Specifier) -> Any:
-        """A new instance of a Scenic class."""
+        """Return a new instance of a Scenic class."""
         if not (isinstance(cls, type) and issubclass(cls, Point)):
             raise ScenicTypeError(
                 f"`new` needs a Scenic class, not {describe(cls)}",
@@ -263,7 +263,7 @@ class Prelude(Symbolic, Dynamics):
     def property(
         self, name: str, attributes: Sequence[str], value: Callable[[Any], Any], reads: Sequence[str]
     ) -> PropertyDefinition:
-        """One property definition of a class."""
+        """Return one property definition of a class."""
         assert set(attributes) <= ATTRIBUTES, attributes
         if name == "heading" and self._context.mode_2d:
             return PropertyDefinition(
@@ -390,7 +390,7 @@ class Prelude(Symbolic, Dynamics):
         awaits: bool = False,
         indices: conditions.Indices | None = None,
     ) -> Condition:
-        """A leaf of a condition; see `scenic.runtime.description.conditions`.
+        """Return a leaf of a condition; see `scenic.runtime.description.conditions`.
 
         One that ``awaits`` reads names that the module sets later. ``indices`` tells which items it reads of what is captured.
         """
@@ -417,7 +417,7 @@ class Prelude(Symbolic, Dynamics):
         return conditions.negated(part)
 
     def temporal(self, operator: str, *parts: Condition) -> Condition:
-        """A temporal operator, or ``implies``."""
+        """Return a temporal operator, or ``implies``."""
         return conditions.in_time(operator, parts)
 
     presence = staticmethod(conditions.presence)
@@ -509,7 +509,7 @@ class Loader:
         return module
 
     def _package(self, name: str, importer: Module) -> ModuleType:
-        """The module of a package: that of its file, or else one that only leads to its parts."""
+        """Return the module of a package: that of its file, or else one that only leads to its parts."""
         path = self._modules.find(name)
         if path is not None and (path.stem == "__init__" or path in self._loaded):
             return self._load(path, name, importer)
@@ -541,7 +541,7 @@ class Loader:
         fromlist: Sequence[str],
         level: int,
     ) -> Any:
-        """A module of Python, or a folder some of whose modules are Scenic's."""
+        """Return a module of Python, or a folder some of whose modules are Scenic's."""
         folder = Path(self._folder)
         parts = {item: path for item in fromlist if (path := self._modules.find(f"{name}.{item}".strip(".")))}
         others = [item for item in fromlist if item not in parts]

@@ -92,7 +92,7 @@ def _one_of(parts: Parts) -> Any:
 
 
 def _with(parts: Parts, elements: Sequence[Node]) -> list[Node]:
-    """All arguments as nodes, those of the starred random list ``elements``."""
+    """Return all arguments as nodes, those of the starred random list ``elements``."""
     nodes: list[Node] = []
     for is_starred, value in parts:
         if is_starred and isinstance(value, Random):

@@ -53,7 +53,7 @@ class Symbolic:
     """
 
     def provided(self, name: str, function: object) -> Any:
-        """The function, if it is the one that every module finds in scope under this name."""
+        """Return the function, if it is the one that every module finds in scope under this name."""
         if function is not names.provided(name):
             raise NotSymbolicError
         return function
@@ -63,7 +63,7 @@ class Symbolic:
         return getattr(value, name)
 
     def call(self, value: object, name: str, *args: Any) -> Any:
-        """A method that takes random arguments; any other is called on samples."""
+        """Return a method that takes random arguments; any other is called on samples."""
         if not isinstance(value, VectorMethods | OrientationMethods | Region | Random | Object | Frozen):
             raise NotSymbolicError
         if isinstance(value, Object) and getattr(type(value), name, None) is not getattr(Object, name, None):
@@ -120,19 +120,19 @@ class Symbolic:
         return as_value(connect(operation, nodes))
 
     def iterated(self, name: str, function: object, *sequences: Any) -> Any:
-        """The sequence over which one of Python's own functions iterates, of fixed sequences."""
+        """Return the sequence over which one of Python's own functions iterates, of fixed sequences."""
         return unrolling.iterated(self.provided(name, function), sequences)
 
     def each(self, sequence: object, function: Callable[..., list[Any]], spread: bool) -> list[Any]:
-        """The values of a comprehension, by a function of an element, or of its parts."""
+        """Return the values of a comprehension, by a function of an element, or of its parts."""
         return unrolling.each(sequence, function, spread=spread)
 
     def given(self, test: object, make: Callable[[], list[Any]]) -> list[Any]:
-        """The values behind an ``if`` of a comprehension."""
+        """Return the values behind an ``if`` of a comprehension."""
         return unrolling.given(test, make)
 
     def perhaps(self, test: object, make: Callable[[], list[Any]]) -> list[Any]:
-        """The values behind an ``if`` of a comprehension that `over` or `number_of` reads."""
+        """Return the values behind an ``if`` of a comprehension that `over` or `number_of` reads."""
         return unrolling.perhaps(test, make)
 
     def number_of(self, length: object, values: list[Any]) -> Any:
@@ -165,7 +165,7 @@ class Symbolic:
         return unrolling.differ(values, count)
 
     def construct(self, name: str, function: object, *args: Any, **keywords: Any) -> Any:
-        """A region or vector that a condition makes."""
+        """Return a region or vector that a condition makes."""
         return constructed(self.provided(name, function), *args, **keywords)
 
     def choose(self, test: Condition, then: Callable[[], Any], otherwise: Callable[[], Any]) -> Any:

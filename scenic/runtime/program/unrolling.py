@@ -29,13 +29,13 @@ _COMPENSATES: Final = sys.version_info >= (3, 12)
 
 
 def iterated(function: Callable[..., Any], sequences: Sequence[object]) -> list[Any]:
-    """The elements of ``range``, ``zip``, ``enumerate`` or ``reversed``, of fixed arguments."""
+    """Return the elements of ``range``, ``zip``, ``enumerate`` or ``reversed``, of fixed arguments."""
     given = [item if isinstance(item, int) else _fixed(item) for item in sequences]
     return _fixed(list(_few(function(*given))))
 
 
 def each(sequence: object, function: Callable[..., list[Any]], *, spread: bool) -> list[Any]:
-    """The values that a function gives for the elements of a fixed sequence, or for their parts where it is ``spread``."""
+    """Return the values that a function gives for the elements of a fixed sequence, or for their parts where it is ``spread``."""
     found: list[Any] = []
     for item in _fixed(sequence):
         found += function(*_fixed(item)) if spread else function(item)
@@ -64,7 +64,7 @@ class _Perhaps:
         self._value = value
 
     def otherwise(self, convert: Callable[[Any], Node], default: object) -> Node:
-        """The node of the element, as ``convert`` makes it, or of ``default`` where the element is not there."""
+        """Return the node of the element, as ``convert`` makes it, or of ``default`` where the element is not there."""
         value = self._value
         inner = value.otherwise(convert, default) if isinstance(value, _Perhaps) else convert(value)
         return make_node(TABLE["if"], [self._test, inner, as_node(default)], span=here())
@@ -166,7 +166,7 @@ def _require_plain_equality(values: Sequence[object]) -> None:
 
 
 def _fixed(sequence: Any) -> list[Any]:
-    """The elements of a sequence whose number is known, noting those that the program may still change."""
+    """Return the elements of a sequence whose number is known, noting those that the program may still change."""
     if type(sequence) not in (list, tuple, range):
         raise NotSymbolicError
     elements = list(_few(sequence))

@@ -26,7 +26,7 @@ from scenic.runtime.regions.spaces import everywhere
 
 
 def _scope() -> Mapping[str, Any] | None:
-    """The globals of the module of Scenic code that is running; ``None`` outside of any."""
+    """Return the globals of the module of Scenic code that is running; ``None`` outside of any."""
     frame = sys._getframe(1)
     while frame is not None and "__scenic__" not in frame.f_globals:
         frame = frame.f_back  # type: ignore[assignment] # the outermost frame has none
@@ -34,7 +34,7 @@ def _scope() -> Mapping[str, Any] | None:
 
 
 def _language() -> Any:
-    """The prelude of the module that is running; ``None`` outside of any."""
+    """Return the prelude of the module that is running; ``None`` outside of any."""
     scope = _scope()
     return None if scope is None else scope["__scenic__"]
 
@@ -72,7 +72,7 @@ def _specify(name: str, *operands: Any) -> Specifier:
 def _function(
     made_by: Callable[..., Any], element: Operator | SpecifierDeclaration, declared: Function
 ) -> Callable[..., Any]:
-    """The declared function of an operator or a specifier."""
+    """Return the declared function of an operator or a specifier."""
     kind, no_default = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.empty
     signature = inspect.Signature(
         [
@@ -95,7 +95,7 @@ def _function(
 
 
 def With(prop: str, val: object) -> Specifier:
-    """The specifier ``with prop val``."""
+    """Return the specifier ``with prop val``."""
     language = _language()
     if language is None:
         return specify("with", _ego, _space, prop, val)
@@ -104,13 +104,13 @@ def With(prop: str, val: object) -> Specifier:
 
 
 def new(cls: Any, specifiers: Sequence[Specifier] = ()) -> Any:
-    """A new instance of a Scenic class; an object becomes one of the program's that is running."""
+    """Return a new instance of a Scenic class; an object becomes one of the program's that is running."""
     language = _language()
     return build(cls, tuple(specifiers)) if language is None else language.new(cls, *specifiers)
 
 
 def ego(obj: object = None) -> Any:
-    """The ego; with an argument, it becomes the ego."""
+    """Return the ego; with an argument, it becomes the ego."""
     language = _needed("ego")
     if obj is not None:
         language.ego = obj
@@ -118,7 +118,7 @@ def ego(obj: object = None) -> Any:
 
 
 def workspace(workspace: object = None) -> Any:
-    """The workspace; with an argument, it becomes the workspace."""
+    """Return the workspace; with an argument, it becomes the workspace."""
     language = _needed("workspace")
     if workspace is not None:
         language.workspace = workspace
@@ -140,7 +140,7 @@ def mutate(*objects: Any, scale: object = 1) -> None:
 
 
 def globalParameters() -> Any:
-    """The global parameters, by attribute or index."""
+    """Return the global parameters, by attribute or index."""
     _needed("parameter")
     scope = _scope()
     assert scope is not None
@@ -148,7 +148,7 @@ def globalParameters() -> Any:
 
 
 def localPath(relpath: str) -> Path:
-    """A path relative to the file of the program that is running, or else to the working directory."""
+    """Return a path relative to the file of the program that is running, or else to the working directory."""
     scope = _scope()
     if scope is None:
         return Path.cwd() / relpath

@@ -72,11 +72,11 @@ class Distribution(Random, metaclass=_AnyLaw):
         return copy
 
     def bucket(self, buckets: object = None) -> Any:
-        """An approximation by buckets; not every distribution has one."""
+        """Return an approximation by buckets; not every distribution has one."""
         raise NotImplementedError(f"{type(self).__name__} cannot be divided into buckets")
 
     def supportInterval(self) -> tuple[float | None, float | None]:
-        """The least and the greatest value, if known: analysis relies on them if ``valueType`` is ``float``."""
+        """Return the least and the greatest value, if known: analysis relies on them if ``valueType`` is ``float``."""
         return (None, None)
 
 
@@ -167,7 +167,7 @@ def distributionMethod(method: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def supportInterval(value: Any) -> tuple[float | None, float | None]:
-    """The least and the greatest value that a number, random or not, can have; ``None`` where that is not known."""
+    """Return the least and the greatest value that a number, random or not, can have; ``None`` where that is not known."""
     if Distribution in type(value).__mro__:
         return cast("tuple[float | None, float | None]", value.supportInterval())
     return support_of(value)

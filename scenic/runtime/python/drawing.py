@@ -50,7 +50,7 @@ def _drawn(nodes: Sequence[Node], keys: Words, *, grouped: bool = True) -> Batch
 
 
 def support_of(value: object) -> tuple[float | None, float | None]:
-    """The least and the greatest value that a number, random or not, can have; ``None`` where that is not known."""
+    """Return the least and the greatest value that a number, random or not, can have; ``None`` where that is not known."""
     if is_number(value):
         return (value, value)
     if not isinstance(value, Random) or not as_node(value).kind.is_number:

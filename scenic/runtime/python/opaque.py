@@ -247,7 +247,7 @@ class Calls:
         return results
 
     def plain(self) -> tuple[Callable[..., Any], Rows] | None:
-        """The function, and its arguments by lane, where these are columns and what is the same in every sample."""
+        """Return the function, and its arguments by lane, where these are columns and what is the same in every sample."""
         code = self.code
         if code.keywords or code.looks or not self._is_same(code.function):
             return None
@@ -310,7 +310,7 @@ class _Lanes:
         self.values = values
 
     def read(self, lane: int, node: Node) -> Any:
-        """The value of a node in one lane."""
+        """Return the value of a node in one lane."""
         found = self.values.get(node)
         if found is None:
             raise InvalidScenarioError(
@@ -320,7 +320,7 @@ class _Lanes:
         return found[lane if len(found) > 1 else 0]
 
     def tuples(self, nodes: tuple[Node, ...]) -> list[tuple[Any, ...]]:
-        """The values of several nodes lane by lane."""
+        """Return the values of several nodes lane by lane."""
         count = max(len(self.values[node]) for node in nodes)
         return [tuple(self.read(lane, node) for node in nodes) for lane in range(count)]
 

@@ -97,7 +97,7 @@ def _is_pure(function: object, within: frozenset[CodeType], given: Collection[st
 
 
 def _instructions(code: CodeType) -> Iterator[dis.Instruction]:
-    """The instructions of code and of what is nested in it."""
+    """Yield the instructions of code and of what is nested in it."""
     yield from dis.get_instructions(code)
     for item in code.co_consts:
         if isinstance(item, CodeType):

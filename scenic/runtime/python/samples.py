@@ -43,10 +43,10 @@ class Lanes(Protocol):
     """Values of nodes in a number of lanes."""
 
     def read(self, lane: int, node: Node) -> Any:
-        """The value of a node in one lane; the same object on every call."""
+        """Return the value of a node in one lane; the same object on every call."""
 
     def tuples(self, nodes: tuple[Node, ...]) -> list[tuple[Any, ...]]:
-        """The values of several nodes lane by lane, the objects that `read` gives; one row where all lanes agree."""
+        """Return the values of several nodes lane by lane, the objects that `read` gives; one row where all lanes agree."""
 
 
 Placement = tuple[dict[str, Any], tuple[Node, ...]]
@@ -106,7 +106,7 @@ class Globals:
             codes.extend(item for item in code.co_consts if isinstance(item, CodeType))
 
     def imported(self, function: FunctionType) -> list[ModuleType]:
-        """The program's modules that a function of the program, or code nested in it, may import when it is called."""
+        """Return the program's modules that a function of the program, or code nested in it, may import when it is called."""
         prelude = function.__globals__.get(PRELUDE)
         if prelude is None:
             return []
@@ -146,7 +146,7 @@ class Globals:
         )
 
     def members(self, cls: type) -> list[Any]:
-        """The members of a class of objects that read names of the program."""
+        """Return the members of a class of objects that read names of the program."""
         if cls not in self._members:
             self._members[cls] = members(cls)
         return self._members[cls]
@@ -158,7 +158,7 @@ class Globals:
         return self._varying[cls]
 
     def placement(self, instance: Instance) -> Placement:
-        """The known values of the properties that are read of every object."""
+        """Return the known values of the properties that are read of every object."""
         entry = self._placements.get(id(instance))
         if entry is None:
             values = {name: instance.__dict__.get(name) for name in PLACEMENT}
@@ -192,12 +192,12 @@ def may_return_instances(value: object) -> bool:
 
 
 def dependencies(values: Iterable[object], names: Globals | None = None) -> list[Node]:
-    """The nodes whose values decide the sampled values of ``values``, in order of discovery."""
+    """Return the nodes whose values decide the sampled values of ``values``, in order of discovery."""
     return nodes_of(reachable(values, Globals() if names is None else names))
 
 
 def nodes_of(walk: Iterable[object]) -> list[Node]:
-    """The nodes of the random values among what `reachable` gives, each once."""
+    """Return the nodes of the random values among what `reachable` gives, each once."""
     return list(dict.fromkeys(value.node for value in walk if isinstance(value, Random)))
 
 
@@ -292,7 +292,7 @@ def _boxed_constants(root: Node, seen: dict[int, Any]) -> list[Any]:
 
 
 def parts(value: object, names: Globals) -> Iterator[Any]:
-    """The parts of a value, as far as sampling goes."""
+    """Yield the parts of a value, as far as sampling goes."""
     if isinstance(value, Instance):
         yield from value.__dict__.get("_source", value).__dict__.values()
         yield from names.members(type(value))
@@ -369,7 +369,7 @@ _MISSING: Final = object()
 
 
 def kind_of_container(cls: type) -> Any:
-    """The one of Python's containers, which are changed in place, that a class is or derives from; ``None`` if there is none."""
+    """Return the one of Python's containers, which are changed in place, that a class is or derives from; ``None`` if there is none."""
     kinds = (list, deque, set, OrderedDict, defaultdict, dict)
     return next((kind for kind in kinds if issubclass(cls, kind)), None)
 
@@ -426,7 +426,7 @@ class Sample:
         self._scopes: dict[int, dict[str, Any]] = {}
 
     def value(self, value: object) -> Any:
-        """The sampled value: ``value`` itself where nothing in it is random.
+        """Return the sampled value: ``value`` itself where nothing in it is random.
 
         One value gives one object, however often it is asked for, so that identity survives sampling.
         """
@@ -448,7 +448,7 @@ class Sample:
         return earlier_copy
 
     def member(self, member: object, owner: type) -> Any:
-        """A member of a class of objects, which may read other members."""
+        """Return a member of a class of objects, which may read other members."""
         if not self._varies(owner):
             return member
         known = self._memo.get(id(member))
@@ -458,7 +458,7 @@ class Sample:
         return known
 
     def _again(self, value: object) -> Any:
-        """A function, or what decorators make of one, over sampled names: even if it reads none."""
+        """Return a function, or what decorators make of one, over sampled names: even if it reads none."""
         if isinstance(value, DECORATED):
             return self._decorated(value, self._again)
         # What code of a sample has defined has its names already.
@@ -530,7 +530,7 @@ class Sample:
         return self._names.varies(cls)
 
     def _container(self, container: Any, kind: Any, cls: type) -> Any:
-        """A container over sampled values, even if a class of the program overrides its construction and changes."""
+        """Return a container over sampled values, even if a class of the program overrides its construction and changes."""
         copy = kind.__new__(cls)
         if kind is deque:
             deque.__init__(copy, (), container.maxlen)
@@ -567,7 +567,7 @@ class Sample:
         return copy  # type: ignore[no-any-return] # of the class of the instance
 
     def _module(self, module: ModuleType) -> ModuleType:
-        """The module over sampled values."""
+        """Return the module over sampled values."""
         copy = ModuleType(module.__name__, module.__doc__)
         self.remember(module, copy)
         vars(copy).update(vars(module))
@@ -606,7 +606,7 @@ class Sample:
         return copy_of_value
 
     def _object(self, instance: object) -> Any:
-        """The instance of a plain Python class of the program."""
+        """Return the instance of a plain Python class of the program."""
         cls = self.value(type(instance))
         if cls is type(instance) and self._stays(instance):
             return instance
@@ -627,7 +627,7 @@ class Sample:
 
     @staticmethod
     def _empty(instance: object, cls: type) -> Any:
-        """An instance of a class, without attributes, which stands for one of the class that this is a copy of."""
+        """Return an instance of a class, without attributes, which stands for one of the class that this is a copy of."""
         try:
             return object.__new__(cls)
         except TypeError:  # it derives from a class of Python's own that keeps more than attributes
@@ -636,7 +636,7 @@ class Sample:
             return copy
 
     def _function(self, function: FunctionType) -> FunctionType:
-        """The function over sampled globals, closure and defaults."""
+        """Return the function over sampled globals, closure and defaults."""
         is_own_code = PRELUDE in function.__globals__
         scope = self._scope(function) if is_own_code else function.__globals__
         stays = self._stays(function)

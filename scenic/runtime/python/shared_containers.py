@@ -44,7 +44,7 @@ class Originals:
         return id(item) in self._kept
 
     def contents(self, container: object) -> Any:
-        """The contents of a container when the program had run; the present ones if it is none of these."""
+        """Return the contents of a container when the program had run; the present ones if it is none of these."""
         kept = self._kept.get(id(container))
         return _contents(container)[0] if kept is None else kept[1][0]
 

@@ -16,7 +16,7 @@ class Carrier:
         return [type(self), *_held(self).values()]
 
     def sampled(self, sample: Any) -> Any:
-        """The same of sampled values; itself where they are those that it has."""
+        """Return the same of sampled values; itself where they are those that it has."""
         twin = shallow.copy(self)
         sample.remember(self, twin)  # Its parts may lead back to it.
         cls = sample.value(type(self))
@@ -32,6 +32,6 @@ class Carrier:
 
 
 def _held(carrier: Carrier) -> dict[str, Any]:
-    """The attributes that it holds itself, by name."""
+    """Return the attributes that it holds itself, by name."""
     kept = {name: getattr(carrier, name) for name in slots(type(carrier)) if hasattr(carrier, name)}
     return {**kept, **getattr(carrier, "__dict__", {})}

@@ -62,7 +62,7 @@ from scenic.runtime.values.values import (
 
 
 def _operand(value: object, what: str) -> Region:
-    """A region to combine: an object means the space that it fills."""
+    """Return a region to combine: an object means the space that it fills."""
     region = as_region(value)
     if region is None:
         region = as_region(getattr(value, "occupiedSpace", None))
@@ -72,7 +72,7 @@ def _operand(value: object, what: str) -> Region:
 
 
 def _unwrapped(region: Region) -> Region:
-    """A region itself, where it is a workspace what that is made of."""
+    """Return a region itself, where it is a workspace what that is made of."""
     while isinstance(region, Workspace):
         region = region.region
     return region
@@ -82,7 +82,7 @@ def _unwrapped(region: Region) -> Region:
 
 
 def region_of(geometry: object, height: float | None, orientation: object) -> Region:
-    """The region of a shapely geometry: of its parts of the highest dimension."""
+    """Return the region of a shapely geometry: of its parts of the highest dimension."""
     import shapely
 
     leaves: list[Any] = []
@@ -108,12 +108,12 @@ def region_of(geometry: object, height: float | None, orientation: object) -> Re
 
 
 def _field(*regions: Region) -> Any:
-    """The preferred orientation of what is left of regions: that of the first one with any."""
+    """Return the preferred orientation of what is left of regions: that of the first one with any."""
     return next((region.orientation for region in regions if region.orientation is not None), None)
 
 
 def _field_of_drawn(members: Sequence[tuple[Any, float | None, Any]]) -> PiecewiseVectorField | None:
-    """The same for the geometries, heights and fields of regions whose fields are drawn."""
+    """Return the same for the geometries, heights and fields of regions whose fields are drawn."""
     return field_of_union([region_of(*member) for member in members])
 
 
@@ -161,7 +161,7 @@ def intersection(first: object, second: object) -> Region:
 
 
 def _as_container(region: Region, other: Region) -> Region:
-    """A region of the plane as what is above and below it, if another region is not level."""
+    """Return a region of the plane as what is above and below it, if another region is not level."""
     return region.footprint if region.has_closed_form and not other.has_closed_form else region
 
 
@@ -200,7 +200,7 @@ def _exact_intersection(a: Region, b: Region) -> Region | None:
 
 
 def _line_inside(line: LineRegion, solid: Mesh, orientation: object) -> Region:
-    """The pieces of a line inside a solid, with an orientation field."""
+    """Return the pieces of a line inside a solid, with an orientation field."""
     pieces = pieces_inside(line, solid)
     if not pieces:
         return nowhere
@@ -215,7 +215,7 @@ def _line_inside(line: LineRegion, solid: Mesh, orientation: object) -> Region:
 
 
 def _of_pieces(orientation: object) -> Any:
-    """The field of what is left of a line: where it was that of the line's own directions, those of the pieces (``True``)."""
+    """Return the field of what is left of a line: where it was that of the line's own directions, those of the pieces (``True``)."""
     return True if orientation is None or isinstance(orientation, RegionField) else orientation
 
 
@@ -390,7 +390,7 @@ def contains_region(first: object, second: object, tolerance: float = 0) -> bool
 
 @generic.boundary.register(PlanarRegion)
 def boundary(region: PlanarRegion) -> PolylineRegion:
-    """The outline of a region of the plane."""
+    """Return the outline of a region of the plane."""
     return PolylineRegion(polyline=region.polygons.boundary)
 
 
@@ -423,7 +423,7 @@ def _own_field(region: Region) -> RegionField:
 
 @generic.outline_from_above.register(Region)
 def outline_from_above(region: Region) -> PolygonalRegion:
-    """A volume or surface seen from above, at height 0."""
+    """Return a volume or surface seen from above, at height 0."""
     solid = surface_in_world(region) if isinstance(region, SideSurface) else solid_of(region)
     outline = None if solid is None else shadow(solid)
     if outline is None or outline.is_empty:
@@ -433,19 +433,19 @@ def outline_from_above(region: Region) -> PolygonalRegion:
 
 @generic.part_between.register(Footprint)
 def part_between(region: Footprint, low: float, high: float) -> Region:
-    """The part of a footprint between two heights, in metres."""
+    """Return the part of a footprint between two heights, in metres."""
     return _volume(prism(region.polygons, low, high))
 
 
 @generic.surface_of.register(OccupiedSpace)
 def surface_of(region: OccupiedSpace) -> MeshSurfaceRegion:
-    """The surface of a solid, with the same parameters."""
+    """Return the surface of a solid, with the same parameters."""
     return MeshSurfaceRegion.of_operands(region.parameters)
 
 
 @generic.voxelized.register(Region)
 def voxelized(region: Region, pitch: float) -> VoxelRegion:
-    """The cells of a grid that a volume touches."""
+    """Return the cells of a grid that a volume touches."""
     solid = solid_of(region)
     if solid is None:
         raise InvalidScenarioError(f"{region!r} has no cells", span=here())

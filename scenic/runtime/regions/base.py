@@ -124,7 +124,7 @@ class Region(metaclass=_RegionType):
     # Of fixed regions, on plain floats
 
     def single(self) -> Single | None:
-        """The object that answers for one point or body at a time; ``None`` if there is none. Not for random regions."""
+        """Return the object that answers for one point or body at a time; ``None`` if there is none. Not for random regions."""
         return None
 
     @property
@@ -151,11 +151,11 @@ class Region(metaclass=_RegionType):
         return mask
 
     def from_above(self, *columns: Column) -> Flat | None:
-        """The region as geometries of level planes or columns; ``None`` where it is neither, or they are not known."""
+        """Return the region as geometries of level planes or columns; ``None`` where it is neither, or they are not known."""
         return None
 
     def half_spaces(self, *columns: Column) -> NDArray[np.float64] | None:
-        """The region as a bounded polytope, half-spaces ``(n | 1, k, 4)``; ``None`` where it is none, or has many faces."""
+        """Return the region as a bounded polytope, half-spaces ``(n | 1, k, 4)``; ``None`` where it is none, or has many faces."""
         return None
 
     def ball(self, *columns: Column) -> tuple[Points, NDArray[np.float64]] | None:
@@ -280,7 +280,7 @@ class Region(metaclass=_RegionType):
         return self.own_orientation(point) if self.has_orientation else None
 
     def own_orientation(self, point: Any) -> Any:
-        """The orientation that the region itself gives one of its points (`orientations`)."""
+        """Return the orientation that the region itself gives one of its points (`orientations`)."""
         return apply(_ORIENTATION, to_vector(point), *self.parameters, payload=self)
 
     def orientation_asked(self, point: Any) -> Any:
@@ -288,7 +288,7 @@ class Region(metaclass=_RegionType):
         return self.own_orientation(point)
 
     def random_parts(self) -> list[Any]:
-        """The parameters, what else is random with them, and the field of orientations, for sampling."""
+        """Return the parameters, what else is random with them, and the field of orientations, for sampling."""
         placement = (getattr(self, name) for name in self._placement_names)
         return [*self.parameters, *placement, self.__dict__.get("orientation")]
 
@@ -412,7 +412,7 @@ class Region(metaclass=_RegionType):
     # What is known of a fixed region
 
     def fixed_columns(self, what: str) -> list[Column]:
-        """The columns of the parameters; raises `ScenicTypeError` where they are random."""
+        """Return the columns of the parameters; raises `ScenicTypeError` where they are random."""
         if self.is_random:
             raise ScenicTypeError(f"{what} of a region with random parameters is not known", span=here())
         return [as_node(value).payload.column for value in self.parameters]
@@ -440,7 +440,7 @@ class Region(metaclass=_RegionType):
         return None if np.isnan(size) else size
 
     def sample(self, subsamples: Any = None) -> "Region":
-        """The region with its random parameters drawn now, independent of all scenes."""
+        """Return the region with its random parameters drawn now, independent of all scenes."""
         region: Region = sample_of(self)
         return region
 
@@ -617,7 +617,7 @@ _TRIES = 10_000
 
 
 def unsupported(what: str) -> UnsupportedError:
-    """The refusal of a region or function that this version does not build."""
+    """Return the refusal of a region or function that this version does not build."""
     return UnsupportedError(
         f"{what} is not supported yet", span=here(), help="see the list of what works in the README"
     )

@@ -109,7 +109,7 @@ class OccupiedSpace(Region):
         return landed, self.orientation_at(landed)
 
     def body(self) -> Body:
-        """The solid of a region without random parameters."""
+        """Return the solid of a region without random parameters."""
         return body_of(*self.fixed_columns("the solid"))
 
     @property
@@ -139,16 +139,16 @@ class OccupiedSpace(Region):
         return bool(self.parameters[3].mesh.is_convex)
 
     def getSurfaceRegion(self) -> Region:
-        """The surface of the volume."""
+        """Return the surface of the volume."""
         surface: Region = generic.surface_of(self)
         return surface
 
     def getVolumeRegion(self) -> Region:
-        """The volume itself."""
+        """Return the volume itself."""
         return self
 
     def voxelized(self, pitch: float) -> Region:
-        """The cells of this edge length, in metres, that the volume touches."""
+        """Return the cells of this edge length, in metres, that the volume touches."""
         region: Region = generic.voxelized(self, pitch)
         return region
 
@@ -245,12 +245,12 @@ def bounding_corners(thing: Any) -> tuple[Any, Any]:
 
 
 def inradius(thing: Any) -> Any:
-    """The radius of a ball about the position of an object that it holds; 0 where the position is outside."""
+    """Return the radius of a ball about the position of an object that it holds; 0 where the position is outside."""
     return apply(_INRADIUS, *body_operands(thing))
 
 
 def planar_inradius(thing: Any) -> Any:
-    """The radius of a disc about the position that an object holds seen along its own z; 0 where the position is outside."""
+    """Return the radius of a disc about the position that an object holds seen along its own z; 0 where the position is outside."""
     return apply(_PLANAR_INRADIUS, *body_operands(thing))
 
 
@@ -303,7 +303,7 @@ class Facing:
 
 
 def _pairs(thresholds: Any) -> list[tuple[float, float]]:
-    """The thresholds of an object's sides, negative and positive, for each axis."""
+    """Return the thresholds of an object's sides, negative and positive, for each axis."""
     try:
         pairs = [(lower, upper) for lower, upper in thresholds]
     except (TypeError, ValueError):
@@ -418,7 +418,7 @@ class SideSurface(Region):
         return body_points.areas(body_of(*columns), self.facing.side, self.facing.threshold)
 
     def orientation_asked(self, point: Any) -> Any:
-        """The orientation of the nearest face; rejected for points that are not on the surface."""
+        """Return the orientation of the nearest face; rejected for points that are not on the surface."""
         return apply(_ORIENTATION_ON, point, *self.parameters, payload=self)
 
     @property
@@ -447,7 +447,7 @@ class SideSurface(Region):
         return generic.outline_from_above(self)
 
     def getSurfaceRegion(self) -> Region:
-        """The surface itself."""
+        """Return the surface itself."""
         return self
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:

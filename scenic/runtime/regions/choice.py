@@ -86,7 +86,7 @@ class RegionChoice(VaryingRegion):
         )
 
     def sampled(self, sample: Any) -> Region:
-        """The region that a sample draws."""
+        """Return the region that a sample draws."""
         region: Region = self.options[sample.value(self.parameters[0])].sampled(sample)
         return region
 

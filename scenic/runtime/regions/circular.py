@@ -38,7 +38,7 @@ def _disc_point(_call: Call, first: Column, second: Column) -> Column:
 
 
 def disc_extent(center: Bounds | None, radius: Bounds | None) -> Bounds | None:
-    """The box of a level disc, from bounds of its centre and radius."""
+    """Return the box of a level disc, from bounds of its centre and radius."""
     if center is None or radius is None:
         return None
     reach = np.maximum(radius.upper, 0.0)[:, np.newaxis] * np.array([1.0, 1.0, 0.0])
@@ -54,7 +54,7 @@ def _disc_bounds(_payload: object, first: Bounds, second: Bounds) -> Bounds:
 
 
 def _disc_inverse(_payload: object, result: Bounds, _first: Bounds, _second: Bounds) -> list[Bounds | None]:
-    """The squares of the distances that points in these bounds have from the middle."""
+    """Return the squares of the distances that points in these bounds have from the middle."""
     squares = [intervals.square(part) for part in intervals.components(result)[:2]]
     return [intervals.widened(intervals.total(squares), 1e-13), None]
 
@@ -181,7 +181,7 @@ class CircularRegion(PlanarRegion):
         return np.asarray(shapely.polygons(self._corners(*columns)), dtype=np.object_)
 
     def _corners(self, center: Column, radius: Column) -> Column:
-        """The vertices ``(n | 1, k, 2)`` of the polygon that stands for the disc, anticlockwise."""
+        """Return the vertices ``(n | 1, k, 2)`` of the polygon that stands for the disc, anticlockwise."""
         angles = np.arange(4 * self.resolution) * (math.pi / (2 * self.resolution))
         circle = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
         corners: Column = center[:, np.newaxis, :2] + radius[:, np.newaxis, np.newaxis] * circle

@@ -122,7 +122,7 @@ class IntersectionRegion(Composite):
         )
 
     def decided(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64]:
-        """The distance to a member whose nearest point lies in all others; infinite where flat members lie at different heights."""
+        """Return the distance to a member whose nearest point lies in all others; infinite where flat members lie at different heights."""
         result = super().decided(points, columns)
         levels = [
             member.heights(*mine) for member, mine in self._parts(columns) if isinstance(member, PlanarRegion)
@@ -372,7 +372,7 @@ class DifferenceRegion(Composite):
         )
 
     def decided(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64]:
-        """The distance to the first member, where its nearest point is not in the second."""
+        """Return the distance to the first member, where its nearest point is not in the second."""
         result = super().decided(points, columns)
         (first, mine), (second, others) = self._parts(columns)
         found = first.nearest(points, *mine)

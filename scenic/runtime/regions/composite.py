@@ -89,7 +89,7 @@ class Composite(Region):
         return self.combined(members)
 
     def in_lane(self, lane: int, columns: Sequence[Column]) -> Region:
-        """The region at the values of one lane, in closed form where it has one."""
+        """Return the region at the values of one lane, in closed form where it has one."""
         return in_lane(self, lane, columns)
 
     def distances(self, points: Points, *columns: Column) -> NDArray[np.float64]:
@@ -126,7 +126,7 @@ class Composite(Region):
         return None
 
     def decided(self, points: Points, columns: Sequence[Column]) -> NDArray[np.float64]:
-        """The distances ``(n,)`` that members decide; not a number where none does."""
+        """Return the distances ``(n,)`` that members decide; not a number where none does."""
         return np.full(len(points), np.nan)
 
     def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
@@ -205,11 +205,11 @@ class Composite(Region):
 
     @abstractmethod
     def _box_of(self, boxes: Sequence[Bounds | None]) -> Bounds | None:
-        """The box of the region from those of its members."""
+        """Return the box of the region from those of its members."""
 
     @abstractmethod
     def combined(self, members: Sequence[Region]) -> Region:
-        """The same combination of other members."""
+        """Return the same combination of other members."""
 
     def members_that_hold(self, points: Points, columns: Sequence[Column]) -> list[Mask]:
         """For each member, which points lie in it; of regions of the plane also at its height."""
@@ -357,7 +357,7 @@ def exactly_contains(region: Region, points: Points, columns: Sequence[Column]) 
 
 
 def _leaves(region: Region, columns: Sequence[_Part]) -> Iterator[tuple[Region, Sequence[_Part]]]:
-    """The members of members, with their columns."""
+    """Yield the members of members, with their columns."""
     if isinstance(region, Composite):
         for member, mine in region._parts(columns):
             yield from _leaves(member, mine)

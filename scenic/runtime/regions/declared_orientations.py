@@ -15,7 +15,7 @@ __all__ = ["orientedRegion", "unorientedRegion"]
 
 
 def orientedRegion(region: object) -> Region:
-    """A region, perhaps random, whose points have preferred orientations: `in` and `on` take them.
+    """Return a region, perhaps random, whose points have preferred orientations: `in` and `on` take them.
 
     Raises:
         InvalidScenarioError: if it is known to have none; of a random one in the samples that draw such a region.
@@ -29,7 +29,7 @@ def orientedRegion(region: object) -> Region:
 
 
 def unorientedRegion(region: object) -> Region:
-    """A region, perhaps random, from which `in` and `on` take only the position, even if it has preferred orientations.
+    """Return a region, perhaps random, from which `in` and `on` take only the position, even if it has preferred orientations.
 
     Raises:
         ScenicTypeError: if it is no region.

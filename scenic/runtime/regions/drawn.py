@@ -34,12 +34,12 @@ class DrawnRegion(VaryingRegion):
 
     @classmethod
     def made(cls, make: Callable[..., Region], /, *args: Any, **keywords: Any) -> Self:
-        """The region that a function makes of values once they are drawn."""
+        """Return the region that a function makes of values once they are drawn."""
         return cls(call_later(make, *args, **keywords))
 
     @classmethod
     def of(cls, value: Random, what: str) -> Self:
-        """The region that a random value of unknown type stands for; the draw of anything else is a fault."""
+        """Return the region that a random value of unknown type stands for; the draw of anything else is a fault."""
         return cls.made(_wanted, value, what)
 
     @property

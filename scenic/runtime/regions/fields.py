@@ -70,7 +70,7 @@ class VectorField:
         self.defaultStepSize = defaultStepSize
 
     def _asked(self) -> dict[str, Any]:
-        """The functions that it was given, by the names of the attributes that hold them."""
+        """Return the functions that it was given, by the names of the attributes that hold them."""
         held = {name: self.__dict__.get(name) for name in ("value", "headingFunction")}
         return {
             name: function
@@ -83,7 +83,7 @@ class VectorField:
         return list(self._asked().values())
 
     def sampled(self, sample: Any) -> "VectorField":
-        """The field whose functions read sampled values; itself where they read none."""
+        """Return the field whose functions read sampled values; itself where they read none."""
         functions_by_name = self._asked()
         functions = {name: sample.value(function) for name, function in functions_by_name.items()}
         if all(functions[name] is function for name, function in functions_by_name.items()):
@@ -138,7 +138,7 @@ class VectorField:
 
     @staticmethod
     def forUnionOf(regions: Iterable[Any], tolerance: float = 0) -> "PiecewiseVectorField | None":  # noqa: ARG004 - of the established call
-        """The field that takes each point's orientation from the first region that holds it; ``None`` without any."""
+        """Return the field that takes each point's orientation from the first region that holds it; ``None`` without any."""
         members = list(regions)
         if not any(member.orientation is not None for member in members):
             return None
@@ -232,7 +232,7 @@ class PolygonalVectorField(TabulatedField):
         super().__init__(name, self._value, **options)
 
     def _nearest_cells(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.intp]:
-        """The first cell that holds each point; the number of cells where none does."""
+        """Return the first cell that holds each point; the number of cells where none does."""
         if self._index is None:
             self._index = CellIndex([_polygon(cell) for cell, _ in self.cells])
         return self._index.first_at(x, y)
@@ -325,7 +325,7 @@ class PiecewiseVectorField(VectorField):
 
 
 def field_of_union(members: Sequence[Any]) -> PiecewiseVectorField | None:
-    """The preferred orientation of a union of regions of the plane: that of the first member that holds the point."""
+    """Return the preferred orientation of a union of regions of the plane: that of the first member that holds the point."""
     oriented = any(member.has_orientation for member in members)
     return PiecewiseVectorField("union", members) if oriented else None
 
@@ -366,7 +366,7 @@ class PolyhedronVectorField(VectorField):
 
 
 def _polygon(cell: Any) -> Any:
-    """A shapely polygon: the cell itself, or that of a polygonal region."""
+    """Return a shapely polygon: the cell itself, or that of a polygonal region."""
     return getattr(cell, "polygons", cell)
 
 
@@ -421,7 +421,7 @@ def is_certainly_field(value: Any) -> bool:
 
 
 def field_of(value: Any, what: str) -> VectorField:
-    """A field; raises `ScenicTypeError` for anything else."""
+    """Return a field; raises `ScenicTypeError` for anything else."""
     if isinstance(value, VectorField):
         return value
     if is_certainly_field(value):
@@ -430,7 +430,7 @@ def field_of(value: Any, what: str) -> VectorField:
 
 
 def frame_at(direction: Any, position: Any, what: str) -> Any:
-    """A direction as an orientation; a field's is that at a point."""
+    """Return a direction as an orientation; a field's is that at a point."""
     if type(direction) is float:  # the most frequent one
         return Orientation.fromEuler(direction, 0.0, 0.0)
     if is_certainly_field(direction):

@@ -53,7 +53,7 @@ def _point(call: Call, face: Column, first: Column, second: Column) -> Column:
 
 
 def _point_bounds(payload: Triangles, face: Bounds, *_uniforms: Bounds) -> Bounds:
-    """The box around all triangles; weights that sum to 1 but for rounding leave it by little."""
+    """Return the box around all triangles; weights that sum to 1 but for rounding leave it by little."""
     slack = 8 * EPSILON * np.abs(payload.parts).max()
     count = len(face.lower)
     return Bounds(
@@ -90,7 +90,7 @@ class FixedSide:
     @staticmethod
     @lru_cache(maxsize=16)
     def of(mesh: Mesh, placement: tuple[Any, Any, Any], side: Side, threshold: float) -> "FixedSide | None":
-        """The side of a body; ``None`` where it has no faces, or the mesh too many.
+        """Return the side of a body; ``None`` where it has no faces, or the mesh too many.
 
         Kept for a while: one thing after the other is placed on the same table.
 

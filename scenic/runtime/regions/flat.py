@@ -33,7 +33,7 @@ class Flat:
     heights: Column | None
 
     def intersection(self, other: "Flat") -> "Flat":
-        """The geometry that lies in both."""
+        """Return the geometry that lies in both."""
         import shapely
 
         shared = shapely.intersection(self.geometries, other.geometries)
@@ -42,7 +42,7 @@ class Flat:
         return Flat(np.where(self.heights == other.heights, shared, shapely.Polygon()), self.heights)
 
     def difference(self, other: "Flat") -> "Flat | None":
-        """The geometry that lies in the first alone; ``None`` for a column without a plane."""
+        """Return the geometry that lies in the first alone; ``None`` for a column without a plane."""
         import shapely
 
         rest = shapely.difference(self.geometries, other.geometries)
@@ -53,7 +53,7 @@ class Flat:
         return Flat(np.where(self.heights == other.heights, rest, self.geometries), self.heights)
 
     def union(self, other: "Flat") -> "Flat | None":
-        """The geometry that lies in either; ``None`` unless all heights are the same."""
+        """Return the geometry that lies in either; ``None`` unless all heights are the same."""
         import shapely
 
         if self.heights is None or other.heights is None:
@@ -116,10 +116,10 @@ class MeetingFlat(Protocol):
         """Lower and upper corners ``(n | 1, 3)``."""
 
     def meets_rectangles(self, rectangles: Rectangles, *columns: Column) -> tuple[Mask, Mask]:
-        """The masks of rectangles ``(n,)`` that meet the region, and of those for which this is left open."""
+        """Return the masks of rectangles ``(n,)`` that meet the region, and of those for which this is left open."""
 
     def meets_outlines(self, outlines: Geometries, *columns: Column) -> Mask:
-        """The mask of geometries ``(n,)`` that meet the region."""
+        """Return the mask of geometries ``(n,)`` that meet the region."""
 
     def meets_places(self, points: Column, *columns: Column) -> Mask:
         """Of which rows of points ``(n, m, 2)`` some lie in the region."""
@@ -140,7 +140,7 @@ class _Placed:
 
 
 def rows_of(columns: Sequence[Column], lanes: NDArray[np.intp]) -> list[Column]:
-    """The columns in some lanes; a single row stays one."""
+    """Return the columns in some lanes; a single row stays one."""
     return [column if len(column) == 1 else column[lanes] for column in columns]
 
 

@@ -68,13 +68,13 @@ def contains_region(first: object, second: object, tolerance: float = 0) -> bool
 
 @singledispatch
 def meets_bodies(region: object, body: Body, lanes: int, columns: Sequence[Column]) -> Any:  # noqa: ARG001
-    """The lanes in which a region shares a point with a body, as a mask ``(lanes,)``."""
+    """Return the lanes in which a region shares a point with a body, as a mask ``(lanes,)``."""
     raise _missing("the meeting with bodies", region)
 
 
 @singledispatch
 def boundary(region: object) -> Any:
-    """The outline of a region of the plane, as a line."""
+    """Return the outline of a region of the plane, as a line."""
     raise _missing("the boundary", region)
 
 
@@ -86,7 +86,7 @@ def oriented_point(position: object, orientation: object, *, by_angles: bool = F
 
 @singledispatch
 def outline_from_above(region: object) -> Any:
-    """A volume or surface seen from above, as a polygon at height 0."""
+    """Return a volume or surface seen from above, as a polygon at height 0."""
     raise _missing("the outline from above", region)
 
 
@@ -98,35 +98,35 @@ def meshed(region: object) -> Any:
 
 @singledispatch
 def joint_field(first: object, members: Sequence[object]) -> Any:  # noqa: ARG001
-    """The preferred orientation of the union of some members, of which ``first`` is one; ``None`` if none has any."""
+    """Return the preferred orientation of the union of some members, of which ``first`` is one; ``None`` if none has any."""
     raise _missing("the field", first)
 
 
 @singledispatch
 def own_field(region: object) -> Any:
-    """The orientations that the points of a region have by themselves, as a vector field."""
+    """Return the orientations that the points of a region have by themselves, as a vector field."""
     raise _missing("the field", region)
 
 
 @singledispatch
 def part_between(region: object, low: float, high: float) -> Any:  # noqa: ARG001
-    """The part of a footprint between two heights, in metres."""
+    """Return the part of a footprint between two heights, in metres."""
     raise _missing("the part between two heights", region)
 
 
 @singledispatch
 def surface_of(region: object) -> Any:
-    """The surface of a solid, with the same parameters."""
+    """Return the surface of a solid, with the same parameters."""
     raise _missing("the surface", region)
 
 
 @singledispatch
 def voxelized(region: object, pitch: float) -> Any:  # noqa: ARG001
-    """The cells, of an edge length in metres, that a volume touches."""
+    """Return the cells, of an edge length in metres, that a volume touches."""
     raise _missing("the cells", region)
 
 
 @singledispatch
 def world_mesh(region: object) -> Any:
-    """The mesh of a region of a body in the world, as a ``trimesh.Trimesh``."""
+    """Return the mesh of a region of a body in the world, as a ``trimesh.Trimesh``."""
     raise _missing("the mesh", region)

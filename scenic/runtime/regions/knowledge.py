@@ -176,7 +176,7 @@ def _is_column(container: Bounds) -> bool:
 def _inradius(
     payload: Containment, operands: Sequence[Bounds | None], *, upright: bool = False
 ) -> NDArray[np.float64]:
-    """The radius ``(m,)`` of a ball about the position that a body holds at least; 0 where nothing is known.
+    """Return the radius ``(m,)`` of a ball about the position that a body holds at least; 0 where nothing is known.
 
     If it is asked of what stands ``upright``, that of a disc seen from above; 0 where the body may be tilted.
     """
@@ -229,7 +229,7 @@ def _reach(payload: Containment, operands: Sequence[Bounds | None]) -> Bounds | 
 
 
 def _once(bounds: Bounds) -> Bounds:
-    """The first row of bounds of which all rows are the same; else the bounds."""
+    """Return the first row of bounds of which all rows are the same; else the bounds."""
     ends = (bounds.lower, bounds.upper)
     if len(bounds.lower) > 1 and all((end == end[:1]).all() for end in ends):
         return Bounds(bounds.lower[:1], bounds.upper[:1])
@@ -237,7 +237,7 @@ def _once(bounds: Bounds) -> Bounds:
 
 
 def fixed(parameters: Sequence[Bounds | None]) -> list[Floats] | None:
-    """The columns of parameters that have one value each in every box; ``None`` if some have not."""
+    """Return the columns of parameters that have one value each in every box; ``None`` if some have not."""
     columns = []
     for bounds in parameters:
         if bounds is None or not (bounds.lower == bounds.upper).all():

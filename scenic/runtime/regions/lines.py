@@ -342,7 +342,7 @@ class PolylineRegion(LineRegion):
         return self._made_of(substring(self.lineString, start, end, normalized=normalized))
 
     def _made_of(self, line: Any) -> "PolylineRegion":
-        """A line with the orientation of this one: along its own segments, or that of the field."""
+        """Return a line with the orientation of this one: along its own segments, or that of the field."""
         if line.geom_type == "Point":
             raise ScenicValueError("no part of the line lies between these two distances", span=here())
         return PolylineRegion(polyline=line, orientation=True if self._follows_segments else self.orientation)
@@ -363,7 +363,7 @@ class PolylineRegion(LineRegion):
 
     @staticmethod
     def unionAll(regions: Iterable["PolylineRegion"]) -> "PolylineRegion":
-        """The union of lines."""
+        """Return the union of lines."""
         import shapely
 
         merged = shapely.union_all([region.lineString for region in regions])

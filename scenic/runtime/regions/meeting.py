@@ -23,7 +23,7 @@ from scenic.runtime.regions.voxels import VoxelRegion
 
 
 def cells_near(voxels: VoxelRegion, other: Region) -> Iterable[Region]:
-    """The cells of a region within the box of another."""
+    """Return the cells of a region within the box of another."""
     return voxels.cells_within(*other.box(*other.fixed_columns("the box")))
 
 

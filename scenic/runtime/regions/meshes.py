@@ -83,7 +83,7 @@ def _mesh(mesh: Any, what: str) -> Mesh:
 
 
 def _loaded(cls: type[Region], path: object, unit: str, scale: float, **how: bool) -> Mesh:
-    """The mesh of a file, in metres."""
+    """Return the mesh of a file, in metres."""
     what = f"{cls.__name__}.fromFile"
     if not isinstance(path, str | Path):
         raise ScenicTypeError(f"{what} needs a fixed path, not {path!r}", span=here())
@@ -159,7 +159,7 @@ class MeshVolumeRegion(OccupiedSpace):
         )
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
-        """The solid and what is within the tolerance of it."""
+        """Return the solid and what is within the tolerance of it."""
         inside = super().contains_points(points, *columns)
         body = body_of(*columns)
         near = np.flatnonzero(~inside & (body_points.distances_from_box(body, points) <= self.tolerance))
@@ -175,7 +175,7 @@ class MeshVolumeRegion(OccupiedSpace):
     def fromFile(
         cls, path: object, unify: bool = True, unit: str = "m", scale: float = 1, **options: Any
     ) -> Self:
-        """The region of a mesh file in a unit of length, times ``scale``; further arguments are those of the class."""
+        """Return the region of a mesh file in a unit of length, times ``scale``; further arguments are those of the class."""
         return cls(_loaded(cls, path, unit, scale, unify=unify), **options)
 
     def project(self, point: object, direction: object) -> tuple[Any, Any]:
@@ -217,7 +217,7 @@ class MeshSurfaceRegion(SideSurface):
 
     @classmethod
     def of_operands(cls, operands: tuple[Any, ...], orientation: object = True) -> Self:
-        """The surface of a body given by the operands of `body_of`."""
+        """Return the surface of a body given by the operands of `body_of`."""
         self = cls.__new__(cls)
         self._finish(operands, orientation, None)
         self.position, self.rotation, self.dimensions = operands[:3]
@@ -234,7 +234,7 @@ class MeshSurfaceRegion(SideSurface):
     def fromFile(
         cls, path: object, unify: bool = True, unit: str = "m", scale: float = 1, **options: Any
     ) -> Self:
-        """The region of a mesh file in a unit of length, times ``scale``; further arguments are those of the class."""
+        """Return the region of a mesh file in a unit of length, times ``scale``; further arguments are those of the class."""
         return cls(_loaded(cls, path, unit, scale, unify=unify, volume=False), **options)
 
     def uniform_placement(self) -> tuple[Any, Any]:
@@ -248,13 +248,13 @@ class MeshSurfaceRegion(SideSurface):
         return landed, normal if isinstance(self.orientation, RegionField) else self.orientation_at(landed)
 
     def getVolumeRegion(self) -> MeshVolumeRegion:
-        """The volume that the surface bounds; raises ``ValueError`` where it bounds none."""
+        """Return the volume that the surface bounds; raises ``ValueError`` where it bounds none."""
         position, rotation, dimensions, shape = self.parameters
         return MeshVolumeRegion(shape.mesh, dimensions, position, rotation)
 
 
 def solid_in_world(operands: list[Column]) -> Mesh:
-    """The mesh of a body in its one placement, in the world."""
+    """Return the mesh of a body in its one placement, in the world."""
     body = body_of(*operands)
     unit = body.meshes[0 if body.choice is None else int(body.choice[0])]
     vertices = body.poses.to_world(unit.vertices[np.newaxis])[0]
@@ -262,7 +262,7 @@ def solid_in_world(operands: list[Column]) -> Mesh:
 
 
 def surface_in_world(region: SideSurface) -> Mesh | None:
-    """The faces of a surface without random parameters, in the world, and their vertices alone; ``None`` without faces."""
+    """Return the faces of a surface without random parameters, in the world, and their vertices alone; ``None`` without faces."""
     columns = region.fixed_columns("the surface")
     body, mesh = body_of(*columns), solid_in_world(columns)
     side, threshold = region.facing.side, region.facing.threshold
@@ -278,7 +278,7 @@ def surface_in_world(region: SideSurface) -> Mesh | None:
 
 @generic.world_mesh.register(Region)
 def world_mesh(region: Region) -> Any:
-    """The mesh of a region of a body in the world, as a `trimesh.Trimesh`."""
+    """Return the mesh of a region of a body in the world, as a `trimesh.Trimesh`."""
     import trimesh
 
     if isinstance(region, SideSurface):

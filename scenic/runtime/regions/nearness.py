@@ -19,13 +19,13 @@ SLACK: Final = 1e-6
 
 
 def body_box(position: Bounds | None, orientation: Bounds | None, size: Bounds | None) -> Bounds | None:
-    """The box in which a body lies, from bounds of what places it; its mesh lies in the unit box."""
+    """Return the box in which a body lies, from bounds of what places it; its mesh lies in the unit box."""
     reach = body_reach(orientation, size)
     return None if position is None or reach is None else intervals.add(position, reach)
 
 
 def body_reach(orientation: Bounds | None, size: Bounds | None) -> Bounds | None:
-    """The box in which a body lies, seen from its position."""
+    """Return the box in which a body lies, seen from its position."""
     if size is None:
         return None
     half = np.maximum(intervals.size(size), 0.0) / 2
@@ -43,19 +43,19 @@ def separation(first: Bounds, second: Bounds) -> Floats:
 
 
 def hull_of(boxes: Sequence[Bounds | None]) -> Bounds | None:
-    """The box that holds some boxes; ``None`` where one of them is not known."""
+    """Return the box that holds some boxes; ``None`` where one of them is not known."""
     known = [box for box in boxes if box is not None]
     return reduce(Bounds.hull, known) if len(known) == len(boxes) else None
 
 
 def at_any_height(box: Bounds) -> Bounds:
-    """A box and all that is above and below it."""
+    """Return a box and all that is above and below it."""
     z = np.array([False, False, True])
     return Bounds(np.where(z, -np.inf, box.lower), np.where(z, np.inf, box.upper))
 
 
 def grown(box: Bounds, distance: Floats) -> Bounds:
-    """The box of everything within distances ``(m | 1,)`` of a box."""
+    """Return the box of everything within distances ``(m | 1,)`` of a box."""
     margin = np.maximum(distance, 0.0)[:, np.newaxis] + SLACK
     return Bounds(box.lower - margin, box.upper + margin)
 

@@ -24,5 +24,5 @@ class _Lane:
 
 
 def in_lane(region: Region, lane: int, columns: Sequence[Column]) -> Region:
-    """The region at the values that its parameters have in one lane."""
+    """Return the region at the values that its parameters have in one lane."""
     return region.sampled(_Lane(region, lane, columns))

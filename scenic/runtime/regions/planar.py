@@ -55,7 +55,7 @@ class PlanarRegion(Region):
         return Footprint(self)
 
     def polygons_now(self) -> Any:
-        """The polygon of the region with fixed parameters, shapely's."""
+        """Return the polygon of the region with fixed parameters, shapely's."""
         raise unsupported(f"the polygon of a region of the kind {type(self).__name__}")
 
     @property
@@ -108,7 +108,7 @@ class PlanarRegion(Region):
 
     @staticmethod
     def unionAll(regions: Iterable[Region], buf: float = 0) -> Region:
-        """The union of regions, without those that are empty; gaps that are narrower than twice ``buf`` metres are closed.
+        """Return the union of regions, without those that are empty; gaps that are narrower than twice ``buf`` metres are closed.
 
         What the regions prefer as orientations it prefers, too, the first that holds a point before the others.
         """
@@ -129,14 +129,14 @@ class PlanarRegion(Region):
 
     @abstractmethod
     def geometries(self, *columns: Column) -> Geometries:
-        """The region as shapely polygons, ``(n | 1,)``."""
+        """Return the region as shapely polygons, ``(n | 1,)``."""
 
     @abstractmethod
     def nearest(self, points: Points, *columns: Column) -> Points:
         """The points ``(n, 3)`` of the region nearest to points ``(n, 3)`` of its plane; the z of the points stays."""
 
     def heights(self, *columns: Column) -> Column:
-        """The z of the plane, ``(n | 1,)``."""
+        """Return the z of the plane, ``(n | 1,)``."""
         return np.zeros(1)
 
     def heights_at(self, points: Points, *columns: Column) -> Column:
@@ -150,11 +150,11 @@ class PlanarRegion(Region):
         return meets_flat(self, body, lanes, columns, self.heights(*columns))
 
     def meets_rectangles(self, rectangles: Rectangles, *columns: Column) -> tuple[Mask, Mask]:
-        """The masks of rectangles ``(n,)`` that meet the region, and of the others for which this is left open: here all."""
+        """Return the masks of rectangles ``(n,)`` that meet the region, and of the others for which this is left open: here all."""
         return np.zeros(1, dtype=np.bool_), np.ones(1, dtype=np.bool_)
 
     def meets_outlines(self, outlines: Geometries, *columns: Column) -> Mask:
-        """The mask of shapely geometries ``(n,)`` that meet the region."""
+        """Return the mask of shapely geometries ``(n,)`` that meet the region."""
         import shapely
 
         return np.asarray(shapely.intersects(self.geometries(*columns), outlines))
@@ -395,12 +395,12 @@ class Footprint(Region):
         return bool(self.polygons.convex_hull.area <= self.polygons.area * (1 + 1e-9))
 
     def boundFootprint(self, centerZ: float, height: float) -> Region:
-        """The part of the footprint that is so high, about a middle height (metres)."""
+        """Return the part of the footprint that is so high, about a middle height (metres)."""
         part: Region = generic.part_between(self, centerZ - height / 2, centerZ + height / 2)
         return part
 
     def approxBoundFootprint(self, centerZ: float, height: float) -> Region:
-        """A part of the footprint that holds the one of `boundFootprint`."""
+        """Return a part of the footprint that holds the one of `boundFootprint`."""
         return self.boundFootprint(centerZ, height)
 
     def buffer(self, distance: float) -> "Footprint":

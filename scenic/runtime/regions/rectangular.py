@@ -197,7 +197,7 @@ class RectangularRegion(PlanarRegion):
 
     @staticmethod
     def _corners(*columns: Column) -> Column:
-        """The corners ``(n | 1, 4, 2)``, anticlockwise."""
+        """Return the corners ``(n | 1, 4, 2)``, anticlockwise."""
         position, heading, width, length = columns
         cos, sin = np.cos(heading), np.sin(heading)
         corners = np.empty((max(map(len, columns)), 4, 2))

@@ -30,7 +30,7 @@ def _is_fixed(region: Region) -> bool:
 def way_given(
     position: object, distance: object, steps: Any, size: Any
 ) -> tuple[tuple[Any, Any], tuple[int | None, float | None]] | None:
-    """The operands of a way along a field, for `over_lanes`."""
+    """Return the operands of a way along a field, for `over_lanes`."""
     if is_random((steps, size)):
         return None
     place, length = to_vector(position, "`follow ... from`"), to_scalar(distance, "`follow ... for`")

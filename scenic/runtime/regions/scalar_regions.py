@@ -50,7 +50,7 @@ class Flat:
         return None if beside is None else float(np.hypot(beside, point[2] - self._height))
 
     def beside(self, point: Triple) -> float | None:
-        """The distance seen from above."""
+        """Return the distance seen from above."""
         return None
 
     def meets_body(self, body: Placed) -> bool | None:

@@ -139,7 +139,7 @@ class SectorRegion(PlanarRegion):
         return polygons
 
     def _arcs(self, *columns: Column) -> tuple[Column, NDArray[np.intp]]:
-        """The centre and the vertices of the arc ``(n, k + 1, 2)``, and how many of the arc are different, ``(n,)``."""
+        """Return the centre and the vertices of the arc ``(n, k + 1, 2)``, and how many of the arc are different, ``(n,)``."""
         lanes = max(map(len, columns))
         center, radius, heading, angle = (np.broadcast_to(c, (lanes, *c.shape[1:])) for c in columns)
         width = np.minimum(angle, 2 * math.pi)

@@ -122,7 +122,7 @@ class Workspace(Region):
         self.draws, self.may_find_none, self.tolerance = region.draws, region.may_find_none, region.tolerance
 
     def patches(self, places: Points) -> tuple[Patch, ...]:
-        """The areas that pictures show under objects at places ``(n, 3)``: here none."""
+        """Return the areas that pictures show under objects at places ``(n, 3)``: here none."""
         return ()
 
     def single(self) -> Single | None:

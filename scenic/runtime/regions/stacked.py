@@ -36,7 +36,7 @@ def body_operands(thing: Any) -> tuple[Any, Any, Any, Any]:
 
 
 def placed_of(thing: Any) -> Placed | None:
-    """The body of an object on plain floats; ``None`` where something of it is random."""
+    """Return the body of an object on plain floats; ``None`` where something of it is random."""
     position, orientation, shape = thing.position, thing.orientation, thing.shape
     width, length, height = thing.width, thing.length, thing.height
     if not (type(position) is Vector and type(orientation) is Orientation and isinstance(shape, Shape)):
@@ -47,13 +47,13 @@ def placed_of(thing: Any) -> Placed | None:
 
 
 def body_of(position: Column, orientation: Column, size: Column, shape: Column) -> Body:
-    """The body of an object over lanes, from the columns of `body_operands`."""
+    """Return the body of an object over lanes, from the columns of `body_operands`."""
     meshes, choice = _meshes_of(shape)
     return Body(meshes, choice, Poses(position, orientation, size))
 
 
 def _meshes_of(shape: Column) -> tuple[tuple[Mesh, ...], Indices | None]:
-    """The different meshes of shapes, and which of them each has; ``None`` where there is one mesh.
+    """Return the different meshes of shapes, and which of them each has; ``None`` where there is one mesh.
 
     Where no shape could be drawn, the lane has a fault; a box stands in for it.
     """
@@ -89,22 +89,22 @@ class Stack:
         self.rows = int(np.prod(self._lead))
 
     def column(self, position: int) -> Column:
-        """A column of ``rows`` lanes; of one row where it is the same everywhere."""
+        """Return a column of ``rows`` lanes; of one row where it is the same everywhere."""
         return self._flat(self._columns[position], self._kinds[position])
 
     def columns(self, start: int) -> list[Column]:
-        """The columns from one position on."""
+        """Return the columns from one position on."""
         return [self.column(position) for position in range(start, len(self._columns))]
 
     def body(self, start: int) -> Body:
-        """The body of `body_operands` whose columns begin at a position."""
+        """Return the body of `body_operands` whose columns begin at a position."""
         meshes, choice = _meshes_of(self._columns[start + 3])
         if choice is not None:
             choice = self._flat(choice, Kind.INTEGER)
         return Body(meshes, choice, Poses(*(self.column(start + part) for part in range(3))))
 
     def restored(self, column: Column) -> Column:
-        """A column of ``rows`` lanes or one as the call's members and lanes."""
+        """Return a column of ``rows`` lanes or one as the call's members and lanes."""
         trailing = column.shape[1:]
         return np.broadcast_to(column, (self.rows, *trailing)).reshape(*self._lead, *trailing)
 

@@ -22,7 +22,7 @@ from scenic.runtime.regions.volumes import PlacedVolume
 
 
 def solid_of(region: Region) -> Mesh | None:
-    """A fixed volume as a mesh of the world; ``None`` for other regions."""
+    """Return a fixed volume as a mesh of the world; ``None`` for other regions."""
     if isinstance(region, OccupiedSpace):
         return solid_in_world(region.fixed_columns("the solid"))
     if isinstance(region, PlacedVolume):
@@ -33,12 +33,12 @@ def solid_of(region: Region) -> Mesh | None:
 
 
 def meshed(region: Region) -> Mesh | None:
-    """A fixed volume as a mesh of the world, views included, whose meshes are somewhat smaller than they are."""
+    """Return a fixed volume as a mesh of the world, views included, whose meshes are somewhat smaller than they are."""
     return region.solid() if isinstance(region, ViewRegion) else solid_of(region)
 
 
 def flat_of(region: Region) -> tuple[Any, float | None] | None:
-    """A fixed region of the plane as a shapely geometry with its height; no height means all heights.
+    """Return a fixed region of the plane as a shapely geometry with its height; no height means all heights.
 
     A surface that is not level has no height either: questions about it are those about what is above and below it.
     """
@@ -52,7 +52,7 @@ def flat_of(region: Region) -> tuple[Any, float | None] | None:
 
 
 def prism_about(solid: Mesh, polygon: object) -> Mesh | None:
-    """The part of a footprint that can meet a solid, as a prism somewhat higher than it."""
+    """Return the part of a footprint that can meet a solid, as a prism somewhat higher than it."""
     low, high = float(solid.bounds[0][2]), float(solid.bounds[1][2])
     return prism(polygon, low - 1, high + 1)
 
@@ -105,7 +105,7 @@ def pieces_inside(line: LineRegion, solid: Mesh) -> list[list[list[float]]]:
 
 
 def length_inside(line: LineRegion, solid: Mesh) -> float:
-    """The length of a line inside a solid, in metres."""
+    """Return the length of a line inside a solid, in metres."""
     return sum(math.dist(start, end) for start, end in pieces_inside(line, solid))
 
 

@@ -75,7 +75,7 @@ def _seen_from(place: Node, centre: Node, turn: object) -> Any:
 
 
 def _terms(place: Node) -> list[Node]:
-    """The vectors of which a place is the sum."""
+    """Return the vectors of which a place is the sum."""
     if place.operation.name == "add" and place.kind is Kind.VECTOR:
         return [term for operand in place.operands for term in _terms(operand)]
     return [place]

@@ -137,12 +137,12 @@ class ViewRegion(Region):
         return Mesh(body.poses.to_world(unit.vertices[np.newaxis])[0], unit.faces)
 
     def getVolumeRegion(self) -> Region:
-        """The volume of its mesh, without random parameters."""
+        """Return the volume of its mesh, without random parameters."""
         region: Region = generic.meshed(self)
         return region
 
     def getSurfaceRegion(self) -> Region:
-        """The surface of its mesh, without random parameters."""
+        """Return the surface of its mesh, without random parameters."""
         region: Region = generic.meshed(self).getSurfaceRegion()
         return region
 
@@ -183,7 +183,7 @@ class ViewRegion(Region):
         return circle
 
     def voxelized(self, pitch: float) -> Region:
-        """The cells of this edge length, in metres, that its mesh touches."""
+        """Return the cells of this edge length, in metres, that its mesh touches."""
         region: Region = generic.meshed(self).voxelized(pitch)
         return region
 
@@ -230,7 +230,7 @@ def _solids(views: Views) -> Iterator[tuple[Indices, Body]]:
 
 
 def views_over(columns: Sequence[Column]) -> Views:
-    """The views whose first operands have these columns, with the angles that their regions have."""
+    """Return the views whose first operands have these columns, with the angles that their regions have."""
     camera, orientation, horizontal, vertical, distance = columns
     angles = np.stack(np.broadcast_arrays(horizontal, vertical), axis=-1).astype(np.float64)
     one, none = np.ones(1), np.zeros((1, 2))
@@ -351,7 +351,7 @@ def place_in_plane(observer: object, container: Region, *, seen: bool) -> Any:
 
 
 def view_in_plane(observer: Any) -> PlanarRegion:
-    """The disc or sector that an observer has in view in 2D mode."""
+    """Return the disc or sector that an observer has in view in 2D mode."""
     camera, _, angle, _, distance = view_operands(observer)[:VIEW_PARAMETERS]
     center = vector(camera.x, camera.y, 0)
     if not hasattr(type(observer), "toHeading") or (is_number(angle) and angle >= FULL_ANGLE):
@@ -360,7 +360,7 @@ def view_in_plane(observer: Any) -> PlanarRegion:
 
 
 def part_of(region: Region, observer: object, *, seen: bool) -> Region:
-    """The part of a region that an observer has in view, or has not."""
+    """Return the part of a region that an observer has in view, or has not."""
     view = ViewRegion.of(observer)
     while isinstance(region, Workspace):
         region = region.region

@@ -27,7 +27,7 @@ TARGET: Final = 9
 
 
 def sees_looks_at(payload: tuple[bool, bool]) -> slice:
-    """The operands that matter: not what hides things."""
+    """Return the operands that matter: not what hides things."""
     is_object, _ = payload
     return slice(TARGET + (4 if is_object else 1))
 
@@ -96,7 +96,7 @@ def _radius(payload: tuple[bool, bool], operands: Sequence[Bounds | None]) -> Fl
 
 
 def _radius_of(body: Sequence[Bounds | None]) -> Floats | None:
-    """The radius of a body from bounds of its orientation and size; of a place, for which there are none, it is 0."""
+    """Return the radius of a body from bounds of its orientation and size; of a place, for which there are none, it is 0."""
     if not body:
         return np.zeros(1)
     reach = body_reach(None, body[1])

@@ -132,7 +132,7 @@ def _angle(some: Floats, others: Floats) -> float:
 
 
 def _column(value: object) -> Any:
-    """A definite value as a column of one lane."""
+    """Return a definite value as a column of one lane."""
     raw = getattr(value, "row", None)
     if raw is None:
         raw = getattr(value, "q", value)

@@ -102,7 +102,7 @@ def _at_once(observer: Any, target: Any, occluders: Sequence[object]) -> bool | 
 
 
 def _in_the_way(thing: Any, start: Triple, end: Triple, radius: float) -> Placed | Literal[False] | None:
-    """The body of an object that may be between a camera and a ball; false if it is not, ``None`` if it is random."""
+    """Return the body of an object that may be between a camera and a ball; false if it is not, ``None`` if it is random."""
     position, width, length, height = thing.position, thing.width, thing.length, thing.height
     if type(position) is not Vector or not (type(width) is type(length) is type(height) is float):
         return None
@@ -191,7 +191,7 @@ def _pair(value: Any, name: str) -> tuple[Any, Any]:
 
 
 def views_of(columns: Sequence[Column]) -> Views:
-    """The views whose operands have these columns."""
+    """Return the views whose operands have these columns."""
     camera, orientation, horizontal, vertical, distance, density, across, upward, scaling = columns
     return Views(
         camera,

@@ -78,12 +78,12 @@ class PlacedVolume(Region):
         return landed, self.orientation_at(landed)
 
     def getSurfaceRegion(self) -> Region:
-        """The surface of the volume."""
+        """Return the surface of the volume."""
         region: Region = generic.meshed(self).getSurfaceRegion()
         return region
 
     def getVolumeRegion(self) -> Region:
-        """The volume itself."""
+        """Return the volume itself."""
         return self
 
     @property
@@ -92,7 +92,7 @@ class PlacedVolume(Region):
         return generic.meshed(self).mesh
 
     def voxelized(self, pitch: float) -> Region:
-        """The cells of this edge length, in metres, that the volume touches."""
+        """Return the cells of this edge length, in metres, that the volume touches."""
         region: Region = generic.voxelized(self, pitch)
         return region
 
@@ -102,7 +102,7 @@ class PlacedVolume(Region):
         return generic.outline_from_above(self)
 
     def _as_body(self) -> Placed:
-        """The box about it, where nothing is random."""
+        """Return the box about it, where nothing is random."""
         return placed(self.position.row, self.rotation.q, self.dimensions.row, primitives.box())
 
     @property
@@ -123,7 +123,7 @@ class PlacedVolume(Region):
     @staticmethod
     @abstractmethod
     def unit_mesh() -> Mesh:
-        """The mesh of dimensions 1 as which the volume collides."""
+        """Return the mesh of dimensions 1 as which the volume collides."""
 
     def is_surely_convex(self) -> bool:
         return True

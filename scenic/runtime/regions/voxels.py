@@ -127,7 +127,7 @@ class VoxelRegion(Region):
         return np.asarray(known & self.filled[x, y, z])
 
     def cells_within(self, lower: Points, upper: Points) -> Iterator[Region]:
-        """The filled cells, as boxes, that reach into a box of these corners ``(1, 3)``."""
+        """Yield the filled cells, as boxes, that reach into a box of these corners ``(1, 3)``."""
         middles = self.corner + (self._cells + 0.5) * self.pitch
         near = ((middles + self.pitch / 2 >= lower) & (middles - self.pitch / 2 <= upper)).all(axis=1)
         for middle in middles[near].tolist():
@@ -250,7 +250,7 @@ class VoxelRegion(Region):
 
 
 def voxelized(region: Region, solid: Mesh, pitch: float) -> VoxelRegion:
-    """The cells of a grid about the origin that a solid touches.
+    """Return the cells of a grid about the origin that a solid touches.
 
     Args:
         region: the region, asked for the middles of cells that its surface does not meet.

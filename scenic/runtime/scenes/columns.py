@@ -55,7 +55,7 @@ class ValueColumn:
         return () if dependencies(options) else options
 
     def array(self, scenes: Sequence[Scene]) -> NDArray[Any]:
-        """The values in scenes, ``(n,)``, ``(n, 3)`` or ``(n, 4)`` by kind; only where there is a `kind`."""
+        """Return the values in scenes, ``(n,)``, ``(n, 3)`` or ``(n, 4)`` by kind; only where there is a `kind`."""
         node = self.value.node
         parts = []
         for found, lanes in _lanes(scenes):
@@ -64,7 +64,7 @@ class ValueColumn:
         return np.concatenate(parts) if parts else np.empty((0, *node.kind.trailing))
 
     def values(self, scenes: Sequence[Scene]) -> list[Any]:
-        """The values in scenes, as Python objects."""
+        """Return the values in scenes, as Python objects."""
         if self.is_fixed:
             return [self.value] * len(scenes)
         return [self.read(scene) for scene in scenes]

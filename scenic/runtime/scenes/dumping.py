@@ -45,7 +45,7 @@ class NoLiteralError(Exception):
 def program_of(
     objects: tuple[Any, ...], ego: object, params: Mapping[str, object], names: Mapping[Any, str]
 ) -> str:
-    """The text of a program whose only scene has these objects and parameters.
+    """Return the text of a program whose only scene has these objects and parameters.
 
     Values that have no literal (regions, meshes made in memory, instances of the program's own Python classes) are left
     out, and named in comments.
@@ -92,7 +92,7 @@ def _instance(name: str, item: Any) -> Iterator[str]:
 
 
 def literal(value: object) -> str:
-    """A value as an expression of the language; raises `NoLiteralError` where there is none."""
+    """Return a value as an expression of the language; raises `NoLiteralError` where there is none."""
     if isinstance(value, np.generic):
         value = value.item()
     if value is None or isinstance(value, bool):

@@ -59,17 +59,17 @@ def needsLazyEvaluation(thing: object) -> bool:
 
 
 def DelayedArgument(requiredProps: Iterable[str], value: Callable[[Any], Any], **_options: Any) -> Lazy:
-    """A value that is computed from properties of the object being specified."""
+    """Return a value that is computed from properties of the object being specified."""
     return Lazy(frozenset(requiredProps), value)
 
 
 def toDistribution(value: object) -> Any:
-    """A value as one that may be random: itself."""
+    """Return a value as one that may be random: itself."""
     return value
 
 
 def underlyingType(thing: object) -> type:
-    """The type of what a value is, or of what is drawn from it; ``object`` where that is not known."""
+    """Return the type of what a value is, or of what is drawn from it; ``object`` where that is not known."""
     if not isinstance(thing, Random):
         return type(thing)
     return {
@@ -105,17 +105,17 @@ def canCoerceType(typeA: type, typeB: type) -> bool:
 
 
 def coerce(thing: object, ty: type, error: str = "wrong type") -> Any:
-    """A value as a type; raises ``TypeError`` with this message where it cannot be read so."""
+    """Return a value as a type; raises ``TypeError`` with this message where it cannot be read so."""
     return toType(thing, ty, error)
 
 
 def toType(thing: object, ty: type, typeError: str = "wrong type") -> Any:
-    """A value as a type; raises ``TypeError`` with this message where it cannot be read so."""
+    """Return a value as a type; raises ``TypeError`` with this message where it cannot be read so."""
     return toTypes(thing, (ty,), typeError)
 
 
 def toTypes(thing: object, types: Sequence[type], typeError: str = "wrong type") -> Any:
-    """A value as the first of several types that it can be read as."""
+    """Return a value as the first of several types that it can be read as."""
     for ty in types:
         if canCoerce(thing, ty):
             return _COERCIONS[ty](thing) if ty in _COERCIONS else thing
@@ -123,22 +123,22 @@ def toTypes(thing: object, types: Sequence[type], typeError: str = "wrong type")
 
 
 def toScalar(thing: object, typeError: str = "non-scalar in scalar context") -> Any:
-    """A value as a number."""
+    """Return a value as a number."""
     return toType(thing, float, typeError)
 
 
 def toHeading(thing: object, typeError: str = "non-heading in heading context") -> Any:
-    """A value as a heading, in radians."""
+    """Return a value as a heading, in radians."""
     return toType(thing, Heading, typeError)
 
 
 def toOrientation(thing: object, typeError: str = "non-orientation in orientation context") -> Any:
-    """A value as an orientation."""
+    """Return a value as an orientation."""
     return toType(thing, Orientation, typeError)
 
 
 def toVector(thing: object, typeError: str = "non-vector in vector context") -> Any:
-    """A value as a vector."""
+    """Return a value as a vector."""
     return toType(thing, Vector, typeError)
 
 
@@ -147,7 +147,7 @@ _FEW_TURNS: Final = 100.0
 
 
 def normalizeAngle(angle: float) -> float:
-    """An angle in [-pi, pi] that differs by whole turns (radians)."""
+    """Return an angle in [-pi, pi] that differs by whole turns (radians)."""
     if not is_number(angle) or abs(angle) > _FEW_TURNS:
         return operate("normalize angle", angle)  # type: ignore[no-any-return]
     while angle > math.pi:
@@ -179,7 +179,7 @@ def apparentHeadingAtPoint(point: object, heading: float, base: object) -> Any:
 
 
 def rotateVector(vector: object, angle: float) -> Any:
-    """A vector of the plane turned anticlockwise, as a pair."""
+    """Return a vector of the plane turned anticlockwise, as a pair."""
     turned = to_vector(vector).rotatedBy(angle)
     return (turned.x, turned.y)
 
@@ -202,7 +202,7 @@ def findMinMax(iterable: Iterable[Any]) -> tuple[Any, Any]:
 
 
 def removeHoles(polygon: Any) -> Any:
-    """A shapely polygon or multipolygon without its holes."""
+    """Return a shapely polygon or multipolygon without its holes."""
     import shapely
 
     parts = [shapely.Polygon(part.exterior) for part in getattr(polygon, "geoms", [polygon])]
@@ -210,7 +210,7 @@ def removeHoles(polygon: Any) -> Any:
 
 
 def triangulatePolygon(polygon: object) -> list[Any]:
-    """A shapely polygon, perhaps with holes, as triangles that fill it."""
+    """Return a shapely polygon, perhaps with holes, as triangles that fill it."""
     import shapely
 
     parts: list[Any] = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon)).tolist()
@@ -218,17 +218,17 @@ def triangulatePolygon(polygon: object) -> list[Any]:
 
 
 def regionFromShapelyObject(obj: object, orientation: object = None) -> Region:
-    """The region of a shapely geometry: its polygons, else its lines, else its points."""
+    """Return the region of a shapely geometry: its polygons, else its lines, else its points."""
     return region_of(obj, 0.0, orientation)
 
 
 def convertToFootprint(region: Region) -> Region:
-    """The columns above and below a region of the plane; any other region as it is."""
+    """Return the columns above and below a region of the plane; any other region as it is."""
     return region.footprint
 
 
 def toPolygon(thing: object) -> Any:
-    """The shapely geometry of a polygon, of a region of the plane, its footprint or a line; ``None`` of anything else."""
+    """Return the shapely geometry of a polygon, of a region of the plane, its footprint or a line; ``None`` of anything else."""
     if hasattr(thing, "geom_type"):
         return thing if "Polygon" in thing.geom_type else None
     return getattr(thing, "polygons", getattr(thing, "lineString", None))
@@ -237,7 +237,7 @@ def toPolygon(thing: object) -> Any:
 def polygonUnion(
     polys: Iterable[Any], buf: float = 0, tolerance: float = 0, holeTolerance: float = 0.002
 ) -> Any:
-    """The union of shapely polygons.
+    """Return the union of shapely polygons.
 
     Gaps narrower than twice ``buf`` are closed. With a ``tolerance``, outlines are simplified by so much, and holes smaller than
     ``holeTolerance`` square metres are filled.
@@ -277,12 +277,12 @@ def batched(iterable: Iterable[object], n: int) -> Iterator[tuple[Any, ...]]:
 
 
 def proper_mesh(mesh: object, pitch: float = 1 / 64, verbose: bool = True) -> Any:  # noqa: ARG001 - of the established call
-    """A trimesh mesh as one that bounds a volume: vertices merged, normals outwards. Raises ``ValueError`` where it has holes."""
+    """Return a trimesh mesh as one that bounds a volume: vertices merged, normals outwards. Raises ``ValueError`` where it has holes."""
     return _solid_of(mesh, unify=False)
 
 
 def united_mesh(mesh: object, verbose: bool = False) -> Any:  # noqa: ARG001 - of the established call
-    """A trimesh mesh with its overlapping bodies united."""
+    """Return a trimesh mesh with its overlapping bodies united."""
     return _solid_of(mesh, unify=True)
 
 
@@ -346,7 +346,7 @@ cached_property = functools.cached_property
 
 
 def cached_method(method: Callable[..., Any]) -> Callable[..., Any]:
-    """A method without arguments that is computed once for each instance."""
+    """Return a method without arguments that is computed once for each instance."""
     name = f"_cached_{method.__name__}"
 
     @functools.wraps(method)
@@ -359,7 +359,7 @@ def cached_method(method: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def cached(function: Callable[[], Any]) -> Callable[[], Any]:
-    """A function without arguments that is computed once."""
+    """Return a function without arguments that is computed once."""
     return functools.cache(function)
 
 

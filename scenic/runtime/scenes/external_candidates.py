@@ -76,7 +76,7 @@ class ExternalCandidates:
         """Candidates that are evaluated and not rejected, with their numbers."""
 
     def take(self, seed: int, most: int, feedback: object) -> tuple[Result | None, int]:
-        """The next candidate that nothing rejects, if it is one of ``most``; and the number of those tried.
+        """Return the next candidate that nothing rejects, if it is one of ``most``; and the number of those tried.
 
         Args:
             seed: the seed that was drawn just now.

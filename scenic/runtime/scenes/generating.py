@@ -78,14 +78,14 @@ class Generating(Restoring, ABC):
     def _compiled_again(
         self, params: Mapping[str, object], settle: tuple[float, float, bool] | None = None
     ) -> Any:
-        """The scenario of the same program with other values of parameters, or with settled objects."""
+        """Return the scenario of the same program with other values of parameters, or with settled objects."""
         raise TypeError(_BY_HAND)
 
     @abstractmethod
     def _first_candidates(
         self, numbers: Mapping[int, NDArray[np.float64]], count: int, seed: int, first: int
     ) -> list[tuple[int, Accepted | CandidateError]]:
-        """The candidates that nothing rejects, one for each scene of a range, with their places."""
+        """Return the candidates that nothing rejects, one for each scene of a range, with their places."""
 
     @abstractmethod
     def _lanes_for(self, scenes: int) -> int:
@@ -93,7 +93,7 @@ class Generating(Restoring, ABC):
 
     @abstractmethod
     def _scene_of(self, result: Accepted | CandidateError) -> Scene:
-        """The scene of a candidate; raises the program's error of one that failed."""
+        """Return the scene of a candidate; raises the program's error of one that failed."""
 
     def generate(
         self,
@@ -126,7 +126,7 @@ class Generating(Restoring, ABC):
         return scene, scene.attempts
 
     def _generate_chosen(self, most: int, feedback: object) -> tuple[Scene, int]:
-        """One scene whose external parameters their sampler chooses."""
+        """Return one scene whose external parameters their sampler chooses."""
         if self._external_candidates is None:
             self._external_candidates = ExternalCandidates(
                 self._external_points(), self._first_candidates, self._lanes_for
@@ -256,7 +256,7 @@ class Generating(Restoring, ABC):
         return self.requirements
 
     def containerOfObject(self, obj: Object) -> Region:
-        """The region that must hold an object: its own, else the workspace."""
+        """Return the region that must hold an object: its own, else the workspace."""
         own = obj.regionContainedIn
         return self.workspace.region if own is None else own
 
@@ -271,7 +271,7 @@ class Generating(Restoring, ABC):
         return None if candidates is None else candidates.points.sampler
 
     def simulationToBytes(self, simulation: Any, allowPickle: bool = False) -> bytes:
-        """A simulation as data: its scene, and what has been drawn in it. `simulationFromBytes` runs it again."""
+        """Return a simulation as data: its scene, and what has been drawn in it. `simulationFromBytes` runs it again."""
         scene = self.sceneToBytes(simulation.scene)
         return len(scene).to_bytes(4, "little") + scene + bytes(simulation.getReplay())
 

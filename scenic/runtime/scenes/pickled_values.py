@@ -31,12 +31,12 @@ class ValueLayout:
                 self._nodes[node.kind].append(node)
 
     def pack(self, batch: Batch, lane: int) -> bytes:
-        """The values in one lane."""
+        """Return the values in one lane."""
         columns = [batch.column(node) for nodes in self._nodes.values() for node in nodes]
         return b"".join([column[lane if len(column) > 1 else 0].tobytes() for column in columns])
 
     def unpack(self, data: bytes) -> dict[Node, Any]:
-        """The Python values in the data by node; raises ``ValueError`` for data of another layout."""
+        """Return the Python values in the data by node; raises ``ValueError`` for data of another layout."""
         values: dict[Node, Any] = {}
         start = 0
         for kind, nodes in self._nodes.items():

@@ -51,7 +51,7 @@ class Populations:
         return frozenset(place for place, node in self.optional if not found.batch.value(node, lane))
 
     def of(self, found: FinishedLanes) -> "Population":
-        """The objects of the scenes that a round has found."""
+        """Return the objects of the scenes that a round has found."""
         population: Population | None = found.shared.get(self)
         if population is None:
             population = found.shared[self] = Population(self, found.batch)
@@ -102,7 +102,7 @@ class Population:
         return self._kept.pop(lane)
 
     def _made(self, lanes: range) -> dict[int, Inhabitants]:
-        """The objects of the scenes in neighbouring lanes."""
+        """Return the objects of the scenes in neighbouring lanes."""
         makers, batch = self._makers, self._batch
         with no_garbage_collection():
             samples = [Sample(batch, lane, makers.names, whole=True) for lane in lanes]
@@ -111,7 +111,7 @@ class Population:
             return dict(zip(lanes, zip(samples, objects, strict=True), strict=True))
 
     def _copies(self, item: Object, lanes: range, samples: Sequence[Sample]) -> list[Any]:
-        """An object of the program as it is in neighbouring scenes."""
+        """Return an object of the program as it is in neighbouring scenes."""
         cls = type(item)
         copies: list[Any] = [object.__new__(cls) for _ in lanes]
         attributes, nodes = self._makers.names.placement(item)

@@ -28,14 +28,14 @@ class Restoring:
     """The class of its scenes."""
 
     def sceneToBytes(self, scene: Scene, allowPickle: bool = False) -> bytes:
-        """A scene as data, which `sceneFromBytes` reads. ``allowPickle`` is accepted for compatibility."""
+        """Return a scene as data, which `sceneFromBytes` reads. ``allowPickle`` is accepted for compatibility."""
         numbers, words = draws_of(scene.found, scene.lane)
         return SavedScene(
             scene.digest, scene.found.task(scene.lane), scene.attempts, numbers, words
         ).to_bytes()
 
     def sceneFromBytes(self, data: bytes, verify: bool = True, allowPickle: bool = False) -> Scene:
-        """The scene in the data of `sceneToBytes`, exactly as it was.
+        """Return the scene in the data of `sceneToBytes`, exactly as it was.
 
         Raises:
             SerializationError: if the data is damaged, or of another program (not checked if ``verify`` is false).
@@ -44,7 +44,7 @@ class Restoring:
         return self._taken_up(SavedScene.from_bytes(data), Batch, verify=verify)
 
     def recalled(self, data: bytes, values: bytes) -> Scene:
-        """The scene in the data of `sceneToBytes`, with values that its layout has packed; raises as `sceneFromBytes`."""
+        """Return the scene in the data of `sceneToBytes`, with values that its layout has packed; raises as `sceneFromBytes`."""
         known = self._family.layout.unpack(values)
         kind = partial(RecalledBatch, values=known, guard=self._program.undisturbed)
         return self._taken_up(SavedScene.from_bytes(data), kind)
@@ -61,5 +61,5 @@ class Restoring:
         return self.scene_class(*accepted, self._family)
 
     def replay(self, path: str | Path) -> Scene:
-        """The scene that `Scene.save` has written; raises `SerializationError` as `sceneFromBytes` does."""
+        """Return the scene that `Scene.save` has written; raises `SerializationError` as `sceneFromBytes` does."""
         return self.sceneFromBytes(Path(path).read_bytes())

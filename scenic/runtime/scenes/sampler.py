@@ -120,7 +120,7 @@ class Sampler:
         }
 
     def fixed(self, numbers: Mapping[int, float], words: Mapping[int, int]) -> "Sampler":
-        """A sampler in which these draws are fixed, too.
+        """Return a sampler in which these draws are fixed, too.
 
         It samples the whole cube, since the fixed values may lie outside of the narrowed domain.
         """
@@ -203,7 +203,7 @@ class Sampler:
         return engine.accepted(seed, numbers, attempts)
 
     def without_narrowing(self, addresses: Collection[int]) -> "Sampler":
-        """A sampler that narrows none of the axes at these addresses."""
+        """Return a sampler that narrows none of the axes at these addresses."""
         graph = self.plan.graph
         free = np.array([graph.address(node) in addresses for node in graph.axes], dtype=np.bool_)
         domain = self.plan.domain
@@ -300,7 +300,7 @@ class Sampler:
         return fixed_draws(self._numbers, self._words, source) if self._numbers or self._words else source
 
     def _engine_of(self, points: PointSet | None) -> Engine | PiecewiseEngine:
-        """The engine that samples rows of a point set; the usual engine where there is none."""
+        """Return the engine that samples rows of a point set; the usual engine where there is none."""
         self._divide()
         if points is None:
             return self._finder

@@ -38,7 +38,7 @@ class SavedScene:
     words: Mapping[int, int]
 
     def to_bytes(self) -> bytes:
-        """The data as JSON."""
+        """Return the data as JSON."""
         data = {
             "format": FORMAT,
             "version": VERSION,
@@ -54,7 +54,7 @@ class SavedScene:
 
     @classmethod
     def from_bytes(cls, data: bytes) -> "SavedScene":
-        """The scene in the data; raises `SerializationError` for anything that `to_bytes` does not write."""
+        """Return the scene in the data; raises `SerializationError` for anything that `to_bytes` does not write."""
         try:
             body, mark, rest = bytes(data).rpartition(_SUM)
             if mark and rest != _sum(body) + b'"}':
@@ -110,7 +110,7 @@ def draws_of(
 
 
 def source_of(saved: SavedScene, graph: Graph) -> Points:
-    """The source of one lane that gives the saved draws; raises `SerializationError` if the program has others."""
+    """Return the source of one lane that gives the saved draws; raises `SerializationError` if the program has others."""
     if graph.drawn_addresses != saved.numbers.keys() | saved.words.keys():
         raise SerializationError(
             "the saved scene has other random values than this program",
@@ -120,7 +120,7 @@ def source_of(saved: SavedScene, graph: Graph) -> Points:
 
 
 def fixed_draws(numbers: Mapping[int, float], words: Mapping[int, int], rest: Source) -> Points:
-    """The source in which some draws are fixed in every lane."""
+    """Return the source in which some draws are fixed in every lane."""
 
     def rows(values: Mapping[int, float], dtype: type[np.generic]) -> dict[int, NDArray[Any]]:
         column = np.array(list(values.values()), dtype=dtype)[:, np.newaxis]

@@ -138,7 +138,7 @@ class Scenario(Generating):
         self._unconditioned = {name: value for name, value in vars(self).items() if name not in _KEPT}
 
     def within(self, domain: Domain) -> "Scenario":
-        """The same scenario, sampled from another part of the cube, which must contain all points that meet the requirements."""
+        """Return the same scenario, sampled from another part of the cube, which must contain all points that meet the requirements."""
         return type(self)(
             self._program,
             self.outline,
@@ -165,7 +165,7 @@ class Scenario(Generating):
         return others if self.egoObject is None else (self.egoObject, *others)
 
     def variable(self, thing: Object) -> str | None:
-        """The variable of the program that refers to one of the `objects`, if any."""
+        """Return the variable of the program that refers to one of the `objects`, if any."""
         return self._names.get(id(thing))
 
     @property
@@ -595,7 +595,7 @@ class Scenario(Generating):
         return self._program.simulator is not None
 
     def getSimulator(self) -> Any:
-        """The simulator of the program's ``simulator`` statement; raises ``RuntimeError`` if it has none."""
+        """Return the simulator of the program's ``simulator`` statement; raises ``RuntimeError`` if it has none."""
         if self._program.simulator is None:
             raise RuntimeError("the program has no `simulator` statement, so no simulator is known")
         return self._program.simulator()

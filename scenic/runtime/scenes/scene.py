@@ -47,7 +47,7 @@ class Origin:
         return cls(names, tuple(given), frozenset(fixed))
 
     def read(self, thing: object, name: str) -> Any:
-        """The value of a property in one scene."""
+        """Return the value of a property in one scene."""
         return getattr(thing, name)
 
 
@@ -130,7 +130,7 @@ class Scene:
         return self._family.digest()
 
     def lookup(self, node: Node) -> Any:
-        """The value of a node in this scene."""
+        """Return the value of a node in this scene."""
         return self.found.batch.value(node, self.lane)
 
     @property
@@ -195,7 +195,7 @@ class Scene:
         return populations.missing(self.found, self.lane) if populations.optional else frozenset()
 
     def _values(self) -> Copier:
-        """The values of the program in this scene."""
+        """Return the values of the program in this scene."""
         if self._sample is None:
             # Scenes of a batch have their objects made together.
             population = self._family.populations.of(self.found)
@@ -237,7 +237,7 @@ class Scene:
         return {name: sample.value(region) for name, region in self._family.regions.items()}
 
     def origin(self, thing: Any) -> Origin:
-        """The description of an object of the scene in all scenes of the program."""
+        """Return the description of an object of the scene in all scenes of the program."""
         source = thing.__dict__.get("_source", thing)
         known = source.__dict__.get("_origin")
         if known is None:
@@ -282,7 +282,7 @@ class Scene:
             stream.write(content)
 
     def dump(self) -> str:
-        """A program whose only scene is this one: concrete objects, no requirements."""
+        """Return a program whose only scene is this one: concrete objects, no requirements."""
         return program_of(self.objects, self.egoObject, self.params, self.names)
 
     def dumpAsScenicCode(self, stream: TextIO | None = None) -> None:
@@ -311,6 +311,6 @@ _EVALUATED: Final = frozenset({"found", "lane", "_family"})
 
 @lru_cache(maxsize=16)
 def _compiled(recipe: bytes) -> Any:
-    """The scenario of a pickled recipe, for all scenes of it that this process takes up."""
+    """Return the scenario of a pickled recipe, for all scenes of it that this process takes up."""
     make, arguments = pickle.loads(recipe)
     return make(*arguments)

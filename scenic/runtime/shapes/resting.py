@@ -24,7 +24,7 @@ _DIGITS: Final = 9
 
 
 def resting_pose(shape: object, width: object, length: object, height: object) -> Any:
-    """A random stable pose of a shape at a size: the vector of pitch, roll (radians) and height of the middle (metres).
+    """Return a random stable pose of a shape at a size: the vector of pitch, roll (radians) and height of the middle (metres).
 
     Raises:
         ScenicTypeError: the shape is neither definite nor a choice among definite shapes.

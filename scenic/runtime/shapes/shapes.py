@@ -50,7 +50,7 @@ class ShapeSource:
         return ShapeSource, (self.kind, self.path, dict(self.parameters), self.initial_rotation)
 
     def as_dict(self) -> dict[str, Any]:
-        """The same as plain data for JSON; entries that say nothing are left out."""
+        """Return the same as plain data for JSON; entries that say nothing are left out."""
         result: dict[str, Any] = {"kind": self.kind}
         if self.path is not None:
             result["path"] = self.path
@@ -190,7 +190,7 @@ class SpheroidShape(PrimitiveShape):
 
 
 def primitive_of(kind: str) -> type[PrimitiveShape] | None:
-    """The class of the primitive shapes of a kind; ``None`` if the language declares no such shape."""
+    """Return the class of the primitive shapes of a kind; ``None`` if the language declares no such shape."""
     for declared in NAMES.values():
         if declared.kind is NameKind.SHAPE and declared.home is not None:
             module, _, name = declared.home.partition(":")
@@ -239,7 +239,7 @@ class MeshShape(Shape):
         initial_rotation: object = None,
         unit: str = "m",
     ) -> "MeshShape":
-        """The shape in a mesh file; see `load_mesh`. Relative paths start from the current directory.
+        """Return the shape in a mesh file; see `load_mesh`. Relative paths start from the current directory.
 
         A file read before and unchanged since is not read again.
 
@@ -282,7 +282,7 @@ def _from_file(
     unify: bool,
     rotation: Triple | None,
 ) -> tuple[Mesh, Triple]:
-    """The unit mesh and the extents in the file."""
+    """Return the unit mesh and the extents in the file."""
     return _measured(load_mesh(path, unify=unify), rotation)
 
 
@@ -304,7 +304,7 @@ def _measured(mesh: Mesh, rotation: Triple | None) -> tuple[Mesh, Triple]:
 
 
 def _exact_quarters(matrix: Floats) -> Floats:
-    """A rotation matrix with the entries 0 and ±1 freed from rounding: a box turned by 90° stays a box."""
+    """Return a rotation matrix with the entries 0 and ±1 freed from rounding: a box turned by 90° stays a box."""
     near = np.round(matrix)
     return np.where(np.abs(matrix - near) < 1e-15, near, matrix)
 

@@ -164,7 +164,7 @@ def _progressed(part: Normal, evaluate: Callable[[int], bool]) -> _Clauses:
 
 
 def _decided(conjunction: bool, parts: Sequence[Callable[[], _Clauses]]) -> _Clauses:
-    """The parts joined; raises the first exception of one only if the others do not decide."""
+    """Return the parts joined; raises the first exception of one only if the others do not decide."""
     join, neutral, deciding = (_both, _TRUE, _FALSE) if conjunction else (_either, _FALSE, _TRUE)
     result = neutral
     error: Exception | None = None

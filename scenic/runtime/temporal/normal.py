@@ -51,7 +51,7 @@ class _Pool:
         return self._made.setdefault((type(made), *key), made)
 
     def make(self, formula: Formula, wanted: bool) -> Normal:
-        """The formula, or its negation, with negations at atoms only."""
+        """Return the formula, or its negation, with negations at atoms only."""
         if isinstance(formula, Atom):
             return self._one(Literal(formula.index, wanted), formula.index, wanted)
         match formula.operator, formula.operands:
@@ -87,5 +87,5 @@ Obligation: TypeAlias = tuple[bool, Normal]
 
 
 def normal(formula: Formula) -> Normal:
-    """The normal form of a formula."""
+    """Return the normal form of a formula."""
     return _Pool().make(formula, True)

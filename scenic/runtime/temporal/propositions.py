@@ -23,40 +23,40 @@ def AtomicProposition(closure: Callable[[], object], syntaxId: int) -> Atom:  # 
 
 
 def PropositionAnd(reqs: Sequence[Formula]) -> Compound:
-    """The formula that all of these hold."""
+    """Return the formula that all of these hold."""
     return Compound("and", tuple(reqs))
 
 
 def PropositionOr(reqs: Sequence[Formula]) -> Compound:
-    """The formula that one of these holds."""
+    """Return the formula that one of these holds."""
     return Compound("or", tuple(reqs))
 
 
 def PropositionNot(req: Formula) -> Compound:
-    """The formula that another does not hold."""
+    """Return the formula that another does not hold."""
     return Compound("not", (req,))
 
 
 def Always(req: Formula) -> Compound:
-    """The formula that another holds in this state and in all later ones."""
+    """Return the formula that another holds in this state and in all later ones."""
     return Compound("always", (req,))
 
 
 def Eventually(req: Formula) -> Compound:
-    """The formula that another holds in this state or in a later one."""
+    """Return the formula that another holds in this state or in a later one."""
     return Compound("eventually", (req,))
 
 
 def Next(req: Formula) -> Compound:
-    """The formula that another holds in the next state."""
+    """Return the formula that another holds in the next state."""
     return Compound("next", (req,))
 
 
 def Until(lhs: Formula, rhs: Formula) -> Compound:
-    """The formula that one holds until another does, which it does at some time."""
+    """Return the formula that one holds until another does, which it does at some time."""
     return Compound("until", (lhs, rhs))
 
 
 def Implies(lhs: Formula, rhs: Formula) -> Compound:
-    """The formula that one holds wherever another does."""
+    """Return the formula that one holds wherever another does."""
     return Compound("implies", (lhs, rhs))

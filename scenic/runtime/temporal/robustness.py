@@ -123,7 +123,7 @@ def _made(
 
 
 def _higher(left: _Clauses, right: _Clauses) -> _Clauses:
-    """The maximum of two."""
+    """Return the maximum of two."""
     joined = dict(left)
     for clause, value in right.items():
         joined[clause] = max(value, joined.get(clause, -math.inf))
@@ -131,7 +131,7 @@ def _higher(left: _Clauses, right: _Clauses) -> _Clauses:
 
 
 def _lower(left: _Clauses, right: _Clauses) -> _Clauses:
-    """The minimum of two."""
+    """Return the minimum of two."""
     joined: dict[frozenset[Obligation], float] = {}
     for one, first in left.items():
         for other, second in right.items():

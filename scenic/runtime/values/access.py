@@ -65,7 +65,7 @@ def elements_of(node: Node) -> Sequence[Node] | None:
 
 
 def element_at(node: Node, index: object) -> Any:
-    """An element of a choice among containers: the choice among their elements. ``None`` for other operands."""
+    """Return an element of a choice among containers: the choice among their elements. ``None`` for other operands."""
     if node.operation is not TABLE["select"] or type(index) not in (int, str):
         return None
     draw, *options = node.operands
@@ -88,7 +88,7 @@ def element_at(node: Node, index: object) -> Any:
 
 
 def element(value: RandomBase, index: object) -> Any:
-    """The element of a random container, or of a choice among containers, at an index."""
+    """Return the element of a random container, or of a choice among containers, at an index."""
     if is_lazy(index):
         return defer(element, value, index)
     if holds_instances(value.node):
@@ -141,7 +141,7 @@ _PARAMETERS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
 
 
 def attribute(value: RandomBase, name: str) -> Any:
-    """An attribute of a random value. A choice gives the choice among the options' attributes."""
+    """Return an attribute of a random value. A choice gives the choice among the options' attributes."""
     node = value.node
     names = _PARAMETERS.get(node.operation.name, ())
     if name in names:
@@ -257,7 +257,7 @@ def _call_in_lanes(function: Node, args: Sequence[object], kwargs: dict[str, Any
 
 
 def _attribute_of_option(option: Node, name: str, rejects: bool = False) -> Node:
-    """An attribute of an option; where that is ``None``, its samples are rejected or at fault."""
+    """Return an attribute of an option; where that is ``None``, its samples are rejected or at fault."""
     if option.operation in (MISSING, REJECTED):
         return option
     value = drawn_option(option)

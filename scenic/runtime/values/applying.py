@@ -120,7 +120,7 @@ def binary(name: str) -> Callable[[Any, Any], Any]:
 
 
 def folded(operation: Operation, nodes: Sequence[Node], payload: object) -> Any:
-    """The value of an operation on constants; raises what a sample of it would raise."""
+    """Return the value of an operation on constants; raises what a sample of it would raise."""
     kind = operation.kind(nodes, payload)
     plain = all(node.kind.is_number for node in nodes) or kind.is_boxed
     if operation.python is not None and (plain or any(node.kind.is_boxed for node in nodes)):
@@ -148,18 +148,18 @@ def _is_sampling() -> bool:
 
 
 def fixed_batch(nodes: Iterable[Node]) -> Batch:
-    """A batch of one lane that holds fixed nodes."""
+    """Return a batch of one lane that holds fixed nodes."""
     return Batch(Scheduler(Graph(nodes)), Counter(np.zeros(1, dtype=np.uint64)), CODEC)
 
 
 def uniform() -> Any:
-    """One axis of the cube as a value: uniform on (0, 1)."""
+    """Return one axis of the cube as a value: uniform on (0, 1)."""
     drawn = uniform_draw()
     return random_value(axis(here(), next_address())) if drawn is None else drawn
 
 
 def random_key() -> Any:
-    """A random word as a value, which keys the further draws of an operation that retries."""
+    """Return a random word as a value, which keys the further draws of an operation that retries."""
     drawn = uniform_draw()
     if drawn is None:
         return random_value(key(here(), next_address()))

@@ -135,7 +135,7 @@ def _has_own(value: Any, methods: Sequence[str]) -> bool:
 
 
 def select(index: Node, options: Sequence[Node]) -> Any:
-    """The choice among options by an index; of those that reject samples only constants are left."""
+    """Return the choice among options by an index; of those that reject samples only constants are left."""
     rejecting = [option.operation is REJECTED for option in options]
     if (
         any(rejecting)
@@ -164,7 +164,7 @@ MISSING = Operation(
 
 
 def rejection(error: RejectionException) -> Node:
-    """A value that rejects the samples which draw it, for an option."""
+    """Return a value that rejects the samples which draw it, for an option."""
     return construction.make_node(REJECTED, (), str(error), here())
 
 
@@ -213,14 +213,14 @@ _ADMITTED = Operation(
 
 
 def drawn_option(option: Node) -> Any:
-    """The value of an option of a choice, as the choice draws it: an instance after mutation."""
+    """Return the value of an option of a choice, as the choice draws it: an instance after mutation."""
     value = as_value(option)
     context = current.get()
     return value if context is None or kind_of(value) is not Kind.OBJECT else context.stand_ins.make(value)
 
 
 def options_of(value: Any) -> tuple[Any, ...]:
-    """The options of a random choice; none of any other value."""
+    """Return the options of a random choice; none of any other value."""
     if isinstance(value, RandomBase) and value.node.operation is TABLE["select"]:
         return tuple(as_value(option) for option in value.node.operands[1:])
     return ()

@@ -93,7 +93,7 @@ def _bind(cls: type, root: type) -> None:
 
 
 def member(cls: type, name: str) -> Any:
-    """The member of a class as it was before `bind`; ``None`` where there is none."""
+    """Return the member of a class as it was before `bind`; ``None`` where there is none."""
     found = getattr_static(cls, name, None)
     return found.member if isinstance(found, _Member) else found
 

@@ -43,7 +43,7 @@ def to_scalar(value: object, what: str = "") -> Any:
 
 
 def to_vector(value: Any, what: str = "") -> Any:
-    """A vector: also a pair (z = 0), a triple, and anything with a position."""
+    """Return a vector: also a pair (z = 0), a triple, and anything with a position."""
     if isinstance(value, VectorRow):
         return value
     if isinstance(value, Lazy):
@@ -69,7 +69,7 @@ def to_vector(value: Any, what: str = "") -> Any:
 
 
 def to_heading(value: object, what: str = "") -> Any:
-    """A heading in radians: a number, the global yaw of an orientation, the heading of an oriented point."""
+    """Return a heading in radians: a number, the global yaw of an orientation, the heading of an oriented point."""
     if type(value) is float:
         return value
     if isinstance(value, Lazy):
@@ -89,7 +89,7 @@ def to_heading(value: object, what: str = "") -> Any:
 
 
 def to_orientation(value: object, what: str = "") -> Any:
-    """An orientation: also a heading, a triple of Euler angles, and anything that has an orientation."""
+    """Return an orientation: also a heading, a triple of Euler angles, and anything that has an orientation."""
     if isinstance(value, OrientationRow):
         return value
     if type(value) is float:
@@ -115,7 +115,7 @@ def to_orientation(value: object, what: str = "") -> Any:
 
 
 def from_euler(yaw: object, pitch: object, roll: object) -> Any:
-    """The orientation of intrinsic rotations about Z, the new X and the new Y (radians)."""
+    """Return the orientation of intrinsic rotations about Z, the new X and the new Y (radians)."""
     if (
         type(yaw) is float
         and type(pitch) is float

@@ -89,7 +89,7 @@ class Vector(VectorRow, VectorMethods, length=3):
         return hash(self._row)
 
     def index(self, value: object) -> int:
-        """The axis of the first coordinate that is equal to a number; raises ``ValueError`` where none is."""
+        """Return the axis of the first coordinate that is equal to a number; raises ``ValueError`` where none is."""
         return self._row.index(value)
 
     def count(self, value: object) -> int:
@@ -129,7 +129,7 @@ class OrientedVector(Vector):
         return self
 
     def toHeading(self) -> float:
-        """The heading."""
+        """Return the heading."""
         return self.heading
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -201,7 +201,7 @@ class Orientation(OrientationRow, OrientationMethods, length=4):
         return Rotation.from_quat(self._row)
 
     def getRotation(self) -> Any:
-        """The rotation as SciPy's ``Rotation``."""
+        """Return the rotation as SciPy's ``Rotation``."""
         return self.r
 
     def approxEq(self, other: "Orientation", tol: float = 1e-10) -> bool:

@@ -10,7 +10,7 @@ from scenic.runtime.values.random_base import RandomBase
 
 
 def describe(value: object) -> str:
-    """A value in words for a message."""
+    """Return a value in words for a message."""
     if isinstance(value, RandomBase):
         kind_of_value = value.node.kind
         return "a random value" if kind_of_value is Kind.OTHER else f"a random {kind_of_value.value}"
@@ -24,7 +24,7 @@ def describe(value: object) -> str:
 
 
 def wrong_type(types: Type | Sequence[Type] | str, value: object, what: str = "") -> ScenicTypeError:
-    """The error for a value that has none of the types, or does not match a noun."""
+    """Return the error for a value that has none of the types, or does not match a noun."""
     noun, hint = (
         (types, None) if isinstance(types, str) else wanted((types,) if isinstance(types, Type) else types)
     )

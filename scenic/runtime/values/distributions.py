@@ -68,7 +68,7 @@ class Law:
 
 
 def primitive(operation: str | Operation, *operands: Any, payload: object = None) -> Any:
-    """A primitive random value: the operation's first operand is an axis of its own.
+    """Return a primitive random value: the operation's first operand is an axis of its own.
 
     In a simulation it is drawn at once. Raises `InvalidScenarioError` inside a requirement.
     """
@@ -158,13 +158,13 @@ def _end(value: object) -> Any:
 
 @Law
 def Uniform(*options: Any) -> Any:
-    """One of the options, each equally likely. ``Uniform(*xs)`` draws from the elements of a list."""
+    """Return one of the options, each equally likely. ``Uniform(*xs)`` draws from the elements of a list."""
     return choose_among(options, [1.0] * len(options), "Uniform")
 
 
 @Law
 def Discrete(options: Mapping[Any, Any] | Iterable[Any]) -> Any:
-    """One of the keys of a dictionary, with probability in proportion to its value."""
+    """Return one of the keys of a dictionary, with probability in proportion to its value."""
     if isinstance(options, Mapping):
         return choose_among(
             list(options), [checked_weight(weight) for weight in options.values()], "Discrete"

@@ -25,7 +25,7 @@ def sample_of(value: object) -> Any:  # noqa: ARG001
 
 @singledispatch
 def support_of(value: object) -> tuple[float | None, float | None]:  # noqa: ARG001
-    """The least and the greatest value that a number can have (`scenic.runtime.python.drawing`)."""
+    """Return the least and the greatest value that a number can have (`scenic.runtime.python.drawing`)."""
     raise InternalError("no module has registered supports of values")
 
 

@@ -31,7 +31,7 @@ class Lazy:
         self._compute = compute
 
     def value_for(self, instance: object) -> Any:
-        """The value for one instance: the same on every call while the instance is built."""
+        """Return the value for one instance: the same on every call while the instance is built."""
         known = instance.__dict__.setdefault(MEMO, {})
         if id(self) not in known:
             known[id(self)] = (self, resolve(self._compute(instance), instance))
@@ -42,7 +42,7 @@ class Lazy:
         return [self._compute]
 
     def sampled(self, sample: Any) -> "Lazy":
-        """The same over sampled values."""
+        """Return the same over sampled values."""
         return Lazy(self.reads, lambda instance: sample.value(self._compute(instance)))
 
     def __getattr__(self, name: str) -> Any:
@@ -137,7 +137,7 @@ _NUMBERS = frozenset({int, float})
 
 
 def reads_of(value: Any, within: tuple[int, ...] = ()) -> frozenset[str]:
-    """The properties that a value, or something in it, reads; none where it is not lazy.
+    """Return the properties that a value, or something in it, reads; none where it is not lazy.
 
     ``within``: the identities of the containers that hold it, which may hold themselves.
     """
@@ -161,7 +161,7 @@ def is_lazy(value: object) -> bool:
 
 
 def resolve(value: Any, instance: object) -> Any:
-    """A value for one instance: lazy values in it evaluated, everything else as it is."""
+    """Return a value for one instance: lazy values in it evaluated, everything else as it is."""
     if isinstance(value, Lazy):
         return value.value_for(instance)
     if is_lazy(value):

@@ -110,7 +110,7 @@ class VectorMethods:
         return operate("cross", self, to_vector(other))
 
     def normalized(self) -> Any:
-        """The unit vector of the same direction; the zero vector stays as it is."""
+        """Return the unit vector of the same direction; the zero vector stays as it is."""
         return operate("normalized", self)
 
     def rotatedBy(self, rotation: object) -> Any:
@@ -163,7 +163,7 @@ class VectorMethods:
         return vector(self.norm(), azimuth, operate("altitude", self))
 
     def toVector(self) -> Any:
-        """The vector itself; points and objects have the same method."""
+        """Return the vector itself; points and objects have the same method."""
         return self
 
     @property
@@ -172,7 +172,7 @@ class VectorMethods:
         return (self.x, self.y, self.z)
 
     def applyRotation(self, rotation: object) -> Any:
-        """The vector turned by an orientation."""
+        """Return the vector turned by an orientation."""
         return self.rotatedBy(rotation)
 
     def __add__(self, other: object) -> Any:
@@ -283,7 +283,7 @@ class OrientationMethods:
         return self.localAnglesFor((yaw, pitch, roll))
 
     def toOrientation(self) -> Any:
-        """The orientation itself."""
+        """Return the orientation itself."""
         return self
 
     def toHeading(self) -> Any:

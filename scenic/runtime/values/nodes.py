@@ -48,7 +48,7 @@ def is_orientation(value: object) -> bool:
 
 
 def kind_of(value: object) -> Kind:
-    """The kind of a definite value."""
+    """Return the kind of a definite value."""
     if isinstance(value, bool | np.bool_):
         return Kind.BOOLEAN
     if isinstance(value, int | np.integer):
@@ -67,7 +67,7 @@ class ValueCodec:
     """Columns as the values above; see `scenic.graph.kinds.Codec`."""
 
     def decode(self, kind: Kind, column: Column) -> list[Any]:
-        """The values of a column, lane by lane."""
+        """Return the values of a column, lane by lane."""
         if not kind.trailing:
             return column.tolist()  # type: ignore[no-any-return]
         cls = row_class(3 if kind is Kind.VECTOR else 4)
@@ -77,7 +77,7 @@ class ValueCodec:
         return values
 
     def encode(self, kind: Kind, value: object) -> Any:
-        """The row of a value; raises ``TypeError`` where it is of another kind."""
+        """Return the row of a value; raises ``TypeError`` where it is of another kind."""
         if kind.is_boxed:
             return value
         if isinstance(value, RandomBase):
@@ -167,7 +167,7 @@ def _container(value: object) -> Operation:
 
 
 def as_node(value: Any) -> Node:
-    """The node of a value: its own if random, else a constant."""
+    """Return the node of a value: its own if random, else a constant."""
     if isinstance(value, RandomBase):
         return value.node
     if isinstance(value, tuple | list) and is_random(value):
@@ -189,7 +189,7 @@ def as_node(value: Any) -> Node:
 
 
 def as_value(node: Node, again: Callable[[], Any] | None = None) -> Any:
-    """The value of a node: definite for a constant, else random."""
+    """Return the value of a node: definite for a constant, else random."""
     if node.is_constant:
         return node.value
     return random_value(node, again)

@@ -75,7 +75,7 @@ def leads_back(function: object) -> bool:
 
 
 def content(cell: CellType) -> Any:
-    """The value of a variable of an enclosing function; ``None`` before it is bound."""
+    """Return the value of a variable of an enclosing function; ``None`` before it is bound."""
     try:
         return cell.cell_contents
     except ValueError:
@@ -99,13 +99,13 @@ def _has_below(cls: type, root: type) -> bool:
 
 
 def own_functions(cls: type) -> Iterator[FunctionType]:
-    """The functions of a program among the members of a class, not counting those of its bases."""
+    """Yield the functions of a program among the members of a class, not counting those of its bases."""
     for member in vars(cls).values():
         yield from filter(is_own_function, functions_of(member))
 
 
 def functions_of(member: object) -> list[Any]:
-    """The functions that a member of a class is made of."""
+    """Return the functions that a member of a class is made of."""
     match member:
         case FunctionType():
             return [member]
@@ -119,7 +119,7 @@ def functions_of(member: object) -> list[Any]:
 
 
 def namespace(cls: type) -> dict[str, Any]:
-    """The members of a class, without the members that Python makes for each class."""
+    """Return the members of a class, without the members that Python makes for each class."""
     made = (GetSetDescriptorType, MemberDescriptorType)
     return {
         name: member
@@ -129,7 +129,7 @@ def namespace(cls: type) -> dict[str, Any]:
 
 
 def slots(cls: type) -> Iterator[str]:
-    """The attributes that instances of a class hold outside of their dictionaries."""
+    """Yield the attributes that instances of a class hold outside of their dictionaries."""
     for base in cls.__mro__:
         for name, member in vars(base).items():
             if isinstance(member, MemberDescriptorType):

@@ -118,7 +118,7 @@ class RandomBase:
 
 
 def random_value(node: Node, again: Callable[[], Any] | None = None) -> Any:
-    """The random value of a node; ``again`` makes an independent draw of the same law."""
+    """Return the random value of a node; ``again`` makes an independent draw of the same law."""
     classes = RandomBase._registered
     return classes.get(node.kind, classes[None])(node, again)
 

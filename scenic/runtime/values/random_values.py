@@ -41,7 +41,7 @@ class Random(Arithmetic, RandomBase, kinds=[None]):
         return sample_of(self)
 
     def supportInterval(self) -> tuple[float | None, float | None]:
-        """The least and the greatest value, as far as they are known."""
+        """Return the least and the greatest value, as far as they are known."""
         return support_of(self)
 
 

@@ -32,7 +32,7 @@ class Row:
 
     @classmethod
     def of(cls, row: Iterable[float]) -> Self:
-        """The instance of a row of floats."""
+        """Return the instance of a row of floats."""
         self = object.__new__(cls)
         self._row = tuple(row)
         return self
@@ -66,19 +66,19 @@ EXACT: Final = Row._plain
 
 
 def row_class(length: int) -> type[Row]:
-    """The class whose instances are made of rows of a length: 3 for vectors, 4 for orientations."""
+    """Return the class whose instances are made of rows of a length: 3 for vectors, 4 for orientations."""
     return _CLASSES[length]
 
 
 def vector_of(row: tuple[float, float, float]) -> Any:
-    """The vector of three floats."""
+    """Return the vector of three floats."""
     value: Any = object.__new__(_CLASSES[3])
     value._row = row
     return value
 
 
 def orientation_of(row: tuple[float, ...]) -> Any:
-    """The orientation of a unit quaternion x, y, z, w."""
+    """Return the orientation of a unit quaternion x, y, z, w."""
     value: Any = object.__new__(_CLASSES[4])
     value._row = row
     return value

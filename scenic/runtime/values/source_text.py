@@ -25,7 +25,7 @@ def plain_number(number: float) -> str:
 
 
 def spelled(node: Node, depth: int = _DEPTH) -> str:
-    """The value of a node as an expression; ``<random KIND: OPERATION>`` where programs have no words for it."""
+    """Return the value of a node as an expression; ``<random KIND: OPERATION>`` where programs have no words for it."""
     if node.is_constant:
         return plain_number(node.value) if type(node.value) is float else repr(node.value)
     if depth == 0:

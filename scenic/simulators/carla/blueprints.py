@@ -160,7 +160,7 @@ _SIZES: Final = MappingProxyType({name: size for kind in CATALOGUE.values() for 
 
 
 def ids(category: str) -> tuple[str, ...]:
-    """The ids of a category's blueprints.
+    """Return the ids of a category's blueprints.
 
     Raises `InvalidScenarioError` for a category that CARLA does not have.
     """
@@ -177,7 +177,7 @@ def ids(category: str) -> tuple[str, ...]:
 
 
 def known_blueprint(blueprint: Any) -> Any:
-    """The blueprint as it is, after a warning (SC405) if it has the form of an id and CARLA's catalogues do not have it."""
+    """Return the blueprint as it is, after a warning (SC405) if it has the form of an id and CARLA's catalogues do not have it."""
     context = current.get()
     for each in options_of(blueprint) or [blueprint]:
         if isinstance(each, str) and _ID.fullmatch(each) and each not in _SIZES:
@@ -224,7 +224,7 @@ _ID: Final = re.compile(r"(?:vehicle|walker\.pedestrian|static\.prop)\.[\w.-]+")
 
 
 def dimension(blueprint: Any, axis: int, default: object) -> Any:
-    """A size of a blueprint in metres (0 width, 1 length, 2 height); ``default`` for unknown ones.
+    """Return a size of a blueprint in metres (0 width, 1 length, 2 height); ``default`` for unknown ones.
 
     A random choice among blueprints gives the choice among their sizes.
     """

@@ -46,7 +46,7 @@ def setTrafficLightStatus(signal: Any, color: str) -> None:
 
 
 def getTrafficLightStatus(signal: Any) -> str:
-    """The colour of a traffic light, given by its signal of the road network."""
+    """Return the colour of a traffic light, given by its signal of the road network."""
     if not signal.isTrafficLight:
         raise RuntimeError(f"{signal!r} is not a traffic light")
     color: str = _lights().get(signal)
@@ -59,7 +59,7 @@ def setClosestTrafficLightStatus(vehicle: object, color: str, distance: float = 
 
 
 def getClosestTrafficLightStatus(vehicle: object, distance: float = 100) -> str:
-    """The colour of the traffic light ahead of a vehicle within a distance in metres; ``none`` if there is none."""
+    """Return the colour of the traffic light ahead of a vehicle within a distance in metres; ``none`` if there is none."""
     found: str = running_traffic().closest_traffic_light(vehicle, distance)
     return found
 

@@ -74,7 +74,7 @@ class CarlaSimulator(DrivingSimulator):
         self._runs = 0
 
     def connect(self) -> tuple[Any, Any, Any]:
-        """The client, the world and the traffic manager; raises `SimulationCreationError` if the server does not answer."""
+        """Return the client, the world and the traffic manager; raises `SimulationCreationError` if the server does not answer."""
         if self._connected is not None:
             return self._connected
         carla = _client_library()
@@ -106,7 +106,7 @@ class CarlaSimulator(DrivingSimulator):
     def createSimulation(
         self, scene: Scene, *, timestep: float | None = None, **options: Any
     ) -> "CarlaSimulation":
-        """A simulation that has run."""
+        """Return a simulation that has run."""
         if timestep is not None and timestep != self.timestep:
             raise SimulationCreationError(
                 "CARLA's step is fixed when the connection is made", help="set `param timestep`"
@@ -314,7 +314,7 @@ class CarlaSimulation(DrivingSimulation):
         return {name: values[name] if name in values else attributes[name] for name in properties}
 
     def closest_traffic_light(self, vehicle: object, distance: float) -> str:
-        """The colour of the light that governs a vehicle within a distance, in small letters; ``none`` if there is none."""
+        """Return the colour of the light that governs a vehicle within a distance, in small letters; ``none`` if there is none."""
         light = self._closest(vehicle, distance)
         return "none" if light is None else str(light.get_state()).rpartition(".")[2].lower()
 
@@ -361,7 +361,7 @@ class TrafficLights:
             light.set_state(self.state(color))
 
     def get(self, signal: Any) -> str:
-        """The colour of the light of a signal, in small letters; ``none`` if the world has no such light."""
+        """Return the colour of the light of a signal, in small letters; ``none`` if the world has no such light."""
         light = self._world.get_traffic_light_from_opendrive_id(signal.openDriveID)
         return "none" if light is None else str(light.get_state()).rpartition(".")[2].lower()
 

@@ -48,15 +48,15 @@ class CarModel:
 
     @classmethod
     def uniformModel(cls) -> Any:
-        """One of the models, each as likely."""
+        """Return one of the models, each as likely."""
         return Uniform(*cls.models.values())
 
     @classmethod
     def defaultModel(cls) -> Any:
-        """One of the models; rare ones are rare."""
+        """Return one of the models; rare ones are rare."""
         return Discrete({model: 0.1 if name in _RARE else 1 for name, model in cls.models.items()})
 
     @classmethod
     def egoModel(cls) -> "CarModel":
-        """The model of the car that takes pictures."""
+        """Return the model of the car that takes pictures."""
         return cls.models["BLISTA"]

@@ -43,7 +43,7 @@ def library() -> Library:
 
 
 def environment(parts: Library, network: Path, **settings: Any) -> Any:
-    """An environment of MetaDrive on a road network of SUMO, with one agent.
+    """Return an environment of MetaDrive on a road network of SUMO, with one agent.
 
     Args:
         parts: MetaDrive's classes.

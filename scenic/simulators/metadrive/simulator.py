@@ -78,7 +78,7 @@ class MetaDriveSimulator(DrivingSimulator):
     def createSimulation(
         self, scene: Scene, *, timestep: float | None = None, **options: Any
     ) -> "MetaDriveSimulation":
-        """A simulation that has run."""
+        """Return a simulation that has run."""
         step = self.timestep if timestep is None else timestep
         if not math.isclose(step, round(step / _PHYSICS_STEP) * _PHYSICS_STEP) or step <= 0:
             raise SimulationCreationError(

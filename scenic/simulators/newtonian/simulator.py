@@ -123,7 +123,7 @@ class NewtonianSimulation(DrivingSimulation):
         state.speed = y * math.cos(state.heading) - x * math.sin(state.heading)
 
     def steered(self) -> Sequence[Any]:
-        """The objects that `step` moves."""
+        """Return the objects that `step` moves."""
         return self.objects
 
     def state_of(self, obj: object) -> State:
@@ -159,7 +159,7 @@ class NewtonianSimulation(DrivingSimulation):
         state.velocity = (-speed * math.sin(state.heading), speed * math.cos(state.heading), 0.0)
 
     def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
-        """The present values of an object."""
+        """Return the present values of an object."""
         state = self._states[id(obj)]
         attributes = obj.__dict__
         yaw = state.heading
@@ -188,12 +188,12 @@ class NewtonianSimulation(DrivingSimulation):
         return {name: values[name] if name in values else attributes[name] for name in properties}
 
     def steering_for(self, agent: Any, curvature: float) -> float:
-        """The position of the steering wheel by which a car of this simulator drives a curve."""
+        """Return the position of the steering wheel by which a car of this simulator drives a curve."""
         sine = min(1.0, max(-1.0, curvature * agent.length))
         return -math.asin(sine) / (math.pi / 2)
 
     def curvature_of(self, agent: Any, steering: float) -> float:
-        """The curvature that a car of this simulator drives by a position of the steering wheel."""
+        """Return the curvature that a car of this simulator drives by a position of the steering wheel."""
         return -math.sin(steering * math.pi / 2) / float(agent.length)
 
     def pivot_of(self, agent: object) -> float:
@@ -228,7 +228,7 @@ class NewtonianSimulator(DrivingSimulator):
         self.export_gif = export_gif
 
     def createSimulation(self, scene: Scene, **options: Any) -> NewtonianSimulation:
-        """A simulation that has run, or a deferred one, of which there is no film."""
+        """Return a simulation that has run, or a deferred one, of which there is no film."""
         if not (self.render and self.export_gif) or options.get("deferred"):
             return NewtonianSimulation(scene, **options)
         from scenic.formats.course_page import PoseTape

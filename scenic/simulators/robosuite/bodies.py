@@ -23,7 +23,7 @@ _FRONT: Final = np.array([np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)])
 
 
 def body(thing: Any, name: str) -> Any:
-    """The object of robosuite for one of ours; the origin of its body is wherever robosuite has it (`middle`)."""
+    """Return the object of robosuite for one of ours; the origin of its body is wherever robosuite has it (`middle`)."""
     library()
     from robosuite.models import objects
 
@@ -63,7 +63,7 @@ def body(thing: Any, name: str) -> Any:
 
 
 def middle(made: Any) -> Floats:
-    """The middle of the box around what touches others of an object of robosuite, in its body's frame ``(3,)``, metres."""
+    """Return the middle of the box around what touches others of an object of robosuite, in its body's frame ``(3,)``, metres."""
     library()
     import mujoco
     from robosuite.models.arenas import EmptyArena
@@ -96,7 +96,7 @@ def middle(made: Any) -> Floats:
 
 
 def body_pose(thing: Any, offset: Floats) -> tuple[Floats, Floats]:
-    """The position ``(3,)`` and orientation ``(w, x, y, z)`` of the body of an object whose middle is at an offset ``(3,)``."""
+    """Return the position ``(3,)`` and orientation ``(w, x, y, z)`` of the body of an object whose middle is at an offset ``(3,)``."""
     turn = thing.orientation
     local = Vector.of(tuple(offset.tolist())).rotatedBy(turn)
     return np.array(tuple(thing.position - local)), np.array([turn.w, turn.x, turn.y, turn.z])
@@ -113,7 +113,7 @@ def base_pose(thing: Any) -> tuple[Floats, Floats]:
 
 
 def arena(tables: Sequence[Any]) -> Any:
-    """The arena with the tables of a scene.
+    """Return the arena with the tables of a scene.
 
     Raises:
         SimulationCreationError: robosuite cannot have the tables.

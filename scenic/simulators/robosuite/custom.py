@@ -16,7 +16,7 @@ __all__ = ["check_mjcf", "geoms_of_shape", "shape_of_mjcf", "wrapped"]
 
 
 def shape_of_mjcf(mjcf: object) -> Shape:
-    """The shape of a thing that MJCF describes; a box if there is none, or if `check_mjcf` refuses it.
+    """Return the shape of a thing that MJCF describes; a box if there is none, or if `check_mjcf` refuses it.
 
     Args:
         mjcf: the text, or the path of a file from the folder of the program, or ``None``.
@@ -74,7 +74,7 @@ def wrapped(mjcf: str) -> bytes:
 
 
 def geoms_of_shape(thing: Any, options: dict[str, Any]) -> bytes:
-    """A file of robosuite with the convex parts of an object's shape at its size."""
+    """Return a file of robosuite with the convex parts of an object's shape at its size."""
     size = np.array([thing.width, thing.length, thing.height])
     mesh = thing.shape.mesh
     inner, assets = ET.Element("body"), []

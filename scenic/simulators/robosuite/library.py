@@ -12,7 +12,7 @@ __all__ = ["environment_class", "library"]
 
 
 def library() -> Any:
-    """The module ``robosuite``; raises `UnsupportedError` without it."""
+    """Return the module ``robosuite``; raises `UnsupportedError` without it."""
     draw_without_window()
     try:
         import robosuite  # optional, and slow to import
@@ -29,7 +29,7 @@ def library() -> Any:
 
 @lru_cache(maxsize=1)
 def environment_class() -> Any:
-    """The class of environments whose content is built by a function, and which have no task.
+    """Return the class of environments whose content is built by a function, and which have no task.
 
     Its argument ``build`` is called with the environment's robots when the model is made, and returns arena and objects. Its
     argument ``place`` is called with the environment at each reset.

@@ -65,7 +65,7 @@ class RobosuiteSimulator(Simulator):
     def createSimulation(
         self, scene: Scene, *, timestep: float | None = None, **options: Any
     ) -> "RobosuiteSimulation":
-        """A simulation that has run."""
+        """Return a simulation that has run."""
         step = self.timestep if timestep is None else timestep
         return RobosuiteSimulation(scene, self, timestep=step, **options)
 
@@ -273,7 +273,7 @@ class RobosuiteSimulation(Simulation):
 
 
 def _controller(robot: Any) -> Any:
-    """The configuration of a robot's controllers: its own, or one that is named or given for its arms."""
+    """Return the configuration of a robot's controllers: its own, or one that is named or given for its arms."""
     configuration = robot.controller_config
     if configuration is None:
         return None

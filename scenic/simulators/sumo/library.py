@@ -17,7 +17,7 @@ __all__ = ["convert", "library"]
 
 
 def library() -> Any:
-    """The module ``libsumo``; raises `UnsupportedError` without it. It has no types, hence `Any`."""
+    """Return the module ``libsumo``; raises `UnsupportedError` without it. It has no types, hence `Any`."""
     try:
         # It prints a warning about other versions of pyarrow, whose functions are not used here.
         with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():

@@ -83,7 +83,7 @@ class SumoSimulation(NewtonianSimulation):
         return self._traffic.pose(self._bodies[id(obj)])
 
     def steered(self) -> list[Any]:
-        """The objects that SUMO does not drive already."""
+        """Return the objects that SUMO does not drive already."""
         return [obj for obj in self.objects if not self._drives(obj)]
 
     def _drives(self, obj: object) -> bool:
@@ -166,7 +166,7 @@ class SumoSimulator(DrivingSimulator):
     def createSimulation(
         self, scene: Scene, *, timestep: float | None = None, **options: Any
     ) -> SumoSimulation:
-        """A simulation that has run."""
+        """Return a simulation that has run."""
         library()  # Says that it is missing before a map is converted for nothing.
         return SumoSimulation(
             scene, self.network(), timestep=self.timestep if timestep is None else timestep, **options

@@ -177,7 +177,7 @@ class Traffic:
         body.edges = len(vehicle.getRoute(body.name))
 
     def _longer(self, route: tuple[str, ...], road: str, lane: int) -> tuple[str, ...]:
-        """A route with random edges behind: those next to the road can be reached from the lane that is given."""
+        """Return a route with random edges behind: those next to the road can be reached from the lane that is given."""
         edges = list(route)
         for _ in range(2 * _AHEAD):
             onward = self._successors(edges[-1])

@@ -30,22 +30,22 @@ class Color(NamedTuple):
 
     @staticmethod
     def withBytes(color: Any) -> "Color":
-        """The colour of parts from 0 to 255."""
+        """Return the colour of parts from 0 to 255."""
         return Color(*(part / 255 for part in color))
 
     @staticmethod
     def realToByte(color: Any) -> tuple[int, ...]:
-        """The parts of a colour as integers from 0 to 255."""
+        """Return the parts of a colour as integers from 0 to 255."""
         return tuple(round(255 * part) for part in color)
 
     @staticmethod
     def uniformColor() -> Any:
-        """A colour whose parts are uniform and independent."""
+        """Return a colour whose parts are uniform and independent."""
         return _color(Range(0, 1), Range(0, 1), Range(0, 1))
 
     @staticmethod
     def defaultCarColor() -> Any:
-        """The colour of a car: one of nine common ones, with noise."""
+        """Return the colour of a car: one of nine common ones, with noise."""
         return NoisyColorDistribution(Discrete(dict(_CAR_COLORS)))
 
 
@@ -88,7 +88,7 @@ _CAR_COLORS: Final = tuple(
 def NoisyColorDistribution(
     baseColor: object, hueNoise: object = None, lightnessNoise: object = None, saturationNoise: object = None
 ) -> Any:
-    """A colour about ``baseColor``: hue, lightness and saturation shifted by independent normal draws and clamped to [0, 1]."""
+    """Return a colour about ``baseColor``: hue, lightness and saturation shifted by independent normal draws and clamped to [0, 1]."""
     noise = [
         Normal(0, _DEVIATION) if part is None else part
         for part in (hueNoise, lightnessNoise, saturationNoise)
@@ -147,7 +147,7 @@ class ColorMutator(Mutator):
     """Adds normal noise to the colour of mutated objects."""
 
     def appliedTo(self, obj: Any) -> tuple[Any, bool]:
-        """The object with a changed colour."""
+        """Return the object with a changed colour."""
         scale = 0.05 * obj.mutationScale
         color = Color(*(_clamped(part + random.gauss(0, scale)) for part in obj.color))
         return obj._copyWith(color=color), True

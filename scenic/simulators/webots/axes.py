@@ -52,15 +52,15 @@ class Axes:
         return self.matrix.T @ np.array(tuple(theirs), dtype=np.float64)
 
     def spin(self, ours: object) -> list[float]:
-        """An angular velocity of ours in the world's axes, which turn the other way round where they are left-handed."""
+        """Return an angular velocity of ours in the world's axes, which turn the other way round where they are left-handed."""
         return [self._hand * value for value in self.place(ours)]
 
     def spin_here(self, theirs: object) -> Floats:
-        """An angular velocity of the world, in our axes, ``(3,)``."""
+        """Return an angular velocity of the world, in our axes, ``(3,)``."""
         return self._hand * self.place_here(theirs)
 
     def turn(self, ours: Orientation) -> Floats:
-        """The rotation matrix ``(3, 3)`` in the world of an orientation of ours."""
+        """Return the rotation matrix ``(3, 3)`` in the world of an orientation of ours."""
         return self.matrix @ matrix_of(ours) @ self.matrix.T
 
     def turn_here(self, theirs: Any) -> Orientation:
@@ -74,21 +74,21 @@ class Axes:
 
 
 def matrix_of(turn: Orientation) -> Floats:
-    """The rotation matrix ``(3, 3)`` of an orientation."""
+    """Return the rotation matrix ``(3, 3)`` of an orientation."""
     from scipy.spatial.transform import Rotation  # slow to import
 
     return np.asarray(Rotation.from_quat([turn.x, turn.y, turn.z, turn.w]).as_matrix())
 
 
 def orientation_of(matrix: Floats) -> Orientation:
-    """The orientation of a rotation matrix ``(3, 3)``."""
+    """Return the orientation of a rotation matrix ``(3, 3)``."""
     from scipy.spatial.transform import Rotation
 
     return Orientation.of(tuple(Rotation.from_matrix(matrix).as_quat().tolist()))
 
 
 def axis_angle(matrix: Floats) -> list[float]:
-    """A rotation matrix as Webots writes it: the three numbers of an axis of length 1, and an angle in radians."""
+    """Return a rotation matrix as Webots writes it: the three numbers of an axis of length 1, and an angle in radians."""
     from scipy.spatial.transform import Rotation
 
     vector = Rotation.from_matrix(matrix).as_rotvec()

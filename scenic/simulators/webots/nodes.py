@@ -21,7 +21,7 @@ class NodeNames:
         self._used: dict[str, Any] = {}
 
     def node(self, obj: Any, number: int) -> Any:
-        """The node of an object; ``None`` for a plain object that the world does not have.
+        """Return the node of an object; ``None`` for a plain object that the world does not have.
 
         It is the node ``webotsName``. Otherwise the first object of a ``webotsType`` has the node of that name if there is one, or
         else ``TYPE_0``; the following objects have ``TYPE_1``, ``TYPE_2`` and so on. Objects with neither are called as in exported
@@ -82,7 +82,7 @@ class States:
 
 
 def field_of(obj: object, node: Any, name: str) -> Any:
-    """A field of the node of an object; raises `SimulationCreationError` if it has none of the name."""
+    """Return a field of the node of an object; raises `SimulationCreationError` if it has none of the name."""
     field = node.getField(name)
     if field is None:
         raise SimulationCreationError(
@@ -127,7 +127,7 @@ def write_heights(obj: Any, node: Any) -> None:
 
 
 def _grids(node: Any) -> Iterator[Any]:
-    """The elevation grids in a node."""
+    """Yield the elevation grids in a node."""
     if node.getTypeName() == "ElevationGrid":
         yield node
         return

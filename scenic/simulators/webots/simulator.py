@@ -63,7 +63,7 @@ class WebotsSimulator(Simulator):
     def createSimulation(
         self, scene: Scene, *, timestep: float | None = None, **options: Any
     ) -> "WebotsSimulation":
-        """A simulation that has run; the default step is the world's basic one."""
+        """Return a simulation that has run; the default step is the world's basic one."""
         basic = float(self.supervisor.getBasicTimeStep()) / 1000
         step = basic if timestep is None else timestep
         ratio = step / basic
@@ -88,7 +88,7 @@ def _supervisor() -> Any:
 
 
 def _coordinate_system(supervisor: Any) -> str:
-    """The value of ``WorldInfo.coordinateSystem``; raises `SimulationCreationError` if the robot is not a supervisor."""
+    """Return the value of ``WorldInfo.coordinateSystem``; raises `SimulationCreationError` if the robot is not a supervisor."""
     get_supervisor = getattr(supervisor, "getSupervisor", None)
     root = None if get_supervisor is not None and not get_supervisor() else supervisor.getRoot()
     if root is None:
@@ -179,7 +179,7 @@ class WebotsSimulation(Simulation):
             node.restartController()
 
     def _node(self, obj: object) -> Any:
-        """The node of an object in the world; raises `SimulationCreationError`."""
+        """Return the node of an object in the world; raises `SimulationCreationError`."""
         adhoc = getattr(obj, "webotsAdhoc", None)
         if adhoc is not None:
             return self._adhoc(obj, adhoc)
@@ -189,7 +189,7 @@ class WebotsSimulation(Simulation):
         return node
 
     def _adhoc(self, obj: Any, options: Any) -> Any:
-        """A new node with the object's shape."""
+        """Return a new node with the object's shape."""
         if not isinstance(options, Mapping):
             raise SimulationCreationError(
                 f"the webotsAdhoc of {obj!r} must be a mapping, not {options!r}",
@@ -251,7 +251,7 @@ class WebotsSimulation(Simulation):
         node.addForce(self.axes.place(force), relative)
 
     def _moved(self, obj: object) -> Any:
-        """The node of an object that is to move; raises `SimulationError` if it has none."""
+        """Return the node of an object that is to move; raises `SimulationError` if it has none."""
         node = self._nodes.get(id(obj))
         if node is None or node.getField("translation") is None:
             raise SimulationError(

@@ -77,7 +77,7 @@ def hill_heights(
 
 @distributionFunction
 def ground_shape(heights: object, width: float, length: float, thickness: float) -> MeshShape:
-    """The shape of the solid between a grid of heights and a plane ``thickness`` below the height 0."""
+    """Return the shape of the solid between a grid of heights and a plane ``thickness`` below the height 0."""
     values = np.asarray(heights, dtype=np.float64)
     rows, columns = values.shape
     x, y = np.meshgrid(

@@ -76,7 +76,7 @@ class Intersection:
     roadDirection: PolygonalVectorField
 
     def guidewayWithID(self, id: object) -> Guideway:
-        """The guideway with an id; raises `KeyError` if there is none."""
+        """Return the guideway with an id; raises `KeyError` if there is none."""
         ways = (self.mainGuideway, *self.vehicleGuideways, *self.bikeGuideways, *self.railGuideways)
         found = next((way for way in ways if way.id == id), None)
         if found is None:
@@ -93,7 +93,7 @@ class Intersection:
 
 
 def intersection_of_program(parameters: Any) -> Intersection:
-    """The intersection that a program has chosen; raises `IntersectionError` if it has none, or it cannot be read."""
+    """Return the intersection that a program has chosen; raises `IntersectionError` if it has none, or it cannot be read."""
     path = parameters[_PARAMETER] if _PARAMETER in parameters else None  # noqa: SIM401 - they have no `get`
     if path is None:
         raise IntersectionError(
@@ -163,7 +163,7 @@ def _guideway(data: Any, origin: tuple[float, float]) -> Guideway:
 
 
 def _between(data: Any, origin: tuple[float, float]) -> tuple[Any, list[tuple[Any, float]]]:
-    """The polygon between two borders, and its cells with their headings.
+    """Return the polygon between two borders, and its cells with their headings.
 
     The borders are divided into equally many pieces, at equal shares of their lengths.
     """

@@ -36,7 +36,7 @@ class RoadRegions:
 
 
 def regions_of_program(parameters: Any) -> RoadRegions:
-    """The regions of the world that a program has chosen.
+    """Return the regions of the world that a program has chosen.
 
     Raises:
         NoWorldError: it has chosen none, or the world has no roads.

@@ -56,7 +56,7 @@ class Streets:
 
 
 def streets_of(world: WorldFile) -> Streets:
-    """The roads of a world; raises `WorldError` if a node makes no road."""
+    """Return the roads of a world; raises `WorldError` if a node makes no road."""
     from shapely.geometry import Polygon  # slow to import
 
     crossroads = []
@@ -98,7 +98,7 @@ def _valid(polygon: Any) -> Any:
 
 
 def _crossing(world: WorldFile, node: WorldNode) -> Any:
-    """The rectangle of a pedestrian crossing, in the horizontal plane of its world."""
+    """Return the rectangle of a pedestrian crossing, in the horizontal plane of its world."""
     from shapely.geometry import Polygon
 
     width, length = node.vector("size", (20, 8))[:2] / 2
@@ -111,7 +111,7 @@ def _crossing(world: WorldFile, node: WorldNode) -> Any:
 
 
 def _way(world: WorldFile, node: WorldNode) -> Array:
-    """The middle of a road in the frame of its node, ``(n, 3)``."""
+    """Return the middle of a road in the frame of its node, ``(n, 3)``."""
     up = world.axes.index("U")
     across, along = (axis for axis in range(3) if axis != up)
     if node.kind == "StraightRoadSegment":
@@ -202,7 +202,7 @@ def _offset(way: Array, distance: float) -> Array:
 
 
 def _at_crossroads(line: Array, crossroads: Sequence[Any]) -> Array:
-    """A border whose ends, where they are near to a crossroad, are moved to its outline, to a corner if one is near."""
+    """Return a border whose ends, where they are near to a crossroad, are moved to its outline, to a corner if one is near."""
     from shapely.geometry import Point
     from shapely.ops import nearest_points
 
