@@ -32,6 +32,11 @@ def test_models_have_the_objects_poses_masses_and_files(tmp_path: Path) -> None:
         assert float(model.findtext("link/inertial/mass") or 0) == solid.inertia.mass
         assert (model.findtext("static") == "true") == solid.is_static
         assert (model.find("link/collision") is None) == (not solid.collides)
+    shown, touching = (
+        float(models["can"].findtext(f"link/{part}/geometry/cylinder/radius") or 0)
+        for part in ("visual", "collision")
+    )
+    assert (shown, touching) == pytest.approx((0.05, 0.05 * np.cos(np.pi / 24)))
     for uri in world.iter("uri"):
         assert (tmp_path / (uri.text or "")).is_file()
 

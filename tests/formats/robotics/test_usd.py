@@ -66,6 +66,12 @@ def test_physics_labels_and_cameras(tmp_path: Path) -> None:
     assert not prim("table").HasAPI(UsdPhysics.RigidBodyAPI)
     assert UsdPhysics.MassAPI(prim("cone")).GetMassAttr().Get() == 2
     assert not prim("ghost/geometry").HasAPI(UsdPhysics.CollisionAPI)
+    for name, corners in (("can", 24), ("cone", 32)):
+        touching = prim(f"{name}/collision")
+        assert touching.HasAPI(UsdPhysics.CollisionAPI)
+        assert not prim(f"{name}/geometry").HasAPI(UsdPhysics.CollisionAPI)
+        assert UsdGeom.Imageable(touching).ComputePurpose() == UsdGeom.Tokens.guide
+        assert touching.GetAttribute("radius").Get() == pytest.approx(0.05 * np.cos(np.pi / corners))
     labels = UsdSemantics.LabelsAPI(prim("can"), "class").GetLabelsAttr().Get()
     assert list(labels) == ["drink"]
     assert prim("part/geometry").IsInstance()
