@@ -1,6 +1,6 @@
 """Distances that things on a table move in three seconds of physics: with `on` and with `resting on`.
 
-SCENIC_TEST_MESHES=FOLDER python -m benchmarks.settling [SCENES]
+SCENIC_TEST_MESHES=FOLDER python -m benchmarks.settling [SCENES] ['on' | 'resting on']
 
 Cylinder, cone and box stand on their flat base with `on`, too. So does nothing else, as a rule: a cone on its tip, and meshes of furniture and a
 rock where the folder of meshes is there.
@@ -8,6 +8,7 @@ rock where the folder of meshes is there.
 
 import os
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -51,9 +52,9 @@ def moved(scene: scenic.Scene, seconds: float) -> list[float]:
     ]
 
 
-def main(count: int) -> None:
+def main(count: int, ways: Sequence[str]) -> None:
     named = shapes()
-    for way in ("on", "resting on"):
+    for way in ways:
         text = PROGRAM.format(way).replace("param_shapes", "globalParameters.shapes")
         scenario = scenic.scenarioFromString(text, params={"shapes": list(named.values())})
         distances = np.array([moved(scene, 3.0) for scene in scenario.sample(count, seed=1)])
@@ -68,4 +69,4 @@ def main(count: int) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 20)
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 20, sys.argv[2:] or ("on", "resting on"))
