@@ -112,7 +112,7 @@ class Reader:
                 points = model.mesh_vert[first : first + count].astype(np.float64)
                 turn = data.geom(solid.name).xmat.reshape(3, 3)
                 self._note("bounds", mesh_bounds(solid), bounds(points @ turn.T + data.geom(solid.name).xpos))
-            elif geom.type[0] == int(mujoco.mjtGeom.mjGEOM_BOX):
+            elif geom.type[0] in (int(mujoco.mjtGeom.mjGEOM_BOX), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID)):
                 self._note("bounds", np.array(solid.size) / 2, geom.size)
             if not solid.is_static:
                 self._note("mass", 1.0, model.body(solid.name).mass[0] / solid.inertia.mass)

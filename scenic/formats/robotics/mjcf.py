@@ -137,6 +137,7 @@ class _Writer:
         forms: dict[str, Mapping[str, str]] = {
             "box": {"type": "box", "size": numbers((width / 2, length / 2, height / 2))},
             "sphere": {"type": "sphere", "size": numbers((width / 2,))},
+            "ellipsoid": {"type": "ellipsoid", "size": numbers((width / 2, length / 2, height / 2))},
             "cylinder": {"type": "cylinder", "size": numbers((width / 2, height / 2))},
         }
         form = forms.get(solid.form) or {"type": "mesh", "mesh": self._mesh(solid)}

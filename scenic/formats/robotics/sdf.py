@@ -197,6 +197,8 @@ class _Writer:
             _texts(form, size=numbers(solid.size))
         elif solid.form == "sphere":
             _texts(form, radius=repr(width / 2))
+        elif solid.form == "ellipsoid":
+            _texts(form, radii=numbers(extent / 2 for extent in solid.size))
         else:
             radius = solid.touching_radius if touches else width / 2
             _texts(form, radius=repr(radius), length=repr(height))
@@ -206,6 +208,7 @@ class _Writer:
 
     def _urdf(self, solid: Solid) -> str:
         """The path of the URDF of an object, named after its class and content."""
+        solid = solid.without_ellipsoid
         robot = ET.Element("robot", name=solid.class_name)
         link = ET.SubElement(robot, "link", name="base")
         inertial = ET.SubElement(link, "inertial")

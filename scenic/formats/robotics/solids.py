@@ -6,6 +6,7 @@ The writers of OpenUSD, MJCF and SDFormat share these facts, so that the files d
 import math
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -59,7 +60,7 @@ class Solid:
         position: its middle, metres.
         quaternion: its orientation ``(x, y, z, w)``.
         size: extents in its own frame, metres.
-        form: ``box``, ``sphere``, ``cylinder``, ``cone`` (these along Z) or ``mesh``.
+        form: ``box``, ``sphere``, ``ellipsoid``, ``cylinder``, ``cone`` (these along Z) or ``mesh``.
         is_static: whether it cannot be moved.
         inertia: its mass properties.
         friction: coefficient of friction; ``None`` if the object has none.
@@ -84,6 +85,11 @@ class Solid:
     color: Four
     texture: ImageTexture | None
     cameras: tuple[Viewpoint, ...]
+
+    @property
+    def without_ellipsoid(self) -> "Solid":
+        """The object for formats that have no ellipsoids: then it is a mesh."""
+        return replace(self, form="mesh") if self.form == "ellipsoid" else self
 
     @property
     def mesh(self) -> Any:
@@ -205,8 +211,8 @@ def _form(thing: SceneObject, size: Triple) -> str:
     match data["kind"]:
         case "box":
             return "box"
-        case "spheroid" if width == length == height:
-            return "sphere"
+        case "spheroid":
+            return "sphere" if width == length == height else "ellipsoid"
         case "cylinder" if width == length and int(data.get("sections", _ROUND)) >= _ROUND:
             return "cylinder"
         case "cone" if width == length:

@@ -100,7 +100,7 @@ class _Writer:
         }
 
     def files(self, name: str) -> dict[str, bytes]:
-        solids = solids_of(self._scene)
+        solids = tuple(solid.without_ellipsoid for solid in solids_of(self._scene))
         self._surroundings(solids)
         taken = iter(
             identifiers(iter(["Looks", "Sun", "Sky", "PhysicsScene", "Ground", *(s.name for s in solids)]))

@@ -20,6 +20,7 @@ cone = new Object at (0.3, -0.5, 2), with shape ConeShape(), with width 0.1, wit
 part = new Object at (3, Range(1, 2), 1), with shape bracket, facing (1, Range(-1, 1), 0.5), with width Range(0.5, 1)
 ego = new Object at (0, -3, 1), with width 0.1, with length 0.1, with height 0.1, facing (0.2, -0.3, 0.1),
     with sensors {"eye": RGBSensor(width=640, height=480, attributes={"fov": 60})}
+egg = new Object resting on table, with shape SpheroidShape(), with width Range(0.05, 0.06), with length 0.07, with height 0.08
 ghost = new Object at (0, 3, 1), with collides False, with render False
 """
 

@@ -20,7 +20,7 @@ def test_mass_properties_are_those_of_the_mesh() -> None:
 def test_forms_are_exact_or_meshes() -> None:
     forms = {solid.name: solid.form for solid in solids_of(scenes(1)[0])}
     assert forms == {
-        "ego": "box", "table": "box", "ball": "sphere", "can": "cylinder", "cone": "cone", "part": "mesh", "ghost": "box",
+        "ego": "box", "table": "box", "ball": "sphere", "can": "cylinder", "cone": "cone", "part": "mesh", "egg": "ellipsoid", "ghost": "box",
     }  # fmt: skip
 
 
