@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import click
 
@@ -17,7 +17,8 @@ from scenic.cli.options import OneOf
 from scenic.cli.output import FINDINGS, exit_code, has_colours, show_diagnostics, summary
 from scenic.cli.render import FORMATS, Report, Sources, render
 from scenic.cli.watching import watch
-from scenic.configuration.project import PLAIN, Configurations, read_configuration
+from scenic.configuration.project import PLAIN, Configuration, Configurations, read_configuration
+from scenic.dataclass import dataclass
 from scenic.formats.files import write
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.errors import ScenicError
@@ -108,25 +109,7 @@ def _selectors(_context: click.Context, option: click.Parameter, given: tuple[st
     help="Write the report to this file.",
 )
 @click.option("-w", "--watch", "watching", is_flag=True, help="Check again whenever a file changes.")
-def check(
-    paths: tuple[str, ...],
-    output_format: str,
-    select: tuple[str, ...],
-    ignore: tuple[str, ...],
-    fix: bool,
-    diff: bool,
-    deep: bool,
-    strict: bool,
-    config: str | None,
-    no_config: bool,
-    stdin_filename: str | None,
-    jobs: int | None,
-    verbose: bool,
-    exit_zero: bool,
-    statistics: bool,
-    output_file: Path | None,
-    watching: bool,
-) -> int:
+def check(paths: tuple[str, ...], **options: Any) -> int:
     """Report mistakes in programs and road maps (.xodr).
 
     Each PATH is a file, a folder that is searched for *.scenic and *.sc, or - for standard input; by default the
@@ -135,23 +118,99 @@ def check(
     Exit codes: 0 clean, 1 findings (errors or warnings; with --diff: something to repair), 2 wrong usage, or a file
     that cannot be read, 70 an internal error, 130 interrupted.
     """
-    parts = {_INPUT: STANDARD_INPUT in paths, _TEXT: output_format == "text"}
-    parts |= {_DIFF: diff, _FIX: fix, _NO_CONFIG: no_config}
+    chosen = _Options(**options)
+    parts = {_INPUT: STANDARD_INPUT in paths, _TEXT: chosen.output_format == "text"}
+    parts |= {_DIFF: chosen.diff, _FIX: chosen.fix, _NO_CONFIG: chosen.no_config}
     check_parts([part for part, is_chosen in parts.items() if is_chosen], [_TEXT])
-    if watching:
+    if chosen.watching:
         context = click.get_current_context()
         watch(paths, lambda: context.invoke(context.command, **{**context.params, "watching": False}))
-    fixed_configuration = PLAIN if no_config else None if config is None else read_configuration(config)
-    configurations = Configurations(fixed_configuration)
+    return _checked(paths, chosen)
+
+
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """The options of the command, by their names."""
+
+    output_format: str
+    select: tuple[str, ...]
+    ignore: tuple[str, ...]
+    fix: bool
+    diff: bool
+    deep: bool
+    strict: bool
+    config: str | None
+    no_config: bool
+    stdin_filename: str | None
+    jobs: int | None
+    verbose: bool
+    exit_zero: bool
+    statistics: bool
+    output_file: Path | None
+    watching: bool
+
+    @property
+    def configuration(self) -> Configuration | None:
+        """The configuration of all files; ``None`` if each file has that of its project."""
+        return PLAIN if self.no_config else None if self.config is None else read_configuration(self.config)
+
+    @property
+    def fixing(self) -> Fixing:
+        """The use of repairs."""
+        return Fixing.MAKE if self.fix else Fixing.SHOW if self.diff else Fixing.NONE
+
+
+def _checked(paths: tuple[str, ...], options: _Options) -> int:
+    """Check the files under some paths and report about them; returns the exit code."""
+    configurations = Configurations(options.configuration)
     discovery = discover(paths, configurations)
-    fixing = Fixing.MAKE if fix else Fixing.SHOW if diff else Fixing.NONE
     sources = Sources()
     problems = list(discovery.problems)
-    tasks: list[CheckTask] = []
-    for file in discovery.files:
+    tasks = list(_tasks(discovery.files, configurations, options, sources, problems))
+    problems = [*configurations.problems, *problems]
+    if not discovery.files and not problems:
+        click.echo("warning: there are no Scenic files under the given paths", err=True)
+    outcomes = _outcomes(tasks, options.jobs)
+    for outcome in outcomes:
+        sys.stderr.write(outcome.trace)
+    diagnostics = [*problems, *(item for outcome in outcomes for item in outcome.diagnostics)]
+    repair_count = sum(outcome.fixed for outcome in outcomes)
+    if options.diff:
+        return _show_diff(outcomes, diagnostics, repair_count)
+    code = exit_code(diagnostics, failing=_FAILING)
+    if options.exit_zero and code == FINDINGS:
+        code = 0
+    repaired = [
+        (task, outcome.text)
+        for task, outcome in zip(tasks, outcomes, strict=True)
+        if outcome.text is not None
+    ]
+    for task, text in repaired:
+        # Standard output is for the repaired text; what is left to say goes beside it.
+        sources.add(Source(text, task.filename))
+        sys.stdout.write(text)
+    if repaired:
+        show_diagnostics(diagnostics, sources)
+        return code
+    colours = options.output_file is None and has_colours(sys.stdout)
+    names = [task.filename for task in tasks]
+    report = Report(diagnostics, sources, len(tasks), repair_count, code, colours, names)
+    _write_report(report, "statistics" if options.statistics else options.output_format, options.output_file)
+    return code
+
+
+def _tasks(
+    files: Sequence[str],
+    configurations: Configurations,
+    options: _Options,
+    sources: Sources,
+    problems: list[Diagnostic],
+) -> Iterator[CheckTask]:
+    """Yield the files to check, with the rules for each; standard input is read, and added to ``sources`` or ``problems``."""
+    for file in files:
         name, text = file, None
         if file == STANDARD_INPUT:
-            name = stdin_filename or "<stdin>"
+            name = options.stdin_filename or "<stdin>"
             try:
                 text = _standard_input(name)
             except ScenicError as error:
@@ -159,35 +218,11 @@ def check(
                 continue
             sources.add(Source(text, name))
         project = configurations.of_file(name)
-        rules, root = project.rules_for(name, select, ignore), project.folder or None
-        tasks.append(CheckTask(name, rules, root, project.python_path, verbose, deep, fixing, text, strict))
-    problems = [*configurations.problems, *problems]
-    if not discovery.files and not problems:
-        click.echo("warning: there are no Scenic files under the given paths", err=True)
-    outcomes = _outcomes(tasks, jobs)
-    for outcome in outcomes:
-        sys.stderr.write(outcome.trace)
-    diagnostics = [*problems, *(item for outcome in outcomes for item in outcome.diagnostics)]
-    repair_count = sum(outcome.fixed for outcome in outcomes)
-    if diff:
-        return _show_diff(outcomes, diagnostics, repair_count)
-    for task, outcome in zip(tasks, outcomes, strict=True):
-        if outcome.text is not None:
-            # Standard output is for the repaired text; what is left to say goes beside it.
-            sources.add(Source(outcome.text, task.filename))
-            sys.stdout.write(outcome.text)
-            output_format = "beside"
-    code = exit_code(diagnostics, failing=_FAILING)
-    if exit_zero and code == FINDINGS:
-        code = 0
-    if output_format == "beside":
-        show_diagnostics(diagnostics, sources)
-        return code
-    colours = output_file is None and has_colours(sys.stdout)
-    names = [task.filename for task in tasks]
-    report = Report(diagnostics, sources, len(tasks), repair_count, code, colours, names)
-    _write_report(report, "statistics" if statistics else output_format, output_file)
-    return code
+        rules, root = project.rules_for(name, options.select, options.ignore), project.folder or None
+        python_path, fixing = project.python_path, options.fixing
+        yield CheckTask(
+            name, rules, root, python_path, options.verbose, options.deep, fixing, text, options.strict
+        )
 
 
 def _write_report(report: Report, output_format: str, file: Path | None) -> None:

@@ -1,7 +1,7 @@
 """Conditions at the top level that are certainly random: which way they go is not known while a program is compiled."""
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, Final
 
 from scenic.compiler import tree as scenic
@@ -206,38 +206,33 @@ def _truth(node: ast.BoolOp | ast.UnaryOp, scope: Scope, context: CheckContext) 
     )
 
 
-def _matches(node: ast.Match, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC403: ``match x:`` with a random ``x``."""
-    if is_random(node.subject, context) and _is_asked_now(node, scope, context):
-        yield context.error(
-            "SC403",
-            "deciding by a random value is not possible while the scenario is being built",
-            node.subject,
-            "its value is known only in a sampled scene; make the choice itself random with `Uniform(...)` or `Discrete({...})`",
-        )
+def _refusing(what: str, advice: str, asked: Callable[[Any], ast.expr | None]) -> NodeRule:
+    """A rule, SC403: the value that a node asks for must not be random; ``asked`` is ``None`` if the node asks for none."""
+
+    def rule(node: Any, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
+        value = asked(node)
+        if value is not None and is_random(value, context) and _is_asked_now(node, scope, context):
+            message = f"{what} is not possible while the scenario is being built"
+            yield context.error("SC403", message, value, advice)
+
+    return rule
 
 
-def _asserts(node: ast.Assert, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC403: ``assert x > 3`` with a random ``x``."""
-    if is_random(node.test, context) and _is_asked_now(node, scope, context):
-        yield context.error(
-            "SC403",
-            "asserting a random value is not possible while the scenario is being built",
-            node.test,
-            "write `require`, which keeps only the scenes in which it holds",
-        )
-
-
-def _unpacks(node: ast.Assign, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
-    """SC403: ``a, b = Uniform((1, 2), (3, 4))``."""
-    unpacked = any(isinstance(target, ast.Tuple | ast.List) for target in node.targets)
-    if unpacked and is_random(node.value, context) and _is_asked_now(node, scope, context):
-        yield context.error(
-            "SC403",
-            "taking a random value apart is not possible while the scenario is being built",
-            node.value,
-            "give it one name, and take its parts by index: `pair[0]`, `pair[1]`",
-        )
+_matches: Final = _refusing(
+    "deciding by a random value",
+    "its value is known only in a sampled scene; make the choice itself random with `Uniform(...)` or `Discrete({...})`",
+    lambda node: node.subject,
+)
+_asserts: Final = _refusing(
+    "asserting a random value",
+    "write `require`, which keeps only the scenes in which it holds",
+    lambda node: node.test,
+)
+_unpacks: Final = _refusing(
+    "taking a random value apart",
+    "give it one name, and take its parts by index: `pair[0]`, `pair[1]`",
+    lambda node: node.value if any(isinstance(each, ast.Tuple | ast.List) for each in node.targets) else None,
+)
 
 
 def _indexes(node: ast.Subscript, scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
