@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,8 @@ Indices = NDArray[np.intp]
 
 _RUN = 16
 """Segments of a guide that a circle is drawn around."""
+_KEPT: Final = 512
+"""Places of which a finder keeps the answers."""
 
 
 class Finder:
@@ -45,6 +47,7 @@ class Finder:
         self.elements = tuple(elements)
         self._tolerance = tolerance
         self._levels = levels
+        self._known: dict[tuple[float, float, float], NetworkElement | None] = {}
 
     @cached_property
     def _cells(self) -> CellIndex:
@@ -108,8 +111,14 @@ class Finder:
 
     def at(self, x: float, y: float, z: float = 0.0) -> NetworkElement | None:
         """The element at one place: the first that holds it, else the first within the tolerance."""
-        (index,) = self.near(np.array([[x, y, z]]))
-        return self.elements[index] if index < len(self.elements) else None
+        # Programs ask for one place again and again within a step of a simulation, and for things that stand.
+        place = x, y, z
+        if place not in self._known:
+            (index,) = self.near(np.array([[x, y, z]]))
+            if len(self._known) >= _KEPT:
+                self._known.clear()
+            self._known[place] = self.elements[index] if index < len(self.elements) else None
+        return self._known[place]
 
 
 class RoadDirection(TabulatedField):

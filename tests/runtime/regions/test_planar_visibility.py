@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import scenic
-from scenic.runtime.regions.planar_visibility import _sees
+from scenic.runtime.regions.planar_visibility import _sees, _sees_at_once
 from tests.runtime.programs import thing
 
 
@@ -58,6 +58,10 @@ def test_a_sector_meets_a_rectangle_as_in_planar_geometry(
         np.array([quaternion]),
         np.array([[*size, 1.0]]),
     )[0]
+    at_once = _sees_at_once(
+        None, (0.0, 0.0, 0.0), heading, angle, distance, (*place, 0.0), (*quaternion,), (*size, 1.0)
+    )
+    assert at_once == seen
     view, target = sector(0, 0, heading, angle, distance), rectangle(*place, turn, *size)
     if view.buffer(-1e-3).intersects(target):
         assert seen
