@@ -62,6 +62,11 @@ class Seen:
             self.group[index],
         )
 
+    def replace(self, index: npt.NDArray[np.intp], other: "Seen") -> None:
+        """Put other hits in the place of some entries, for rays of the same directions."""
+        for name in ("triangle", "nearness", "second", "third", "group"):
+            getattr(self, name)[index] = getattr(other, name)
+
 
 class Lens:
     """Rays through an image of a size.

@@ -33,7 +33,9 @@ _NEARLY: Final = 8
 _JUMP: Final = 0.03
 """So much, in parts, one over the depth departs from a line where a surface is torn."""
 _LAYERS: Final = 4
-"""So many transparent surfaces are seen through."""
+"""So many transparent things are seen through."""
+_INSIDE: Final = 16
+"""Surfaces within a transparent thing, at most, that are not seen."""
 
 
 def render(
@@ -194,11 +196,19 @@ class _Drawing:
         return total
 
     def _behind(self, front: Seen, eye: Singles, layers: int) -> Singles:
-        """Colours ``(3, n)`` beyond transparent places."""
-        depth = np.float32(1) / front.nearness + np.float32(self._stage.reach * 1e-4)
-        start = eye + front.directions * depth[:, None]
-        seen = look(self._stage, start, front.directions)
-        light = own_light(self._stage, start, seen, np.arange(len(start)) % 16)
+        """Colours ``(3, n)`` beyond transparent things, whose inside is not seen."""
+        stage = self._stage
+        margin = np.float32(stage.reach * 1e-4)
+        start = eye + front.directions * (np.float32(1) / front.nearness + margin)[:, None]
+        seen = look(stage, start, front.directions)
+        thing = stage.owner[front.triangle]
+        for _ in range(_INSIDE):
+            within = np.flatnonzero((seen.group > 0) & (stage.owner[seen.triangle] == thing))
+            if not len(within):
+                break
+            start[within] += seen.directions[within] * (1 / seen.nearness[within] + margin)[:, None]
+            seen.replace(within, look(stage, start[within], seen.directions[within]))
+        light = own_light(stage, start, seen, np.arange(len(start)) % 16)
         return self._color(seen, light, start, layers - 1)
 
     # Edges

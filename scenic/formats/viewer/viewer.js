@@ -588,13 +588,15 @@
     if (eye()[2] > groundHeight) draw(square); // from below, the ground would only hide things
     gl.disable(gl.POLYGON_OFFSET_FILL);
 
-    // Transparent objects, the farthest first.
+    // Transparent objects, the farthest first; their inner sides are not seen.
     gl.useProgram(solid.made);
     gl.depthMask(false);
+    gl.enable(gl.CULL_FACE);
     shown.map(({ thing, index }) => ({ thing, index, depth: dot(sub(thing.position, eye()), ahead()) }))
       .filter(({ thing }) => thing.light[3] < 1)
       .sort((a, b) => b.depth - a.depth)
       .forEach(({ thing, index }) => drawObject(thing, glow(index)));
+    gl.disable(gl.CULL_FACE);
     gl.depthMask(true);
 
     gl.useProgram(plain.made);
