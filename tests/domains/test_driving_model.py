@@ -260,7 +260,7 @@ param town = map_town, categories = blueprints.carModels
 """
 
 
-def test_carla_programs_sample_without_the_simulator(folder: Path) -> None:
+def test_carla_programs_sample_without_the_simulator(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from scenic.simulators.carla.blueprints import CATALOGUE
 
     scenario = compiled(folder, CARLA, "scenic.simulators.carla.model")
@@ -272,9 +272,9 @@ def test_carla_programs_sample_without_the_simulator(folder: Path) -> None:
         assert trash.physics is False
         assert scene.params["carla_map"] == scene.params["town"] == "cross"
         assert scene.params["categories"] == tuple(CATALOGUE["car"])
-    if "carla" not in sys.modules:
-        with pytest.raises(scenic.ScenicError, match="needs the package carla"):
-            scenario.getSimulator().simulate(scene, maxSteps=1)
+    monkeypatch.setitem(sys.modules, "carla", None)
+    with pytest.raises(scenic.ScenicError, match="needs the package carla"):
+        scenario.getSimulator().simulate(scene, maxSteps=1)
 
 
 class _Record(SimpleNamespace):

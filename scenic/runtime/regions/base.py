@@ -328,6 +328,8 @@ class Region(metaclass=_RegionType):
             distance = single.distance(place.row)
             if distance is not None:
                 return distance
+        if type(place) is Vector and not self.parameters:
+            return float(self.distances(np.array([place.row]))[0])
         return apply(_DISTANCE, place, *self.parameters, payload=self)
 
     @property
@@ -346,6 +348,8 @@ class Region(metaclass=_RegionType):
             held = single.holds_point(point.row)
             if held is not None:
                 return held
+        if type(point) is Vector and not self.parameters:
+            return bool(self.contains_points(np.array([point.row]))[0])
         return apply(CONTAINS_POINT, to_vector(point), *self.parameters, payload=self)
 
     def containsObject(self, thing: Any) -> Any:
