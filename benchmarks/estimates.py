@@ -264,11 +264,13 @@ def rare(repetitions: int) -> None:
 
 STEP: Final = 0.2
 STEPS: Final = 30
+GAP: Final = 66.0
 
 CUT_IN: Final = """
 from scenic.simulators.kinematic import SetVelocity
 
-gap = Normal(66, 4)
+param gap = 66, step = 0.2
+gap = Normal(globalParameters.gap, 4)
 pace = Normal(24, 0.5)
 pace_ahead = Normal(23, 0.5)
 braking = TruncatedNormal(5, 0.4, 3, 8)
@@ -277,7 +279,7 @@ reaction = TruncatedNormal(0.8, 0.15, 0.2, 2)
 
 behavior Brake(speed, rate, wait):
     while True:
-        take SetVelocity((0, max(0, speed - rate * max(0, simulation().currentTime * 0.2 - wait)), 0))
+        take SetVelocity((0, max(0, speed - rate * max(0, simulation().currentTime * globalParameters.step - wait)), 0))
 
 ego = new Object with length 4, with behavior Brake(pace, braking, reaction)
 ahead = new Object at (0, 4 + gap), with length 4, with behavior Brake(pace_ahead, braking_ahead, 0)
@@ -286,8 +288,8 @@ require always (distance from ego to ahead) > 4 as keeps_off
 """A car cuts in and brakes at once; the ego brakes after its reaction. Both drive straight ahead."""
 
 
-def true_cut_in(samples: int = 4_000_000) -> float:
-    """The probability of the cut-in program, by the same steps: exact in the gap, which is normal; the rest by chance."""
+def true_cut_in(gap: float = GAP, step: float = STEP, steps: int = STEPS, samples: int = 4_000_000) -> float:
+    """The probability of the cut-in program with a mean gap, by the same steps: exact in the gap, which is normal; the rest by chance."""
     generator = np.random.default_rng(1)
 
     def truncated(mean: float, deviation: float, low: float, high: float) -> Floats:
@@ -300,14 +302,14 @@ def true_cut_in(samples: int = 4_000_000) -> float:
     rate, rate_ahead = truncated(5, 0.4, 3, 8), truncated(5, 0.4, 3, 8)
     reaction = truncated(0.8, 0.15, 0.2, 2)
     closer, nearest = np.zeros(samples), np.zeros(samples)
-    for step in range(STEPS):
-        time = step * STEP
-        closer += STEP * (
+    for number in range(steps):
+        time = number * step
+        closer += step * (
             np.maximum(0, pace - rate * np.maximum(0, time - reaction))
             - np.maximum(0, ahead - rate_ahead * time)
         )
         nearest = np.maximum(nearest, closer)
-    return float(np.mean(ndtr((nearest - 66) / 4)))
+    return float(np.mean(ndtr((nearest - gap) / 4)))
 
 
 def cut_in(_repetitions: int) -> None:

@@ -47,7 +47,10 @@ def method_words(estimate: Estimate) -> str:
     if estimate.weighted is not None:
         return "of a weighted share (Fay and Feuer)"
     if not estimate.at_any_time:
-        return "for a number of runs that was fixed in advance (Clopper and Pearson)"
+        total = estimate.total
+        is_one_sided = total.violations in (0, total.runs) and not total.unknown
+        bound = "; one end is sure, the other a one-sided bound" if is_one_sided else ""
+        return f"for a number of runs that was fixed in advance (Clopper and Pearson{bound})"
     return "which holds however often one looks (confidence sequence)"
 
 
@@ -175,7 +178,8 @@ def comparison_words(estimate: Estimate) -> list[str]:
         return []
     difference = described(pairs.difference, pairs.interval(estimate.confidence), estimate.confidence)
     words = f"probability of the first less that of the second {difference}, from {counted(pairs.pairs, 'run')} of both."
-    if pairs.p_value < 1 - estimate.confidence:
+    low, high = pairs.interval(estimate.confidence)
+    if low > 0 or high < 0:
         return [
             f"{words} So large a difference would come by chance with a probability of at most {pairs.p_value:.2g} (McNemar)."
         ]

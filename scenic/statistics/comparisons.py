@@ -1,9 +1,14 @@
 """The comparison of two things that were tried on the same cases."""
 
+from typing import Final
+
 from scenic.dataclass import dataclass
 from scenic.statistics.intervals import Interval, exact_interval
 
 __all__ = ["PairedComparison"]
+
+_DIRECTION: Final = 0.8
+"""Share of the chance to miss that goes to which of both fails more often; the rest goes to how often they differ."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +40,21 @@ class PairedComparison:
         return (self.first_only - self.second_only) / self.pairs if self.pairs else 0.0
 
     def interval(self, confidence: float) -> Interval:
-        """The interval of the difference: from exact intervals of both kinds of unequal cases (Bonferroni)."""
+        """The interval of the difference, without 0 exactly where McNemar's p value is at most 0.8 times ``1 - confidence``.
+
+        The difference is the share of unequal cases, times the share of the first among them less that of the second. Both have exact
+        intervals (Clopper and Pearson, 1934), the second given the number of unequal cases, as in McNemar's test; together they miss with at
+        most ``1 - confidence`` (Bonferroni).
+        """
         if not self.pairs:
             return Interval(-1.0, 1.0)
-        each = 1 - (1 - confidence) / 2
-        first = exact_interval(self.first_only, self.pairs, each)
-        second = exact_interval(self.second_only, self.pairs, each)
-        return Interval(first.low - second.high, first.high - second.low)
+        miss, different = 1 - confidence, self.first_only + self.second_only
+        unequal = exact_interval(different, self.pairs, 1 - (1 - _DIRECTION) * miss)
+        if not different:
+            return Interval(-unequal.high, unequal.high)
+        firsts = exact_interval(self.first_only, different, 1 - _DIRECTION * miss, is_two_sided=True)
+        low, high = 2 * firsts.low - 1, 2 * firsts.high - 1
+        return Interval(
+            low * (unequal.low if low > 0 else unequal.high),
+            high * (unequal.high if high > 0 else unequal.low),
+        )

@@ -33,13 +33,22 @@ _KEPT: Final = 0.1
 """Share of the population that goes on to the next level."""
 
 _PILOT: Final = 100
-"""Runs in each level of the first repetition, which only shows how many levels there are."""
+"""Runs in each level of the first repetition, which only shows how many levels there are, at most."""
 
-_LEAST: Final = 50
+_LEAST_PILOT: Final = 40
+"""The same, at least."""
+
+_PILOTS: Final = 20
+"""Such levels that a budget has room for."""
+
+_LEAST: Final = 20
 """Runs in the first population of a repetition, at least."""
 
-_FEWEST: Final = 20
+_FEWEST: Final = 10
 """Runs in a later level of a repetition, at least."""
+
+_FEW: Final = 3
+"""Repetitions below which their spread says too little."""
 
 _SURVIVING: Final = 0.02
 """Share of each repetition that goes on, at least, if others are nearer to a failure."""
@@ -171,14 +180,15 @@ class Splitting(Generic[_Point]):
 
     def runs(self) -> _Making[_Point]:
         """The runs to be made, some at a time; each time the outcomes of all of them are sent back, in order."""
-        yield from self._narrow([self.pilot], 0, lambda _level: _PILOT)
+        pilot_size = max(_LEAST_PILOT, min(_PILOT, self._left // _PILOTS))
+        yield from self._narrow([self.pilot], 0, lambda _level: pilot_size)
         pilot = self.pilot
         if self.is_out_of_budget or pilot.is_flat or not pilot.runs:
             return
         ahead = _Ahead(pilot)
         first_cost = 1 + (1 - _KEPT) * max(0.0, ahead.levels(None) - 0.5 + _RESERVE)
         count = min(self._count, int(self._left / first_cost / _LEAST))
-        if count == 0 or (count == 1 and self._count > 1):
+        if count < min(self._count, _FEW):
             self.is_out_of_budget = True
             return
         self.repetitions = [Repetition() for _ in range(count)]

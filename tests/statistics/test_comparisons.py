@@ -32,6 +32,17 @@ def test_the_difference_lies_in_its_interval(first: float, second: float) -> Non
     assert held >= 175
 
 
+@given(st.integers(0, 30), st.integers(0, 30), st.floats(0.5, 0.999))
+def test_an_interval_without_zero_says_what_the_test_says(first: int, second: int, confidence: float) -> None:
+    comparison = PairedComparison(80, first, second)
+    low, high = comparison.interval(confidence)
+    level = 0.8 * (1 - confidence)
+    if not math.isclose(comparison.p_value, level):
+        assert (low > 0 or high < 0) is (comparison.p_value < level)
+    if low > 0 or high < 0:
+        assert (low > 0) is (first > second)
+
+
 def test_nothing_is_known_without_pairs() -> None:
     nothing = PairedComparison(0, 0, 0)
     assert nothing.p_value == 1
