@@ -21,7 +21,7 @@ from scenic.estimation.following import Guide, guide_of, weighted_of
 from scenic.estimation.requirements import EstimateError, check_labels, goals_of, requirement_labels
 from scenic.estimation.store import EstimateFolder, joined, manifest_of
 from scenic.falsification.comparing import row_departures
-from scenic.falsification.evaluating import Evaluation, Failures, RunTask, evaluated
+from scenic.falsification.evaluating import Evaluation, Failures, RunTask, evaluated, evaluated_together
 from scenic.falsification.lineages import Ancestry, Held, Lineage
 from scenic.falsification.objectives import Objective
 from scenic.falsification.search import SearchPlan
@@ -298,11 +298,7 @@ class _Course:
             tasks = (self._ancestry.task(Lineage(run)) for run in numbers)
             yield from evaluated(self._evaluation, tasks, self._engine)
             return
-        size = 64
-        while end is None or start < end:
-            some = size if end is None else min(size, end - start)
-            yield from self._evaluation.together(start, np.zeros((some, 0)))
-            start, size = start + some, min(2 * size, _STATIC_TOGETHER)
+        yield from evaluated_together(self._evaluation, _parts(start, end), self._engine)
 
     def _guided_rows(self, guide: Guide, numbers: Iterable[int]) -> Generator[dict[str, Any]]:
         seed, pending = self._runs.seed, iter(numbers)
@@ -333,6 +329,15 @@ class _Course:
         numbers = {int(name, 16): number for name, number in row.get("numbers", {}).items()}
         task = RunTask(row["run"], numbers) if numbers else self._ancestry.task(Lineage(row["run"]))
         return not row_departures(row, self._evaluation(task))
+
+
+def _parts(start: int, end: int | None) -> Iterator[range]:
+    """Runs that are evaluated together: few at first, so that an answer which comes early is seen."""
+    size = 64
+    while end is None or start < end:
+        stop = start + size if end is None else min(start + size, end)
+        yield range(start, stop)
+        start, size = stop, min(2 * size, _STATIC_TOGETHER)
 
 
 def _answer(asked: Asked, total: Tally) -> tuple[bool, bool | None]:

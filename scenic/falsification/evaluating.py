@@ -4,7 +4,7 @@ import time
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
@@ -27,7 +27,9 @@ if TYPE_CHECKING:
     from scenic.batch.simulations import Simulations
     from scenic.runtime.scenes.scenario import Scenario
 
-__all__ = ["Evaluation", "Failures", "RunTask", "SearchError", "checked", "evaluated"]
+__all__ = ["Evaluation", "Failures", "RunTask", "SearchError", "checked", "evaluated", "evaluated_together"]
+
+_Result = TypeVar("_Result")
 
 _FAILURES: Final = 10
 """Failing runs in a row that end a batch of runs."""
@@ -167,13 +169,7 @@ class Evaluation:
         try:
             row = self._simulated(task)
         except (ObjectiveError, OutputError) as error:
-            row = {
-                "run": task.run,
-                "status": "objective" if isinstance(error, ObjectiveError) else "unwritable",
-                "values": None,
-                "error": error.message,
-                "help": error.help,
-            }
+            row = _refusal(task.run, error)
         except Exception as error:  # noqa: BLE001 - it is told in the row, and the search goes on
             words = f"{type(error).__name__}: {error}"
             row = {"run": task.run, "status": "failed", "values": None, "error": words}
@@ -308,19 +304,65 @@ def evaluated(
     if engine is None:
         yield from map(checked, map(evaluation, tasks))
         return
-    waiting: dict[int, dict[str, Any]] = {}
+    yield from map(checked, _in_order(engine.run(evaluation, tasks, lost=_lost, spread=_SPREAD)))
+
+
+def evaluated_together(
+    evaluation: Evaluation, parts: Iterable[range], engine: "Engine | None"
+) -> Generator[dict[str, Any]]:
+    """The rows of scenes of the seed, in order; those of one part are evaluated as columns."""
+    function = _Together(evaluation)
+    if engine is None:
+        for part in parts:
+            yield from map(checked, function(part))
+        return
+    for rows in _in_order(engine.run(function, parts, lost=_lost_together, spread=_SPREAD)):
+        yield from map(checked, rows)
+
+
+@dataclass(frozen=True)
+class _Together:
+    """Evaluates scenes of the seed; other processes get it whole."""
+
+    evaluation: Evaluation
+
+    def __call__(self, part: range) -> list[dict[str, Any]]:
+        """The rows of some runs; of the first alone if an objective cannot be evaluated."""
+        try:
+            return list(self.evaluation.together(part.start, np.zeros((len(part), 0))))
+        except (ObjectiveError, OutputError) as error:
+            return [_refusal(part.start, error)]
+
+
+def _in_order(results: Iterable[tuple[int, _Result]]) -> Iterator[_Result]:
+    """The results of an engine by their places, each as soon as it and those before it are there."""
+    waiting: dict[int, _Result] = {}
     due = 0
-    for place, row in engine.run(evaluation, tasks, lost=_lost, spread=_SPREAD):
-        waiting[place] = row
+    for place, result in results:
+        waiting[place] = result
         while due in waiting:
-            yield checked(waiting.pop(due))
+            yield waiting.pop(due)
             due += 1
 
 
-def _lost(task: RunTask, code: int) -> dict[str, Any]:
+def _refusal(run: int, error: ObjectiveError | OutputError) -> dict[str, Any]:
+    """The row of a run after which there cannot be more."""
     return {
-        "run": task.run,
-        "status": "failed",
+        "run": run,
+        "status": "objective" if isinstance(error, ObjectiveError) else "unwritable",
         "values": None,
-        "error": f"its process died (exit code {code})",
+        "error": error.message,
+        "help": error.help,
     }
+
+
+def _lost(task: RunTask, code: int) -> dict[str, Any]:
+    return _lost_run(task.run, code)
+
+
+def _lost_together(part: range, code: int) -> list[dict[str, Any]]:
+    return [_lost_run(run, code) for run in part]
+
+
+def _lost_run(run: int, code: int) -> dict[str, Any]:
+    return {"run": run, "status": "failed", "values": None, "error": f"its process died (exit code {code})"}

@@ -35,7 +35,7 @@ from scenic.language.spans import Span
 __all__ = ["format_text", "formatting"]
 
 _INDENTATION: Final = "    "
-_DEFINITION: Final = re.compile(r"@|(?:class|(?:async )?def|behavior|monitor|scenario) *\w")
+_DEFINITION: Final = re.compile(r"@|async +def\b|(?:class|def|behavior|monitor|scenario) +\w+ *[\[(:]")
 
 
 @dataclass(slots=True)

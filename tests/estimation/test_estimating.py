@@ -72,6 +72,15 @@ def test_rows_are_equal_for_any_number_of_processes_and_after_a_resumption(tmp_p
     assert whole.is_repeatable
 
 
+def test_rows_of_scenes_are_equal_for_any_number_of_processes() -> None:
+    rows = rows_of(tossed(0.2, n=300))
+    assert rows_of(tossed(0.2, n=300, processes=2)) == rows
+    with pytest.raises(ObjectiveError, match="is not a parameter"):
+        scenic.estimate(
+            scenic.scenarioFromString(COIN), static=True, objective="y", n=10, processes=2, seed=1
+        )
+
+
 def test_runs_are_the_simulations_of_the_seed() -> None:
     result = braking(n=6, first=3)
     scenario = scenic.scenarioFromString(BRAKE)

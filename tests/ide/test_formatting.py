@@ -178,6 +178,11 @@ def test_mistakes_are_left_alone(text: str) -> None:
     assert formatting(Snapshot(text, "f")) == ()
 
 
+def test_a_variable_that_is_called_as_definitions_are_stays_with_its_neighbours() -> None:
+    lines = "pass\nscenario left of scenario\nmonitor in behavior\n"
+    check("pass; scenario left of scenario\nmonitor in behavior\n", lines)
+
+
 @pytest.mark.parametrize("text", ["", "\n", "\n\n\n", "# c", "   \n", "x = 1", "x = 1\n\n\n"])
 def test_small_texts(text: str) -> None:
     check(text, format_text(text))

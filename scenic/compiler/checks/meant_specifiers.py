@@ -44,7 +44,9 @@ def _dangling_comma(
     if comma < 0:
         return
     place = Span(end.end_line, comma, end.end_line, comma + 1)
-    if (line := continuation_after(context.source, end.end_line)) is not None:
+    line = continuation_after(context.source, end.end_line)
+    # `with (x): ...` is a statement of its own.
+    if line is not None and not any(node.lineno == line for node, _ in context.nodes(ast.With)):
         if not any(node.lineno == line for node, _ in context.nodes(scenic.ErrorStatement)):
             yield _not_indented(line, context)
         return

@@ -18,6 +18,7 @@ from tests.each import each
         ),
         ("ego = new Object with width 4«,»", "SC311", "ego = new Object with width 4"),
         ("ego = new Object\nx = new Object«,»\ny = 3", "SC311", "x = new Object\ny = 3"),
+        ("x = 3\nego = new Object«,»\nwith (x): pass", "SC311", "ego = new Object\nwith (x): pass"),
         ("ego = new Object\nnew Object at (1, 2)«,»", "SC311", "new Object at (1, 2)"),
     ]
 )
