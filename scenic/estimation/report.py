@@ -225,8 +225,8 @@ def levels_plot(rare: Rare) -> str:
         for course in courses
     )
     words = (
-        f"<text x='{_WIDTH / 2:.0f}' y='{_HEIGHT - 8}' text-anchor='middle'>value of the requirement (0: failure); probability of a"
-        " value as small, one line for each repetition</text>"
+        f"<text x='{_WIDTH / 2:.0f}' y='{_HEIGHT - 8}' text-anchor='middle'>distance to a failure; probability of a"
+        " distance as small, one line for each repetition</text>"
     )
     return f"<svg viewBox='0 0 {_WIDTH} {_HEIGHT}' width='100%'>{ticks}{lines}{words}</svg>"
 
