@@ -130,7 +130,7 @@ def _about_rare(rare: Rare, estimate: Estimate) -> list[str]:
         )
     if rare.mixes_badly:
         words.append(
-            "At some level hardly any move was accepted, or all of the last runs descend from one or two of the first ones: the"
+            "At some level hardly any move was accepted, or all of the last runs of a repetition descend from a single first one: the"
             " repetitions may agree with one another and yet miss ways to fail. Compare with another seed and a larger budget."
         )
     return words

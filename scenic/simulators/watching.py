@@ -3,6 +3,7 @@
 import signal
 import sys
 import threading
+import time
 import warnings
 from collections.abc import Callable
 from types import FrameType
@@ -14,6 +15,10 @@ __all__ = ["STUCK_AFTER", "Watch", "patience"]
 
 STUCK_AFTER: Final = 10.0
 """Seconds that code of a program may run in one step before that is worth a warning."""
+
+
+_DELAYS: Final = 5
+"""Number of times that a process which hardly ran in the meantime gets as many seconds again."""
 
 
 def patience() -> float:
@@ -41,10 +46,13 @@ class Watch:
         self._is_error = is_error
         self._before: Any = None
         self._timer: threading.Timer | None = None
+        self._delays = 0
+        self._begun = 0.0
 
     def __enter__(self) -> None:
         if not self._seconds:
             return
+        self._delays, self._begun = 0, time.process_time()
         main = threading.current_thread() is threading.main_thread()
         if main and hasattr(signal, "setitimer") and signal.getitimer(signal.ITIMER_REAL)[0] == 0:
             self._before = signal.signal(signal.SIGALRM, self._alarm)
@@ -72,6 +80,11 @@ class Watch:
         )
 
     def _alarm(self, _number: int, frame: FrameType | None) -> None:
+        # On a busy or suspended machine the clock goes on while the code does not run.
+        if time.process_time() - self._begun < self._seconds / 2 and self._delays < _DELAYS:
+            self._delays += 1
+            signal.setitimer(signal.ITIMER_REAL, self._seconds)
+            return
         if self._is_error:
             raise StuckBehaviorError(self._message(frame))
         warnings.warn(self._message(frame), StuckBehaviorWarning, stacklevel=2)

@@ -139,11 +139,11 @@ class Repetition:
 
     @property
     def mixes_badly(self) -> bool:
-        """Return whether hardly any move was accepted at some level, or all members of the last one descend from very few."""
+        """Return whether hardly any move was accepted at some level, or all members of the last one descend from a single one."""
         return (
             self.is_stuck
             or min(self.accepted, default=1.0) < _BADLY
-            or (bool(self.levels) and self.ancestors < 3)
+            or (self.log_probability is not None and bool(self.levels) and self.ancestors < 2)
         )
 
 
