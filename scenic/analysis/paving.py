@@ -4,6 +4,7 @@ Where a condition couples axes, as an angle and a place in a narrow corridor, ha
 for many rounds. So the axis to split is tried out: the one whose parts lose most. Everything is counted, never timed.
 """
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import combinations
 from typing import Final
@@ -53,6 +54,18 @@ LOSS_OF_ONE: Final = 0.001
 TURNS: Final = 128
 """Times that boxes are split, at most: where each loses a little, as in the tail of a normal distribution, they would go on for long."""
 
+ENOUGH: Final = 1.1
+"""Splitting ends where the boxes have less than so many times the volume of the points that may meet the conditions."""
+
+NEARLY_ENOUGH: Final = 1.8
+"""It also ends where they have less than so many times this volume, and a round of splitting loses less than `WORTHWHILE`."""
+
+WORTHWHILE: Final = 0.05
+"""The share of the volume that a round should lose then."""
+
+RELIABLE: Final = 16
+"""Points that may meet the conditions, at least, by which that volume is estimated."""
+
 VAIN: Final = 3
 """Rounds without a loss, of many boxes, after which splitting ends."""
 
@@ -98,6 +111,7 @@ def pave_by_trial(
         return narrow(some)[0]
 
     boxes, vain = hull, 0
+    least, last = share * hull.volume(axes), math.inf
     split = axes.tolist()
     for axis, places in cuts.items():
         if axis in split and len(boxes) * (len(places) + 1) <= CUT:
@@ -113,6 +127,9 @@ def pave_by_trial(
                 break
             useful, vain = np.array(split, dtype=np.intp), 0  # what gained nothing at first may now
         volume = boxes.volume(axes)
+        ratio = volume / least if share * POINTS >= RELIABLE else math.inf
+        if ratio <= ENOUGH or (ratio <= NEARLY_ENOUGH and volume > (1 - WORTHWHILE) * last):
+            break
         found = None
         if len(boxes) <= TRIED:
             for ways in _ways(split, len(boxes)):
@@ -126,6 +143,7 @@ def pave_by_trial(
         if found is None:
             found = _refined(narrow, boxes, useful, axes)
             vain = vain + 1 if len(boxes) > TRIED and found.volume(axes) > (1 - LOSS) * volume else 0
+        last = volume if len(boxes) > TRIED else math.inf
         boxes = found
     return boxes
 

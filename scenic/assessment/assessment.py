@@ -46,6 +46,8 @@ class ValueRow:
         """The range of the value without the requirements."""
         if self.support.options:
             return _listed(self.support.options)
+        if self._option_count:
+            return f"{self._option_count} options"
         return _interval(self.support.before)
 
     @property
@@ -54,7 +56,19 @@ class ValueRow:
         options = self.support.options
         if options:
             return _listed([options[number] for number in self.support.left if number < len(options)])
-        return _interval(self.support.after)
+        ends = self.support.after
+        if self._option_count and ends is not None:
+            left = int(ends[1] - ends[0]) + 1
+            return (
+                f"{left} options" if left == self._option_count else f"{left} of {self._option_count} options"
+            )
+        return _interval(ends)
+
+    @property
+    def _option_count(self) -> int:
+        """The number of options of a choice among values that are not fixed, of which only the number is known; else 0."""
+        ends = self.support.before
+        return 0 if ends is None or self.support.kind != "choice" else int(ends[1]) + 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,7 +173,7 @@ class Assessment:
             gain = (
                 ""
                 if worst.factor is None
-                else f"; without it scenes would take {worst.factor:.3g} times fewer"
+                else f"; without it a scene would take {worst.factor:.3g} times fewer candidates"
             )
             lines.append(f"costs most: {worst.label}, which rejects {worst.rejected:.1%} of candidates{gain}")
         return lines

@@ -91,7 +91,7 @@ def _show(found: "Assessment") -> None:
             title_justify="left",
         )
         checks.add_column("requirement", overflow="fold")
-        for heading in ("line", "rejects", "alone", "times fewer without it"):
+        for heading in ("line", "rejects", "alone", "without it"):
             checks.add_column(heading, justify="right")
         for check in part.requirements:
             checks.add_row(
@@ -99,7 +99,7 @@ def _show(found: "Assessment") -> None:
                 "" if check.span is None else str(check.span.line),
                 f"{check.rejected:.1%}",
                 f"{check.alone:.1%}",
-                "" if check.factor is None else f"{check.factor:.3g}",
+                "" if check.factor is None else f"{check.factor:.3g} times fewer",
             )
         if part.requirements:
             console.print(checks)
