@@ -45,6 +45,9 @@ TIMES: Final = 100
 MOST_WORK: Final = 5_000_000
 """Elements, at most, whatever the program (but for the first passes)."""
 
+COSTLY: Final = 200_000
+"""Elements after which a paving ends that has little left to gain."""
+
 FIXED: Final = 64
 """Elements that looking at a node costs, however few boxes there are."""
 
@@ -341,7 +344,16 @@ class _Network:
         if share >= FACTOR_GAIN and not are_few:
             return boxes
         if share < RARE:
-            return pave_by_trial(self._narrow, boxes, axes, share, self._cuts, lambda: self._work <= 0)
+            costly = self._work - COSTLY
+            return pave_by_trial(
+                self._narrow,
+                boxes,
+                axes,
+                share,
+                self._cuts,
+                lambda: self._work <= costly,
+                lambda: self._work <= 0,
+            )
         volume = boxes.volume(axes)
         patience, largest = PATIENCE, LARGEST_PAVING
         if are_few:

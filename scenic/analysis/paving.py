@@ -55,10 +55,12 @@ TURNS: Final = 128
 """Times that boxes are split, at most: where each loses a little, as in the tail of a normal distribution, they would go on for long."""
 
 ENOUGH: Final = 1.1
-"""Splitting ends where the boxes have less than so many times the volume of the points that may meet the conditions."""
+"""Splitting that is costly ends where the boxes have less than so many times the volume of the points that may meet the conditions."""
 
 NEARLY_ENOUGH: Final = 1.8
-"""It also ends where they have less than so many times this volume, and a round of splitting loses less than `WORTHWHILE`."""
+"""It also ends where they have less than so many times this volume, and the last `IDLE` rounds lost less than `WORTHWHILE` each."""
+
+IDLE: Final = 2
 
 WORTHWHILE: Final = 0.05
 """The share of the volume that a round should lose then."""
@@ -93,6 +95,7 @@ def pave_by_trial(
     axes: NDArray[np.intp],
     share: float,
     cuts: Mapping[int, Floats],
+    is_costly: Callable[[], bool],
     is_spent: Callable[[], bool],
 ) -> Boxes:
     """Boxes that hold all solutions of a box.
@@ -103,6 +106,7 @@ def pave_by_trial(
         axes: those below the conditions.
         share: how many of its points may meet the conditions.
         cuts: by axis, where values change that are the same between: boxes are cut there first.
+        is_costly: tells when so much work was done that more has to be worth it.
         is_spent: tells when no more work may be done.
 
     """
@@ -111,7 +115,7 @@ def pave_by_trial(
         return narrow(some)[0]
 
     boxes, vain = hull, 0
-    least, last = share * hull.volume(axes), math.inf
+    least, last, idle = share * hull.volume(axes), math.inf, 0
     split = axes.tolist()
     for axis, places in cuts.items():
         if axis in split and len(boxes) * (len(places) + 1) <= CUT:
@@ -128,8 +132,10 @@ def pave_by_trial(
             useful, vain = np.array(split, dtype=np.intp), 0  # what gained nothing at first may now
         volume = boxes.volume(axes)
         ratio = volume / least if share * POINTS >= RELIABLE else math.inf
-        if ratio <= ENOUGH or (ratio <= NEARLY_ENOUGH and volume > (1 - WORTHWHILE) * last):
-            break
+        if is_costly():
+            idle = idle + 1 if volume > (1 - WORTHWHILE) * last else 0
+            if ratio <= ENOUGH or (ratio <= NEARLY_ENOUGH and idle >= IDLE):
+                break
         found = None
         if len(boxes) <= TRIED:
             for ways in _ways(split, len(boxes)):
@@ -143,7 +149,7 @@ def pave_by_trial(
         if found is None:
             found = _refined(narrow, boxes, useful, axes)
             vain = vain + 1 if len(boxes) > TRIED and found.volume(axes) > (1 - LOSS) * volume else 0
-        last = volume if len(boxes) > TRIED else math.inf
+        last = volume
         boxes = found
     return boxes
 

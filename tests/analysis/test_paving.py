@@ -152,7 +152,7 @@ def test_the_share_is_that_of_points() -> None:
 
 def test_axes_that_lose_nothing_are_left_alone() -> None:
     hull = Boxes(np.zeros((1, 3)), np.ones((1, 3)))
-    found = pave_by_trial(diagonal, hull, np.arange(3), 0.02, {}, lambda: False)
+    found = pave_by_trial(diagonal, hull, np.arange(3), 0.02, {}, lambda: False, lambda: False)
     assert found.volume(np.arange(3)) < 0.05
     assert (found.lower[:, 2] == 0).all()
     assert (found.upper[:, 2] == 1).all()
@@ -164,5 +164,7 @@ def test_boxes_are_cut_where_values_change_first() -> None:
         return boxes.taken(inside), inside
 
     hull = Boxes(np.zeros((1, 1)), np.ones((1, 1)))
-    found = pave_by_trial(steps, hull, np.array([0]), 0.1, {0: np.array([0.3, 0.37])}, lambda: False)
+    found = pave_by_trial(
+        steps, hull, np.array([0]), 0.1, {0: np.array([0.3, 0.37])}, lambda: False, lambda: False
+    )
     assert (found.lower[:, 0].min(), found.upper[:, 0].max()) == (0.3, np.nextafter(0.37, 0))
