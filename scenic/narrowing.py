@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,8 @@ from scenic.analysis.contraction import Pruning, independent
 from scenic.analysis.facts import Fact
 from scenic.analysis.finite.deciding import Decision, decide
 from scenic.analysis.screening import seldom_met
+from scenic.graph.domain import Domain
+from scenic.graph.finite import Finite
 from scenic.graph.node import Node
 from scenic.narrowing_store import contract_once
 from scenic.runtime.regions.unturned import unturned
@@ -18,6 +21,9 @@ from scenic.runtime.sampling.planning import Outline
 from scenic.runtime.scenes.sampler import Sampler
 
 __all__ = ["conditions", "decision_of", "prepared_sampler"]
+
+BETTER: Final = 0.5
+"""Boxes of discrete and continuous values together are sampled if they leave less than this share of what decided values leave."""
 
 
 def conditions(outlined: Outline) -> list[Fact]:
@@ -43,12 +49,22 @@ def prepared_sampler(outlined: Outline, *, prune: bool) -> Sampler:
         return Sampler(outlined, impossible=tuple(dict.fromkeys(check.label for check in checks)))
     pruning = _narrowed(outlined, sampler.met(), _settled(sampler, decision))
     domain = pruning.domain.with_finite(decision.parts)
+    apart = _apart(pruning.domain, decision.parts)
+    if pruning.domain.with_finite(apart).volume < BETTER * domain.volume:
+        pruning = _narrowed(outlined, sampler.met(), ())
+        domain = pruning.domain.with_finite(apart)
     if domain.is_whole and not pruning.impossible:
         return sampler
     labels = tuple(dict.fromkeys(item.label for item in pruning.impossible))
     sampler = Sampler(outlined, domain, impossible=labels)
     sampler.prepare()
     return sampler
+
+
+def _apart(domain: Domain, parts: Sequence[Finite]) -> tuple[Finite, ...]:
+    """Return the finite parts none of whose axes are narrowed together with continuous ones."""
+    joined = set[int]().union(*(axes.tolist() for axes in domain.joined_axes()))
+    return tuple(part for part in parts if joined.isdisjoint(part.axes.tolist()))
 
 
 def decision_of(outlined: Outline) -> Decision:

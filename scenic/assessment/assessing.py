@@ -67,7 +67,7 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
         estimates,
         tuple(impossible),
         accepted_scenes[0].approximation if accepted_scenes else None,
-        () if impossible else findings(decision, checks),
+        () if impossible else findings(decision, checks, domain),
         () if impossible else left_to_chance(decision, checks),
     )
 

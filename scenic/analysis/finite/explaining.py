@@ -2,6 +2,8 @@
 
 import math
 from collections.abc import Sequence
+from itertools import chain
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +14,16 @@ from scenic.analysis.finite.network import Problem, merged
 from scenic.analysis.finite.solving import Component, solve
 from scenic.analysis.finite.tables import Mask
 from scenic.dataclass import dataclass
+from scenic.graph.domain import Domain
 from scenic.graph.draws import Floats
 from scenic.graph.finite import Finite, Listed
 from scenic.language.diagnostics import Diagnostic, Label, Severity
 from scenic.runtime.sampling.checks import Check
 
 __all__ = ["FiniteFinding", "LeftToChance", "contradiction", "findings", "left_to_chance", "narrowed_values"]
+
+
+_IN_BOXES: Final = "in boxes with continuous values"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,6 +54,8 @@ class FiniteFinding:
         )
         if not self.ways:
             return f"{text}; drawn one by one, which suffices"
+        if not self.requirements:
+            return f"{text}, drawn {' and '.join(self.ways)}"
         pairs = "requirement or pair" if self.requirements == 1 else "requirements and pairs"
         verb = "holds" if self.requirements == 1 else "hold"
         return (
@@ -88,8 +96,17 @@ def left_to_chance(decision: Decision, checks: Sequence[Check]) -> tuple[LeftToC
     return tuple(dict.fromkeys(found))
 
 
-def findings(decision: Decision, checks: Sequence[Check]) -> tuple[FiniteFinding, ...]:
-    """The findings about each component of a decision about checks."""
+def findings(
+    decision: Decision, checks: Sequence[Check], domain: Domain | None = None
+) -> tuple[FiniteFinding, ...]:
+    """The findings about each component of a decision about checks.
+
+    ``domain`` is what is sampled: where it draws values of a component in boxes, together with continuous ones, the finding says so.
+    """
+    joined = set[int]()
+    if domain is not None:
+        joined = set(chain.from_iterable(domain.joined_axes()))
+        joined -= {axis for one in domain.finite for axis in one.axes.tolist()}
     problem = decision.problem
     if problem is None:
         return ()
@@ -100,6 +117,7 @@ def findings(decision: Decision, checks: Sequence[Check]) -> tuple[FiniteFinding
     )
     found = []
     for one, counted in zip(decision.components, solve(counting), strict=True):
+        in_boxes = any(decision.variables[variable].number in joined for variable in one.variables)
         met = {id(constraint) for constraint in one.met}
         chance = dict.fromkeys(
             checks[constraint.check].label
@@ -111,8 +129,8 @@ def findings(decision: Decision, checks: Sequence[Check]) -> tuple[FiniteFinding
                 tuple(decision.variables[variable].address for variable in one.variables),
                 math.prod(float(decision.variables[variable].size) for variable in one.variables),
                 counted.share,
-                tuple(dict.fromkeys(drawn.way for drawn in one.drawn)),
-                len(one.met),
+                (_IN_BOXES,) if in_boxes else tuple(dict.fromkeys(drawn.way for drawn in one.drawn)),
+                0 if in_boxes else len(one.met),
                 tuple(chance) if one.drawn else (),
             )
         )

@@ -42,6 +42,16 @@ def test_what_is_left_to_chance_is_named() -> None:
     assert "apart" in {outlined.checks[number].label for number in decision.settled}
 
 
+def test_boxes_with_continuous_values_are_preferred_where_they_leave_less() -> None:
+    text = "v, w = Uniform(5, 8, 13, 21), Uniform(5, 8, 13, 21)\nt = Range(0, 100)\nrequire 990 < (v + w) * t < 1000\nrequire w > v\n"
+    scenario = scenic.scenarioFromString(text)
+    assert not scenario.domain.finite
+    assert sum(scene.attempts for scene in scenario.stream(100, seed=1)) < 120
+    outlined = scenario.outline
+    (found,) = findings(decision_of(outlined), outlined.checks, scenario.domain)
+    assert str(found) == "2 discrete values: 6 of 16 combinations, drawn in boxes with continuous values"
+
+
 REASONS = {
     "c > a + b": "it depends on values that are not discrete, too",
     "sum(k for k in many if same(k)) == 3": "its 9 values have 19,683 combinations, of which at most 8,192 are tried where code of "
