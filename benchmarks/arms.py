@@ -51,9 +51,9 @@ def scenes(path: Path) -> None:
     scenario.sample(100, seed=0)
     seconds = []
     for seed in range(1, 4):
-        begun = time.process_time()
+        start_time = time.process_time()
         drawn = scenario.sample(SCENES, seed=seed)
-        seconds.append(time.process_time() - begun)
+        seconds.append(time.process_time() - start_time)
     candidates = sum(scene.attempts for scene in drawn) / SCENES
     print(
         f"{path.stem:12} {SCENES / min(seconds):6,.0f} scenes/s, {candidates:.1f} candidates a scene, "

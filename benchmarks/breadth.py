@@ -40,9 +40,9 @@ def child(path: str) -> None:
     """The work of our fresh process: prints milliseconds a scene as JSON."""
     import scenic
 
-    begun = time.perf_counter()
+    start_time = time.perf_counter()
     scenario = scenic.scenarioFromFile(path)
-    load = time.perf_counter() - begun
+    load = time.perf_counter() - start_time
 
     def read(scenes: Any) -> None:
         for scene in scenes:
@@ -50,9 +50,9 @@ def child(path: str) -> None:
                 tuple(item.position), item.yaw, item.pitch, item.roll, item.width, item.length, item.height
 
     def each(function: Callable[[], object], count: int) -> float:
-        begun = time.perf_counter()
+        start_time = time.perf_counter()
         function()
-        return (time.perf_counter() - begun) / count * 1e3
+        return (time.perf_counter() - start_time) / count * 1e3
 
     random.seed(3)
     scenario.sample(1, seed=1)

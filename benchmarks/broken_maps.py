@@ -120,21 +120,24 @@ def faults_beside(root: Any) -> list[str]:
     roads = root.findall("road")
     junctions = root.findall("junction")
     names = Counter(road.get("id") for road in roads)
-    known = {"road": names, "junction": Counter(item.get("id") for item in junctions)}
-    found = [
-        f"{kind} {name} twice" for kind, names in known.items() for name, many in names.items() if many > 1
+    identifiers = {"road": names, "junction": Counter(item.get("id") for item in junctions)}
+    faults = [
+        f"{kind} {name} twice"
+        for kind, names in identifiers.items()
+        for name, many in names.items()
+        if many > 1
     ]
     by_name = {road.get("id"): road for road in roads}
     for path in ("road/signals/signal", "road/objects/object"):
         ids = Counter(item.get("id") for item in root.findall(path))
-        found += [f"{path} {name} twice" for name, many in ids.items() if many > 1]
+        faults += [f"{path} {name} twice" for name, many in ids.items() if many > 1]
     for junction in junctions:
         ids = Counter(item.get("id") for item in junction.findall("connection"))
-        found += [f"connection {name} twice" for name, many in ids.items() if many > 1]
+        faults += [f"connection {name} twice" for name, many in ids.items() if many > 1]
         for connection in junction.findall("connection"):
             pairs = Counter((link.get("from"), link.get("to")) for link in connection.findall("laneLink"))
-            found += ["lane link twice" for many in pairs.values() if many > 1]
-            found += [
+            faults += ["lane link twice" for many in pairs.values() if many > 1]
+            faults += [
                 f"connection names {connection.get(end)}"
                 for end in ("incomingRoad", "connectingRoad")
                 if connection.get(end) not in names
@@ -146,16 +149,16 @@ def faults_beside(root: Any) -> list[str]:
                 if incoming is not None and link.get("from") not in _lanes(incoming, 0) | _lanes(
                     incoming, -1
                 ):
-                    found.append("link from no lane")
+                    faults.append("link from no lane")
                 if connecting is not None and link.get("to") not in _lanes(connecting, 0) | _lanes(
                     connecting, -1
                 ):
-                    found.append("link to no lane")
+                    faults.append("link to no lane")
     for road in roads:
-        if road.get("junction") not in (None, "-1") and road.get("junction") not in known["junction"]:
-            found.append(f"road in no junction {road.get('junction')}")
-        found += _faults_of_road(road, by_name, known)
-    return found
+        if road.get("junction") not in (None, "-1") and road.get("junction") not in identifiers["junction"]:
+            faults.append(f"road in no junction {road.get('junction')}")
+        faults += _faults_of_road(road, by_name, identifiers)
+    return faults
 
 
 def _faults_of_road(road: Any, by_name: dict[Any, Any], known: dict[str, Any]) -> Iterator[str]:
@@ -255,21 +258,21 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--schema", type=Path, action="append", default=[])
     parser.add_argument("--show", action="store_true")
-    given = parser.parse_args()
-    for path in given.maps:
+    arguments = parser.parse_args()
+    for path in arguments.maps:
         text = path.read_text(encoding="utf-8")
         text = re.sub(r"^<\?xml.*?\?>", "", text).strip()
-        judge = _Judge(given.schema, text)
-        begun = time.process_time()
+        judge = _Judge(arguments.schema, text)
+        start_time = time.process_time()
         _, usual_lines = judged(text)
-        usual = time.process_time() - begun
+        usual = time.process_time() - start_time
         found: Counter[str] = Counter()
         harmless: Counter[str] = Counter()
         slowest = 0.0
-        for variant in variants(text, given.variants, given.seed):
-            begun = time.process_time()
+        for variant in variants(text, arguments.variants, arguments.seed):
+            start_time = time.process_time()
             outcome, lines = judged(variant.text)
-            taken = time.process_time() - begun
+            taken = time.process_time() - start_time
             slowest = max(slowest, taken)
             if outcome not in ("error", "network"):
                 found["traceback"] += 1
@@ -285,11 +288,11 @@ def main() -> None:
             found[many] += 1
             there = bool(variant.lines & set(lines))
             found["elsewhere"] += more > 0 and not there
-            if given.show and (more != 1 or not there):
+            if arguments.show and (more != 1 or not there):
                 print(f"  {more} at {lines[:5]}, not {sorted(variant.lines)}: {variant.done}")
         names = ("traceback", "slow", "none", "one", "more", "elsewhere")
         counts = ", ".join(f"{name} {found[name]}" for name in names)
-        broken = given.variants - found["valid"] - found["traceback"]
+        broken = arguments.variants - found["valid"] - found["traceback"]
         print(
             f"{path.name}: {broken} break the standard: {counts}; slowest {slowest:.2f} s, the map {usual:.2f} s"
         )

@@ -111,11 +111,11 @@ def child(program: str, seed: int, scenes: int, prune: bool, meshes: str) -> Non
     for _ in scenario.stream(1, seed=seed + 1_000_000, max_attempts=None, time_limit=None):
         pass
     started = time.perf_counter()
-    found, candidates = 0, 0
+    scene_count, candidates = 0, 0
     for result in scenario.stream(scenes, seed=seed, max_attempts=None, time_limit=SECONDS / 4):
         candidates += result.attempts
         if not isinstance(result, Exhausted):
-            found += 1
+            scene_count += 1
             # Scenes make their objects when they are looked at.
             for thing in result.objects:
                 (
@@ -127,7 +127,11 @@ def child(program: str, seed: int, scenes: int, prune: bool, meshes: str) -> Non
                     thing.length,
                     thing.height,
                 )
-    print(json.dumps({"scenes": found, "candidates": candidates, "seconds": time.perf_counter() - started}))
+    print(
+        json.dumps(
+            {"scenes": scene_count, "candidates": candidates, "seconds": time.perf_counter() - started}
+        )
+    )
 
 
 def reference(command: str, program: str, seed: int, limit: int, meshes: str) -> Run:

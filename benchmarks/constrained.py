@@ -59,7 +59,7 @@ class Engine(Protocol):
 @cache
 def programs() -> tuple[str, ...]:
     """The texts of all programs of the project that the parser accepts."""
-    found = []
+    texts = []
     for folder in ("examples", "tests/data", "benchmarks", "scenic"):
         for path in sorted((ROOT / folder).rglob("*.scenic")):
             try:
@@ -67,8 +67,8 @@ def programs() -> tuple[str, ...]:
             except UnicodeDecodeError:
                 continue
             if not parse(text).diagnostics:
-                found.append(text)
-    return tuple(found)
+                texts.append(text)
+    return tuple(texts)
 
 
 @cache
@@ -270,10 +270,10 @@ def _accepted(text: str) -> bool:
 
 
 def _report(name: str, arguments: argparse.Namespace) -> None:
-    made = ENGINES[name]
-    text = grammar_text(made.notation)
+    engine_class = ENGINES[name]
+    text = grammar_text(engine_class.notation)
     start = time.process_time()
-    engine: Engine = made(text)
+    engine: Engine = engine_class(text)
     seconds = time.process_time() - start
     count = len(vocabulary())
     lines = text.count("\n")

@@ -101,10 +101,10 @@ def main() -> None:
             if not has_scenes(path):
                 without += 1
                 continue
-            found = errors(path, times, name)
-            if found:
+            contradictions_found = errors(path, times, name)
+            if contradictions_found:
                 accused.append(name)
-                print(f"{name}: {'; '.join(str(item.message) for item in found)}", flush=True)
+                print(f"{name}: {'; '.join(str(item.message) for item in contradictions_found)}", flush=True)
             if len(times) % 50 == 0:
                 print(
                     f"{len(times)} programs with scenes so far, {len(accused)} called contradictory",

@@ -144,12 +144,12 @@ def main() -> None:
         "--crime", type=Path, required=True, help="Python of an environment with commonroad-crime"
     )
     parser.add_argument("-n", "--number", type=int, default=200)
-    given = parser.parse_args()
+    arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        files, ours = simulations(folder, given.number)
+        files, ours = simulations(folder, arguments.number)
         (folder / "oracle.py").write_text(ORACLE)
-        command = [str(given.crime), str(folder / "oracle.py"), *map(str, files)]
+        command = [str(arguments.crime), str(folder / "oracle.py"), *map(str, files)]
         answers = subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
     theirs = [json.loads(line) for line in answers if line.startswith("[[")]
     print("| measure | values | finite | greatest difference | as it is |\n|---|---|---|---|---|")

@@ -62,7 +62,7 @@ def main() -> None:
     for name, text in programs(arguments.map):
         if arguments.only not in name:
             continue
-        begun = time.process_time()
+        start_time = time.process_time()
         scenario = scenic.scenarioFromString(text)
         loaded = time.process_time()
         if name in APPROXIMATE:
@@ -70,16 +70,16 @@ def main() -> None:
         else:
             scenario.sample(1, seed=0)
         first = time.process_time()
-        found = tried = 0
-        while time.process_time() - first < BUDGET and tried < 200:
-            count = min(20, max(1, tried))
+        scene_count = attempts = 0
+        while time.process_time() - first < BUDGET and attempts < 200:
+            count = min(20, max(1, attempts))
             limits: dict[str, Any] = {"approximate": 20} if name in APPROXIMATE else {"time_limit": 60}
-            results = scenario.stream(count, first=tried, seed=1, **limits)
-            found += sum(not isinstance(result, Exhausted) for result in results)
-            tried += count
-        spent = (time.process_time() - first) / max(found, 1)
+            results = scenario.stream(count, first=attempts, seed=1, **limits)
+            scene_count += sum(not isinstance(result, Exhausted) for result in results)
+            attempts += count
+        seconds_spent = (time.process_time() - first) / max(scene_count, 1)
         print(
-            f"{name:24} {loaded - begun:6.2f} s {1000 * (first - loaded):8.1f} ms {1000 * spent:8.2f} ms {found:4} of {tried}",
+            f"{name:24} {loaded - start_time:6.2f} s {1000 * (first - loaded):8.1f} ms {1000 * seconds_spent:8.2f} ms {scene_count:4} of {attempts}",
             flush=True,
         )
 

@@ -58,20 +58,20 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*", help="some of the scenarios")
     parser.add_argument("--lanes", type=int, default=512, help="scenes made together")
-    given = parser.parse_args()
-    for name in given.names or PROGRAMS:
+    arguments = parser.parse_args()
+    for name in arguments.names or PROGRAMS:
         scenario = scenic.scenarioFromString(PROGRAMS[name])
         exact = rejection(scenario)
-        begun = time.process_time()
-        (scene,) = scenario.sample(1, seed=1, approximate=given.lanes)
-        spent = (time.process_time() - begun) / given.lanes
-        told = scene.approximation
-        assert told is not None
+        start_time = time.process_time()
+        (scene,) = scenario.sample(1, seed=1, approximate=arguments.lanes)
+        seconds_spent = (time.process_time() - start_time) / arguments.lanes
+        approximation = scene.approximation
+        assert approximation is not None
         by_rejection = "none found" if exact is None else f"{exact * 1e3:.2f} ms"
         print(
-            f"{name:20} {spent * 1e3:9.2f} ms a scene (rejection: {by_rejection}), log10 of probability "
-            f"{told.log_probability / math.log(10):.1f}, effective sample size {told.effective:.0f} of {told.lanes}, "
-            f"{told.sweeps} sweeps, correlation {told.correlation:.2f}",
+            f"{name:20} {seconds_spent * 1e3:9.2f} ms a scene (rejection: {by_rejection}), log10 of probability "
+            f"{approximation.log_probability / math.log(10):.1f}, effective sample size {approximation.effective:.0f} of {approximation.lanes}, "
+            f"{approximation.sweeps} sweeps, correlation {approximation.correlation:.2f}",
             flush=True,
         )
 

@@ -163,15 +163,15 @@ def main() -> None:
     """Print a line for each program."""
     scenic.scenarioFromString("ego = new Object at (Range(0, 1), 0)").sample(1, seed=0)
     for name, text in PROGRAMS.items():
-        begun = time.process_time()
+        start_time = time.process_time()
         scenario = scenic.scenarioFromString(text)
         loaded = time.process_time()
         results = list(scenario.stream(SCENES, seed=1, max_attempts=MOST))
-        spent = 1000 * (time.process_time() - loaded) / SCENES
-        found = sum(not isinstance(result, Exhausted) for result in results)
-        tried = sum(result.attempts for result in results) / SCENES
+        seconds_spent = 1000 * (time.process_time() - loaded) / SCENES
+        scene_count = sum(not isinstance(result, Exhausted) for result in results)
+        attempts = sum(result.attempts for result in results) / SCENES
         print(
-            f"{name:32} {loaded - begun:6.2f} s {tried:8.2f} candidates {spent:8.3f} ms {found:4} found",
+            f"{name:32} {loaded - start_time:6.2f} s {attempts:8.2f} candidates {seconds_spent:8.3f} ms {scene_count:4} found",
             flush=True,
         )
 

@@ -93,11 +93,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*", help="some of the programs")
     parser.add_argument("--scenes", type=int, default=1000, help="of each program, found in either way")
-    given = parser.parse_args()
+    arguments = parser.parse_args()
     others = programs_of_laws()
     texts = {**OWN, **{name: others[name].text for name in SHARED}}
     tests, least = 0, {}
-    for name in given.names or texts:
+    for name in arguments.names or texts:
         scenario = scenic.scenarioFromString(texts[name])
         sampler = scenario._sampler
         engine = sampler.engine
@@ -107,27 +107,27 @@ def main() -> None:
             continue
         sampler._finder, sampler._may_divide = PiecewiseEngine(engine, components), False
         rare = name == "chain of 40 regions"
-        scenes = given.scenes // 4 if rare else given.scenes
-        begun = time.process_time()
+        scenes = arguments.scenes // 4 if rare else arguments.scenes
+        start_time = time.process_time()
         ours = rows_of(scenario.sample(scenes, seed=1))
-        own = (time.process_time() - begun) / scenes
+        seconds_a_scene = (time.process_time() - start_time) / scenes
         by_components = name == "100 cars on 50 lots"
         sampler._finder = PiecewiseEngine(engine, components_of(engine.plan)) if by_components else engine
-        begun = time.process_time()
-        found = (
+        start_time = time.process_time()
+        scenes_found = (
             scenario.sample(2048, seed=2, approximate=2048)
             if rare
             else scenario.sample(scenes, seed=2, max_attempts=10**7)
         )
-        theirs = rows_of(found)
-        plain = (time.process_time() - begun) / len(found)
+        theirs = rows_of(scenes_found)
+        plain = (time.process_time() - start_time) / len(scenes_found)
         mixture = np.arange(1, ours.shape[1] + 1)[:, np.newaxis] % 7 - 2.6
         columns = zip((*ours.T, *(ours @ mixture).T), (*theirs.T, *(theirs @ mixture).T), strict=True)
         values = [float(stats.ks_2samp(one, other).pvalue) for one, other in columns]
         tests += len(values)
         least[name] = min(values)
         print(
-            f"{name:24} {components.leaves:3} leaves in {len(components.plans):2} components, {own * 1e3:8.2f} ms a scene, "
+            f"{name:24} {components.leaves:3} leaves in {len(components.plans):2} components, {seconds_a_scene * 1e3:8.2f} ms a scene, "
             f"{'approximately' if rare else 'by rejection'} {plain * 1e3:8.2f} ms; {len(values)} tests, least p {least[name]:.4f}",
             flush=True,
         )

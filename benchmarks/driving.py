@@ -105,26 +105,26 @@ def child(path: str, kind: str, scenes: int) -> None:
     import scenic
     from scenic.graph.domain import Domain
 
-    found: dict[str, Any] = {}
-    made: list[scenic.Scenario] = []
-    found["load"] = timed(lambda: made.append(scenic.scenarioFromFile(path, mode2D=True)))
-    [scenario] = made
+    figures: dict[str, Any] = {}
+    scenarios: list[scenic.Scenario] = []
+    figures["load"] = timed(lambda: scenarios.append(scenic.scenarioFromFile(path, mode2D=True)))
+    [scenario] = scenarios
     if kind in ("rows", "unpruned"):
         if kind == "unpruned":
             scenario = scenario.within(Domain.whole(scenario.outline.graph.dimension))
         drawn = scenario.sample(scenes, seed=3 if kind == "rows" else 4)
-        found["rows"] = [read(scene) for scene in drawn]
-        found["candidates"] = statistics.fmean(scene.attempts for scene in drawn)
+        figures["rows"] = [read(scene) for scene in drawn]
+        figures["candidates"] = statistics.fmean(scene.attempts for scene in drawn)
     elif kind == "loop":
         random.seed(3)
-        found["first"] = timed(lambda: [read(scenario.generate()[0]) for _ in range(FIRST)]) / FIRST
-        found["scene"] = steady(lambda _: [read(scenario.generate()[0]) for _ in range(500)]) / 500
+        figures["first"] = timed(lambda: [read(scenario.generate()[0]) for _ in range(FIRST)]) / FIRST
+        figures["scene"] = steady(lambda _: [read(scenario.generate()[0]) for _ in range(500)]) / 500
     else:
-        found["first"] = timed(lambda: [read(scene) for scene in scenario.sample(FIRST, seed=3)]) / FIRST
-        found["scene"] = (
+        figures["first"] = timed(lambda: [read(scene) for scene in scenario.sample(FIRST, seed=3)]) / FIRST
+        figures["scene"] = (
             steady(lambda call: [read(scene) for scene in scenario.sample(BATCH, seed=4 + call)]) / BATCH
         )
-    print(json.dumps(found))
+    print(json.dumps(figures))
 
 
 def ours(path: Path, kind: str, scenes: int = 0) -> Any:
@@ -174,15 +174,15 @@ def theirs(given: argparse.Namespace, path: Path) -> Any:
         if "error" in row:
             raise SystemExit(f"{path.name}: {row['error']}")
     scenes = [row["objects"] for row in rows if "objects" in row]
-    found = {
+    figures = {
         "start": start,
         "scene": (total - start) / max(len(scenes) - 1, 1),
         "rows": [[[*item["position"][:2], item["heading"]] for item in objects] for objects in scenes],
     }
     if kept is not None:
         kept.parent.mkdir(parents=True, exist_ok=True)
-        kept.write_text(json.dumps(found))
-    return found
+        kept.write_text(json.dumps(figures))
+    return figures
 
 
 def measure(given: argparse.Namespace, programs: list[Path]) -> None:
@@ -215,7 +215,7 @@ def _least_p(path: Path, mine: Any, other: Any) -> tuple[int, float, str]:
     road_map = "motorway.xodr" if "motorway.xodr" in path.read_text(encoding="utf-8") else "crossing.xodr"
     lanes = Network.fromFile(EXAMPLES / road_map).lanes
     mine, other = np.array(mine), np.array(other)
-    found: list[tuple[float, str]] = []
+    p_values: list[tuple[float, str]] = []
     for number in range(mine.shape[1]):
         for part, word in enumerate(("x", "y", "heading")):
             columns = [np.round(rows[:, number, part], 4) for rows in (mine, other)]
@@ -223,13 +223,13 @@ def _least_p(path: Path, mine: Any, other: Any) -> tuple[int, float, str]:
                 columns = [np.round(np.mod(column + 1e-3, 2 * math.pi), 2) for column in columns]
             if all(np.ptp(column) < 1e-2 for column in columns):
                 continue
-            found.append((float(ks_2samp(*columns).pvalue), f"{word} of object {number}"))
+            p_values.append((float(ks_2samp(*columns).pvalue), f"{word} of object {number}"))
         counts = np.array([_lanes_of(rows[:, number, :2], lanes) for rows in (mine, other)])
         counts = counts[:, counts.sum(axis=0) >= 10]
         if counts.shape[1] > 1:
-            found.append((float(chi2_contingency(counts).pvalue), f"lane of object {number}"))
-    least, where = min(found, default=(1.0, "nothing random"))
-    return len(found), min(1.0, least * max(len(found), 1)), where
+            p_values.append((float(chi2_contingency(counts).pvalue), f"lane of object {number}"))
+    least, where = min(p_values, default=(1.0, "nothing random"))
+    return len(p_values), min(1.0, least * max(len(p_values), 1)), where
 
 
 def compare(given: argparse.Namespace, programs: list[Path]) -> None:
@@ -274,21 +274,21 @@ def main() -> None:
     parser.add_argument("--pruning", action="store_true", help="compare with and without narrowing instead")
     parser.add_argument("--program", action="append", help="only this one")
     parser.add_argument("--child", nargs=3, help=argparse.SUPPRESS)
-    given = parser.parse_args()
-    if given.child:
-        path, kind, scenes = given.child
+    arguments = parser.parse_args()
+    if arguments.child:
+        path, kind, scenes = arguments.child
         child(path, kind, int(scenes))
         return
-    if given.reference is None and not given.pruning:
+    if arguments.reference is None and not arguments.pruning:
         parser.error("--reference is needed")
     with tempfile.TemporaryDirectory() as folder:
         programs = prepared(Path(folder))
-        if given.program:
-            programs = [path for path in programs if path.stem in given.program]
-        if given.pruning:
+        if arguments.program:
+            programs = [path for path in programs if path.stem in arguments.program]
+        if arguments.pruning:
             prune(programs)
         else:
-            (compare if given.laws else measure)(given, programs)
+            (compare if arguments.laws else measure)(arguments, programs)
 
 
 if __name__ == "__main__":

@@ -183,17 +183,19 @@ def main() -> None:
             continue
         figures = []
         for prune, scenes in zip((True, False), SCENES, strict=True):
-            begun = time.process_time()
+            start_time = time.process_time()
             translator.usePruning = prune
             scenario = scenic.scenarioFromString(head + text)
             loaded = time.process_time()
             results = list(scenario.stream(scenes, seed=1, max_attempts=MOST))
-            spent = 1000 * (time.process_time() - loaded) / scenes
-            tried = sum(result.attempts for result in results) / scenes
-            found = sum(not isinstance(result, Exhausted) for result in results)
-            figures.append(f"{loaded - begun:6.2f} s {tried:8.1f} candidates {spent:8.2f} ms {found:3} found")
+            seconds_spent = 1000 * (time.process_time() - loaded) / scenes
+            attempts = sum(result.attempts for result in results) / scenes
+            scene_count = sum(not isinstance(result, Exhausted) for result in results)
+            figures.append(
+                f"{loaded - start_time:6.2f} s {attempts:8.1f} candidates {seconds_spent:8.2f} ms {scene_count:3} found"
+            )
             if prune:
-                loads.append(loaded - begun)
+                loads.append(loaded - start_time)
         print(f"{name:40} {'   without: '.join(figures)}", flush=True)
     print(f"median of loads {statistics.median(loads):.2f} s, longest {max(loads):.2f} s")
 

@@ -69,8 +69,8 @@ def coverage(repetitions: int) -> None:
     for probability in (0.5, 0.05, 0.005):
         violations = np.cumsum(drawn < probability, axis=1)
         for confidence in (0.95, 0.99):
-            found = [exact_interval(int(k), RUNS, confidence) for k in violations[:, -1]]
-            kept = sum(low <= probability <= high for low, high in found)
+            intervals = [exact_interval(int(k), RUNS, confidence) for k in violations[:, -1]]
+            kept = sum(low <= probability <= high for low, high in intervals)
             print(f"p = {probability:<6g} fixed number      {promise(kept, repetitions, confidence)}")
             limit = -math.log1p(-confidence)
             kept = sum(not _is_ever_missed(row, probability, limit) for row in violations)
@@ -241,24 +241,24 @@ def true_branches() -> float:
 
 def rare(repetitions: int) -> None:
     """Print how near splitting comes to known probabilities, beside OpenTURNS."""
-    for name, (problem, dimension, known) in PROBLEMS.items():
-        probability = true_branches() if problem is branches else known
+    for name, (problem, dimension, true_probability) in PROBLEMS.items():
+        probability = true_branches() if problem is branches else true_probability
         print(f"{name}: p = {probability:.3g}")
         methods = {"scenic": split, "openturns": by_openturns}
         if problem is disorder:
             methods["openturns, our margin"] = partial(by_openturns, margin=joint)
         for label, method in methods.items():
-            found = [method(problem, dimension, seed) for seed in range(1, repetitions + 1)]
-            silent = sum(math.isnan(item[0]) for item in found)
+            results = [method(problem, dimension, seed) for seed in range(1, repetitions + 1)]
+            silent = sum(math.isnan(item[0]) for item in results)
             ratios = (
-                np.array([max(item[0], 1e-12) for item in found if not math.isnan(item[0])]) / probability
+                np.array([max(item[0], 1e-12) for item in results if not math.isnan(item[0])]) / probability
             )
             error = math.exp(math.sqrt(float(np.mean(np.log(ratios) ** 2))))
             near = float(np.mean((ratios > 1 / 1.5) & (ratios < 1.5)))
-            kept = sum(low <= probability <= high for _, low, high, _ in found)
+            kept = sum(low <= probability <= high for _, low, high, _ in results)
             print(
                 f"  {label:<21} mean {ratios.mean():.2f} p, typical factor {error:.2f}, within 1.5 {near:.0%}, intervals hold it"
-                f" {kept} of {repetitions} ({silent} without an estimate); {np.mean([item[3] for item in found]):.0f} evaluations"
+                f" {kept} of {repetitions} ({silent} without an estimate); {np.mean([item[3] for item in results]):.0f} evaluations"
             )
 
 

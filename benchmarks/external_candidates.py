@@ -82,18 +82,18 @@ def main() -> None:
     options.add_argument("--scenes", type=int, default=20)
     options.add_argument("--reference")
     options.add_argument("--reference-scenes", type=int, default=4)
-    given = options.parse_args()
+    arguments = options.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         program = str(Path(folder) / "program.scenic")
-        Path(program).write_text(PROGRAM.format(map=str(given.map.resolve())))
+        Path(program).write_text(PROGRAM.format(map=str(arguments.map.resolve())))
         run([sys.executable, "-c", CHILD, program, "1"])  # which keeps the map's network
-        rows, whole = run([sys.executable, "-c", CHILD, program, str(given.scenes)])
+        rows, whole = run([sys.executable, "-c", CHILD, program, str(arguments.scenes)])
         first = rows[0]["processor"]
         ours = show("scenic", first, rows, rows[-1]["processor"] - first)
-        if given.reference:
-            command = [*shlex.split(given.reference), program, "--2d", "--observe", "x=1", "-n"]
+        if arguments.reference:
+            command = [*shlex.split(arguments.reference), program, "--2d", "--observe", "x=1", "-n"]
             _, first = run([*command, "1"])
-            rows, whole = run([*command, str(given.reference_scenes)])
+            rows, whole = run([*command, str(arguments.reference_scenes)])
             theirs = show("reference", first, rows, whole - first)
             print(f"ratio {theirs / ours:.1f}")
 

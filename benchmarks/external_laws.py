@@ -44,11 +44,11 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--reference", required=True)
     options.add_argument("--scenes", type=int, default=3000)
-    given = options.parse_args()
+    arguments = options.parse_args()
     for sampler in ("random", "halton"):
         scenario = scenic.scenarioFromString(PROGRAM, params={"verifaiSamplerType": sampler})
-        ours = [scenario.generate()[0].params for _ in range(given.scenes)]
-        theirs = reference(given.reference, sampler, given.scenes)
+        ours = [scenario.generate()[0].params for _ in range(arguments.scenes)]
+        theirs = reference(arguments.reference, sampler, arguments.scenes)
         for name in "xyzdeopwtrq":
             first, second = ([float(row[name]) for row in rows] for rows in (ours, theirs))
             words = f"{sampler:7} {name} p = {p_value(first, second):.3f}"

@@ -99,9 +99,9 @@ class Command:
             self.process.kill()
             code = "stuck"
         self._told.seek(0)
-        told = self._told.read()
+        output = self._told.read()
         self._told.close()
-        return Ended(code, told)
+        return Ended(code, output)
 
     def workers(self) -> list[int]:
         """Its child processes."""
@@ -227,7 +227,7 @@ class Case:
 
 def content(folder: Path) -> dict[str, str]:
     """Digests of all files of a folder; of the manifest without what differs between runs."""
-    found = {}
+    digests = {}
     for path in sorted(folder.rglob("*")):
         if not path.is_file():
             continue
@@ -237,8 +237,8 @@ def content(folder: Path) -> dict[str, str]:
             for name in ("seconds", "command", "source"):
                 document.pop(name)
             data = json.dumps(document, sort_keys=True).encode()
-        found[str(path.relative_to(folder))] = hashlib.sha256(data).hexdigest()
-    return found
+        digests[str(path.relative_to(folder))] = hashlib.sha256(data).hexdigest()
+    return digests
 
 
 def differences(found: dict[str, str], wanted: dict[str, str]) -> list[str]:

@@ -52,14 +52,14 @@ def program(count: int) -> tuple[float, float]:
     side = math.isqrt(count) + 1
     lines = [f"new Object at ({3 * (i % side)}, {3 * (i // side)}, 0)" for i in range(count)]
     lines += [f"ego = new Object at (Range(0, {3 * side}), Range(0, {3 * side}), Range(0, 2))"]
-    begun = time.process_time()
+    start_time = time.process_time()
     scenario = scenarioFromString("\n".join(lines))
-    loaded = time.process_time() - begun
+    loaded = time.process_time() - start_time
     scenario.sample(20, seed=2)
-    begun, tried = time.process_time(), 0
+    start_time, attempts = time.process_time(), 0
     for result in scenario.stream(500, seed=1):
-        tried += result.attempts
-    return loaded, (time.process_time() - begun) / tried * 1e6
+        attempts += result.attempts
+    return loaded, (time.process_time() - start_time) / attempts * 1e6
 
 
 def exponent(times: list[float]) -> float:

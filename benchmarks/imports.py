@@ -180,15 +180,15 @@ def _mistakes(text: str, random: Random) -> Iterator[tuple[str, str, int]]:
     first_behavior = text.find("behavior ")
     body = min(body, first_behavior) if first_behavior >= 0 else body
     for name in _NAMES:
-        for found in re.finditer(rf"(?<![\w.]){name}(?!\w)(?! = )", text):
+        for match in re.finditer(rf"(?<![\w.]){name}(?!\w)(?! = )", text):
             wrong = _misspelt(name, random)
-            before = text[: found.start()].rsplit("\n", 1)[-1].split()
-            defines = before[-1:] in (["behavior"], ["def"], ["class"]) and text[found.end()] == "("
-            if found.start() > body and not defines and wrong != name and wrong not in _NAMES:
-                yield changed("name", *found.span(), wrong)
+            before = text[: match.start()].rsplit("\n", 1)[-1].split()
+            defines = before[-1:] in (["behavior"], ["def"], ["class"]) and text[match.end()] == "("
+            if match.start() > body and not defines and wrong != name and wrong not in _NAMES:
+                yield changed("name", *match.span(), wrong)
     for name in _PROPERTIES:
-        for found in re.finditer(rf"(?<=with ){name}\b", text):
-            yield changed("property", *found.span(), _misspelt(name, random))
+        for match in re.finditer(rf"(?<=with ){name}\b", text):
+            yield changed("property", *match.span(), _misspelt(name, random))
     for kind, table in (("arity", _CALLS), ("module", _MODULES), ("name of a module", _TAKEN)):
         for right, wrong in table.items():
             start = text.find(right)
@@ -207,7 +207,7 @@ def measure(folder: Path, seed: int) -> tuple[Counter[str], Counter[str], int, i
     surroundings_of = surroundings_in(Project([str(folder)]))
     planted: Counter[str] = Counter()
     missed: Counter[str] = Counter()
-    said = spurious = 0
+    diagnostic_count = spurious = 0
     failures: list[str] = []
     random = Random(seed)
 
@@ -225,7 +225,7 @@ def measure(folder: Path, seed: int) -> tuple[Counter[str], Counter[str], int, i
             on_line = [each for each in new if each.span is not None and each.span.line == line]
             elsewhere = [each for each in new if each not in on_line]
             missed[kind] += not on_line
-            said += len(new)
+            diagnostic_count += len(new)
             spurious += len(elsewhere)
             if not on_line or elsewhere:
                 rest = "; ".join(
@@ -235,7 +235,7 @@ def measure(folder: Path, seed: int) -> tuple[Counter[str], Counter[str], int, i
                 failures.append(
                     f"{name}:{line} {kind} {state}: {wrong.splitlines()[line - 1].strip()!r} {rest}"
                 )
-    return planted, missed, said, spurious, failures
+    return planted, missed, diagnostic_count, spurious, failures
 
 
 def _speed(folder: Path, count: int) -> float:
@@ -262,8 +262,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         planted, missed, said, spurious, failures = measure(folder, arguments.seed)
-        found = planted.total() - missed.total()
-        print(f"{found} of {planted.total()} mistakes found ({found / planted.total():.1%}), "
+        found_count = planted.total() - missed.total()
+        print(f"{found_count} of {planted.total()} mistakes found ({found_count / planted.total():.1%}), "
               f"{spurious} of {said} diagnostics spurious ({spurious / said:.1%})")  # fmt: skip
         for kind, count in planted.items():
             print(f"  {kind:18}{count - missed[kind]:4} of {count}")

@@ -36,7 +36,7 @@ def main() -> None:
         faces = write_rock(Path(folder, "rock.ply"))
         program = Path(folder, "rock.scenic")
         program.write_text(PROGRAM)
-        begun = time.perf_counter()
+        start_time = time.perf_counter()
         import scenic
 
         scenario = scenic.load(program)
@@ -47,7 +47,7 @@ def main() -> None:
         done = time.perf_counter()
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
     print(f"{faces} triangles")
-    print(f"import and load   {loaded - begun:7.2f} s")
+    print(f"import and load   {loaded - start_time:7.2f} s")
     print(f"first scene       {first - loaded:7.2f} s")
     print(f"each further one  {(done - first) / 20:7.3f} s")
     print(f"peak memory       {peak / 2**20:7.0f} MiB")

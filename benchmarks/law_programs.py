@@ -202,22 +202,24 @@ require abs(angle to walker) > 150 deg
 
 def programs() -> dict[str, Program]:
     """Names and programs."""
-    found = {
+    programs_by_name = {
         path.stem: Program(path.read_text(encoding="utf-8"))
         for path in sorted((_HERE / "pruning").glob("*.scenic"))
     }
     for number, text in enumerate(_VARIED):
         values = (2, 3.5 if number != 6 else 5)
-        found |= {f"varied {number}, {value}": Program(text.format(value)) for value in values}
+        programs_by_name |= {f"varied {number}, {value}": Program(text.format(value)) for value in values}
     lots = [
         f"for i in range(3):\n    new Object at ({50 * place} + Range(-2, 2), Range(-2, 2)), facing Range(0, 7)\n"
         for place in range(4)
     ]
-    found |= {f"lots {number}": Program(one + other) for number, (one, other) in enumerate(pairwise(lots))}
-    found |= {name: Program(text) for name, text in _SINGLE.items()}
+    programs_by_name |= {
+        f"lots {number}": Program(one + other) for number, (one, other) in enumerate(pairwise(lots))
+    }
+    programs_by_name |= {name: Program(text) for name, text in _SINGLE.items()}
     for name in _ROADS:
         path = _DRIVING / f"{name}.scenic"
-        found[f"road {name}"] = Program(path.read_text(encoding="utf-8"), str(path), True)
+        programs_by_name[f"road {name}"] = Program(path.read_text(encoding="utf-8"), str(path), True)
     for name, text in _TRAFFIC.items():
-        found[f"road {name}"] = Program(text, str(_DRIVING / "program.scenic"), True)
-    return found
+        programs_by_name[f"road {name}"] = Program(text, str(_DRIVING / "program.scenic"), True)
+    return programs_by_name

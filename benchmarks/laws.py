@@ -66,27 +66,27 @@ def outside(engine: Engine, kept: Domain, wanted: int, seconds: float) -> tuple[
     """
     graph = engine.plan.graph
     addresses = np.array([graph.address(axis) for axis in graph.axes], dtype=np.uint64)
-    begun, lost, count = time.process_time(), 0, 0
-    while count < wanted and time.process_time() - begun < seconds:
+    start_time, loss_count, count = time.process_time(), 0, 0
+    while count < wanted and time.process_time() - start_time < seconds:
         tasks = [(4, k) for k in range(count, min(wanted, count + BLOCK))]
         deadline = time.monotonic() + 2 * seconds
-        found = [
+        rows = [
             (item[0].numbers[item[1]], item[0].attempts[item[1]])
             for item in engine.scenes(tasks, max_attempts=10**7, deadline=deadline)
             if not isinstance(item, Exhausted)
         ]
-        if not found:
+        if not rows:
             break
-        count += len(found)
+        count += len(rows)
         if not len(addresses):
             continue
-        numbers, attempts = np.array(found, dtype=np.int64).T
+        numbers, attempts = np.array(rows, dtype=np.int64).T
         keys = attempt_keys(scene_keys(np.repeat(seed_word(4), len(numbers)), numbers), attempts - 1)
         points = Counter(keys).uniforms(addresses).T
-        lost += int(np.count_nonzero(~kept.contains(points)))
-        if len(found) < len(tasks):
+        loss_count += int(np.count_nonzero(~kept.contains(points)))
+        if len(rows) < len(tasks):
             break
-    return lost, count
+    return loss_count, count
 
 
 def main() -> None:
@@ -97,10 +97,10 @@ def main() -> None:
         "--kept", type=int, default=100_000, help="scenes without analysis that must lie in what is kept"
     )
     parser.add_argument("--seconds", type=float, default=60, help="processor time for these, of each program")
-    given = parser.parse_args()
+    arguments = parser.parse_args()
     everything = programs()
-    tests, found, lost, compared, complete = 0, [], 0, 0, 0
-    for name in given.names or everything:
+    tests, found, loss_count, compared, complete = 0, [], 0, 0, 0
+    for name in arguments.names or everything:
         pruned = loaded(everything[name])
         estimates = pruned.estimates(seed=0, candidates=2000)
         share = pruned.domain.volume * float(np.prod([part.acceptance for part in estimates]))
@@ -110,17 +110,17 @@ def main() -> None:
         engine = Engine(plain.outline.plan(Domain.whole(plain.outline.graph.dimension)))
         plain._sampler._finder = plain._sampler.engine = engine
         ours, theirs = (
-            rows_of(some.sample(given.scenes, seed=seed)) for seed, some in enumerate((pruned, plain), 1)
+            rows_of(some.sample(arguments.scenes, seed=seed)) for seed, some in enumerate((pruned, plain), 1)
         )
         mixture = np.arange(1, ours.shape[1] + 1)[:, np.newaxis] % 7 - 2.6
         columns = zip((*ours.T, *(ours @ mixture).T), (*theirs.T, *(theirs @ mixture).T), strict=True)
         values = [float(stats.ks_2samp(one, other).pvalue) for one, other in columns]
-        out, count = outside(engine, pruned.domain, given.kept, given.seconds)
-        tests, lost, compared, complete = (
+        out, count = outside(engine, pruned.domain, arguments.kept, arguments.seconds)
+        tests, loss_count, compared, complete = (
             tests + len(values),
-            lost + out,
+            loss_count + out,
             compared + count,
-            complete + (count >= given.kept),
+            complete + (count >= arguments.kept),
         )
         found.append((min(values), name))
         print(
@@ -131,8 +131,8 @@ def main() -> None:
     differing = [name for value, name in found if value < 1e-3 / tests]
     print(f"{len(found)} programs, {tests} tests: {len(differing)} differ {differing}")
     print(
-        f"{lost} of {compared} scenes found without analysis lie outside of what it keeps; "
-        f"{complete} programs with {given.kept} scenes each"
+        f"{loss_count} of {compared} scenes found without analysis lie outside of what it keeps; "
+        f"{complete} programs with {arguments.kept} scenes each"
     )
 
 

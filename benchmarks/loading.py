@@ -62,10 +62,10 @@ def measured(path: Path, turns: int) -> Row:
     try:
         for turn in range(turns + 1):
             for prune in (True, False):
-                begun = time.process_time()
+                start_time = time.process_time()
                 scenario = scenic.load(path, prune=prune)
                 if turn:
-                    seconds[prune].append(time.process_time() - begun)
+                    seconds[prune].append(time.process_time() - start_time)
                 if prune:
                     left = scenario.domain.volume
                     analysis += [watch.seconds] if turn else []
@@ -80,15 +80,15 @@ def main() -> None:
     )
     parser.add_argument("--turns", type=int, default=3, help="counted turns of each program (default 3)")
     parser.add_argument("programs", nargs="*", type=Path, help="in place of all")
-    given = parser.parse_args()
-    paths = given.programs or sorted(
+    arguments = parser.parse_args()
+    paths = arguments.programs or sorted(
         [path for folder in FOLDERS for path in folder.rglob("*.scenic")] + list(HERE.glob("*.scenic"))
     )
     rows = []
     print(f"{'program':28}{'without':>9}{'with':>8}{'ratio':>7}{'analysis':>10}{'left':>10}")
     for path in paths:
         try:
-            row = measured(path, given.turns)
+            row = measured(path, arguments.turns)
         except (ScenicError, Located, ImportError) as error:
             print(f"{path.stem:28}not loaded: {str(error).splitlines()[0][:60]}", flush=True)
             continue

@@ -46,16 +46,18 @@ def child(path: str, folder: str, kind: str) -> None:
         return (time.perf_counter() - begun) / count * 1e3
 
     random.seed(3)
-    found = {}
+    figures = {}
     if kind == "batch":
-        found["batch"] = each(lambda: read(scenario.sample(BATCH, seed=3)), BATCH)
+        figures["batch"] = each(lambda: read(scenario.sample(BATCH, seed=3)), BATCH)
     else:
         for name, count in (("first", LOOP), ("loop", LONG)):
-            found[name] = each(lambda count=count: read(scenario.generate()[0] for _ in range(count)), count)
-        found["steady"] = statistics.median(
+            figures[name] = each(
+                lambda count=count: read(scenario.generate()[0] for _ in range(count)), count
+            )
+        figures["steady"] = statistics.median(
             each(lambda seed=seed: read(scenario.sample(LOOP, seed=seed)), LOOP) for seed in range(9, 14)
         )
-    print(json.dumps(found))
+    print(json.dumps(figures))
 
 
 def main() -> None:

@@ -22,16 +22,16 @@ import numpy as np
 
 def made_grid(folder: Path, crossings: int) -> Path:
     """A grid of roads of 100 m as an OpenDRIVE file."""
-    found = folder / f"grid{crossings}.xodr"
-    if not found.exists():
+    path = folder / f"grid{crossings}.xodr"
+    if not path.exists():
         generate, convert = shutil.which("netgenerate"), shutil.which("netconvert")
         if generate is None or convert is None:
             sys.exit("netgenerate and netconvert are needed: pip install eclipse-sumo")
         net = folder / f"grid{crossings}.net.xml"
         size = [f"--grid.number={crossings}", "--grid.length=100"]
         subprocess.run([generate, "--grid", *size, "-o", net], check=True, capture_output=True)
-        subprocess.run([convert, "-s", net, "--opendrive-output", found], check=True, capture_output=True)
-    return found
+        subprocess.run([convert, "-s", net, "--opendrive-output", path], check=True, capture_output=True)
+    return path
 
 
 def measured(file: Path) -> tuple[int, float, float]:
@@ -57,8 +57,10 @@ def main() -> None:
     )
     parser.add_argument("maps", nargs="*")
     parser.add_argument("--grids", metavar="FOLDER", type=Path)
-    given = parser.parse_args()
-    files = [made_grid(given.grids, int(name)) if given.grids else Path(name) for name in given.maps]
+    arguments = parser.parse_args()
+    files = [
+        made_grid(arguments.grids, int(name)) if arguments.grids else Path(name) for name in arguments.maps
+    ]
     rows = []
     print(f"{'map':24}{'roads':>8}{'built, s':>10}{'cached, s':>11}{'peak, MB':>10}")
     for file in files:
@@ -66,7 +68,7 @@ def main() -> None:
         rows.append((roads, built))
         peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
         print(f"{file.name:24}{roads:8}{built:10.2f}{cached:11.3f}{peak:10.0f}", flush=True)
-    if given.grids and len(rows) > 2:
+    if arguments.grids and len(rows) > 2:
         roads, seconds = np.log(np.array(rows)).T
         print(f"time grows as roads^{np.polyfit(roads, seconds, 1)[0]:.2f}")
 

@@ -88,10 +88,10 @@ def _planted(text: str, chance: random.Random, filename: str) -> str | None:
     for number, changed in places:
         if number in taken:
             continue
-        tried = [*lines[:number], changed, *lines[number + 1 :]]
-        found = check_text("\n".join(tried) + "\n", filename=filename)
-        if sum(each.severity is Severity.ERROR for each in found):
-            lines = tried
+        attempts = [*lines[:number], changed, *lines[number + 1 :]]
+        diagnostics = check_text("\n".join(attempts) + "\n", filename=filename)
+        if sum(each.severity is Severity.ERROR for each in diagnostics):
+            lines = attempts
             taken.add(number)
         if len(taken) == 3:
             return "\n".join(lines) + "\n"
@@ -154,13 +154,13 @@ def _programs(folder: Path, count: int, seed: int) -> Iterator[tuple[str, str]]:
         for file in sorted((ROOT / "examples" / part).glob("*.scenic"))
         if "carla" not in file.name
     ]
-    made = tries = 0
-    while made < count and tries < 50 * count:
+    count_made = tries = 0
+    while count_made < count and tries < 50 * count:
         tries += 1
         file = chance.choice(files)
         text = _planted(file.read_text(encoding="utf-8"), chance, str(folder / "program.scenic"))
         if text is not None:
-            made += 1
+            count_made += 1
             yield file.name, text
 
 

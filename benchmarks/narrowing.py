@@ -28,13 +28,13 @@ def ours(path: Path, *, prune: bool) -> tuple[float, float] | None:
     scenario = scenic.scenarioFromFile(str(path))
     if not prune:
         scenario = scenario.within(Domain.whole(scenario.outline.graph.dimension))
-    begun = time.perf_counter()
+    start_time = time.perf_counter()
     try:
         scenes = scenario.sample(SCENES, seed=1)
     except RejectionException:
         return None
-    spent = time.perf_counter() - begun
-    return statistics.fmean(scene.attempts for scene in scenes), spent / SCENES * 1e3
+    seconds_spent = time.perf_counter() - start_time
+    return statistics.fmean(scene.attempts for scene in scenes), seconds_spent / SCENES * 1e3
 
 
 def theirs(command: str, path: Path) -> float | None:

@@ -150,10 +150,10 @@ def _lane(text: str) -> End:
 
 
 def _converted(path: Path) -> ElementTree.Element:
-    found = find_spec("sumo")
-    if found is None or found.origin is None:
+    spec = find_spec("sumo")
+    if spec is None or spec.origin is None:
         sys.exit("netconvert is in the package eclipse-sumo (extra `sumo`), which is not installed")
-    home = Path(found.origin).parent
+    home = Path(spec.origin).parent
     with tempfile.TemporaryDirectory() as folder:
         network, copy = Path(folder) / "net.xml", Path(folder) / "copy.xodr"
         _with_limits(ElementTree.parse(path)).write(copy)

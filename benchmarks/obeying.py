@@ -122,10 +122,10 @@ def measured(road_map: Path, given: Any) -> str:
     scenario = scenic.scenarioFromString(program(road_map, given.cars, runner=given.runner, times=times))
     scene = scenario.sample(1, seed=given.seed)[0]
     random.seed(given.seed)
-    begun = time.process_time()
+    start_time = time.process_time()
     steps = round(given.seconds / given.step)
     done = scenario.getSimulator().simulate(scene, maxSteps=steps, timestep=given.step)
-    spent = time.process_time() - begun
+    seconds_spent = time.process_time() - start_time
     assert done is not None
     places = np.array([[tuple(position) for position in state.positions] for state in done.trajectory])
     headings = np.array([[turn.yaw for turn in state.orientations] for state in done.trajectory])
@@ -150,7 +150,7 @@ def measured(road_map: Path, given: Any) -> str:
     return (
         f"{road_map.stem:10} {given.cars:4d} {given.seconds:6g} {len(pairs):6d} {len(run):4d}"
         f"{f' ({len(by_others)} by others)' if given.runner else ''} {speed:6.2f}/{limit / 3:4.2f} "
-        f"{stand:6.1f}/{2 * lights.longest_cycle:5.1f} {spent / steps / given.cars * 1e6:6.1f}"
+        f"{stand:6.1f}/{2 * lights.longest_cycle:5.1f} {seconds_spent / steps / given.cars * 1e6:6.1f}"
         + (f"   {'; '.join(notes)}" if notes else "")
         + f"   longest stand: car {stander}"
     )
@@ -168,10 +168,10 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--green", type=float, help="seconds of green of a phase of the lights")
     parser.add_argument("--runner", action="store_true", help="the first car ignores lights")
-    given = parser.parse_args()
+    arguments = parser.parse_args()
     print(f"{'map':10} {'cars':>4} {'s':>6} {'pairs':>6} {'red':>4} {'mean':>11} {'stand':>12} {'us':>6}")
-    for road_map in given.maps:
-        print(measured(road_map, given), flush=True)
+    for road_map in arguments.maps:
+        print(measured(road_map, arguments), flush=True)
 
 
 if __name__ == "__main__":

@@ -66,7 +66,7 @@ def seconds(program: str, runs: list[list[str]], cluster: Cluster | None = None)
     with tempfile.TemporaryDirectory() as folder:
         before = 0.0 if cluster is None else cluster.spent()
         used = _of_children()
-        begun = time.perf_counter()
+        start_time = time.perf_counter()
         started = [
             subprocess.Popen(
                 [
@@ -83,7 +83,7 @@ def seconds(program: str, runs: list[list[str]], cluster: Cluster | None = None)
             _, told = process.communicate()
             if process.returncode:
                 sys.exit(told)
-        took = time.perf_counter() - begun
+        took = time.perf_counter() - start_time
         return took, _of_children() - used + (0.0 if cluster is None else cluster.spent() - before)
 
 
@@ -123,11 +123,11 @@ def main() -> None:
                 cluster.stop()
     print(f"{'':24} {'seconds':>8} {'times less':>10} {'processor':>10} {'overhead':>9} {'at most':>8}")
     for name in runs:
-        took, spent = (statistics.median(turn[name][kind] for turn in turns) for kind in (0, 1))
+        took, seconds_spent = (statistics.median(turn[name][kind] for turn in turns) for kind in (0, 1))
         gain = statistics.median(turn["-j 1"][0] / turn[name][0] for turn in turns)
         more = statistics.median(turn[name][1] / turn["-j 1"][1] for turn in turns)
         bound = f"{2 / more:8.2f}" if name != "-j 1" else f"{'':8}"
-        print(f"{name:24} {took:8.2f} {gain:10.2f} {spent:10.2f} {more - 1:9.1%} {bound}")
+        print(f"{name:24} {took:8.2f} {gain:10.2f} {seconds_spent:10.2f} {more - 1:9.1%} {bound}")
 
 
 if __name__ == "__main__":

@@ -86,7 +86,7 @@ def refuted(scenario: Scenario) -> float:
         solver.add(*(encoding.truth(fact.node) for fact in mine))
         bounds = over([fact.node for fact in mine], graph.axes, part.lower, part.upper)
         volumes = (part.upper - part.lower).prod(axis=1)
-        lost = 0.0
+        loss_count = 0.0
         for box in volumes.argsort()[::-1][:BOXES].tolist():
             solver.push()
             for node, known in bounds.items():
@@ -100,9 +100,9 @@ def refuted(scenario: Scenario) -> float:
                 if math.isfinite(high):
                     solver.add(term <= encoding.terms.real(high))
             if solver.check() == z3.unsat:
-                lost += float(volumes[box])
+                loss_count += float(volumes[box])
             solver.pop()
-        share *= 1 - lost / float(volumes.sum())
+        share *= 1 - loss_count / float(volumes.sum())
     return 1 - share
 
 
@@ -122,20 +122,20 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--solver", action="store_true", help="ask z3 about the boxes that are left, too")
     parser.add_argument("--candidates", type=int, default=20_000, help="of each component, for estimates")
-    given = parser.parse_args()
+    arguments = parser.parse_args()
     scenic.scenarioFromString("ego = new Object\n").sample(1, seed=0)
     rows = []
     print(
         f"{'program':20}{'without':>12}{'intervals':>11}{'and z3':>9}{'load without':>14}{'with':>7}{'z3':>8}"
     )
     for path in sorted(HERE.glob("*.scenic")):
-        found = row(path, given.candidates, solver=given.solver)
+        found = row(path, arguments.candidates, solver=arguments.solver)
         rows.append(found)
         shown = f"{found.solver:9.4g}{found.loading[0]:13.3f}s{found.loading[1]:6.3f}s{found.solving:7.2f}s"
         print(f"{found.name:20}{found.without:12.4g}{found.intervals:11.4g}{shown}", flush=True)
     gains = [found.without / found.intervals for found in rows]
     print(f"median gain by intervals: {statistics.median(gains):.4g} times fewer candidates")
-    if given.solver:
+    if arguments.solver:
         helped = [found.name for found in rows if found.refuted > 0.1]
         print(f"z3 refutes more than a tenth of what is left in {len(helped)} programs: {', '.join(helped)}")
     print(f"longest load: {max(found.loading[1] for found in rows):.2f} s")

@@ -262,23 +262,23 @@ def main() -> None:
     seconds = parser.parse_args().seconds
     room = Room(1)
     room.round(LANES)
-    begun, found, tried = time.process_time(), 0, 0
-    while time.process_time() - begun < seconds:
+    start_time, found, tried = time.process_time(), 0, 0
+    while time.process_time() - start_time < seconds:
         found += room.round(LANES)
         tried += LANES
-    by_hand = time.process_time() - begun
+    by_hand = time.process_time() - start_time
     print(
         f"by hand: {tried / by_hand:8.0f} candidates/s, {1e3 * by_hand / found:6.2f} ms/scene, "
         f"{1e3 * found / tried:.2f} of 1,000 accepted, {room.indexed / found:.1f} indices a scene"
     )
     scenario = load(HERE / "room_with_toys.scenic")
     scenario.sample(200, seed=2)
-    begun, scenes, attempts = time.process_time(), 0, 0
-    while time.process_time() - begun < seconds:
+    start_time, scenes, attempts = time.process_time(), 0, 0
+    while time.process_time() - start_time < seconds:
         for result in scenario.stream(400, seed=scenes):
             attempts += result.attempts
             scenes += 1
-    engine = time.process_time() - begun
+    engine = time.process_time() - start_time
     print(
         f"engine:  {attempts / engine:8.0f} candidates/s, {1e3 * engine / scenes:6.2f} ms/scene, "
         f"{1e3 * scenes / attempts:.2f} of 1,000 accepted"

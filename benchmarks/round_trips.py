@@ -180,7 +180,7 @@ def trips(count: int, worlds: Worlds) -> None:
     """Print the worst deviations of every format."""
     worst: dict[str, Counter[str]] = {form: Counter() for form in forms()}
     made, failures, missing = 0, 0, []
-    begun = time.monotonic()
+    start_time = time.monotonic()
     for name, scene in sources(count):
         if scene is None:
             missing.append(name)
@@ -208,7 +208,7 @@ def trips(count: int, worlds: Worlds) -> None:
                     failures += 1
                     print(f"{name}: {form}: {kind} differ by {value:.2e}")
     print(
-        f"{made} programs in {time.monotonic() - begun:.0f} s, {failures} failures; without a scene: {', '.join(missing) or 'none'}"
+        f"{made} programs in {time.monotonic() - start_time:.0f} s, {failures} failures; without a scene: {', '.join(missing) or 'none'}"
     )
     for form, table in worst.items():
         print(f"    {form}: " + ", ".join(f"{kind} {table[kind]:.1e}" for kind in ("pose", "bounds", "mass")))
@@ -237,7 +237,7 @@ def contacts(count: int, worlds: Worlds, chosen: tuple[str, ...]) -> None:
         scenario = scenic.load(EXAMPLES / f"{name}.scenic")
         deep = {form: 0 for form in forms() if form != "usd"}
         deepest = (0.0, "")
-        begun = time.monotonic()
+        start_time = time.monotonic()
         for scene in scenario.sample(count, seed=1):
             for form in deep:
                 worst = max(depths(scene, form, worlds), default=(0.0, ""))
@@ -246,7 +246,7 @@ def contacts(count: int, worlds: Worlds, chosen: tuple[str, ...]) -> None:
         print(
             f"{name:24} {count} scenes, deeper than {DEEP:g} m: "
             + ", ".join(f"{form} {number}" for form, number in deep.items())
-            + f"; the deepest {deepest[0]:.1e} m ({deepest[1]}), {time.monotonic() - begun:.0f} s",
+            + f"; the deepest {deepest[0]:.1e} m ({deepest[1]}), {time.monotonic() - start_time:.0f} s",
             flush=True,
         )
 

@@ -52,9 +52,9 @@ def milliseconds(engine: Engine, lanes: int, rounds: int) -> float:
     for seed in range(rounds + SETTLING):
         pending = Pending(inner._chances, inner._soft_places)
         pending.add([(seed, number) for number in range(lanes)])
-        begun = time.thread_time()
+        start_time = time.thread_time()
         inner._round(pending, {}, 10**6, lanes, lanes, more=False)
-        times.append(time.thread_time() - begun)
+        times.append(time.thread_time() - start_time)
     return statistics.median(times[SETTLING:]) * 1e3
 
 

@@ -105,20 +105,20 @@ def _measured(engine: Engine, workers: int, seconds: float, size: int, straggle:
     job = Job(seed=1, first=0, last=count, max_attempts=None, deadline=None)
     scenario: Any = scheduling.Sleeper(straggle)
     pieces = done = 0
-    begun = time.perf_counter()
-    spent = time.process_time()
+    start_time = time.perf_counter()
+    seconds_spent = time.process_time()
     with tempfile.TemporaryFile() as file:
         for made in in_processes(scenario, partial(scheduling.encode, size), job, engine):
             file.write(memoryview(made.encoded))
             file.flush()
             pieces += 1
             done = made.job.last
-    took, spent = time.perf_counter() - begun, time.process_time() - spent
+    took, seconds_spent = time.perf_counter() - start_time, time.process_time() - seconds_spent
     assert done == count
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     return (
         f"{workers} workers, {count:,} scenes of {size:,} bytes in {pieces:,} pieces: {took:.2f} s, overhead {took / seconds - 1:.1%}; "
-        f"{spent / pieces * 1000:.2f} ms of processor time a piece (up to {pieces / spent:,.0f} pieces/s), peak memory {peak:.0f} MiB"
+        f"{seconds_spent / pieces * 1000:.2f} ms of processor time a piece (up to {pieces / seconds_spent:,.0f} pieces/s), peak memory {peak:.0f} MiB"
     )
 
 

@@ -25,10 +25,10 @@ def main() -> None:
     options.add_argument(
         "--share", action="store_true", help="the share of failing points, of 20,000, instead"
     )
-    given = options.parse_args()
-    for path in sorted(FOLDER.glob(f"{given.problem}.scenic")):
+    arguments = options.parse_args()
+    for path in sorted(FOLDER.glob(f"{arguments.problem}.scenic")):
         scenario = scenic.load(path)
-        if given.share:
+        if arguments.share:
             result = scenic.falsify(
                 scenario, objective="robustness", static=True, sampler="random", n=20000, seed=0
             )
@@ -37,22 +37,22 @@ def main() -> None:
                 flush=True,
             )
             continue
-        for sampler in given.samplers:
-            begun, counts = time.process_time(), []
-            for seed in range(given.seeds):
+        for sampler in arguments.samplers:
+            start_time, counts = time.process_time(), []
+            for seed in range(arguments.seeds):
                 result = scenic.falsify(
                     scenario,
                     objective="robustness",
                     static=True,
                     sampler=sampler,
-                    n=given.most,
+                    n=arguments.most,
                     seed=seed,
                     stop_after=1,
                     batch=None if sampler == "cma" else 1 if sampler != "random" else 64,
                 )
                 first = result.counterexamples[:1] and min(row["run"] for row in result.counterexamples)
-                counts.append(first + 1 if result.counterexamples else given.most + 1)
-            seconds = time.process_time() - begun
+                counts.append(first + 1 if result.counterexamples else arguments.most + 1)
+            seconds = time.process_time() - start_time
             print(
                 f"{path.stem:16} {sampler:8} median {statistics.median(counts):7.1f}  ({seconds:.1f} s)",
                 flush=True,

@@ -59,17 +59,17 @@ def main() -> None:
     options.add_argument("--problem", default="*", help="of which name")
     options.add_argument("--seeds", type=int, default=300)
     options.add_argument("--most", type=int, default=3000)
-    given = options.parse_args()
+    arguments = options.parse_args()
     sys.path.append(os.environ["SCENIC_VERIFAI"])
-    for path in sorted(FOLDER.glob(f"{given.problem}.scenic")):
+    for path in sorted(FOLDER.glob(f"{arguments.problem}.scenic")):
         space = space_of(scenic.load(path), "external")
-        for name in given.samplers:
-            seeds = range(1 if name == "halton" else given.seeds)
-            begun = time.process_time()
-            ours = [runs(path.stem, our_points(space, name, seed), given.most) for seed in seeds]
+        for name in arguments.samplers:
+            seeds = range(1 if name == "halton" else arguments.seeds)
+            start_time = time.process_time()
+            ours = [runs(path.stem, our_points(space, name, seed), arguments.most) for seed in seeds]
             halfway = time.process_time()
-            theirs = [runs(path.stem, their_points(space, name, seed), given.most) for seed in seeds]
-            seconds = f"({halfway - begun:.0f} s, {time.process_time() - halfway:.0f} s)"
+            theirs = [runs(path.stem, their_points(space, name, seed), arguments.most) for seed in seeds]
+            seconds = f"({halfway - start_time:.0f} s, {time.process_time() - halfway:.0f} s)"
             print(
                 f"{path.stem:14} {name:6} {compared(np.array(ours), np.array(theirs))} {seconds}", flush=True
             )

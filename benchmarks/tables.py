@@ -66,9 +66,9 @@ def child(name: str) -> None:
 
     scenic.scenarioFromString("new Object at (Range(0, 1), 0)").sample(2, seed=1)
     clock = time.process_time
-    begun = clock()
+    start_time = clock()
     scenario = scenic.scenarioFromString(PROGRAMS[name])
-    load = clock() - begun
+    load = clock() - start_time
 
     def sampled(seed: int) -> Any:
         return scenario.sample(LANES, seed=seed, lanes=LANES)
@@ -79,14 +79,14 @@ def child(name: str) -> None:
     )
     sampling, reading = [], []
     for seed in range(1, 6):
-        begun = clock()
+        start_time = clock()
         scenes = sampled(seed)
-        sampling.append((clock() - begun) / sum(scene.attempts for scene in scenes))
-        begun = clock()
+        sampling.append((clock() - start_time) / sum(scene.attempts for scene in scenes))
+        start_time = clock()
         for scene in scenes:
             for item in scene.objects:
                 tuple(item.position), item.yaw, item.pitch, item.roll, item.width, item.length, item.height
-        reading.append((clock() - begun) / LANES)
+        reading.append((clock() - start_time) / LANES)
     figures = (load, statistics.median(sampling) * 1e6, statistics.median(reading) * 1e6, memory / 1024)
     print(json.dumps(figures))
 

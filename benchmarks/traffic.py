@@ -29,11 +29,11 @@ def steps_a_second(road_map: Path, text: str, steps: int, turns: int) -> float:
     simulator.simulate(scenes[0], maxSteps=20)
     found = []
     for _ in range(turns):
-        done, begun = 0, time.process_time()
+        done, start_time = 0, time.process_time()
         for scene in scenes:
             result = simulator.simulate(scene, maxSteps=steps)
             done += 0 if result is None else result.currentTime
-        found.append(done / (time.process_time() - begun))
+        found.append(done / (time.process_time() - start_time))
     return statistics.median(found)
 
 

@@ -46,9 +46,9 @@ def loaded_in_a_second(scenario: Any, count: int, workers: int) -> float:
         DataLoader(SceneStream(scenario, seed=1, count=count), batch_size=None, num_workers=workers)
     )
     read(next(loader))
-    begun = time.perf_counter()
+    start_time = time.perf_counter()
     number = sum(1 for scene in loader if read(scene))
-    return number / (time.perf_counter() - begun)
+    return number / (time.perf_counter() - start_time)
 
 
 def main() -> None:

@@ -107,21 +107,23 @@ def judge(mistakes: Sequence[Mistake]) -> Iterator[Judgement]:
         surroundings_of = surroundings_in(Project([str(folder)]))
 
         def check(text: str) -> Sequence[Diagnostic]:
-            found = check_text(text, filename=str(folder / "program.scenic"), surroundings_of=surroundings_of)
-            return [each for each in found if each.severity is not Severity.INFORMATION]
+            diagnostics = check_text(
+                text, filename=str(folder / "program.scenic"), surroundings_of=surroundings_of
+            )
+            return [each for each in diagnostics if each.severity is not Severity.INFORMATION]
 
         for mistake in mistakes:
-            found = check(mistake.text)
-            here = [each for each in found if each.span is not None and each.span.line in mistake.lines]
-            fixes = [each.fix for each in found if each.fix is not None]
-            repaired = apply_fixes(mistake.text, fixes)[0]
+            diagnostics = check(mistake.text)
+            here = [each for each in diagnostics if each.span is not None and each.span.line in mistake.lines]
+            fixes = [each.fix for each in diagnostics if each.fix is not None]
+            new_text = apply_fixes(mistake.text, fixes)[0]
             yield Judgement(
                 mistake,
-                found,
-                bool(here) and len(here) == len(found),
+                diagnostics,
+                bool(here) and len(here) == len(diagnostics),
                 any(mistake.cause.search(f"{each.message} {each.help or ''}") for each in here),
-                _judge_repair(mistake, repaired, check(repaired)),
-                repaired,
+                _judge_repair(mistake, new_text, check(new_text)),
+                new_text,
                 [each for text in mistake.meant for each in check(text)],
             )
 

@@ -95,8 +95,8 @@ def examine(wanted: Sequence[Mistake]) -> Iterator[Outcome]:
         surroundings_of = surroundings_in(Project([str(folder)]))
         for mistake in wanted:
             filename = str(folder / "program.scenic")
-            said = check_text(mistake.text, filename=filename, surroundings_of=surroundings_of)
-            found = [each for each in said if each.span is not None and each.span.line in mistake.lines]
-            elsewhere = [each for each in said if each not in found]
+            diagnostics = check_text(mistake.text, filename=filename, surroundings_of=surroundings_of)
+            here = [each for each in diagnostics if each.span is not None and each.span.line in mistake.lines]
+            elsewhere = [each for each in diagnostics if each not in here]
             accused = check_text(mistake.meant, filename=filename, surroundings_of=surroundings_of)
-            yield Outcome(mistake, found, elsewhere, accused)
+            yield Outcome(mistake, here, elsewhere, accused)

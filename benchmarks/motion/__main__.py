@@ -39,14 +39,14 @@ BATCH = 60
 
 def _maps(named: Sequence[str]) -> list[Path]:
     folder = Path(os.environ.get("SCENIC_TEST_MAPS", "."))
-    known = [*sorted(folder.glob("*.xodr")), *sorted(EXAMPLES.glob("*.xodr"))]
+    paths = [*sorted(folder.glob("*.xodr")), *sorted(EXAMPLES.glob("*.xodr"))]
     if not named:
-        return known
+        return paths
     chosen = []
     for name in named:
-        path = next((item for item in known if item.stem == name), Path(name))
+        path = next((item for item in paths if item.stem == name), Path(name))
         if not path.exists():
-            sys.exit(f"no map {name}: give a file, or one of {', '.join(item.stem for item in known)}")
+            sys.exit(f"no map {name}: give a file, or one of {', '.join(item.stem for item in paths)}")
         chosen.append(path)
     return chosen
 
@@ -60,12 +60,12 @@ def _runs(
         return changing(network, road_map, speed, step)
     ways = maneuvers(network)
     runs: list[Run] = []
-    spent = 0.0
+    seconds_spent = 0.0
     for begin in range(0, len(ways), BATCH):
         part, each = turning(road_map, speed, step, ways[begin : begin + BATCH])
         runs += part
-        spent = max(spent, each)
-    return runs, spent
+        seconds_spent = max(seconds_spent, each)
+    return runs, seconds_spent
 
 
 def _table(given: Any) -> Iterator[tuple[str, Figures]]:
@@ -76,10 +76,10 @@ def _table(given: Any) -> Iterator[tuple[str, Figures]]:
         for kind in given.runs:
             for speed in given.speeds or SPEEDS[kind]:
                 for step in given.steps:
-                    runs, spent = _runs(kind, network, road_map, speed, step, given)
+                    runs, seconds_spent = _runs(kind, network, road_map, speed, step, given)
                     if not runs:
                         continue
-                    figures = figures_of(runs, region, spent)
+                    figures = figures_of(runs, region, seconds_spent)
                     yield f"{road_map.stem:10} {kind:7} {len(runs):3d} {speed:5g} {step:5g}", figures
                     if given.plots:
                         from benchmarks.motion.plots import plot
@@ -100,10 +100,10 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=60)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--plots", type=Path, help="folder for plots of ten cars each")
-    given = parser.parse_args()
+    arguments = parser.parse_args()
     print(f"{'map':10} {'runs':11} {'speed':>5} {'step':>5} {Figures.head()}")
     lines = held = 0
-    for name, figures in _table(given):
+    for name, figures in _table(arguments):
         misses = figures.misses()
         lines, held = lines + 1, held + (not misses)
         print(f"{name} {figures.row()}{'   misses ' + ', '.join(misses) if misses else ''}", flush=True)

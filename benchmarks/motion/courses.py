@@ -110,15 +110,15 @@ class Lines:
 
     def indices(self, places: Floats) -> NDArray[np.intp]:
         """The points ``(n,)`` at which a car is that goes along the lines through places ``(n, 2)``."""
-        found = np.empty(len(places), dtype=np.intp)
+        numbers = np.empty(len(places), dtype=np.intp)
         points = self.points
         at = int(((points[: self._first] - places[0]) ** 2).sum(axis=1).argmin())
         for number, place in enumerate(places):
             low = max(0, at - _BACK)
             away = points[low : at + _ON] - place
             at = low + int((away * away).sum(axis=1).argmin())
-            found[number] = at
-        return found
+            numbers[number] = at
+        return numbers
 
     def away(self, places: Floats, indices: NDArray[np.intp]) -> Floats:
         """Metres ``(n,)`` from the lines to places ``(n, 2)`` near points of them."""

@@ -61,15 +61,15 @@ def _simulated(
     scene = scenario.sample(1, seed=seed)[0]
     random.seed(seed)
     with _drivers() as drivers:
-        begun = time.process_time()
+        start_time = time.process_time()
         done = scenario.getSimulator().simulate(scene, maxSteps=round(seconds / step), timestep=step)
-        spent = time.process_time() - begun
+        seconds_spent = time.process_time() - start_time
     assert done is not None
     places = np.array([[tuple(position)[:2] for position in state.positions] for state in done.trajectory])
     headings = np.array([[turn.yaw for turn in state.orientations] for state in done.trajectory])
     count = places.shape[1]
     courses = [Course(places[:, item], headings[:, item], step) for item in range(count)]
-    return courses, drivers, spent / (len(places) - 1) / count
+    return courses, drivers, seconds_spent / (len(places) - 1) / count
 
 
 def _indices(course: Course, path: Any) -> list[int]:
@@ -107,7 +107,7 @@ def following(
     )
     text = "lanes = [lane for road in network.roads for lane in road.lanes]\n" + cars * car
     text = text.replace("new Car", "ego = new Car", 1)
-    courses, drivers, spent = _simulated(road_map, text, step, seconds, seed)
+    courses, drivers, seconds_spent = _simulated(road_map, text, step, seconds, seed)
     runs = []
     for number, course in enumerate(courses):
         path: Any = drivers[number][-1]._path
@@ -115,7 +115,7 @@ def following(
         lanes = _lanes_of(path)
         lines = [line_to_drive(lane)[:: -1 if backward else 1] for lane in lanes]
         runs.append(Run(course, Lines(lines, lanes[0].centerline.length + 1), _asked(course, path)))
-    return runs, spent
+    return runs, seconds_spent
 
 
 def maneuvers(network: Any) -> list[Any]:
@@ -222,7 +222,7 @@ def turning(road_map: Path, speed: float, step: float, ways: Sequence[Any]) -> t
         cars.append(_car(whole, start, _fastest(whole, start, speed, inside), behavior, is_ego=not cars))
         lanes.append(whole)
         lengths.append(inside)
-    courses, drivers, spent = _simulated(road_map, "".join(cars), step, 20.0, 1)
+    courses, drivers, seconds_spent = _simulated(road_map, "".join(cars), step, 20.0, 1)
     runs = []
     for number, course in enumerate(courses):
         lines = Lines([line_to_drive(lane) for lane in lanes[number]], lengths[number][0])
@@ -238,7 +238,7 @@ def turning(road_map: Path, speed: float, step: float, ways: Sequence[Any]) -> t
         if len(within):
             braked = bool((course.accelerations[1][within[0] : within[-1]] < -BRAKING).any())
         runs.append(Run(course, lines, _asked(course, drivers[number][-1]._path), braked))
-    return runs, spent
+    return runs, seconds_spent
 
 
 def changing(network: Any, road_map: Path, speed: float, step: float) -> tuple[list[Run], float]:
@@ -270,7 +270,7 @@ def changing(network: Any, road_map: Path, speed: float, step: float) -> tuple[l
         "behavior Change(section, speed):\n    do LaneChangeBehavior(section, target_speed=speed)\n"
         "    do FollowLaneBehavior(speed)\n"
     )
-    courses, drivers, spent = _simulated(road_map, program + "".join(cars), step, 12.0, 1)
+    courses, drivers, seconds_spent = _simulated(road_map, program + "".join(cars), step, 12.0, 1)
     runs = []
     for number, course in enumerate(courses):
         changer, *followers = drivers[number]
@@ -280,11 +280,11 @@ def changing(network: Any, road_map: Path, speed: float, step: float) -> tuple[l
             continue
         lanes = _lanes_of(path)
         lines = Lines([line_to_drive(lane) for lane in lanes], lanes[0].centerline.length + 1)
-        begun = next(
+        start_time = next(
             (i for i, at in enumerate(_indices(course, path)) if path.along[at] >= changer._end), None
         )
-        if begun is None:
+        if start_time is None:
             continue
-        course = course.part(0, begun + round(1.0 / step))
-        runs.append(Run(course, lines, _asked(course, path), since=begun))
-    return runs, spent
+        course = course.part(0, start_time + round(1.0 / step))
+        runs.append(Run(course, lines, _asked(course, path), since=start_time))
+    return runs, seconds_spent

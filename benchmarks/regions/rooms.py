@@ -48,12 +48,12 @@ def theirs(command: str, room: str, toys: int, scenes: int, seed: int) -> float:
     arguments += ["--max-iterations", "1000000", "--observe", "x=1"]
     # The other implementation may have our import name: it must not find our tree.
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    spent = []
+    seconds_spent = []
     for count in (1, scenes):
         before = _spent_by_children()
         subprocess.run([*arguments, "-n", str(count)], capture_output=True, check=True, env=environment)
-        spent.append(_spent_by_children() - before)
-    return (spent[1] - spent[0]) / (scenes - 1) * 1e3
+        seconds_spent.append(_spent_by_children() - before)
+    return (seconds_spent[1] - seconds_spent[0]) / (scenes - 1) * 1e3
 
 
 def _spent_by_children() -> float:
