@@ -152,8 +152,8 @@ def is_running_red(car: Any) -> bool:
     network = car.roadNetwork
     ahead, back = ((side * car.length / 2) for side in (1, -1))
     sine, cosine = math.sin(car.heading), math.cos(car.heading)
-    x, y, *_ = car.position
-    front, rear = ((x - part * sine, y + part * cosine, 0.0) for part in (ahead, back))
+    x, y, z = car.position
+    front, rear = ((x - part * sine, y + part * cosine, z) for part in (ahead, back))
     intersection = network.intersectionAt(front)
     if intersection is None or network.intersectionAt(rear) is not None:
         return False

@@ -318,7 +318,9 @@ class RulesDriver(LaneDriver):
             if shapely.contains_xy(intersection.polygon, *ways[0]) or other.speed > 1.0:  # type: ignore[union-attr] # as above
                 course = shapely.linestrings(ways) if other.speed > 0.1 else shapely.Point(x, y)
                 same = shapely.contains_xy(maneuver.startLane.polygon, x, y)
-                if not same and shapely.distance(line, course) < 2.2:
+                if same or shapely.distance(line, course) >= 2.2:
+                    continue
+                if intersection.network.is_level(maneuver.connectingLane, other.position):  # type: ignore[union-attr,arg-type] # as above
                     return True
         return False
 

@@ -38,11 +38,14 @@ class State:
         "heading",
         "is_car",
         "length",
+        "moment",
         "parent",
         "parent_yaw",
         "position",
         "rate",
+        "settled",
         "speed",
+        "values",
         "velocity",
     )
 
@@ -54,9 +57,14 @@ class State:
         """Metres between the road and its middle, where roads have heights."""
         self.frame: Sequence[float] | None = None
         """Its orientation, where that is more than its heading: on a road that is not level."""
+        self.settled: tuple[tuple[float, float, float], float] | None = None
+        """The place and the heading at which it was put on the road last."""
         self.is_car = isinstance(obj, Driven)
         self.parent: Any = None
         """The frame of its own angles, as it was met last."""
+        self.moment: tuple[Any, ...] | None = None
+        """All that its values depend on, as they were asked for last."""
+        self.values: Mapping[str, Any] = {}
         self.parent_yaw: float | None = None
         """By how much that is turned; ``None`` if it is upright."""
         self.length = float(obj.length)
@@ -160,10 +168,21 @@ class NewtonianSimulation(DrivingSimulation):
 
     def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
         """Return the present values of an object."""
-        state = self._states[id(obj)]
-        attributes = obj.__dict__
-        yaw = state.heading
+        state, attributes = self._states[id(obj)], obj.__dict__
         parent = attributes["parentOrientation"]
+        moment = state.position, state.velocity, state.heading, state.rate, state.frame, parent
+        # Of what stands still, the values stay the same objects.
+        if moment != state.moment:
+            state.moment, state.values = moment, self._values(state, parent)
+        values = state.values
+        present = {name: values[name] if name in values else attributes[name] for name in properties}
+        if attributes.get("elevation") is None and "elevation" in present:
+            present["elevation"] = None
+        return present
+
+    def _values(self, state: State, parent: Any) -> Mapping[str, Any]:
+        """Return what the simulator knows of an object, whose own angles are those in a frame."""
+        yaw = state.heading
         if parent is not state.parent:
             state.parent, state.parent_yaw = parent, parent.yaw if parent != _UPRIGHT else None
         if state.parent_yaw is not None:
@@ -175,17 +194,16 @@ class NewtonianSimulation(DrivingSimulation):
                 local = operate("compose", operate("inverse", parent), local)
             yaw, angles["pitch"], angles["roll"] = local.eulerAngles
         x, y, z = state.velocity
-        values: dict[str, Any] = {
+        return {
             "position": Vector.of(state.position),
             "velocity": Vector.of(state.velocity),
             "speed": math.sqrt(x * x + y * y + z * z),
             "angularSpeed": abs(state.rate),
             "angularVelocity": Vector.of((0.0, 0.0, state.rate)),
             "yaw": yaw,
-            "elevation": None if attributes.get("elevation") is None else state.position[2],
+            "elevation": state.position[2],
             **angles,
         }
-        return {name: values[name] if name in values else attributes[name] for name in properties}
 
     def steering_for(self, agent: Any, curvature: float) -> float:
         """Return the position of the steering wheel by which a car of this simulator drives a curve."""

@@ -40,6 +40,9 @@ class Terrain:
 
     def settle(self, states: Sequence["State"]) -> None:
         """Put objects that have moved in the plane back on the road: at their height above it, and cars with its slope."""
+        states = [state for state in states if (state.position, state.heading) != state.settled]
+        if not states:
+            return
         new = np.array([state.position for state in states])
         heights, frames = self._levels.settled(new, np.array([state.heading for state in states]))
         # Off the road, nobody knows a height: what leaves it goes on level.
@@ -49,3 +52,4 @@ class Terrain:
             state.position = (place[0], place[1], place[2])
             if state.is_car:
                 state.frame = frame
+            state.settled = state.position, state.heading
