@@ -139,9 +139,10 @@ def hull_footing(mesh: Mesh) -> Footing:
     """The faces of the convex hull of a unit solid of one density."""
     from scipy.spatial import ConvexHull  # slow to import
 
-    hull: Any = ConvexHull(mesh.vertices)
+    outermost = mesh.outermost
+    hull: Any = ConvexHull(outermost)
     middle = _centre_of_mass(mesh)
-    points, corners = mesh.vertices - middle, mesh.vertices[hull.vertices]
+    points, corners = outermost - middle, outermost[hull.vertices]
     face, planes = _faces(hull)
     a, b, c = np.moveaxis(points[hull.simplices], 1, 0)
     inwards = dot(cross(b - a, c - a), hull.equations[:, :3])[:, np.newaxis] < 0
