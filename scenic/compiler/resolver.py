@@ -7,7 +7,6 @@ running the program. It uses an explicit stack, so that no depth of nesting is t
 import ast
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
@@ -22,13 +21,11 @@ from scenic.compiler.scopes import (
     ScopeKind,
 )
 from scenic.compiler.semantics.modules import Module
-from scenic.compiler.semantics.names import Names
 from scenic.compiler.surroundings import SurroundingsOf
 from scenic.compiler.traversal import FIELDS, parts, walk
 from scenic.language.garbage import no_garbage_collection
 from scenic.language.names import RESERVED, TRACKED
 from scenic.language.source import Source
-from scenic.language.spelling import nearest
 
 __all__ = ["bind", "resolve", "resolve_within"]
 
@@ -58,31 +55,15 @@ def resolve_within(
         bound = bind(tree) if resolution is None else resolution
         module = Module(source, tree, bound, is_scenic=True, broken=bool(bound.nodes(scenic.ErrorStatement)))
         surroundings = None if surroundings_of is None else surroundings_of(module)
-        wildcard = bound.wildcard
-        if surroundings is not None:
-            wildcard = bound.rebinding or not Names(module, surroundings.modules).complete
-        if any(_brings_names(source.line(node.lineno)) for node, _ in bound.nodes(scenic.ErrorStatement)):
-            wildcard = True
-        bound = bound.with_findings(wildcard=wildcard)
-        context = CheckContext(replace(module, resolution=bound), surroundings, typing=typing)
+        context = CheckContext(module, surroundings, typing=typing)
         diagnostics = check(context, go_on)
-    return bound.with_findings(diagnostics, wildcard=wildcard), context
+    return bound.with_findings(diagnostics, wildcard=context.wildcard), context
 
 
 def bind(tree: ast.Module) -> Resolution:
     """Bind every name of a module, of Scenic or of Python, without any check: ``diagnostics`` stays empty."""
     with no_garbage_collection():
         return _Collector(tree).resolution()
-
-
-def _brings_names(line: str) -> bool:
-    """Return whether a line that could not be parsed may have been one that brings names that the text does not show."""
-    words = line.split(maxsplit=1)
-    if not words:
-        return False
-    return (
-        words[0] == "model" or nearest(words[0], ("model",)) is not None or ("import" in line and "*" in line)
-    )
 
 
 class _Event(NamedTuple):

@@ -16,7 +16,7 @@ from scenic.compiler.surroundings import Surroundings
 from scenic.compiler.traversal import position
 from scenic.language.diagnostics import Diagnostic, Edit, Fix, Label, Severity
 from scenic.language.spans import Span
-from scenic.language.spelling import is_slip
+from scenic.language.spelling import is_slip, nearest
 
 __all__ = ["DEFINITIONS", "CheckContext", "NodeRule", "ProgramRule"]
 
@@ -47,10 +47,14 @@ class CheckContext(Model):
         self.typing: Final = typing
         """True if somebody is writing the program, in an editor."""
 
-    @property
+    @cached_property
     def wildcard(self) -> bool:
         """Return whether names may exist that neither the text nor the modules that it imports show."""
-        return self.resolution.wildcard
+        if any(_brings_names(self.source.line(node.lineno)) for node, _ in self.nodes(scenic.ErrorStatement)):
+            return True
+        if self.surroundings is None:
+            return self.resolution.wildcard
+        return self.resolution.rebinding or not self.complete
 
     # What the program is
 
@@ -233,6 +237,16 @@ class CheckContext(Model):
     def renaming(self, place: ast.AST | Span, name: str, meant: str, *, certain: bool = True) -> Fix:
         """A repair of a misspelt name, certain at most if it can hardly be anything else."""
         return self.replacement(f"Write `{meant}`", place, meant, certain=certain and is_slip(name, meant))
+
+
+def _brings_names(line: str) -> bool:
+    """Return whether a line that could not be parsed may have been one that brings names that the text does not show."""
+    words = line.split(maxsplit=1)
+    if not words:
+        return False
+    return (
+        words[0] == "model" or nearest(words[0], ("model",)) is not None or ("import" in line and "*" in line)
+    )
 
 
 NodeRule = Callable[[Any, Scope, CheckContext], Iterator[Diagnostic]]

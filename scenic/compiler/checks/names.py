@@ -61,7 +61,7 @@ def check_reserved(context: CheckContext) -> Iterator[Diagnostic]:
 def check_names(context: CheckContext) -> Iterator[Diagnostic]:
     """SC202: names that are read and that nothing binds; SC203 if they stand after ``new``."""
     resolution = context.resolution
-    if resolution.wildcard:
+    if context.wildcard:
         return
     missing = [reference for name in context.unresolved for reference in resolution.uses[name]]
     if missing and (model := _imported_model(context)) is not None:

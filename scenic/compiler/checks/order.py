@@ -51,7 +51,7 @@ def _statement(starts: list[tuple[int, int]], node: ast.AST) -> int:
 
 def _names(context: CheckContext, starts: list[tuple[int, int]]) -> Iterator[Diagnostic]:
     resolution = context.resolution
-    if resolution.wildcard or resolution.reflective or _postpones_annotations(context):
+    if context.wildcard or resolution.reflective or _postpones_annotations(context):
         return
     body = context.tree.body
     first: dict[str, int] = {}

@@ -72,7 +72,7 @@ def check_support(context: CheckContext, misplaced: Container[ast.AST]) -> Itera
 
 def check_supported_names(context: CheckContext) -> Iterator[Diagnostic]:
     """SC900: every use of a name that is declared but not available."""
-    if _NAMES and not context.resolution.wildcard:
+    if _NAMES and not context.wildcard:
         for name in _NAMES.difference(context.resolution.names):
             for reference in context.resolution.uses.get(name, ()):
                 if not _carried(reference.node, reference.scope):

@@ -12,7 +12,7 @@ from scenic import language
 from scenic.compiler import tree as scenic
 from scenic.compiler.semantics.modules import Module, Modules
 from scenic.compiler.semantics.names import Names
-from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_binding, symbol_of_exported
+from scenic.compiler.semantics.symbols import Symbol, SymbolKind, symbol_of_binding
 from scenic.compiler.traversal import position, walk
 from scenic.dataclass import dataclass
 from scenic.language.properties import CLASSES, BuiltinProperty, attributes_of, properties_of
@@ -109,7 +109,7 @@ class Class:
             return None
         return frozenset(self._by_name)
 
-    @property
+    @cached_property
     def built_in(self) -> str | None:
         """The class of the language from which it certainly derives; ``None`` if it may derive from a narrower one as well."""
         built_in: set[str] = set()
@@ -173,7 +173,10 @@ class Classes:
         """Make a table of classes; ``names`` are those of the program, if they are known already."""
         self.modules: Final = modules
         self._names: Final[dict[Module, Names]] = {} if names is None else {names.module: names}
-        self._classes: Final[dict[tuple[ast.AST, bool], Class | None]] = {}
+        self._own: Final[dict[object, Any]] = {}
+        self._others: Final = modules.derived
+        self._examined: Final[set[object]] = set()
+        self._program: Final = None if names is None else names.module
 
     def names(self, module: Module) -> Names:
         """The names of a module."""
@@ -221,10 +224,13 @@ class Classes:
 
     def _once(self, module: Module, symbol: Symbol, node: Any, *, definite: bool) -> Class | None:
         key = (node, definite)
-        if key not in self._classes:
-            self._classes[key] = None  # A class among its own bases: nothing is known.
-            self._classes[key] = self._examine(module, symbol, node, definite)
-        return self._classes[key]
+        classes = self._own if module is self._program else self._others
+        if key not in classes and key not in self._examined:
+            self._examined.add(key)
+            classes[key] = self._examine(module, symbol, node, definite)
+        # A class among its own bases is not known yet.
+        known: Class | None = classes.get(key)
+        return known
 
     def _examine(self, module: Module, symbol: Symbol, node: ast.ClassDef, definite: bool) -> Class:
         # Decorators and metaclasses of the library add no attributes.
@@ -255,7 +261,7 @@ class Classes:
         if meant is not None and meant.node is node:
             # `class Car(Car)` extends the class that a star import or the model brings.
             before = self.names(module).before(symbol.name)
-            meant = None if before is None else symbol_of_exported(self.modules, before)
+            meant = None if before is None else self.names(module).symbol_of(before)
         return self.of_symbol(meant)
 
 

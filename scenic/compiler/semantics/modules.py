@@ -272,6 +272,10 @@ class Exports:
 class Modules(Protocol):
     """The modules that a program can reach, which the model of a program asks for; a project implements it."""
 
+    @property
+    def derived(self) -> dict[object, Any]:
+        """Results about these modules, kept for all programs until one of the modules changes."""
+
     def find(self, name: str, *, importer: str, level: int = 0) -> FoundModule:
         """The module that an import in a file means; ``level`` counts the dots before the name."""
 
@@ -292,6 +296,10 @@ class Modules(Protocol):
 
 class _NoModules:
     """The modules of a program of which nobody knows the others."""
+
+    @property
+    def derived(self) -> dict[object, Any]:
+        return {}
 
     def find(self, name: str, *, importer: str, level: int = 0) -> FoundModule:
         return FoundModule(name, ModuleKind.MISSING)

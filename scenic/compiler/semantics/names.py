@@ -10,7 +10,13 @@ from typing import Any, Final
 
 from scenic.compiler.scopes import Binding, BindingKind, Resolution, Scope, ScopeKind
 from scenic.compiler.semantics.modules import Exported, Exports, FoundModule, Module, Modules
-from scenic.compiler.semantics.symbols import Symbol, builtin_symbol, symbol_of_exported
+from scenic.compiler.semantics.symbols import (
+    DEFINITIONS,
+    Symbol,
+    builtin_symbol,
+    symbol_of_binding,
+    symbol_of_exported,
+)
 from scenic.compiler.traversal import first_position, position
 
 __all__ = ["Names"]
@@ -33,6 +39,7 @@ class Names:
         self.tree: Final = module.tree
         self.resolution: Final = module.resolution
         self._definitions: Final[dict[ast.expr, Symbol | None]] = {}
+        self._symbols: Final[dict[Binding, Symbol]] = {}
         self._homes: Final[dict[ast.expr, FoundModule | None]] = {}
 
     # What imports bring
@@ -118,14 +125,25 @@ class Names:
         """The meaning of a name, or of an attribute of a module, as likely as it is; ``None`` if it is unknown."""
         if isinstance(name, ast.Attribute):
             target = self.attribute_of_module(name)
-            return None if target is None else symbol_of_exported(self.modules, target)
+            return None if target is None else self.symbol_of(target)
         if not isinstance(name, ast.Name):
             return None
         binding = self.resolution.binding(name)
         target = self.brought.get(name.id) if binding is None else self.own(binding)
         if target is not None:
-            return symbol_of_exported(self.modules, target)
+            return self.symbol_of(target)
         return builtin_symbol(name.id) if self.module.is_scenic else None
+
+    def symbol_of(self, target: Exported | FoundModule) -> Symbol:
+        """The symbol of a module, or of what is behind a name that a module has."""
+        if isinstance(target, Exported):
+            target = self.modules.follow(target)
+        if isinstance(target, FoundModule) or target.module is not self.module or target.binding is None:
+            return symbol_of_exported(self.modules, target)
+        # Symbols of the module itself go with its model.
+        if target.binding not in self._symbols:
+            self._symbols[target.binding] = symbol_of_binding(self.module, target.binding)
+        return self._symbols[target.binding]
 
     def own(self, binding: Binding) -> Exported:
         """A binding of the module, to be followed."""
@@ -153,19 +171,21 @@ class Names:
 
     def definitions_brought(self) -> Iterator[Symbol]:
         """The definitions that star imports and the model bring."""
-        symbols = (symbol_of_exported(self.modules, each) for each in self.brought.values())
+        symbols = (self.symbol_of(each) for each in self.brought.values())
         return (each for each in symbols if each.is_definite)
 
     def _is_certain(self, name: ast.expr) -> bool:
-        """Return whether an expression can have no other meaning than the likely one."""
+        """Return whether an expression that may mean a definition can have no other meaning than the likely one."""
         if not isinstance(name, ast.Name):
             return isinstance(name, ast.Attribute)
         reference = self.resolution.references.get(name)
         binding = None if reference is None else reference.binding
         if binding is None:
             return reference is not None and name.id in self.brought and not self.wildcard
-        single = len(binding.sites) == 1 and binding.kinds != {BindingKind.SELF}
-        return single and self.stands(binding.name, binding.sites[0])
+        if len(binding.sites) != 1 or binding.kinds == {BindingKind.SELF}:
+            return False
+        [site] = binding.sites
+        return isinstance(site, (*DEFINITIONS, ast.alias)) and self.stands(binding.name, site)
 
     def nodes(self, cls: type[ast.AST]) -> Sequence[tuple[Any, Scope]]:
         """All nodes of a class, with their scopes."""

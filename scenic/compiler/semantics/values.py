@@ -21,7 +21,6 @@ from scenic.compiler.semantics.symbols import (
     SymbolKind,
     builtin_symbol,
     symbol_of_binding,
-    symbol_of_exported,
 )
 from scenic.dataclass import dataclass
 from scenic.language.members import INSTANCE_METHODS, MEMBERS, members_of
@@ -103,6 +102,7 @@ class Values:
         self._classes: Final = classes
         self._modules: Final = classes.modules
         self._values: Final[dict[ast.expr, Value]] = {}
+        self._named_classes: Final[dict[ast.expr, Class | None]] = {}
         self._meanings: Final[dict[ast.expr, Symbol | None]] = {}
 
     def value(self, module: Module, node: ast.expr, depth: int = 0) -> Value:
@@ -159,8 +159,9 @@ class Values:
             case ast.Subscript(value=value, slice=index):
                 return self._item(self.value(module, value, depth), index)
             case scenic.New(cls=cls):
-                meant = self.meaning(module, cls, depth)
-                return Value(self._instance(module, cls), _if_class(meant))
+                known = self.class_of_objects(module, cls)
+                meant = self.meaning(module, cls, depth) if known is None else known.symbol
+                return Value(_instance(known), _if_class(meant))
             case ast.IfExp(body=body, orelse=orelse):
                 return self._alike(module, (body, orelse), depth)
             case ast.Call():
@@ -204,15 +205,13 @@ class Values:
                 return kind_of_type(OPERATORS[name].result) if name in OPERATORS else None
         return None
 
-    def _instance(self, module: Module, cls: ast.expr) -> ValueKind:
-        """The kind of what ``new`` makes."""
-        known = self.class_of_objects(module, cls)
-        base = None if known is None else known.built_in
-        members = None if known is None else known.names
-        return ValueKind(_KIND_OF_CLASS.get(base or "", "object"), members=members)
-
     def class_of_objects(self, module: Module, name: ast.expr) -> Class | None:
         """The class that an expression certainly names, if it may make objects of the scene."""
+        if name not in self._named_classes:
+            self._named_classes[name] = self._class_of_objects(module, name)
+        return self._named_classes[name]
+
+    def _class_of_objects(self, module: Module, name: ast.expr) -> Class | None:
         names = self._classes.names(module)
         provided = names.provided(name)
         symbol = names.definition(name) if provided is None else Symbol(provided, SymbolKind.CLASS)
@@ -264,7 +263,7 @@ class Values:
             returned = self._classes.names(home).returned(definition.node)
             likely = self._alike(home, returned, depth) if returned else _UNKNOWN
             kind = likely.kind
-        meant = self.meaning(module, function, depth)
+        meant = definition or self.meaning(module, function, depth)
         if meant is not None and meant.kind is SymbolKind.CLASS:
             return Value(kind, meant)
         annotated = _UNKNOWN if meant is None else self._annotated_symbol(meant, depth, called=True)
@@ -441,7 +440,7 @@ class Values:
         if name is not None and name in _ANNOTATIONS:
             return _ANNOTATIONS[name]
         known = self.class_of_objects(module, annotation)
-        return None if known is None or known.names is None else self._instance(module, annotation)
+        return None if known is None or known.names is None else _instance(known)
 
     def _annotated_symbol(self, symbol: Symbol, depth: int, *, called: bool) -> Value:
         """The value of what a symbol means, or of a call of it, by its annotation."""
@@ -479,8 +478,9 @@ class Values:
                 first = inner.elts[0] if isinstance(inner, ast.Tuple) and inner.elts else inner
                 return Value(elements=self._annotated(module, first, depth + 1).cls)
             case ast.Name(id=name):
-                exported = self._classes.names(module).at_top(name)
-                symbol = None if exported is None else symbol_of_exported(self._modules, exported)
+                names = self._classes.names(module)
+                exported = names.at_top(name)
+                symbol = None if exported is None else names.symbol_of(exported)
                 return Value(cls=_if_class(symbol))
         return _UNKNOWN
 
@@ -499,6 +499,13 @@ class Values:
             known = self._classes.of_symbol(cls)
             waiting += () if known is None else known.bases
         return None
+
+
+def _instance(cls: Class | None) -> ValueKind:
+    """The kind of what ``new`` makes of a class."""
+    if cls is None:
+        return ValueKind("object")
+    return ValueKind(_KIND_OF_CLASS.get(cls.built_in or "", "object"), members=cls.names)
 
 
 def _common(values: Sequence[Value]) -> Value:
