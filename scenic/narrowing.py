@@ -2,14 +2,14 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scenic.analysis.contraction import Pruning, independent
 from scenic.analysis.facts import Fact
-from scenic.analysis.finite.deciding import Decision, decide
+from scenic.analysis.finite.variables import variables_of
 from scenic.analysis.screening import seldom_met
 from scenic.graph.domain import Domain
 from scenic.graph.finite import Finite
@@ -19,6 +19,9 @@ from scenic.runtime.regions.unturned import unturned
 from scenic.runtime.sampling.checks import NodeCheck
 from scenic.runtime.sampling.planning import Outline
 from scenic.runtime.scenes.sampler import Sampler
+
+if TYPE_CHECKING:
+    from scenic.analysis.finite.deciding import Decision
 
 __all__ = ["conditions", "decision_of", "prepared_sampler"]
 
@@ -43,13 +46,14 @@ def prepared_sampler(outlined: Outline, *, prune: bool) -> Sampler:
     sampler.prepare()
     if not prune:
         return sampler
-    decision = decide(sampler.plan, sampler.engine.batch, sampler.engine.met)
-    if decision.impossible:
+    decision = _decided(sampler, sampler.engine.met) if variables_of(sampler.plan.graph) else None
+    if decision is not None and decision.impossible:
         checks = [sampler.plan.checks[number] for number in decision.impossible]
         return Sampler(outlined, impossible=tuple(dict.fromkeys(check.label for check in checks)))
+    parts = () if decision is None else decision.parts
     pruning = _narrowed(outlined, sampler.met(), _settled(sampler, decision))
-    domain = pruning.domain.with_finite(decision.parts)
-    apart = _apart(pruning.domain, decision.parts)
+    domain = pruning.domain.with_finite(parts)
+    apart = _apart(pruning.domain, parts)
     if pruning.domain.with_finite(apart).volume < BETTER * domain.volume:
         pruning = _narrowed(outlined, sampler.met(), ())
         domain = pruning.domain.with_finite(apart)
@@ -67,14 +71,21 @@ def _apart(domain: Domain, parts: Sequence[Finite]) -> tuple[Finite, ...]:
     return tuple(part for part in parts if joined.isdisjoint(part.axes.tolist()))
 
 
-def decision_of(outlined: Outline) -> Decision:
+def decision_of(outlined: Outline) -> "Decision":
     """The finite part of an outline, whether or not it rejects candidates."""
-    sampler = Sampler(outlined)
-    return decide(sampler.plan, sampler.engine.batch, {}, always=True)
+    return _decided(Sampler(outlined), {}, always=True)
 
 
-def _settled(sampler: Sampler, decision: Decision) -> frozenset[Node]:
+def _decided(sampler: Sampler, met: Mapping[int, NDArray[np.bool_]], *, always: bool = False) -> "Decision":
+    from scenic.analysis.finite.deciding import decide  # programs without discrete values do not wait for it
+
+    return decide(sampler.plan, sampler.engine.batch, met, always=always)
+
+
+def _settled(sampler: Sampler, decision: "Decision | None") -> frozenset[Node]:
     """Return the nodes of the conditions that always hold where draws are made as decided."""
+    if decision is None:
+        return frozenset()
     checks = (sampler.plan.checks[number] for number in decision.settled)
     return frozenset(check.node for check in checks if isinstance(check, NodeCheck))
 

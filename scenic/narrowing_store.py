@@ -8,7 +8,6 @@ import hashlib
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final
 
@@ -21,6 +20,7 @@ from scenic.analysis.identity import identity
 from scenic.graph.domain import Domain
 from scenic.graph.node import Graph, Node
 from scenic.runtime.geometry.store import Arrays, find, keep, store_folder
+from scenic.runtime.ground.library_versions import library_version
 
 __all__ = ["contract_once"]
 
@@ -34,9 +34,6 @@ _FOLDERS: Final = ("analysis", "graph", "runtime")
 
 _LIBRARIES: Final = ("scipy", "shapely", "manifold3d")
 """Libraries, besides NumPy, that readings of bounds call."""
-
-_VERSIONS: Final = ("version.py", "_version.py")
-"""Modules in which libraries declare their versions."""
 
 
 def contract_once(graph: Graph, conditions: Sequence[Fact], met: Mapping[Node, NDArray[np.bool_]]) -> Pruning:
@@ -100,18 +97,5 @@ def _makers() -> NDArray[np.uint8]:
         digest.update(file.relative_to(here).as_posix().encode() + b"\0")
         digest.update(file.read_bytes())
     for library in _LIBRARIES:
-        digest.update(f"{library} {_version(library)}".encode())
+        digest.update(library_version(library).encode())
     return np.frombuffer(digest.digest(), dtype=np.uint8)
-
-
-def _version(library: str) -> str:
-    """The version of a library, told without an import: the text of its module of versions, else its file's size and time."""
-    spec = find_spec(library)
-    if spec is None or spec.origin is None:
-        return "absent"
-    for name in _VERSIONS:
-        file = Path(spec.origin).with_name(name)
-        if file.is_file():
-            return file.read_text(encoding="utf-8")
-    status = Path(spec.origin).stat()
-    return f"{status.st_size} {status.st_mtime_ns}"

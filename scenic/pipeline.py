@@ -273,12 +273,17 @@ class _Options:
     settle: tuple[float, float, bool] | None = None
     """Seconds of a simulation in which no object moves, the distance that is not yet moving (metres), and whether settled poses are kept."""
 
-    def digest(self, text: str) -> str:
-        """The digest of a program, whatever its comments and blanks, and of all options that change its scenes."""
-        from scenic.compiler.parser import bare_text  # takes long to import, and few runs need it
+    def digest(self, text: str, bare: str | None) -> str:
+        """Return the digest of a program, whatever its comments and blanks, and of all options that change its scenes.
 
+        ``bare`` is its text without these, where that is known.
+        """
+        if bare is None:
+            from scenic.compiler.parser import bare_text  # takes long to import, and few runs need it
+
+            bare = bare_text(text)
         return program_digest(
-            bare_text(text),
+            bare,
             {
                 "params": dict(self.params),
                 "model": self.model,
@@ -332,7 +337,8 @@ class _Ran:
 
 def _scenario(text: str, filename: str, options: _Options, *, keep: bool = False) -> Scenario:
     """From text to scenario: compile, run, outline, contract."""
-    ran = _run(_compiled(text, filename, keep=keep), text, filename, options)
+    compiled = _compiled(text, filename, keep=keep)
+    ran = _run(compiled.code, text, filename, options)
     scenario = Scenario(
         ran.program,
         ran.outline,
@@ -343,14 +349,14 @@ def _scenario(text: str, filename: str, options: _Options, *, keep: bool = False
         names=ran.names,
         regions=ran.regions,
         sampler=prepared_sampler(ran.outline, prune=options.prune),
-        digest=cache(partial(options.digest, text)),
+        digest=cache(partial(options.digest, text, compiled.bare_text)),
         options=options.given(),
     )
     promote_young()
     return scenario
 
 
-def _compiled(text: str, filename: str, *, keep: bool) -> CodeType:
+def _compiled(text: str, filename: str, *, keep: bool) -> loader.ProgramCode:
     """Return the code of a program, which ``keep`` puts into the store for later runs."""
     try:
         return loader.program_code(Source(text, filename), programs_folder() if keep else None)

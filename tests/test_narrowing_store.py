@@ -89,7 +89,7 @@ def test_what_other_code_made_is_not_used(
     first = scenarioFromString(CORRIDOR)
     (file,) = store.glob("*.arrays")
     if fault == "code":
-        monkeypatch.setattr(narrowing_store, "_version", lambda _library: "another")
+        monkeypatch.setattr(narrowing_store, "library_version", lambda _library: "another")
     elif fault == "damage":
         file.write_bytes(file.read_bytes()[:-20])
     else:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from scenic.analysis.boxes import Boxes
 from scenic.analysis.facts import Fact
-from scenic.analysis.paving import RARE, pave_by_trial, share_that_may_hold
+from scenic.analysis.paving import POINTS, RARE, pave_by_trial, share_that_may_hold
 from scenic.dataclass import dataclass
 from scenic.graph import bounding
 from scenic.graph.bounds import Bounds, Floats
@@ -40,13 +40,25 @@ CANDIDATES: Final = 1000
 """Candidates whose cost measures what narrowing may cost."""
 
 TIMES: Final = 100
-"""The work of narrowing, at most, over that of so many candidates; bounds of a box are one element, as values of a lane are."""
+"""The work of narrowing, at most, over that of these candidates; bounds of a box are one element, as values of a lane are."""
 
 MOST_WORK: Final = 5_000_000
 """Elements, at most, whatever the program (but for the first passes)."""
 
 COSTLY: Final = 200_000
 """Elements after which a paving ends that has little left to gain."""
+
+SCENES: Final = 50
+"""Paving may take, at most, the work of the candidates that so many scenes need without it."""
+
+OFTEN: Final = 0.25
+"""The share of candidates that meet all conditions from which on paving, which would save three of four at most, must be nearly free."""
+
+LEAST_WORK: Final = 30_000
+"""Elements that paving may always cost where fewer meet them: some hundredths of a second."""
+
+FREE: Final = 8_000
+"""Elements that are nearly free: some milliseconds."""
 
 FIXED: Final = 64
 """Elements that looking at a node costs, however few boxes there are."""
@@ -140,8 +152,9 @@ def _pave(
 
     ``None`` where some group cannot hold.
     """
-    groups = [part for group in independent(conditions) for part in _small_groups(graph, group, hull, met)]
-    work = min(MOST_WORK, TIMES * CANDIDATES * len(graph.nodes))
+    groups, work = independent(conditions), _work(graph, _share_met(conditions, met))
+    if work > FREE:
+        groups = [part for group in groups for part in _small_groups(graph, group, hull, met)]
     pavings: list[Boxes] = []
     vain: Counter[tuple[int, ...]] = Counter()
     for group in groups:
@@ -158,6 +171,14 @@ def _pave(
         vain[shape] += paving.volume(axes) > FACTOR_GAIN * hull.volume(axes)
         pavings.append(paving)
     return pavings
+
+
+def _work(graph: Graph, share: float) -> int:
+    """Elements that paving may cost where this share of the candidates meets all conditions; 0 if that is not known."""
+    if share >= OFTEN:
+        return FREE
+    candidates = min(TIMES * CANDIDATES, SCENES / share if share else math.inf)
+    return max(LEAST_WORK, min(MOST_WORK, int(candidates * len(graph.nodes))))
 
 
 def _share_met(conditions: Sequence[Fact], met: Mapping[Node, Mask]) -> float:
@@ -337,7 +358,7 @@ class _Network:
     def pave(self, boxes: Boxes) -> Boxes:
         """Split boxes along the axes below the conditions and narrow the parts, up to a number of boxes."""
         axes = np.array(sorted(self.axes.values()))
-        if not 0 < len(axes) <= SPLIT_AXES:
+        if not 0 < len(axes) <= SPLIT_AXES or len(self.inner) * (FIXED + POINTS) > self._work:
             return boxes
         are_few = self._combinations() <= LARGEST_ENUMERATION
         share = 1.0 if are_few else share_that_may_hold(self.once, boxes, axes)

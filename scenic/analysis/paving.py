@@ -206,4 +206,4 @@ def _widest(boxes: Boxes, axes: NDArray[np.intp]) -> NDArray[np.intp]:
     return widest
 
 
-__all__ = ["RARE", "pave_by_trial", "share_that_may_hold"]
+__all__ = ["POINTS", "RARE", "pave_by_trial", "share_that_may_hold"]

@@ -16,7 +16,7 @@ from functools import cache
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import CodeType
-from typing import Final
+from typing import Final, NamedTuple
 
 import scenic.compiler
 import scenic.language
@@ -27,6 +27,7 @@ from scenic.language.source import Source, read_source
 __all__ = [
     "PROGRAM_SUFFIX",
     "SUFFIXES",
+    "ProgramCode",
     "ScenicLoader",
     "cache_file",
     "find_module",
@@ -97,7 +98,7 @@ class ScenicLoader(SourceFileLoader):
         cache_path = cache_file(source.filename)
         if cache_path is not None:
             code = _read(cache_path, key)
-            if code is not None:
+            if isinstance(code, CodeType):
                 return code
         code = _compiled(source)
         if cache_path is not None and not sys.dont_write_bytecode:
@@ -118,25 +119,37 @@ def _compiled(source: Source, *, errors_only: bool = False) -> CodeType:
     return compilation.code
 
 
-def program_code(source: Source, folder: Path | None) -> CodeType:
+class ProgramCode(NamedTuple):
+    """The code of a program."""
+
+    code: CodeType
+    bare_text: str | None
+    """Its tokens (`scenic.compiler.parser.bare_text`); ``None`` where nothing is kept: few then need it."""
+
+
+def program_code(source: Source, folder: Path | None) -> ProgramCode:
     """Return the code of the program of a command, kept in a folder of its user's, where there is one, and not beside the program.
 
     Raises `ScenicSyntaxError`, which holds its errors, if it has any.
     """
     fingerprint = None if folder is None or sys.dont_write_bytecode else _fingerprint()
     if folder is None or fingerprint is None or not _is_private(folder):
-        return _compiled(source, errors_only=True)
+        return ProgramCode(_compiled(source, errors_only=True), None)
     key = _key(source)
     settings = f"{fingerprint}-{sys.implementation.cache_tag}-{sys.flags.optimize}"
     file = folder / f"{hashlib.sha256(key + settings.encode()).hexdigest()}{PROGRAM_SUFFIX}"
-    code = _read(file, key)
-    if code is None:
-        code = _compiled(source, errors_only=True)
-        _write(file, key, code)
-    else:
-        with contextlib.suppress(OSError):
-            os.utime(file)  # what was used longest ago is removed first
-    return code
+    match _read(file, key):
+        case (CodeType() as code, str() as text):
+            with contextlib.suppress(OSError):
+                os.utime(file)  # what was used longest ago is removed first
+        case _:
+            from scenic.compiler.parser import (
+                bare_text,  # takes long to import, and kept code needs none of it
+            )
+
+            code, text = _compiled(source, errors_only=True), bare_text(source.text)
+            _write(file, key, (code, text))
+    return ProgramCode(code, text)
 
 
 def _is_private(folder: Path) -> bool:
@@ -190,8 +203,8 @@ def _key(source: Source) -> bytes:
     return digest.digest()
 
 
-def _read(file: Path, key: bytes) -> CodeType | None:
-    """Return the cached code if it is whole and was made from this source."""
+def _read(file: Path, key: bytes) -> object:
+    """Return the cached code, or what stands there with it, if it is whole and was made from this source; else ``None``."""
     try:
         data = file.read_bytes()
     except OSError:
@@ -201,13 +214,12 @@ def _read(file: Path, key: bytes) -> CodeType | None:
     if data[:_DIGEST] != key or data[_DIGEST : 2 * _DIGEST] != hashlib.sha256(body).digest():
         return None
     try:
-        code = marshal.loads(body)
+        return marshal.loads(body)
     except (EOFError, ValueError, TypeError):
         return None
-    return code if isinstance(code, CodeType) else None
 
 
-def _write(file: Path, key: bytes, code: CodeType) -> None:
+def _write(file: Path, key: bytes, code: CodeType | tuple[CodeType, str]) -> None:
     """Writes a cache that is complete or absent; a folder that cannot be written stays without."""
     import tempfile  # only where something is written, and slow to import
 

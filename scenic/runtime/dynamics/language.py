@@ -1,4 +1,7 @@
-"""The part of the prelude that is about time: what generated code of dynamic statements calls."""
+"""The part of the prelude that is about time: what generated code of dynamic statements calls.
+
+What few programs use, or simulations alone, is imported by the methods that need it, since each start of a program waits for the rest.
+"""
 
 import inspect
 from collections.abc import Callable, Sequence
@@ -19,20 +22,17 @@ from scenic.runtime.description.definitions import (
     Monitor,
     define,
 )
-from scenic.runtime.dynamics import margins, statements
+from scenic.runtime.dynamics import statements
 from scenic.runtime.dynamics.activations import Termination, Yielded
-from scenic.runtime.dynamics.overriding import override_before
-from scenic.runtime.dynamics.recording import check_duration, check_target
-from scenic.runtime.dynamics.run import Run, RunContext
-from scenic.runtime.dynamics.scenarios import not_a_monitor
+from scenic.runtime.dynamics.run_context import RunContext
 from scenic.runtime.ground.context import Context, current, here
 from scenic.runtime.temporal.formulas import is_temporal
-from scenic.runtime.temporal.monitors import FormulaMonitor as Follower
 from scenic.runtime.values.lazy import MEMO, is_lazy, resolve
 from scenic.runtime.values.values import describe, is_number
 
 if TYPE_CHECKING:
     from scenic.runtime.description.outcome import Module, Program
+    from scenic.runtime.dynamics.run import Run
 
 __all__ = ["Dynamics"]
 
@@ -52,7 +52,7 @@ class Dynamics:
         raise AssertionError
 
     @property
-    def _run(self) -> Run | None:
+    def _run(self) -> "Run | None":
         """The running simulation."""
         active = current.get()
         return active.run if type(active) is RunContext else None
@@ -161,7 +161,9 @@ class Dynamics:
 
     def margin(self, symbols: Sequence[str], operands: Sequence[object]) -> float | None:
         """By how much ``a < b <= c`` or the like holds, the least of its parts; ``None`` where that is not known."""
-        return margins.margin(symbols, operands)
+        from scenic.runtime.dynamics.margins import margin
+
+        return margin(symbols, operands)
 
     def at_present(self, value: object) -> Any:
         """A value, at the present place of the agent whose behavior is running; in monitors and compose blocks, of the ego.
@@ -189,6 +191,8 @@ class Dynamics:
         """``override``."""
         run = self._run
         if run is None:
+            from scenic.runtime.dynamics.overriding import override_before
+
             override_before(target, specifiers, mode_2d=self._context.mode_2d)
         else:
             run.current.overrides.apply(target, specifiers)
@@ -196,6 +200,8 @@ class Dynamics:
     def require_monitor(self, monitor: object, *, name: object = None) -> None:
         """``require monitor``."""
         if not isinstance(monitor, Monitor):
+            from scenic.runtime.dynamics.scenarios import not_a_monitor
+
             raise not_a_monitor(monitor)
         use = MonitorUse(monitor, label_of(name) or _numbered("monitor"))
         if self._run is not None:
@@ -232,6 +238,8 @@ class Dynamics:
         to: object = None,
     ) -> None:
         """``record``."""
+        from scenic.runtime.dynamics.recording import check_duration, check_target
+
         span = here()
         check_duration(every, "every", 0, span)
         check_duration(after, "after", 0, span)
@@ -255,6 +263,8 @@ class Dynamics:
             return
         if chance < 1 and (context.generator is None or context.generator.random() >= chance):
             return
+        from scenic.runtime.temporal.monitors import FormulaMonitor as Follower
+
         before, context.evaluating = context.evaluating, True
         try:
             verdict = Follower(requirement.formula).add(lambda index: bool(requirement.atoms[index]()))

@@ -16,11 +16,12 @@ from scenic.runtime.dynamics.copies import Copies
 from scenic.runtime.dynamics.draws import Draws, Source
 from scenic.runtime.dynamics.recording import Recording
 from scenic.runtime.dynamics.requirements import Followed
+from scenic.runtime.dynamics.run_context import RunContext
 from scenic.runtime.dynamics.scenarios import ScenarioActivation
-from scenic.runtime.ground.context import Context, Locator, Namer, current, here, warn
+from scenic.runtime.ground.context import Locator, Namer, current, here, warn
 from scenic.runtime.instances.objects import Object
 
-__all__ = ["Ending", "Run", "RunContext", "Simulated"]
+__all__ = ["Ending", "Run", "Simulated"]
 
 
 class Simulated(Protocol):
@@ -67,27 +68,6 @@ class Ending:
     def __init__(self, kind: str, reason: str) -> None:
         self.kind = kind
         self.reason = reason
-
-
-class RunContext(Context):
-    """The context of a running simulation: distributions draw at once."""
-
-    def __init__(self, run: "Run", locate: Locator, name: Namer, *, mode_2d: bool) -> None:
-        super().__init__(locate=locate, name=name, generator=run.draws, mode_2d=mode_2d)  # type: ignore[arg-type] # it has `random`
-        self.filename = run.program.context.filename
-        self.run = run
-        self.guarding = False
-        """True if a guard, or the condition of an interrupt or ``until``, is being evaluated."""
-
-    @property
-    def present(self) -> Sequence[Any]:
-        """The objects of the simulation as they are now."""
-        return tuple(self.run.simulation.objects)
-
-    def settled(self, function: Callable[..., Any]) -> Callable[..., Any]:
-        """Return a function of the program over the values of the simulation."""
-        own: Callable[..., Any] = self.run.copies.value(function)
-        return own
 
 
 class Run:

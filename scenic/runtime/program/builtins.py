@@ -10,7 +10,7 @@ from typing import Any
 from scenic.language.errors import InvalidScenarioError, UnknownParameterError
 from scenic.language.names import NAMES
 from scenic.runtime.description.outcome import Program
-from scenic.runtime.dynamics.run import RunContext
+from scenic.runtime.dynamics.run_context import RunContext
 from scenic.runtime.ground.context import current, here
 from scenic.runtime.ground.used_files import note_file
 from scenic.runtime.regions import algebra as algebra  # registers what regions do together

@@ -32,7 +32,7 @@ from scenic.runtime.description.declarations import Closure, label_of, required
 from scenic.runtime.description.definitions import behavior_of
 from scenic.runtime.description.outcome import Module, Program, Requirement
 from scenic.runtime.dynamics.language import Dynamics
-from scenic.runtime.dynamics.run import RunContext
+from scenic.runtime.dynamics.run_context import RunContext
 from scenic.runtime.elements.functions import convert
 from scenic.runtime.elements.operators import OPERATORS
 from scenic.runtime.elements.resolution import build, check_assigned

@@ -16,7 +16,7 @@ from scenic.language.errors import InvalidScenarioError
 from scenic.language.operators import OPERATORS, Function, Operator
 from scenic.language.specifiers import SPECIFIERS, SpecifierDeclaration
 from scenic.runtime.description import mutation
-from scenic.runtime.dynamics.run import RunContext
+from scenic.runtime.dynamics.run_context import RunContext
 from scenic.runtime.elements.operators import operation
 from scenic.runtime.elements.resolution import build
 from scenic.runtime.elements.specifiers import Specifier, specify

@@ -22,6 +22,7 @@ from scenic.runtime.geometry.meshes.mesh import Mesh
 from scenic.runtime.geometry.meshes.solids import proper_volume
 from scenic.runtime.geometry.meshes.topology import merge_vertices
 from scenic.runtime.geometry.store import Arrays, kept
+from scenic.runtime.ground.library_versions import library_version
 
 MOST_TRIANGLES: Final = 4_000_000
 """Triangles up to which a mesh is taken: indices and tables for one as large take some gigabytes."""
@@ -99,10 +100,8 @@ def load_mesh(path: str | Path, *, unify: bool = True, volume: bool = True) -> M
     if file_type in _WITH_NEIGHBOURS:
         arrays = finished()
     else:
-        from importlib.metadata import version  # imports `email`, and few programs read meshes
-
         # Who reads and who repairs the mesh decides its content, too.
-        libraries = [f"{library} {version(library)}" for library in ("trimesh", "manifold3d")]
+        libraries = [library_version(library) for library in ("trimesh", "manifold3d")]
         choices = f"{file_type} {unify} {volume} {libraries}\0".encode()
         arrays = kept(_KIND, hashlib.sha256(choices + data).digest(), finished)
     return Mesh(arrays["vertices"], arrays["faces"])
