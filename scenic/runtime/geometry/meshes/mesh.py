@@ -167,7 +167,9 @@ class Mesh:
         """Vertices ``(h, 3)`` of which one is farthest in any direction: those of the hull, all of a flat mesh."""
         try:
             return self.hull.vertices
-        except RuntimeError:  # scipy's `QhullError`, which takes long to import: it lies in a plane, perhaps in a tilted one
+        except (
+            RuntimeError
+        ):  # scipy's `QhullError`, which takes long to import: it lies in a plane, perhaps in a tilted one
             return self.vertices[distinct(self.faces)]
 
     def _computed_hull(self) -> Arrays:
