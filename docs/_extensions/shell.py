@@ -12,8 +12,8 @@ from scenic.cli.main import main
 
 __all__ = ["WrongCommandError", "commands_of", "run_commands"]
 
-FEW: Final = 2
-"""Scenes and simulations made in place of more: what a page makes by thousands, its test makes by twos."""
+FEW: Final = 3
+"""Scenes and simulations made in place of more: what a page makes by thousands, its test makes by threes."""
 
 _COUNTS: Final = frozenset({"-n", "--count", "--first", "--part-size"})
 _PROCESSES: Final = frozenset({"-j", "--jobs"})

@@ -9,6 +9,7 @@ from fuzz.properties.signatures import SIGNATURES
 from scenic.compiler import tree as scenic
 from scenic.compiler.checks import CheckContext, lint
 from scenic.compiler.resolver import resolve
+from scenic.compiler.semantics.modules import Module
 from scenic.language.source import Source
 
 __all__ = ["OF_TEXTS", "operate"]
@@ -52,7 +53,7 @@ def checks_never_raise(case: Case) -> None:
     for attempt in range(_ATTEMPTS):
         tree = case.fresh_tree()
         operate(tree, random.Random(case.number + attempt))
-        lint(CheckContext(tree, source, resolve(tree, source)))
+        lint(CheckContext(Module(source, tree, resolve(tree, source), is_scenic=True, broken=False)))
 
 
 def operate(tree: ast.Module, draw: random.Random) -> None:

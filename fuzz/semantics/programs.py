@@ -121,7 +121,10 @@ class _Maker:
         return self.one(depth, leaves, others)
 
     def orientation(self) -> str:
-        ways = [self.angle, lambda: f"({self.angle()}, {self.angle()}, {self.angle()})"]
+        ways: list[Callable[[], str]] = [
+            self.angle,
+            lambda: f"({self.angle()}, {self.angle()}, {self.angle()})",
+        ]
         if self.objects:
             ways.append(lambda: f"{self.thing()}.orientation")
         return ways[self.upto(len(ways) - 1)]()
@@ -185,7 +188,7 @@ class _Maker:
     # Objects
 
     def position(self) -> list[str]:
-        ways = [
+        ways: list[Callable[[], str]] = [
             lambda: f"at {self.vector()}",
             lambda: f"in {self.region()}",
             lambda: f"on {self.region()}",

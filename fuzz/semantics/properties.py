@@ -72,7 +72,7 @@ def load(text: str, *, prune: bool = True) -> scenic.Scenario:
 
 def sampled(scenario: scenic.Scenario, *, lanes: int | None) -> Outcome:
     """The outcome of sampling a scenario; an error without a code is raised as an exception."""
-    found = []
+    found: list[tuple[Any, ...] | None] = []
     try:
         results = scenario.stream(_SCENES, seed=_SEED, max_attempts=_ATTEMPTS, lanes=lanes)
         found.extend(None if isinstance(each, Exhausted) else fingerprint(each) for each in results)
@@ -178,7 +178,8 @@ def simulations_repeat(run: Run) -> None:
             except Exception as error:  # noqa: BLE001 - it must have a code
                 ways.append(coded(error))
             else:
-                ways.append(None if simulation is None else repr(simulation.result.trajectory))
+                result = None if simulation is None else simulation.result
+                ways.append("" if result is None else repr(result.trajectory))
         assert ways[0] == ways[1]
 
 

@@ -5,8 +5,9 @@ of its node. Without them it would parse, and every tool after the parser would 
 """
 
 import ast
-from collections.abc import Iterator, Sized
+from collections.abc import Iterator, Mapping, Sized
 from pathlib import Path
+from typing import Final
 
 from grammar.generator.actions import SOURCES
 from grammar.generator.analysis import Analysis
@@ -20,7 +21,7 @@ from scenic.language.statements import STATEMENTS
 
 __all__ = ["check_declarations"]
 
-_TABLES = {
+_TABLES: Final[Mapping[str, tuple[str, str, Mapping[str, Sized]]]] = {
     "Operation": ("operator", "operators", {name: each.operands for name, each in OPERATORS.items()}),
     "SpecifierPhrase": (
         "specifier",
@@ -43,7 +44,7 @@ def check_declarations(analysis: Analysis) -> None:
     """Raise `GrammarError` if the grammar has an operator, specifier or statement that is not declared."""
     precedence = Precedence(analysis)
     for form in (*precedence.forms, *precedence.specifiers):
-        if form.node in _TABLES and form.operator is not None:
+        if form.node is not None and form.node in _TABLES and form.operator is not None:
             what, module, declarations = _TABLES[form.node]
             text = " ".join(form.words)
             if form.operator not in declarations:
