@@ -5,8 +5,9 @@ from typing import Final
 
 from scenic.analysis.contraction import contract
 from scenic.analysis.facts import Fact
-from scenic.analysis.smt import Contradiction, Support, Verdict, judge
+from scenic.analysis.smt import Contradiction, Support, judge
 from scenic.analysis.supports import supports
+from scenic.analysis.terms import has_solver
 from scenic.analysis.traces import contradictions
 from scenic.graph.bounding import overall
 from scenic.graph.domain import Domain
@@ -31,22 +32,26 @@ def prove(graph: Graph, conditions: Sequence[Fact]) -> tuple[Diagnostic, ...]:
     if not conditions:
         return ()
     ordered = sorted(conditions, key=_place)
-    verdict = judge(ordered)
-    found = [_contradiction(item, verdict) for item in verdict.contradictions]
+    found: list[Diagnostic] = []
+    tautologies: Collection[Fact] = ()
+    if has_solver():
+        verdict = judge(ordered)
+        found = [_contradiction(item, verdict.encoding.nodes) for item in verdict.contradictions]
+        tautologies = verdict.tautologies
     if not found:
         core = _by_intervals(graph, ordered)
         if core:
-            found = [_contradiction(Contradiction(core, ()), verdict)]
-    found += [_tautology(item) for item in ordered if item in verdict.tautologies or _always_holds(item)]
+            found = [_contradiction(Contradiction(core, ()))]
+    found += [_tautology(item) for item in ordered if item in tautologies or _always_holds(item)]
     return tuple(found)
 
 
 def prove_in_time(
     requirements: Sequence[Required], told: Collection[Span | None] = ()
 ) -> tuple[Diagnostic, ...]:
-    """Temporal requirements that no simulation meets (SC700); ``told`` are the places of requirements that no scene meets, which are reported already."""
+    """Temporal requirements that no simulation meets (SC700), none without the solver; ``told`` are the places of requirements that no scene meets, which are reported already."""
     found = []
-    for core, length in contradictions(requirements):
+    for core, length in contradictions(requirements) if has_solver() else ():
         *others, last = core
         if last.span in told:
             continue
@@ -113,7 +118,8 @@ def _by_intervals(graph: Graph, conditions: Sequence[Fact]) -> tuple[Fact, ...]:
     return core
 
 
-def _contradiction(item: Contradiction, verdict: Verdict) -> Diagnostic:
+def _contradiction(item: Contradiction, nodes: Sequence[Node] = ()) -> Diagnostic:
+    """A contradiction as a diagnostic; ``nodes`` are those that the solver has read."""
     *others, last = item.conditions
     subject = f"'{last.label}', which the language requires," if last.built_in else "this requirement"
     if others:
@@ -132,7 +138,7 @@ def _contradiction(item: Contradiction, verdict: Verdict) -> Diagnostic:
     phrases: dict[Span, tuple[str, list[str]]] = {}
     for support in item.supports:
         if isinstance(support.node.span, Span):
-            noun, phrase = _words(support, verdict)
+            noun, phrase = _words(support, nodes)
             phrases.setdefault(support.node.span, (noun, []))[1].append(phrase)
     labels += [Label(span, f"{noun} {' and '.join(parts)}") for span, (noun, parts) in phrases.items()]
     labels.sort(key=lambda label: (label.filename or "", label.span))
@@ -156,11 +162,11 @@ _NOUNS: Final = {
 """Values of distributions in words, by operation."""
 
 
-def _words(support: Support, verdict: Verdict) -> tuple[str, str]:
+def _words(support: Support, nodes: Sequence[Node]) -> tuple[str, str]:
     """A support in words: of what, and what about it."""
     operation = support.node.operation.name
     noun = f"this {_NOUNS.get(operation, operation)}"
-    options = _options(support.node, verdict.encoding.nodes)
+    options = _options(support.node, nodes)
     if options:
         return noun, f"is one of {', '.join(options)}"
     return noun, support.phrase

@@ -7,6 +7,7 @@ counts. Numbers are real terms throughout; whole numbers are integers seen as re
 from collections.abc import Sequence
 from enum import Enum, unique
 from fractions import Fraction
+from importlib.util import find_spec
 from typing import Any, Final
 
 from scenic.graph.kinds import Kind
@@ -19,6 +20,14 @@ BUDGET: Final = 1_000_000
 
 TOTAL: Final = 20_000_000
 """The count for all questions about one set of formulas, after which nothing more is decided."""
+
+
+def has_solver() -> bool:
+    """Return whether the solver's library is installed."""
+    try:
+        return find_spec("z3") is not None
+    except ValueError:  # what stands in its place has no origin
+        return False
 
 
 @unique

@@ -1,10 +1,12 @@
 """Findings that are proved by running and analysing a program: `scenic check --deep`."""
 
-from importlib.util import find_spec
 from pathlib import Path
+from typing import Final
 
 from scenic.analysis.contraction import contract
 from scenic.analysis.finite.explaining import contradiction, narrowed_values
+from scenic.analysis.report import prove, prove_dead, prove_in_time
+from scenic.analysis.terms import has_solver
 from scenic.deep.dead_branches import prove_branches
 from scenic.failures import diagnose
 from scenic.language.diagnostics import Diagnostic, Severity
@@ -16,18 +18,17 @@ from scenic.pipeline import load
 __all__ = ["deep_check"]
 
 
+_ADVICE: Final = Diagnostic(
+    "SC604",
+    "the library z3 is not installed: contradictions were looked for by intervals and tables only",
+    None,
+    Severity.INFORMATION,
+    help=f"install it: {installation('deep')}",
+)
+
+
 def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
     """Return the faults of a program that running and analysing it finds (no scene is sampled)."""
-    if find_spec("z3") is None:
-        from scenic.formats.imaging import MissingLibraryError
-
-        missing = MissingLibraryError(
-            "the deep check needs the library z3, which is not installed",
-            help=f"install it: {installation('deep')}",
-        )
-        return (missing.diagnostic(),)
-    from scenic.analysis.report import prove, prove_dead, prove_in_time
-
     filename = str(path)
     try:
         scenario = load(path, prune=False)
@@ -49,6 +50,8 @@ def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
         domain = contract(graph, facts).domain.with_finite(narrowed_values(decision))
         findings += prove_dead(graph, domain)
         findings += prove_branches(scenario.text, filename, scenario.program, graph.nodes, facts)
+    if not has_solver():
+        findings += (_ADVICE,)
     return tuple(
         Diagnostic(
             item.code,

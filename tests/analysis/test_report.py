@@ -1,6 +1,8 @@
 """What is told of contradictions: code, places, words."""
 
 import itertools
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -296,11 +298,16 @@ def test_places_in_other_files_are_told_with_them():
     assert found.filename == "a"
 
 
-def test_the_library_is_asked_for_where_it_is_missing(monkeypatch, tmp_path):
+def test_without_the_solver_intervals_and_tables_find_contradictions(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "z3", None)
     path = tmp_path / "program.scenic"
-    path.write_text("x = Range(0, 1)\nrequire x > 2\n")
-    assert [item.code for item in deep_check(path)] == ["SC700"]
-    monkeypatch.setattr("scenic.deep.findings.find_spec", lambda name: None)
-    (found,) = deep_check(path)
-    assert found.code == "SC604"
-    assert "scenic-lang[deep]" in found.help
+    path.write_text(
+        "ego = new Object at (Range(0, 10), 0)\na = DiscreteRange(0, 9)\nrequire ego.x > 6\nrequire a * ego.x < 3\nrequire a > 2\n"
+    )
+    found, advice = deep_check(path)
+    assert (found.code, found.span.line, len(found.labels)) == ("SC700", 5, 2)
+    assert (advice.code, advice.severity) == ("SC604", Severity.INFORMATION)
+    path.write_text("ego = new Object\na, b = Uniform(1, 2), Uniform(1, 2)\nrequire a != b\nrequire a == b\n")
+    assert [item.code for item in deep_check(path)] == ["SC700", "SC604"]
