@@ -140,7 +140,7 @@ class ImageSink:
         """Number of images that there are not, since the camera's object does not take part in its scene."""
 
     def add(self, rows: memoryview) -> None:
-        """The next rows."""
+        """Write the next rows."""
         for row in _rows_of(rows):
             if self._shard is not None:
                 self._shard.write(row.content)
@@ -213,7 +213,7 @@ def image_files(index: Path) -> list[str]:
 
 
 def damaged_files(folder: Path, part: Part, form: str) -> Iterator[tuple[str, str]]:
-    """Files of a part, whose own file is whole, that are missing or changed, and what is wrong with them."""
+    """Yield files of a part, whose own file is whole, that are missing or changed, and what is wrong with them."""
     if form == "tar":
         index = (folder / part.file).with_suffix(".json")
         if not index.is_file():

@@ -84,7 +84,7 @@ class PartInProgress:
         return entries[:good]
 
     def add(self, made: Made) -> None:
-        """The next scenes."""
+        """Add the next scenes."""
         numbers = np.arange(made.job.first, made.job.last, dtype=np.int64)
         attempts = np.zeros(len(numbers), dtype=np.int64)
         for item in made.missing:

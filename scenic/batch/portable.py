@@ -157,7 +157,7 @@ def _module_digest(module: ModuleType) -> str:
 
 
 def versions() -> dict[str, str]:
-    """Versions of Python, of this package and of the libraries that may change a scene."""
+    """Return the versions of Python, of this package and of the libraries that may change a scene."""
     found = {"python": platform.python_version(), "scenic": _version("scenic-lang")}
     return found | {name: _version(name) for name in _LIBRARIES}
 

@@ -75,7 +75,7 @@ class SceneFileSink:
         self._entries: list[dict[str, Any]] = []
 
     def add(self, rows: memoryview) -> None:
-        """The next rows."""
+        """Write the next rows."""
         for content, entry in _rows_of(rows):
             for name, data in members(content):
                 target = self._path.parent / name
@@ -122,7 +122,7 @@ def scene_file_names(index: Path) -> list[str]:
 
 
 def damaged_scene_files(folder: Path, part: Part) -> Iterator[tuple[str, str]]:
-    """Files of a part that are missing or changed, and what is wrong with them."""
+    """Yield files of a part that are missing or changed, and what is wrong with them."""
     names: set[str] = set()
     for entry in scene_file_rows(folder / part.file):
         for name, digest in {**entry["files"], **entry["shared"]}.items():

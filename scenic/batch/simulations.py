@@ -231,7 +231,7 @@ class Simulations:
         )
 
     def known(self, k: int) -> SimulationRow | None:
-        """Simulation ``k`` as an earlier run has kept it whole, if that was of the same program, seed and settings."""
+        """Return simulation ``k`` as an earlier run has kept it whole, if that was of the same program, seed and settings."""
         path = self._file(k)
         if path is None or self._shown:
             return None
@@ -330,7 +330,7 @@ class Simulations:
 
 
 def nothing_happens(scenario: "Scenario", simulator: "Simulator") -> Diagnostic | None:
-    """SC407, if nothing moves in any simulation of a scenario: no object has a behavior or a velocity, and none falls."""
+    """Return SC407 if nothing moves in any simulation of a scenario: no object has a behavior or a velocity, and none falls."""
     from scenic.runtime.values.values import is_random
 
     if type(simulator).__name__ not in _WITHOUT_FALLING or _RUNS.search(scenario.text):

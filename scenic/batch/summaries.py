@@ -45,7 +45,7 @@ class SettingRuns:
 
 
 def verdict_of(row: SimulationRow) -> str:
-    """``held``, ``violated``, ``rejected`` or ``failed``."""
+    """Return ``held``, ``violated``, ``rejected`` or ``failed``."""
     if row.error is not None:
         return "failed"
     if row.about is None:

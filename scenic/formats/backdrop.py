@@ -13,7 +13,7 @@ _LINE_COLOR: Final = (0.55, 0.57, 0.61)
 
 
 def sky_color(directions: Singles, scenery: Scenery = USUAL) -> Singles:
-    """Linear colours ``(3, n)`` in directions ``(n, 3)``: a gradient; below the horizon it is the horizon's."""
+    """Return linear colours ``(3, n)`` in directions ``(n, 3)``: a gradient; below the horizon it is the horizon's."""
     x, y, z = directions.T
     up = np.clip(z / np.sqrt(x * x + y * y + z * z) * np.float32(2), 0, 1)
     low, high = (linear(color) * np.float32(scenery.exposure) for color in (scenery.horizon, scenery.zenith))
@@ -29,7 +29,7 @@ def ground_color(
     light: tuple[Singles, Singles],
     pixel: float,
 ) -> Singles:
-    """Linear colours ``(3, n)`` of the ground in its part of the sun and of the sky, with a grid of lines.
+    """Return linear colours ``(3, n)`` of the ground in its part of the sun and of the sky, with a grid of lines.
 
     Far from the scene it turns into sky.
 

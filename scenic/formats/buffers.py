@@ -89,7 +89,7 @@ class Lens:
         self.ahead = camera.ahead.astype(np.float32)
 
     def directions(self, x: npt.NDArray[np.float32], y: npt.NDArray[np.float32]) -> Singles:
-        """Directions ``(..., 3)``, 1 long along the camera's axis, through places in pixels; x and y broadcast."""
+        """Return directions ``(..., 3)``, 1 long along the camera's axis, through places in pixels; x and y broadcast."""
         right = (2 * x / np.float32(self.width) - 1).astype(np.float32)
         up = (1 - 2 * y / np.float32(self.height)).astype(np.float32)
         result = np.empty((*np.broadcast_shapes(x.shape, y.shape), 3), np.float32)
@@ -99,14 +99,14 @@ class Lens:
         return result
 
     def through(self, pixels: npt.NDArray[np.intp]) -> Singles:
-        """Directions ``(n, 3)`` through the middles of pixels, numbered row by row."""
+        """Return directions ``(n, 3)`` through the middles of pixels, numbered row by row."""
         row, column = np.divmod(pixels, self.width)
         return self.directions(
             column.astype(np.float32) + np.float32(0.5), row.astype(np.float32) + np.float32(0.5)
         )
 
     def through_all(self, step: int) -> Singles:
-        """Directions ``(rows, columns, 3)`` through the middles of every ``step``-th pixel of every such row."""
+        """Return directions ``(rows, columns, 3)`` through the middles of every ``step``-th pixel of every such row."""
         x = np.arange(0, self.width, step, dtype=np.float32) + np.float32(0.5)
         y = np.arange(0, self.height, step, dtype=np.float32) + np.float32(0.5)
         return self.directions(x, y[:, None])

@@ -69,7 +69,7 @@ class Camera:
 
 
 def corners(instances: Sequence[Instance]) -> Array:
-    """Corners of the objects' boxes, shape ``(8 n, 3)``; of a unit box at the origin if there are none."""
+    """Return corners of the objects' boxes, shape ``(8 n, 3)``; of a unit box at the origin if there are none."""
     if not instances:
         return _UNIT_CORNERS
     return np.concatenate(

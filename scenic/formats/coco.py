@@ -186,7 +186,7 @@ class LabelledImages:
 
 
 def millimetres(depth: npt.NDArray[np.float32]) -> npt.NDArray[np.uint16]:
-    """Depth in metres as whole millimetres; 0 where no object is, 65,535 for all that is that far or farther."""
+    """Return depth in metres as whole millimetres; 0 where no object is, 65,535 for all that is that far or farther."""
     finite = np.isfinite(depth)
     scaled = np.round(np.where(finite, depth, 0) * _MILLIMETRES)
     return np.where(finite, np.clip(scaled, 1, _MOST), 0).astype(np.uint16)

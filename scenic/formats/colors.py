@@ -9,14 +9,14 @@ _STEPS: Final = 4095
 
 
 def linear(srgb: npt.ArrayLike) -> npt.NDArray[np.float32]:
-    """Components in sRGB, in [0, 1], as linear light."""
+    """Return components in sRGB, in [0, 1], as linear light."""
     values = np.asarray(srgb, np.float32)
     high = ((np.maximum(values, 0) + 0.055) / 1.055) ** 2.4
     return np.where(values <= 0.04045, values / 12.92, high).astype(np.float32)
 
 
 def encoded(light: npt.NDArray[Any]) -> npt.NDArray[np.uint8]:
-    """Linear light as 8-bit sRGB; finer steps than eight bits can show are lost, so that a table gives the values."""
+    """Return linear light as 8-bit sRGB; finer steps than eight bits can show are lost, so that a table gives the values."""
     values = np.arange(_STEPS + 1) / _STEPS
     # Steps are even in the square root of light, which is close to how sRGB spaces them.
     values = values * values
@@ -30,5 +30,5 @@ def encoded(light: npt.NDArray[Any]) -> npt.NDArray[np.uint8]:
 
 
 def decoded(srgb: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
-    """8-bit sRGB as linear light."""
+    """Return 8-bit sRGB as linear light."""
     return linear(np.arange(256) / 255)[srgb]

@@ -39,7 +39,7 @@ class PoseTape:
         self._counts.append(len(poses))
 
     def poses(self) -> npt.NDArray[np.float32]:
-        """Position (metres) and quaternion x, y, z, w, ``(states, objects, 7)``; NaN before an object was created."""
+        """Return position (metres) and quaternion x, y, z, w, ``(states, objects, 7)``; NaN before an object was created."""
         counts = np.array(self._counts)
         present = np.arange(counts.max(initial=0)) < counts[:, np.newaxis]
         poses = np.full((*present.shape, 7), np.nan, dtype="<f4")

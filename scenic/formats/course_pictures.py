@@ -130,7 +130,7 @@ def _placed(instances: Sequence[Instance], poses: npt.NDArray[np.float64]) -> tu
 
 
 def evenly(count: int, most: int) -> list[int]:
-    """At most so many of the numbers below ``count``, the first and the last among them if there are several."""
+    """Return at most so many of the numbers below ``count``, the first and the last among them if there are several."""
     if count <= most:
         return list(range(count))
     return [round(place) for place in np.linspace(0, count - 1, most).tolist()]

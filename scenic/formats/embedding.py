@@ -24,17 +24,17 @@ _IMAGE = (720, HEIGHT)
 
 
 def embedded_scenes(scenes: Sequence[Scene], title: str) -> str:
-    """HTML that shows scenes, at least one, in a frame; without scripts it shows an image of the first one."""
+    """Return HTML that shows scenes, at least one, in a frame; without scripts it shows an image of the first one."""
     return _framed(page(scenes, title), _image(scenes[0]))
 
 
 def embedded_courses(courses: Sequence[Mapping[str, Any]], title: str) -> str:
-    """HTML that plays simulations, each as `course_data` gives it; at least one."""
+    """Return HTML that plays simulations, each as `course_data` gives it; at least one."""
     return _framed(course_page(title, courses), "")
 
 
 def embedded_simulation(simulation: Any) -> str:
-    """HTML that plays a simulation whose states were kept."""
+    """Return HTML that plays a simulation whose states were kept."""
     tape = PoseTape()
     colors = chain(getattr(simulation, "light_course", ()), repeat(NO_COLORS))
     for state, lights in zip(simulation.trajectory, colors, strict=False):

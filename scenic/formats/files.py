@@ -84,7 +84,7 @@ class Waiting:
             self.stream = unnamed(path)
 
     def write(self, content: bytes) -> None:
-        """Append to it."""
+        """Append to the file."""
         with refusing(self._path):
             self.stream.write(content)
 

@@ -16,7 +16,7 @@ __all__ = ["image_coordinates"]
 def image_coordinates(
     mesh: Any, texture: ImageTexture, size: Triple, source: Mapping[str, object]
 ) -> npt.NDArray[np.float64]:
-    """Texture coordinates ``(f, 3, 2)`` of the triangles of a unit mesh: those of its file, else from six sides.
+    """Return texture coordinates ``(f, 3, 2)`` of the triangles of a unit mesh: those of its file, else from six sides.
 
     Args:
         mesh: in the unit box.

@@ -74,7 +74,7 @@ class ImageTexture:
         return self.image().digest
 
     def projected(self, places: Singles, normals: Singles, size: Sequence[float]) -> tuple[Singles, float]:
-        """Coordinates ``(n, 2)`` on the image, in which it is 1 wide and high, and how many of them a metre is.
+        """Return coordinates ``(n, 2)`` on the image, in which it is 1 wide and high, and how many of them a metre is.
 
         Args:
             places: places in the object's frame, metres, ``(n, 3)``.
@@ -99,7 +99,7 @@ class ImageTexture:
         return coordinates.astype(np.float32), 1 / scale
 
     def colors(self, own: Singles, coordinates: Singles, blur: Singles) -> Singles:
-        """Linear colours ``(3, n)``; the object's own colour shows where the image is transparent.
+        """Return linear colours ``(3, n)``; the object's own colour shows where the image is transparent.
 
         Args:
             own: the object's colour, linear, ``(3,)``.

@@ -70,7 +70,7 @@ class Surface:
     _known: dict[str, npt.NDArray[np.float32] | None] = field(default_factory=dict, repr=False, compare=False)
 
     def coordinates(self, source: Mapping[str, object]) -> npt.NDArray[np.float32] | None:
-        """Texture coordinates of its triangles ``(f, 3, 2)``, found once; see `coordinates_of`."""
+        """Return texture coordinates of its triangles ``(f, 3, 2)``, found once; see `coordinates_of`."""
         key = repr(source)
         if key not in self._known:
             self._known[key] = coordinates_of(source, self.vertices, self.faces)
@@ -164,7 +164,7 @@ KeyedLamp = tuple[str, Instance]
 
 
 def lit(lamps: Iterable[KeyedLamp], colors: Mapping[str, str]) -> tuple[Instance, ...]:
-    """Lamps in the colours of a moment, by their keys."""
+    """Return lamps in the colours of a moment, by their keys."""
     return tuple(replace(item, color=(*COLORS[colors.get(key, "off")], 1.0)) for key, item in lamps)
 
 
@@ -338,7 +338,7 @@ def picture(scenes: Iterable[Scene], *, ground: bool = False) -> Picture:
 
 
 def resting(instances: Sequence[Instance]) -> tuple[Instance, ...]:
-    """Objects of the 2D mode as they are shown on a map: no higher than cars are, and on the ground.
+    """Return objects of the 2D mode as they are shown on a map: no higher than cars are, and on the ground.
 
     That mode gives objects the height of their longest side, and puts their middles on the plane. Those with an appearance
     are as high as what they look like, if their own height is that of the mode.

@@ -214,7 +214,7 @@ def _scenario_object(xosc: Any, entity: _Entity) -> Any:
 
 
 def map_offset(scene: Any) -> tuple[float, float, float, float]:
-    """Metres along x, y and z, and radians, by which the header of a scene's map moves its coordinates."""
+    """Return metres along x, y and z, and radians, by which the header of a scene's map moves its coordinates."""
     network = getattr(scene.workspace, "network", None)
     found: tuple[float, float, float, float] = getattr(network, "offset", (0.0, 0.0, 0.0, 0.0))
     return found

@@ -34,7 +34,7 @@ def png(scene: Scene, size: tuple[int, int] = SIZE, outlook: Outlook = STANDARD)
 
 
 def encoded(pixels: npt.NDArray[np.uint8] | npt.NDArray[np.uint16]) -> bytes:
-    """Pixels as the content of a PNG file: colours ``(height, width, 3)``, or numbers ``(height, width)``."""
+    """Return pixels as the content of a PNG file: colours ``(height, width, 3)``, or numbers ``(height, width)``."""
     stream = io.BytesIO()
     require_pillow().fromarray(pixels).save(stream, format="PNG", compress_level=_EFFORT, compress_type=_RUNS)
     return stream.getvalue()

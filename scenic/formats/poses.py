@@ -33,7 +33,7 @@ def rotation_matrix(quaternion: Four) -> npt.NDArray[np.float64]:
 
 
 def euler_angles(quaternion: Four) -> Triple:
-    """Yaw, pitch and roll in radians: rotations about Z, then the new X, then the new Y.
+    """Return yaw, pitch and roll in radians: rotations about Z, then the new X, then the new Y.
 
     With the matrix ``Rz(yaw) Rx(pitch) Ry(roll)``, its lower row is ``(-cos p sin r, sin p, cos p cos r)`` and its middle
     column ``(-sin y cos p, cos y cos p, sin p)``. Straight up or down, only the sum or difference of yaw and roll is

@@ -48,7 +48,7 @@ _HATCHES: Final = 24
 
 
 def outlines(region: object) -> list[Array]:
-    """Lines ``(k, 3)`` that show where a fixed region is; none for a value that is not a region, or a region without bounds.
+    """Return lines ``(k, 3)`` that show where a fixed region is; none for a value that is not a region, or a region without bounds.
 
     Regions made of others are drawn as those parts of the others' lines that bound them; in the plane they are hatched, since
     a volume cuts them along lines that no member has. Of kinds that are not known here, some points are shown.
@@ -267,7 +267,7 @@ def _section(corners: Array, axis: int) -> list[Array]:
 
 
 def view_outline(horizontal: float, vertical: float, distance: float) -> list[Array]:
-    """Lines ``(k, 3)`` that show a view from the origin, ahead to +Y: arcs of its outer border, and its edges.
+    """Return lines ``(k, 3)`` that show a view from the origin, ahead to +Y: arcs of its outer border, and its edges.
 
     Args:
         horizontal: view angle, radians, up to 2π.

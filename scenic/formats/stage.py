@@ -140,7 +140,7 @@ class Stage:
         places: Singles,
         pixel: Singles,
     ) -> Singles:
-        """By how much textures change colours at places on instances; components ``(3, n)``.
+        """Return by how much textures change colours at places on instances; components ``(3, n)``.
 
         Args:
             triangle: the triangles, ``(n,)``.
@@ -272,7 +272,7 @@ def _textures(instances: Sequence[Instance]) -> dict[int, Texture | ImageTexture
 
 
 def ground_light(albedo: Singles, sun: Singles, sky: Singles, scenery: Scenery = USUAL) -> Singles:
-    """Linear colours ``(3, n)`` of ground of a colour, in so much of the sun's light and of the sky's, ``(n,)``."""
+    """Return linear colours ``(3, n)`` of ground of a colour, in so much of the sun's light and of the sky's, ``(n,)``."""
     sun_color, sky_color, _ = _colors(scenery)
     sunny, shady = (sun_color * scenery.sun[2]).astype(np.float32), sky_color.astype(np.float32)
     result: Singles = albedo * (sunny[:, None] * sun + shady[:, None] * sky)

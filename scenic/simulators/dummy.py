@@ -29,7 +29,7 @@ class DummySimulation(Simulation):
         """Nothing happens."""
 
     def step(self) -> None:
-        """All objects drift."""
+        """Let all objects drift."""
         if self.drift:
             for obj in self.objects:
                 x, y, z = obj.position

@@ -31,7 +31,7 @@ class Replay:
     states: list[list[float]] = field(default_factory=list)
 
     def encoded(self) -> bytes:
-        """As bytes."""
+        """Return the replay as bytes."""
         parts = [_MAGIC, struct.pack("<B", len(self.key)), self.key, struct.pack("<I", len(self.draws))]
         parts += [struct.pack("<Qd", *draw) for draw in self.draws]
         parts.append(struct.pack("<I", len(self.states)))

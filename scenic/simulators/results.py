@@ -86,7 +86,7 @@ class Latest(Sequence[Any]):
         """True if a member that is not kept has been read."""
 
     def append(self, value: object) -> None:
-        """The next member."""
+        """Add the next member."""
         self.newest = [value]
         self._count += 1
 

@@ -31,7 +31,7 @@ _PACKAGE: Final = Path(scenic.runtime.__file__).parents[1]
 
 
 def file_digests(scenario: Scenario, *, modules: bool = True) -> dict[str, str]:
-    """SHA-256 of the files that decide a scenario's scenes, by their paths relative to the program.
+    """Return SHA-256 of the files that decide a scenario's scenes, by their paths relative to the program.
 
     Args:
         scenario: the scenario.

@@ -145,7 +145,7 @@ class WrittenFolder:
 
 
 def changes_of(before: Mapping[str, str], now: Mapping[str, str]) -> list[str]:
-    """Words for the files whose content has changed."""
+    """Return words for the files whose content has changed."""
     words = []
     for name in sorted({*before, *now}):
         if name not in now:

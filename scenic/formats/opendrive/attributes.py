@@ -12,7 +12,7 @@ _SPEEDS: Final = {"m/s": 1.0, "km/h": 1 / 3.6, "kmh": 1 / 3.6, "mph": 0.44704, "
 
 
 def offset(header: Element) -> tuple[float, float, float, float]:
-    """Metres along x, y and z, and radians, by which the coordinates of the file are moved."""
+    """Return metres along x, y and z, and radians, by which the coordinates of the file are moved."""
     found = header.first("offset")
     if found is None:
         return 0.0, 0.0, 0.0, 0.0

@@ -347,7 +347,7 @@ def _shared(one: IntersectionRegion | DifferenceRegion, other: Region) -> Region
 
 @generic.meets_bodies.register(Region)
 def meets_bodies(region: Region, body: Body, lanes: int, columns: Sequence[Column]) -> Mask:
-    """In which lanes a region shares a point with a body."""
+    """Return a mask of the lanes in which a region shares a point with a body."""
     result = np.zeros(lanes, dtype=np.bool_)
     numbers = np.zeros(lanes, dtype=np.intp) if body.choice is None else np.broadcast_to(body.choice, lanes)
     poses = body.poses

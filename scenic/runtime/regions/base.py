@@ -142,11 +142,11 @@ class Region(metaclass=_RegionType):
         """The mask ``(n,)`` of points ``(n, 3)`` that lie in the region."""
 
     def contains_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        """In which lanes the whole body lies in the region, shape ``(lanes,)``."""
+        """Return a mask of the lanes in which the whole body lies in the region, shape ``(lanes,)``."""
         raise unsupported(f"containment of objects in a region of the kind {type(self).__name__}")
 
     def meets_bodies(self, body: Body, lanes: int, *columns: Column) -> Mask:
-        """In which lanes the body shares a point with the region, shape ``(lanes,)``; here one lane after the other."""
+        """Return a mask of the lanes in which the body shares a point with the region, shape ``(lanes,)``; here one lane after the other."""
         mask: Mask = generic.meets_bodies(self, body, lanes, columns)
         return mask
 
@@ -159,7 +159,7 @@ class Region(metaclass=_RegionType):
         return None
 
     def ball(self, *columns: Column) -> tuple[Points, NDArray[np.float64]] | None:
-        """Centre ``(n | 1, 3)`` and radius ``(n | 1,)`` of a region that is a ball in all lanes; ``None`` of others."""
+        """Return centre ``(n | 1, 3)`` and radius ``(n | 1,)`` of a region that is a ball in all lanes; ``None`` of others."""
         return None
 
     def is_surely_convex(self) -> bool:

@@ -100,7 +100,7 @@ class RegionChoice(VaryingRegion):
     def drawn(
         self, lanes: int, columns: Sequence[Column]
     ) -> Iterator[tuple[Region, NDArray[np.intp], list[Column]]]:
-        """Each option with the lanes that draw it and the columns of its parameters there."""
+        """Yield each option with the lanes that draw it and the columns of its parameters there."""
         index = np.broadcast_to(columns[0], lanes)
         for number, (option, mine) in enumerate(self._each(columns)):
             chosen = np.flatnonzero(index == number)

@@ -149,7 +149,7 @@ class Composite(Region):
 
     @abstractmethod
     def may_meet(self, body: Body, lanes: int, columns: Sequence[Column]) -> Mask:
-        """In which lanes the members do not rule out that a body meets the region, ``(lanes | 1,)``."""
+        """Return a mask of the lanes in which the members do not rule out that a body meets the region, ``(lanes | 1,)``."""
 
     def _meets_surely(self, body: Body, lanes: NDArray[np.intp], columns: Sequence[Column]) -> Mask:
         """In which of some lanes, whose columns these are, a known point of the body lies in the region."""
@@ -212,7 +212,7 @@ class Composite(Region):
         """Return the same combination of other members."""
 
     def members_that_hold(self, points: Points, columns: Sequence[Column]) -> list[Mask]:
-        """For each member, which points lie in it; of regions of the plane also at its height."""
+        """Return for each member a mask of the points that lie in it; of regions of the plane also at its height."""
         return [exactly_contains(member, points, mine) for member, mine in self._parts(columns)]
 
     @abstractmethod
@@ -321,7 +321,7 @@ def levelled(region: Composite, points: Points, columns: Sequence[Column]) -> Po
 
 
 def join_flats(join: Callable[[Flat, Flat], Flat | None], parts: Sequence[Flat | None]) -> Flat | None:
-    """Geometries of members, joined one after the other; ``None`` where one has none."""
+    """Join geometries of members one after the other; ``None`` where one has none."""
     result = parts[0]
     for part in parts[1:]:
         if result is None or part is None:

@@ -79,7 +79,7 @@ class VectorField:
         }
 
     def random_parts(self) -> list[Any]:
-        """Functions, which may read random values, for sampling."""
+        """Return the functions, which may read random values, for sampling."""
         return list(self._asked().values())
 
     def sampled(self, sample: Any) -> "VectorField":

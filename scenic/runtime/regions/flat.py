@@ -63,7 +63,7 @@ class Flat:
         return Flat(shapely.union(self.geometries, other.geometries), self.heights) if same else None
 
     def meets(self, body: Body, lanes: NDArray[np.intp]) -> Mask:
-        """In which of some lanes, of which these are the geometries, a body shares a point with them."""
+        """Return a mask of some lanes, whose geometries these are: those in which a body shares a point with them."""
         import shapely
 
         if self.heights is None:
@@ -81,7 +81,7 @@ class Flat:
         return some_inside(rows_of([self.geometries], rows)[0], points)
 
     def holds(self, body: Body, lanes: NDArray[np.intp]) -> Mask:
-        """In which of some lanes, of which these are the geometries, the column over them holds the body."""
+        """Return a mask of some lanes, whose geometries these are: those in which the column over them holds the body."""
         import shapely
 
         grown = shapely.buffer(self.geometries, TOLERANCE, join_style="mitre")
@@ -122,7 +122,7 @@ class MeetingFlat(Protocol):
         """Return the mask of geometries ``(n,)`` that meet the region."""
 
     def meets_places(self, points: Column, *columns: Column) -> Mask:
-        """Of which rows of points ``(n, m, 2)`` some lie in the region."""
+        """Return a mask of the rows of points ``(n, m, 2)`` of which some lie in the region."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +147,7 @@ def rows_of(columns: Sequence[Column], lanes: NDArray[np.intp]) -> list[Column]:
 def meets_flat(
     region: MeetingFlat, body: Body, lanes: int, columns: Sequence[Column], heights: Column | None
 ) -> Mask:
-    """In which lanes a body meets a region of planes at ``heights``, or its column where they are ``None``.
+    """Return a mask of the lanes in which a body meets a region of planes at ``heights``, or its column where they are ``None``.
 
     Upright boxes are compared as rectangles, in closed form; other bodies by their outlines.
     """
@@ -178,7 +178,7 @@ def meets_flat(
 
 
 def upright_boxes(body: Body, lanes: NDArray[np.intp], heights: Column | None) -> tuple[Mask, Rectangles]:
-    """In which of some lanes the body is an upright box, which a plane meets; and the outlines of the bodies' boxes."""
+    """Return a mask of some lanes: those in which the body is an upright box that a plane meets; and the outlines of the bodies' boxes."""
     count = len(lanes)
     poses = body.poses.take(lanes)
     full = Poses(
@@ -201,7 +201,7 @@ def upright_boxes(body: Body, lanes: NDArray[np.intp], heights: Column | None) -
 
 
 def ragged_polygons(points: NDArray[np.float64], counts: NDArray[np.intp]) -> Geometries:
-    """Polygons ``(n,)`` whose outlines are the first ``counts`` ``(n,)`` of points ``(n, k, 2)``."""
+    """Return polygons ``(n,)`` whose outlines are the first ``counts`` ``(n,)`` of points ``(n, k, 2)``."""
     import shapely
 
     used = np.arange(points.shape[1]) < counts[:, np.newaxis]

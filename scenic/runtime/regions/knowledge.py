@@ -249,7 +249,7 @@ def fixed(parameters: Sequence[Bounds | None]) -> list[Floats] | None:
 
 
 def fixed_rows(parameters: Sequence[Bounds | None], boxes: int) -> tuple[Mask, list[Floats] | None]:
-    """In which boxes ``(m | 1,)`` the parameters have one value each, and their columns there; no columns if in none of them."""
+    """Return a mask of the boxes ``(m | 1,)`` in which the parameters have one value each, and their columns there; no columns if in none of them."""
     is_fixed: Mask = np.ones(1, dtype=np.bool_)
     columns = []
     for bounds in parameters:

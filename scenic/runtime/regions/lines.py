@@ -45,7 +45,7 @@ def _way_given(distance: Any, normalized: Any = False) -> tuple[tuple[Any], bool
 
 
 def drawn_of_lines(lines: Lines, line: NDArray[np.intp], shares: Bounds) -> Bounds:
-    """Bounds ``(m, 3)`` of what numbers ``(m | 1,)`` of the unit interval draw from lines ``(m,)``."""
+    """Return bounds ``(m, 3)`` of what numbers ``(m | 1,)`` of the unit interval draw from lines ``(m,)``."""
     length = lines.lengths[line]
     first, last = (
         np.clip(shares.lower * length - SLACK, 0.0, length),

@@ -61,7 +61,7 @@ def grown(box: Bounds, distance: Floats) -> Bounds:
 
 
 def only_within(first: Bounds | None, second: Bounds | None, distance: Floats) -> Bounds:
-    """Bounds of a truth value that can hold only where two boxes are within distances ``(m | 1,)`` of each other."""
+    """Return bounds of a truth value that can hold only where two boxes are within distances ``(m | 1,)`` of each other."""
     if first is None or second is None:
         return truth(np.zeros(1, dtype=np.bool_), np.zeros(1, dtype=np.bool_))
     apart = separation(first, second) > distance

@@ -160,7 +160,7 @@ class PlanarRegion(Region):
         return np.asarray(shapely.intersects(self.geometries(*columns), outlines))
 
     def meets_places(self, points: Points, *columns: Column) -> Mask:
-        """Of which rows of points ``(n, m, 2)`` some lie in the region, seen from above."""
+        """Return a mask of the rows of points ``(n, m, 2)`` of which some lie in the region, seen from above."""
         return some_inside(self.geometries(*columns), points)
 
     def gaps(self, points: Points, *columns: Column) -> Column:
@@ -182,7 +182,7 @@ class PlanarRegion(Region):
 
 
 def rounded_outward(lower: Points, upper: Points) -> tuple[Points, Points]:
-    """Corners ``(n, 3)`` of level boxes, so much larger that points of what they are about are not beside them by rounding."""
+    """Return corners ``(n, 3)`` of level boxes, so much larger that points of what they are about are not beside them by rounding."""
     slack = 8 * np.spacing(np.maximum(np.abs(lower), np.abs(upper))) * np.array([1.0, 1.0, 0.0])
     return lower - slack, upper + slack
 

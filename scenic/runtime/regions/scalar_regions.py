@@ -91,7 +91,7 @@ class Disc(Flat):
         return max(float(np.hypot(point[0] - self._x, point[1] - self._y)) - self._radius, 0.0)
 
     def holds_body(self, body: Placed) -> bool | None:
-        """By the corners of its box."""
+        """Decide by the corners of the body's box."""
         farthest = max(math.hypot(x - self._x, y - self._y) for x, y, _ in body.corners())
         if farthest < self._inner - body.slack:
             return True
@@ -155,7 +155,7 @@ class Rectangle(Flat):
         return dx * self._cos + dy * self._sin, dy * self._cos - dx * self._sin
 
     def holds_body(self, body: Placed) -> bool | None:
-        """By its edges."""
+        """Decide by the region's edges."""
         return self._outline.holds(body)
 
 
@@ -173,7 +173,7 @@ class Polygon(Flat):
         return self._polygons.holds_point(point[0], point[1])
 
     def holds_body(self, body: Placed) -> bool | None:
-        """By its edges if it is convex; else by a disc about the body."""
+        """Decide by the region's edges if it is convex; else by a disc about the body."""
         if self._outline is not None:
             return self._outline.holds(body)
         x, y, _ = body.position
@@ -209,7 +209,7 @@ class Box:
         return x / width, y / length, z / height
 
     def holds_body(self, body: Placed) -> bool | None:
-        """By the body's extents along its axes."""
+        """Decide by the body's extents along the axes of the region."""
         reach = [body.reach(*axis) for axis in self._body.axes]
         held = self._within(body.position, (reach[0], reach[1], reach[2]), body.slack)
         return held if held or body.mesh.is_box else None
@@ -238,13 +238,13 @@ class Ball:
         self._body = body
 
     def holds_point(self, point: Triple) -> bool | None:
-        """By the distance from its middle when it is scaled to a ball, unless that is near the border."""
+        """Decide by the distance from the middle when it is scaled to a ball, unless that is near the border."""
         share = self._share(point)
         slack = SLACK + self._body.slack / min(self._body.half)
         return None if abs(share - 1) < slack else share < 1
 
     def holds_body(self, body: Placed) -> bool | None:
-        """By the corners of the body's box."""
+        """Decide by the corners of the body's box."""
         farthest = max(map(self._share, body.corners()))
         slack = SLACK + (self._body.slack + body.slack) / min(self._body.half)
         if farthest < 1 - slack:

@@ -22,7 +22,7 @@ from scenic.runtime.values.values import to_heading, to_vector
 
 
 def sector_box(center: Column, radius: Column, heading: Column, angle: Column) -> tuple[Points, Points]:
-    """Boxes ``(n, 3)`` around sectors, from columns of their centres, radii, headings of their middles, and widths."""
+    """Return boxes ``(n, 3)`` around sectors, from columns of their centres, radii, headings of their middles, and widths."""
     # The centre, both ends of the arc, and where the arc crosses a direction of the axes.
     half = np.minimum(angle / 2, math.pi)
     ways = [heading - half, heading + half]

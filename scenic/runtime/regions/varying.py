@@ -18,7 +18,7 @@ class VaryingRegion(Region):
     def drawn(
         self, lanes: int, columns: Sequence[Column]
     ) -> Iterator[tuple[Region, NDArray[np.intp], Sequence[Column]]]:
-        """Each of the regions with the lanes that draw it and the columns of its parameters there."""
+        """Yield each of the regions with the lanes that draw it and the columns of its parameters there."""
 
     def contains_points(self, points: Points, *columns: Column) -> Mask:
         return self._of_points("contains_points", points, columns, dtype=np.bool_)

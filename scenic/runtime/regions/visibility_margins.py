@@ -34,7 +34,7 @@ _LEAST: Final = 1e-9
 
 
 def clearance(observer: object, target: object, occluders: Iterable[Any], *, seen: bool) -> float:
-    """By how much an observer sees a definite object or point past others.
+    """Measure by how much an observer sees a definite object or point past others.
 
     Args:
         observer: a definite point or object.

@@ -61,7 +61,7 @@ class Generating(Restoring, ABC):
     def chosen(
         self, numbers: Mapping[int, NDArray[np.float64]], count: int, *, seed: int, first: int = 0
     ) -> Iterator[Scene | Exhausted]:
-        """Scenes in which some draws are given."""
+        """Return scenes in which some draws are given."""
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A scenario is pickled as its program, which is compiled again when it is unpickled."""

@@ -85,7 +85,7 @@ class Population:
         self._started: set[int] = set()
 
     def take(self, lane: int) -> Inhabitants:
-        """New objects for the scene in a lane."""
+        """Return new objects for the scene in a lane."""
         inhabitants = self._kept.pop(lane, None)
         if inhabitants is not None:
             return inhabitants

@@ -287,7 +287,7 @@ class CarlaSimulation(DrivingSimulation):
                 self._actors[id(obj)].apply_control(control)
 
     def step(self) -> None:
-        """One tick of the server."""
+        """Advance the server by one tick."""
         self._world.tick()
 
     def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
