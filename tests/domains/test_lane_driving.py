@@ -338,6 +338,19 @@ ego = new Car at (100, {-half}), facing -90 deg, with speed 3, with behavior Tur
     assert 1 + int((np.diff(signs) != 0).sum()) == moves
 
 
+def test_a_fast_car_slows_down_before_it_turns_round(folder: Path) -> None:
+    text = """
+behavior Turn():
+    do UTurnBehavior()
+    terminate
+ego = new Car at (50, -1.75), facing -90 deg, with speed 12, with behavior Turn
+"""
+    motion = course(simulated(folder, text, steps=300))
+    assert np.abs(motion.corners()[:, :, 1]).max() < 3.55, "it stays on the road"
+    assert np.abs(motion.accelerations[0]).max() < 3
+    assert motion.headings[-1] - motion.headings[0] == pytest.approx(np.pi, abs=0.05)
+
+
 def test_u_turns_need_lanes_of_the_other_direction(folder: Path) -> None:
     content = straight(200)
     begin, end = content.index("<left>"), content.index("</left>") + len("</left>")

@@ -8,7 +8,7 @@ from scenic.domains.driving.maneuvering import nearest_end, sidewalk_under
 from scenic.domains.driving.rules import RulesDriver
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import Route, Trajectory
-from scenic.domains.driving.u_turns import UTurner
+from scenic.domains.driving.u_turns import FASTEST, UTurner
 from scenic.domains.driving.walking import arrived, heading_to, places_of, walking_step
 from scenic.domains.driving.watching import InsideWatch, Nearness
 
@@ -150,11 +150,16 @@ behavior LaneChangeBehavior(
 behavior UTurnBehavior(target_speed=5, comfort=None):
     """Turn round into a lane of the other direction: in one arc where the road is wide enough, else forward and backward.
 
+    A car that is fast slows down along its lane first.
+
     Arguments:
         target_speed: m/s after the turn.
         comfort: limits of accelerations, a `Comfort`.
     """
     turner = UTurner(self)
+    if self.speed > FASTEST:
+        do FollowLaneBehavior(0.8 * FASTEST, comfort=comfort) until self.speed <= FASTEST
+        turner = UTurner(self)
     while not turner.is_done():
         drive, gear = turner.actions()
         take drive, gear

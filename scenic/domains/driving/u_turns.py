@@ -11,10 +11,14 @@ from scenic.domains.driving.lane_driving import lane_under
 from scenic.domains.driving.running_traffic import running_traffic
 from scenic.language.errors import InvalidScenarioError, SimulationError
 
-__all__ = ["UTurner"]
+__all__ = ["FASTEST", "UTurner"]
 
 _SPEED: Final = 2.5
 """Speed (m/s) of the turn."""
+FASTEST: Final = 3.0
+"""Speed (m/s) from which on a car slows down along its lane before it turns."""
+_TURNING: Final = 0.5
+"""Change of curvature (1/m in a second) by steering while the car moves."""
 _BRAKING: Final = 1.5
 """Deceleration (m/s^2) before the edge of the road."""
 _LOOK: Final = 8.0
@@ -61,6 +65,7 @@ class UTurner:
         self._goal = along + math.pi
         self._side = -1.0 if network.driveOnLeft else 1.0
         self._gear = 1.0
+        self._curvature: float | None = None
         self._changes = 0
         self._braked = False
 
@@ -104,7 +109,7 @@ class UTurner:
         # Where going forward ends the turn, the car reverses no farther.
         self._braked |= self._gear < 0 and abs(self._left) < 0.9 * _HANDED_OVER
         lock = abs(simulation.curvature_of(agent, 1.0)) * _STEERING
-        curvature = self._side * self._gear * lock
+        curvature = self._steered(self._side * self._gear * lock, speed)
         free = self._free_distance(lock) - 1.5 * speed * simulation.timestep
         self._braked |= free < _CLOSE
         wanted = 0.0 if self._braked else min(_SPEED, math.sqrt(2 * _BRAKING * free))
@@ -117,6 +122,13 @@ class UTurner:
             RegulatedControlAction(pedal, steering, steering, 1.0, 1.0, 1.0),
             SetReverseAction(self._gear < 0),
         )
+
+    def _steered(self, wanted: float, speed: float) -> float:
+        """The curvature (1/m) of this step, towards one that is wanted; a car that stands may turn its wheels at will."""
+        before = 0.0 if self._curvature is None else self._curvature
+        change = math.inf if speed < 0.1 else _TURNING * self._simulation.timestep
+        self._curvature = min(max(wanted, before - change), before + change)
+        return self._curvature
 
     def _free_distance(self, lock: float) -> float:
         """Metres that the car can drive with its wheels at the lock before a corner leaves the road; at most `_LOOK`."""
