@@ -3,7 +3,6 @@
 import math
 from bisect import bisect_left
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 from typing import Any, Final
 
@@ -275,7 +274,7 @@ class LaneChanger(LaneDriver):
             )
         self._duration = duration
         self._end = math.inf
-        super().__init__(agent, target, lane, _unhurried(agent, lane, duration, comfort or Comfort()), gap)
+        super().__init__(agent, target, lane, comfort, gap)
         self.drive_by("change")
 
     def _begin_plan(self, lane: Lane, duration: float = 0.0) -> None:
@@ -290,16 +289,6 @@ class LaneChanger(LaneDriver):
     def has_arrived(self) -> bool:
         """Return whether the car is in the lane, and in its direction."""
         return bool(self._path.along and self._path.along[self._index] >= self._end)
-
-
-def _unhurried(agent: Any, lane: Lane, duration: float, comfort: Comfort) -> Comfort:
-    """The comfort in which nobody brakes for the jerk of a lane change in so many seconds: 60 d / T^3."""
-    import shapely
-
-    x, y, *_ = agent.position
-    away = float(shapely.distance(shapely.linestrings(lane.line), shapely.Point(x, y)))
-    time = max(duration, math.sqrt(5.77 * away / 2.0), 1.0)
-    return replace(comfort, lateral_jerk=max(comfort.lateral_jerk, 1.05 * 60.0 * away / time**3))
 
 
 class RouteDriver(Driver):

@@ -187,11 +187,12 @@ class Path:
         along: metres along the path to each point.
         headings: at each point, radians, anticlockwise from north, without jumps.
         curvatures: at each point, in 1/m, positive to the left.
+        bends: curvatures of the pieces alone, without what the path has been bent by for a car to join it.
         lanes: the lanes along the path, with the index of the first point of each.
 
     """
 
-    __slots__ = ("_x", "_y", "along", "curvatures", "headings", "lanes")
+    __slots__ = ("_x", "_y", "along", "bends", "curvatures", "headings", "lanes")
 
     def __init__(self, piece: Piece | None = None) -> None:
         self._x: list[float] = []
@@ -199,6 +200,7 @@ class Path:
         self.along: list[float] = []
         self.headings: list[float] = []
         self.curvatures: list[float] = []
+        self.bends: list[float] = []
         self.lanes: list[tuple[int, Any]] = []
         if piece is not None:
             self.extend(piece)
@@ -227,6 +229,7 @@ class Path:
         self._y.extend(piece.points[:, 1].tolist())
         self.headings.extend((piece.headings + turns).tolist())
         self.curvatures.extend(piece.curvatures.tolist())
+        self.bends.extend(piece.curvatures.tolist())
         self.lanes.extend((count + index, lane) for index, lane in piece.lanes)
 
     def points(self) -> Floats:

@@ -228,7 +228,7 @@ def speeds_of(
     """
     along = np.array(path.along[begin:])
     curvatures = np.array(path.curvatures[begin:])
-    top = speeds_in_bends(along, curvatures, comfort)
+    top = speeds_in_bends(along, curvatures, comfort, np.array(path.bends[begin:]))
     wanted = np.full(len(top), target)
     if limits is not None:
         wanted = np.minimum(wanted, limits[begin : begin + len(top)])

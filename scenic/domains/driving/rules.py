@@ -11,6 +11,7 @@ from scenic.dataclass import dataclass
 from scenic.domains.driving.car_following import Gap, following_acceleration
 from scenic.domains.driving.elements import Lane, Maneuver
 from scenic.domains.driving.lane_driving import LaneDriver
+from scenic.domains.driving.narrow_lanes import ways_after
 from scenic.domains.driving.right_of_way import Claim
 from scenic.domains.driving.speed_limits import limits_along
 from scenic.domains.driving.speed_profiles import Comfort
@@ -352,4 +353,5 @@ def _maneuver_of(before: Lane | None, connecting: Lane) -> Maneuver | None:
     """The maneuver from a lane through a connecting lane."""
     if before is None:
         return None
-    return next((item for item in before.maneuvers if item.connectingLane is connecting), None)
+    ways = before.maneuvers or ways_after(before)
+    return next((item for item in ways if item.connectingLane is connecting), None)

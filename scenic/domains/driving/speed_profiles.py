@@ -57,19 +57,22 @@ class Comfort:
     lateral_jerk: float = 3.5
 
 
-def speeds_in_bends(along: Floats, curvatures: Floats, comfort: Comfort) -> Floats:
+def speeds_in_bends(
+    along: Floats, curvatures: Floats, comfort: Comfort, bends: Floats | None = None
+) -> Floats:
     """The largest speeds ``(n,)`` in m/s at points along a path with curvatures ``(n,)`` in 1/m.
 
     Args:
         along: metres along the path ``(n,)``.
         curvatures: at the points.
         comfort: of which the lateral acceleration and jerk count.
+        bends: curvatures of which the changes count; the same by default.
 
     """
     bent = np.sqrt(comfort.lateral / np.maximum(np.abs(curvatures), 1e-6))
     if len(along) < 3:
         return bent
-    change = np.abs(np.gradient(curvatures, along))
+    change = np.abs(np.gradient(curvatures if bends is None else bends, along))
     tightening = np.cbrt(comfort.lateral_jerk / np.maximum(change, 1e-7))
     limits = np.minimum(bent, tightening)
     # Braking ends before a bend: within it, what comes next counts already.
