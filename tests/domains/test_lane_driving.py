@@ -72,6 +72,19 @@ ego = new Car at (100, -1.75), facing -90 deg, with speed 15, with behavior Twic
     assert motion.accelerations[1].min() > -3.2
 
 
+def test_a_behavior_takes_over_the_acceleration_of_the_one_before(folder: Path) -> None:
+    text = """
+behavior Twice():
+    do FollowLaneBehavior(20) for 3 seconds
+    do FollowLaneBehavior(4)
+ego = new Car at (20, -1.75), facing -90 deg, with speed 4, with behavior Twice()
+"""
+    motion = course(simulated(folder, text, steps=70))
+    assert motion.accelerations[1].max() > 1.8
+    assert motion.accelerations[1].min() > -2.8
+    assert motion.jerk.max() < 6.5
+
+
 @pytest.mark.parametrize("step", [0.02, 0.1])
 def test_a_behavior_goes_on_along_the_way_of_the_one_before(folder: Path, step: float) -> None:
     # All ways begin alike: nothing else tells which one the car has taken.

@@ -278,7 +278,7 @@ class Driver:
         acceleration = min(acceleration, self.extra_acceleration(speed, own))
         if acceleration > -_HARD * comfort.deceleration:
             # Jolts are limited; the profile keeps to that, so that this is for what no profile foresees.
-            change = (1.5 if acceleration > -1.2 * comfort.deceleration else 1.8) * comfort.jerk * timestep
+            change = (1.4 if acceleration > -1.2 * comfort.deceleration else 1.7) * comfort.jerk * timestep
             acceleration = min(max(acceleration, self._acceleration - change), self._acceleration + change)
         acceleration = min(acceleration, 1.2 * comfort.acceleration)
         if wanted < 0.02 and speed < 0.3 and not is_stopping:

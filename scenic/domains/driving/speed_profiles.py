@@ -110,11 +110,12 @@ def speeds_along(
     window = (comfort.acceleration + comfort.deceleration) / comfort.jerk
     wanted = np.minimum(limits, wanted)
     squares = _TOLERANCE * _allowed(along, limits, window / 2, stops=stops)
-    if _needed(along, squares, speed) <= _HARDER * comfort.deceleration:
+    going = _going_on(speed, acceleration, window / 2, comfort.deceleration, comfort)
+    if _needed(along, squares, *going[1:]) <= _HARDER * comfort.deceleration:
         way = _Way(along, limits, wanted, comfort, junctions, stops)
         return way.speeds(speed, acceleration, comfort.deceleration, window)
     # Too fast for what lies ahead: an even, harder braking that begins at once, until comfort is enough.
-    needed = _needed(along, _allowed(along, limits, _AT_ONCE / 2, stops=stops), speed)
+    needed = _needed(along, _allowed(along, limits, _AT_ONCE / 2, stops=stops), speed, 0.0)
     deceleration = max(comfort.deceleration, min(1.1 * needed, _EMERGENCY))
     way = _Way(along, limits, wanted, comfort, junctions, stops)
     speeds, accelerations = way.speeds(speed, acceleration, deceleration, _AT_ONCE)
@@ -162,12 +163,28 @@ class _Way:
         squares[-1] = last
         # v(s)^2 <= v(t)^2 + 2 b (t - s) for every t ahead, and likewise for acceleration from every place behind.
         squares = _backward(squares, 2 * deceleration * np.diff(along))
-        hardest = speed * speed - 2 * deceleration * (along - along[0])
-        squares[0] = speed * speed
+        # Half a window long the car goes on as it does: so the average begins with its speed and acceleration.
+        acceleration, last_speed, reach = _going_on(speed, acceleration, window / 2, deceleration, comfort)
+        ahead = along - along[0]
+        begun = np.maximum(speed * speed + 2 * acceleration * ahead, 0.0)
+        is_begun = (ahead < reach) | (ahead == 0.0)
+        squares[is_begun] = begun[is_begun]
         up = 2 * comfort.acceleration * along
         squares = np.minimum.accumulate(squares - up) + up
+        hardest = np.where(is_begun, begun, last_speed**2 - 2 * deceleration * (ahead - reach))
         squares = np.maximum(squares, np.maximum(hardest, 0.0))
-        return _averaged(along, np.sqrt(np.maximum(squares, 0.0)), window, acceleration, stops=stops)
+        return _averaged(along, np.sqrt(squares), window, acceleration, stops=stops)
+
+
+def _going_on(
+    speed: float, acceleration: float, time: float, deceleration: float, comfort: Comfort
+) -> tuple[float, float, float]:
+    """The acceleration of a car, within bounds, its speed after seconds of it, and the metres that it has gone by then."""
+    acceleration = min(max(acceleration, -deceleration), comfort.acceleration)
+    if speed + acceleration * time < 0.0:
+        time = speed / -acceleration
+    after = speed + acceleration * time
+    return acceleration, after, (speed + after) / 2 * time
 
 
 def _allowed(along: Floats, limits: Floats, time: float, *, stops: bool) -> Floats:
@@ -213,9 +230,9 @@ def _backward(squares: Floats, falls: Floats) -> Floats:
     return slowest
 
 
-def _needed(along: Floats, squares: Floats, speed: float) -> float:
-    """The constant deceleration by which a car meets all squared speed limits ahead, m/s^2."""
-    ahead = along[1:] - along[0]
+def _needed(along: Floats, squares: Floats, speed: float, reach: float) -> float:
+    """The constant deceleration by which a car meets all squared speed limits from metres ahead of it on, m/s^2."""
+    ahead = along[1:] - along[0] - reach
     # What a car meets at once it is a little too fast for at most.
     return float(((speed * speed - squares[1:]) / (2 * np.maximum(ahead, 0.5 + 0.3 * speed))).max())
 
