@@ -91,7 +91,7 @@ class Driver:
         self.comfort = Comfort() if comfort is None else comfort
         self._gap = gap
         lock = abs(self._simulation.curvature_of(agent, -1.0))
-        self.tightest = min(TIGHTEST, round(0.95 * lock, 3))
+        self.tightest = min(TIGHTEST, max(round(0.95 * lock, 3), 0.01))
         self._leader: Leader | None = None
         self._only: Any = None
         self._course: Course | None = None
