@@ -75,8 +75,9 @@ def _simulated(
 def _indices(course: Course, path: Any) -> list[int]:
     """The points of a planned path at the states of a course."""
     turned = (np.array(path.headings) - course.headings[0] + math.pi) % (2 * math.pi) - math.pi
-    # A path may come back to where it was, in another direction.
-    index = int((((path.points() - course.places[0]) ** 2).sum(axis=1) + 25 * turned**2).argmin())
+    # A path may come back to where it was, in another direction, or later in the same one.
+    apart = ((path.points() - course.places[0]) ** 2).sum(axis=1) + 25 * turned**2
+    index = int(np.flatnonzero(apart < apart.min() + 1.0)[0])
     found = []
     for x, y in course.places.tolist():
         index, _, _ = path.locate(x, y, index)
