@@ -49,6 +49,10 @@ class Rare:
         return cls(splitting.pilot, splitting.repetitions, splitting.is_out_of_budget)
 
     @property
+    def _finished(self) -> list[Repetition]:
+        return [item for item in self.repetitions if item.log_probability is not None]
+
+    @property
     def logarithms(self) -> list[float]:
         """The logarithms of the probability of all repetitions that are finished."""
         return [item.log_probability for item in self.repetitions if item.log_probability is not None]
@@ -71,11 +75,11 @@ class Rare:
     @property
     def probability(self) -> float:
         """The probability, where it is known."""
-        return repeated_probability(self.logarithms)
+        return repeated_probability(self._finished)
 
     def interval(self, confidence: float) -> Interval:
         """The interval of the probability, where it is known."""
-        return repeated_interval(self.logarithms, confidence)
+        return repeated_interval(self._finished, confidence)
 
 
 def is_of_law(row: Mapping[str, Any]) -> bool:

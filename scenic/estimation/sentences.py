@@ -115,7 +115,7 @@ def _about_rare(rare: Rare, estimate: Estimate) -> list[str]:
     levels = max(len(item.levels) for item in rare.repetitions) + 1
     words = [
         (
-            f"The probability is the mean of {done} repetitions in {counted(levels, 'level')}, and the interval comes from their spread: it"
+            f"The probability comes from {done} repetitions in {counted(levels, 'level')}, and the interval from their spread: it"
             " is not exact, as that of a number of plain runs is."
         )
     ]

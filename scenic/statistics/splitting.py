@@ -36,10 +36,10 @@ _PILOT: Final = 100
 """Runs in each level of the first repetition, which only shows how many levels there are, at most."""
 
 _LEAST_PILOT: Final = 40
-"""The same, at least."""
+"""Runs in each level of the first repetition, at least, where the budget is small."""
 
 _PILOTS: Final = 20
-"""Such levels that a budget has room for."""
+"""Levels of the first repetition that the budget has room for."""
 
 _LEAST: Final = 20
 """Runs in the first population of a repetition, at least."""
@@ -199,7 +199,7 @@ class Splitting(Generic[_Point]):
                 if level is None
                 else (1 - _KEPT) * (max(1.0, ahead.levels(level) + 0.5) + _RESERVE)
             )
-            return int(self._left / count / cost)
+            return max(int(self._left / count / cost), min(_FEWEST, self._left // count))
 
         yield from self._narrow(self.repetitions, 1, size)
 
@@ -417,22 +417,27 @@ class _Kernel:
                 self._steps[kind] = min(0.999, self._steps[kind] * longer)
 
 
-def repeated_probability(log_probabilities: Sequence[float]) -> float:
-    """The mean of the probabilities that some repetitions have given."""
-    return float(np.mean(np.exp(log_probabilities)))
+def repeated_probability(repetitions: Sequence[Repetition]) -> float:
+    """The probability by finished repetitions with the same levels: the product of their mean shares.
+
+    Each share counts with the members of all repetitions, so that this varies by a third less than the mean of the repetitions' products.
+    As these products, the mean shares are unbiased up to one over the size of a population.
+    """
+    courses = np.array([[0.0, *item.shares, item.log_probability] for item in repetitions], dtype=np.float64)
+    return float(np.prod(np.exp(np.diff(courses, axis=1)).mean(axis=0)))
 
 
-def repeated_interval(log_probabilities: Sequence[float], confidence: float) -> Interval:
-    """A t interval of the logarithm of the probability, from two repetitions or more; approximate.
+def repeated_interval(repetitions: Sequence[Repetition], confidence: float) -> Interval:
+    """A t interval of the logarithm of the probability, from two finished repetitions or more; approximate.
 
-    The logarithms of repetitions are taken as normal, so that the logarithm of their mean varies by their variance and by the variance
-    of that (Olsson, "Confidence intervals for the mean of a log-normal distribution", 2005).
+    The logarithms of repetitions are taken as normal, and that of the probability as their mean, which it is to first order.
     """
     from scipy.stats import t
 
-    count = len(log_probabilities)
-    variance = float(np.var(log_probabilities, ddof=1))
-    error = math.sqrt(variance / count + variance**2 / (2 * (count - 1)))
-    half = float(t.isf((1 - confidence) / 2, count - 1)) * error
-    center = math.log(repeated_probability(log_probabilities))
+    count = len(repetitions)
+    logarithms = [item.log_probability for item in repetitions if item.log_probability is not None]
+    half = float(t.isf((1 - confidence) / 2, count - 1)) * math.sqrt(
+        float(np.var(logarithms, ddof=1)) / count
+    )
+    center = math.log(repeated_probability(repetitions))
     return Interval(math.exp(center - half), min(1.0, math.exp(min(0.0, center + half))))

@@ -12,6 +12,7 @@ from scipy.special import ndtr, ndtri
 from scenic.statistics.splitting import (
     Move,
     Outcome,
+    Repetition,
     Splitting,
     repeated_interval,
     repeated_probability,
@@ -66,11 +67,7 @@ def test_known_probabilities_lie_in_the_intervals(
     count = amount(4, 60)
     misses, errors = 0, []
     for seed in range(count):
-        repetitions = [
-            item.log_probability
-            for item in solved(problem, dimension, 3000, seed).repetitions
-            if item.log_probability is not None
-        ]
+        repetitions = solved(problem, dimension, 3000, seed).repetitions
         low, high = repeated_interval(repetitions, 0.95)
         misses += not low <= probability <= high
         errors.append(math.log(repeated_probability(repetitions) / probability))
@@ -91,13 +88,21 @@ def test_a_budget_that_ends_early_leaves_what_is_finished() -> None:
     assert not [item for item in splitting.repetitions if item.log_probability is not None]
     generous = solved(tail, 3, 3000, 1)
     assert not generous.is_out_of_budget
+    assert sum(item.runs for item in [generous.pilot, *generous.repetitions]) > 2990
+    assert len({tuple(item.levels) for item in generous.repetitions}) == 1
+    assert len({item.log_probability for item in generous.repetitions}) == 5
+
+
+def test_a_small_budget_has_fewer_repetitions() -> None:
+    small = solved(lambda point: point[0] - 0.02, 2, 320, 1)
+    assert 3 <= len(small.repetitions) <= 5
+    assert all(item.log_probability is not None for item in small.repetitions)
 
 
 def test_runs_that_are_none_of_the_law_are_left_out() -> None:
     """Condition a uniform number on being below a half: one in a hundred of these fails."""
     splitting = solved(lambda point: point[0] - 0.005 if point[0] < 0.5 else None, 1, 5000, 3)
-    found = [item.log_probability for item in splitting.repetitions]
-    assert repeated_probability([item for item in found if item is not None]) == pytest.approx(0.01, rel=0.3)
+    assert repeated_probability(splitting.repetitions) == pytest.approx(0.01, rel=0.3)
 
 
 def test_moves_that_are_hardly_ever_accepted_are_noticed() -> None:
@@ -106,9 +111,15 @@ def test_moves_that_are_hardly_ever_accepted_are_noticed() -> None:
     assert all(item.mixes_badly for item in [splitting.pilot])
 
 
+def test_repetitions_share_each_level() -> None:
+    halves = [Repetition(math.log(a * b), shares=[math.log(a)]) for a, b in ((0.1, 0.4), (0.3, 0.2))]
+    assert repeated_probability(halves) == pytest.approx(0.2 * 0.3)
+    assert repeated_probability([Repetition(math.log(0.2)), Repetition(math.log(0.4))]) == pytest.approx(0.3)
+
+
 def test_an_interval_contains_its_probability() -> None:
-    logarithms = [-9.0, -10.5, -8.7, -9.9]
-    low, high = repeated_interval(logarithms, 0.9)
-    assert low < repeated_probability(logarithms) < high
-    wider = repeated_interval(logarithms, 0.99)
+    repetitions = [Repetition(item, shares=[item / 2]) for item in (-9.0, -10.5, -8.7, -9.9)]
+    low, high = repeated_interval(repetitions, 0.9)
+    assert low < repeated_probability(repetitions) < high
+    wider = repeated_interval(repetitions, 0.99)
     assert wider.low < low < high < wider.high
