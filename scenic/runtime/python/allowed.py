@@ -46,9 +46,14 @@ def allowed(function: Callable[..., object], combinations: Iterable[Sequence[obj
         combinations: the arguments for which it holds, all of one number, and hashable.
 
     Raises:
-        InvalidScenarioError: combinations of different numbers of values, or values that cannot be looked up.
+        InvalidScenarioError: no function; combinations of different numbers of values, or values that cannot be looked up.
 
     """
+    if not callable(function):
+        raise InvalidScenarioError(
+            f"a relation is declared of a function, not of {function!r}",
+            help="give the function first, then the combinations: `allowed(follows, [(1, 2), (2, 3)])`",
+        )
     try:
         rows = frozenset(tuple(each) for each in combinations)
     except TypeError as error:

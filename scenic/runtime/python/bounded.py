@@ -40,6 +40,11 @@ def bounded(reading: Callable[..., tuple[Any, ...]]) -> Callable[[_Told], _Told]
     """
 
     def mark(told: _Told) -> _Told:
+        if not callable(told):
+            raise InvalidScenarioError(
+                f"`bounded` marks a function or a class of regions, not {told!r}",
+                help="give it the function of bounds first: `@bounded(lambda x: (x[0], x[1]))`",
+            )
         setattr(told, _MARK, reading)
         return told
 

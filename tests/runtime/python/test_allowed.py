@@ -2,7 +2,7 @@
 
 import pytest
 
-from scenic import allowed
+from scenic import allowed, bounded
 from scenic.language.errors import InvalidScenarioError
 from tests.runtime.programs import scenario
 
@@ -47,3 +47,10 @@ def test_a_relation_of_random_values_is_random() -> None:
 def test_combinations_that_cannot_be_looked_up_are_refused(combinations: list[object]) -> None:
     with pytest.raises(InvalidScenarioError, match="the combinations that are allowed"):
         allowed(bool, combinations)  # type: ignore[arg-type] # that is the fault
+
+
+def test_what_is_no_function_is_refused() -> None:
+    with pytest.raises(InvalidScenarioError, match="declared of a function, not of 3"):
+        allowed(3, [(1, 2)])  # type: ignore[arg-type]
+    with pytest.raises(InvalidScenarioError, match="marks a function or a class of regions, not 3"):
+        bounded(lambda x: x)(3)  # type: ignore[type-var]
