@@ -60,6 +60,21 @@ ego = new Car at (-110, -1.75), facing -90 deg, with speed 12,
     assert along.min() == pytest.approx(-2.5, abs=0.3)
 
 
+def test_a_lane_that_closes_within_a_road_leads_nowhere(tmp_path: Path) -> None:
+    closing = '<width sOffset="0" a="3.5" b="0" c="-0.0065625" d="0.000109375"/>'
+    whole = lanes("", lane(-1, after=-1)).replace("</laneSection>", "").replace("</right>", "")
+    first = whole + lane(-2, width=closing) + "</right></laneSection>"
+    second = lanes("", lane(-1, after=-1)).replace('s="0"', 's="40"')
+    road, after = RoadText("1", 150, line(0, 0, 0, 150)), RoadText("2", 100, line(150, 0, 0, 100))
+    one_after_the_other(road, after)
+    road.lanes, after.lanes = first + second, lanes("", lane(-1, before=-1))
+    (tmp_path / "pocket.xodr").write_text(map_text([road, after]))
+    network = Network.fromFile(tmp_path / "pocket.xodr")
+    pocket = network.laneAt((5, -5.25))
+    assert pocket.centerline.length < 45
+    assert not Plan(network, pocket).choices
+
+
 def test_a_behavior_takes_over_the_steering_and_braking_of_the_one_before(folder: Path) -> None:
     text = """
 behavior Twice():

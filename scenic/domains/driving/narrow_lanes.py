@@ -18,6 +18,8 @@ _WHOLE: Final = 0.97
 """Share of the largest width from which on a lane counts as whole."""
 _CLOSED: Final = 0.5
 """Metres of width at which a lane has ended."""
+_NEAR: Final = 5.0
+"""Metres between the ends of lanes beside each other."""
 
 
 def line_to_drive(lane: Lane) -> Floats:
@@ -53,7 +55,8 @@ def ways_after(lane: Lane) -> tuple[Maneuver, ...]:
     """The maneuvers to choose from at the end of a lane; those of the lane beside it if it closes there and nothing follows it."""
     if not lane.maneuvers and float(np.hypot(*(lane.left[-1] - lane.right[-1]))) < _CLOSED:
         beside = _beside(lane)
-        if beside is not None:
+        # Lanes that close within a road end far from where the others do.
+        if beside is not None and float(np.hypot(*(beside[0].line[-1] - lane.line[-1]))) < _NEAR:
             return next_maneuver(beside[0])
     return next_maneuver(lane)
 
