@@ -18,6 +18,7 @@ from scenic.language.spans import Span
 from scenic.language.spelling import nearest_attribute
 from scenic.runtime.ground.context import current
 from scenic.runtime.ground.reported_places import Place, reported
+from scenic.runtime.values.random_base import is_random
 
 __all__ = ["diagnose", "placed"]
 
@@ -39,6 +40,14 @@ def diagnose(error: BaseException) -> Diagnostic | None:
             place.span,
             filename=place.filename,
             help="modules are .scenic files beside the program, or anything that Python can import",
+        )
+    if isinstance(error, KeyError) and is_random(error.args):
+        return Diagnostic(
+            "SC403",
+            "looking up a random key in a dictionary of Python's own is not possible",
+            place.span,
+            filename=place.filename,
+            help="make the dictionary itself random: `Uniform(d)[key]`, or choose a value: `Uniform(*d.values())`",
         )
     near = nearest_attribute(error)
     diagnostic = Diagnostic(

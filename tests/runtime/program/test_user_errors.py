@@ -73,6 +73,7 @@ MISTAKES = [
     ("x = 1\ny = «x / 0»", "SC400", "ZeroDivisionError"),
     ("x = 1\ny = «x.nothing»", "SC400", "AttributeError"),
     ("x = [1]\ny = «x[3]»", "SC400", "IndexError"),
+    ("d = {'a': 1}\ny = «d[Uniform('a', 'b')]»", "SC403", "looking up a random key"),
     ("def f():\n    return «1 + 'a'»\nx = f()", "SC400", "TypeError"),
     # On samples
     ("x = Range(0, 1)\n«require x.nothing»", "SC501", "AttributeError"),
