@@ -144,10 +144,7 @@ def try_command(
         if not report["ok"]:
             failure_code = EXIT_CODES[report["phase"]]
             code = failure_code if code == 0 else min(code, failure_code)
-        if form is None:
-            _show(report, Source(trial.text, trial.filename))
-        else:
-            print(json.dumps(report, indent=2 if form == "object" else None, ensure_ascii=False), flush=True)
+        _write(report, Source(trial.text, trial.filename), form)
     return code
 
 
@@ -177,6 +174,14 @@ def _picture(png: str, filename: str, programs: int) -> str:
     folder = Path(png)
     folder.mkdir(parents=True, exist_ok=True)
     return str(folder / f"{Path(filename).stem}.png")
+
+
+def _write(report: Mapping[str, object], source: Source, form: str | None) -> None:
+    """Write a report on standard output: as JSON of a form, or for readers."""
+    if form is None:
+        _show(report, source)
+    else:
+        print(json.dumps(report, indent=2 if form == "object" else None, ensure_ascii=False), flush=True)
 
 
 def _show(found: Mapping[str, object], source: Source) -> None:

@@ -82,10 +82,14 @@ def commonroad_document(
     for course, key in sorted(obstacles, key=lambda item: not item[0].is_still):
         add_obstacle(root, course, key, numbers, timestep)
     here = source.lanelets_at((ego.states[0].x, ego.states[0].y))
-    onward = {lanelet.key: lanelet.successors for lanelet in records.lanelets}
-    goal = list(dict.fromkeys(key for lanelet in here for key in onward[lanelet])) or here
-    add_problem(root, ego, numbers, goal, timestep)
+    add_problem(root, ego, numbers, _onward(records, here) or here, timestep)
     return root
+
+
+def _onward(records: RoadRecords, here: Sequence[str]) -> list[str]:
+    """Return the lanelets that follow some lanelets, each once."""
+    successors = {lanelet.key: lanelet.successors for lanelet in records.lanelets}
+    return list(dict.fromkeys(key for lanelet in here for key in successors[lanelet]))
 
 
 def _source(scene: Scene) -> RoadSource:
