@@ -48,9 +48,9 @@ def contract_once(graph: Graph, conditions: Sequence[Fact], met: Mapping[Node, N
         pruning = _unpacked(arrays, graph.dimension, conditions)
         if pruning is not None:
             return pruning
-    begun = time.perf_counter()
+    start_time = time.perf_counter()
     pruning = contract(graph, conditions, met)
-    if time.perf_counter() - begun >= _WORTH:
+    if time.perf_counter() - start_time >= _WORTH:
         keep(_KIND, key, _packed(pruning, conditions))
     return pruning
 

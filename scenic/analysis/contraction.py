@@ -213,14 +213,16 @@ def independent(conditions: Sequence[Fact]) -> list[list[Fact]]:
     groups: dict[int, list[Fact]] = {}
     for number, condition in enumerate(conditions):
         axes = [node for node in nodes_below([condition.node]) if node.is_axis]
-        joined = sorted({leader[axis] for axis in axes if axis in leader})
-        mine = joined[0] if joined else number
-        for other in joined[1:]:
+        group_numbers = sorted({leader[axis] for axis in axes if axis in leader})
+        mine = group_numbers[0] if group_numbers else number
+        for other in group_numbers[1:]:
             groups[mine] += groups.pop(other)
         groups.setdefault(mine, []).append(condition)
-        moved = set(joined[1:])
+        other_numbers = set(group_numbers[1:])
         leader = (
-            {axis: mine if group in moved else group for axis, group in leader.items()} if moved else leader
+            {axis: mine if group in other_numbers else group for axis, group in leader.items()}
+            if other_numbers
+            else leader
         )
         leader.update(dict.fromkeys(axes, mine))
     return list(groups.values())
@@ -233,21 +235,23 @@ def _product(hull: Boxes, pavings: Sequence[Boxes]) -> Domain:
     left = 1.0
     for paving in pavings:
         least, most = paving.lower.min(axis=0), paving.upper.max(axis=0)
-        own = (paving.lower != hull.lower).any(axis=0) | (paving.upper != hull.upper).any(axis=0)
-        lower[0, own], upper[0, own] = least[own], most[own]
-        share = paving.volume(own) / float((most - least)[own].prod())
+        is_narrow = (paving.lower != hull.lower).any(axis=0) | (paving.upper != hull.upper).any(axis=0)
+        lower[0, is_narrow], upper[0, is_narrow] = least[is_narrow], most[is_narrow]
+        share = paving.volume(is_narrow) / float((most - least)[is_narrow].prod())
         if share < FACTOR_GAIN:
-            unions.append((own, paving))
+            unions.append((is_narrow, paving))
             left *= share
     if left >= GAIN:
         return Domain(lower, upper)
     # The axes of the first union are as it says, those of no union as in the hull; each other union is a factor.
     factors = []
-    for own, paving in unions[1:]:
-        factors.append(Domain(np.where(own, paving.lower, 0.0), np.where(own, paving.upper, 1.0)))
-        lower[0, own], upper[0, own] = 0.0, 1.0
-    own, paving = unions[0]
-    return Domain(np.where(own, paving.lower, lower), np.where(own, paving.upper, upper), tuple(factors))
+    for is_narrow, paving in unions[1:]:
+        factors.append(Domain(np.where(is_narrow, paving.lower, 0.0), np.where(is_narrow, paving.upper, 1.0)))
+        lower[0, is_narrow], upper[0, is_narrow] = 0.0, 1.0
+    is_narrow, paving = unions[0]
+    return Domain(
+        np.where(is_narrow, paving.lower, lower), np.where(is_narrow, paving.upper, upper), tuple(factors)
+    )
 
 
 def _impossible_alone(graph: Graph, conditions: Sequence[Fact]) -> tuple[Fact, ...]:
@@ -444,9 +448,9 @@ class _State:
                 axis = network.axes[node]
                 self._bounds[node] = Bounds(boxes.lower[:, axis].copy(), boxes.upper[:, axis].copy())
             elif node.is_constant:
-                known = bounding.of_constant(node)
-                if known is not None:
-                    self._bounds[node] = known
+                bounds = bounding.of_constant(node)
+                if bounds is not None:
+                    self._bounds[node] = bounds
 
     def forward(self) -> None:
         """From the operands to the results, and on to the conditions, which must hold."""
@@ -464,9 +468,9 @@ class _State:
 
     def backward(self) -> None:
         """From the conditions down to the axes, through nodes that every solution evaluates."""
-        reached: dict[Node, Mask] = dict.fromkeys(self._network.conditions, np.ones_like(self.alive))
+        masks: dict[Node, Mask] = dict.fromkeys(self._network.conditions, np.ones_like(self.alive))
         for node in reversed(self._network.inner):
-            mask = reached.get(node)
+            mask = masks.get(node)
             if mask is None or not mask.any():
                 continue
             parts = self._inverted(node)
@@ -474,13 +478,17 @@ class _State:
                 here = mask
                 if part is not None:
                     here = mask & (np.True_ if node.operation.strict else _speaks(part))
-                    told = self._told.get((node, position))
-                    if told is None or told[0] is not part or not np.array_equal(told[1], here):
+                    last_call = self._told.get((node, position))
+                    if (
+                        last_call is None
+                        or last_call[0] is not part
+                        or not np.array_equal(last_call[1], here)
+                    ):
                         self._told[node, position] = part, here
                         self._narrow(operand, _only(here, part))
                 elif not node.operation.strict:
                     continue
-                reached[operand] = reached[operand] | here if operand in reached else here
+                masks[operand] = masks[operand] | here if operand in masks else here
 
     def _inverted(self, node: Node) -> Sequence[Bounds | None]:
         """Return bounds of the node's operands, derived from the node's own bounds by the inverse of its operation."""
@@ -492,9 +500,9 @@ class _State:
         blind = node.operation.strict and not node.operation.partial
         if blind and any(operand is None for operand in operands):
             return nothing
-        known = self._inverse.get(node)
-        if known is not None and _same(known[0], [result, *operands]):
-            return known[1]
+        last_result = self._inverse.get(node)
+        if last_result is not None and _same(last_result[0], [result, *operands]):
+            return last_result[1]
         parts = [
             bounding.integral(operand.kind, part)
             for operand, part in zip(node.operands, inverse(node.payload, result, *operands), strict=True)

@@ -84,8 +84,8 @@ def share_that_may_hold(
     steps = ratio ** -np.arange(1.0, len(axes) + 1)
     places = np.mod(0.5 + np.arange(1, points + 1)[:, np.newaxis] * steps, 1.0)
     lower, upper = np.tile(hull.lower[:1], (points, 1)), np.tile(hull.upper[:1], (points, 1))
-    chosen = lower[:, axes] + (upper[:, axes] - lower[:, axes]) * places
-    lower[:, axes] = upper[:, axes] = chosen
+    grid_points = lower[:, axes] + (upper[:, axes] - lower[:, axes]) * places
+    lower[:, axes] = upper[:, axes] = grid_points
     return len(contract(Boxes(lower, upper))) / points
 
 
@@ -136,21 +136,21 @@ def pave_by_trial(
             idle = idle + 1 if volume > (1 - WORTHWHILE) * last else 0
             if ratio <= ENOUGH or (ratio <= NEARLY_ENOUGH and idle >= IDLE):
                 break
-        found = None
+        best = None
         if len(boxes) <= TRIED:
             for ways in _ways(split, len(boxes)):
-                tried = [contract(_cut_along(boxes, way)) for way in ways]
-                left = [each.volume(axes) for each in tried]
+                trials = [contract(_cut_along(boxes, way)) for way in ways]
+                left = [each.volume(axes) for each in trials]
                 losing = [way for way, rest in zip(ways, left, strict=True) if rest < (1 - LOSS) * volume]
                 if losing:
-                    found = tried[int(np.argmin(left))]
+                    best = trials[int(np.argmin(left))]
                     useful = np.array(sorted({axis for way in losing for axis, _ in way}), dtype=np.intp)
                     break
-        if found is None:
-            found = _refined(narrow, boxes, useful, axes)
-            vain = vain + 1 if len(boxes) > TRIED and found.volume(axes) > (1 - LOSS) * volume else 0
+        if best is None:
+            best = _refined(narrow, boxes, useful, axes)
+            vain = vain + 1 if len(boxes) > TRIED and best.volume(axes) > (1 - LOSS) * volume else 0
         last = volume
-        boxes = found
+        boxes = best
     return boxes
 
 
@@ -188,16 +188,16 @@ def _refined(narrow: Narrow, boxes: Boxes, axes: NDArray[np.intp], every: NDArra
             for (parts, _), rows in zip(halves, parents, strict=True)
         ]
     )
-    chosen = np.where(left.min(axis=0) < (1 - LOSS_OF_ONE) * volume, left.argmin(axis=0), -1)
+    way_of_box = np.where(left.min(axis=0) < (1 - LOSS_OF_ONE) * volume, left.argmin(axis=0), -1)
     if np.minimum(left.min(axis=0), volume).sum() > (1 - LOSS) * volume.sum():
         return narrow(boxes.divided(_widest(boxes, axes)))[0]
-    others = boxes.taken(np.flatnonzero(chosen < 0))
+    others = boxes.taken(np.flatnonzero(way_of_box < 0))
     if len(others) and np.minimum(left.min(axis=0), volume).sum() > (1 - MUCH) * volume.sum():
         others = narrow(others.divided(_widest(others, axes)))[0]
-    found = [others]
+    parts_of_boxes = [others]
     for number, ((parts, _), rows) in enumerate(zip(halves, parents, strict=True)):
-        found.append(parts.taken(np.flatnonzero(chosen[rows] == number)))
-    return Boxes.joined(found)
+        parts_of_boxes.append(parts.taken(np.flatnonzero(way_of_box[rows] == number)))
+    return Boxes.joined(parts_of_boxes)
 
 
 def _widest(boxes: Boxes, axes: NDArray[np.intp]) -> NDArray[np.intp]:

@@ -31,26 +31,28 @@ def prove(graph: Graph, conditions: Sequence[Fact]) -> tuple[Diagnostic, ...]:
     """
     if not conditions:
         return ()
-    ordered = sorted(conditions, key=_place)
-    found: list[Diagnostic] = []
+    conditions_in_order = sorted(conditions, key=_place)
+    diagnostics: list[Diagnostic] = []
     tautologies: Collection[Fact] = ()
     if has_solver():
-        verdict = judge(ordered)
-        found = [_contradiction(item, verdict.encoding.nodes) for item in verdict.contradictions]
+        verdict = judge(conditions_in_order)
+        diagnostics = [_contradiction(item, verdict.encoding.nodes) for item in verdict.contradictions]
         tautologies = verdict.tautologies
-    if not found:
-        core = _by_intervals(graph, ordered)
+    if not diagnostics:
+        core = _by_intervals(graph, conditions_in_order)
         if core:
-            found = [_contradiction(Contradiction(core, ()))]
-    found += [_tautology(item) for item in ordered if item in tautologies or _always_holds(item)]
-    return tuple(found)
+            diagnostics = [_contradiction(Contradiction(core, ()))]
+    diagnostics += [
+        _tautology(item) for item in conditions_in_order if item in tautologies or _always_holds(item)
+    ]
+    return tuple(diagnostics)
 
 
 def prove_in_time(
     requirements: Sequence[Required], told: Collection[Span | None] = ()
 ) -> tuple[Diagnostic, ...]:
     """Temporal requirements that no simulation meets (SC700), none without the solver; ``told`` are the places of requirements that no scene meets, which are reported already."""
-    found = []
+    diagnostics = []
     for core, length in contradictions(requirements) if has_solver() else ():
         *others, last = core
         if last.span in told:
@@ -66,30 +68,30 @@ def prove_in_time(
         labels = tuple(
             Label(other.span, "while this is required") for other in others if other.span is not None
         )
-        found.append(
+        diagnostics.append(
             Diagnostic("SC700", message, last.span, Severity.ERROR, last.filename, help=advice, labels=labels)
         )
-    return tuple(found)
+    return tuple(diagnostics)
 
 
 def prove_dead(graph: Graph, domain: Domain) -> tuple[Diagnostic, ...]:
     """Options of choices that no scene has, since the requirements exclude them (SC702)."""
-    found = []
+    diagnostics = []
     for row in supports(graph, domain):
         dead = [text for number, text in enumerate(row.options) if number not in row.left]
         if not dead or row.span is None:
             continue
-        shown = ", ".join(dead[:_SHOWN]) + (", ..." if len(dead) > _SHOWN else "")
-        found.append(
+        names = ", ".join(dead[:_SHOWN]) + (", ..." if len(dead) > _SHOWN else "")
+        diagnostics.append(
             Diagnostic(
                 "SC702",
-                f"{len(dead)} of the {len(row.options)} options of this choice never occur: {shown}",
+                f"{len(dead)} of the {len(row.options)} options of this choice never occur: {names}",
                 row.span,
                 Severity.WARNING,
                 help="the requirements exclude them; remove them, or check the requirements",
             )
         )
-    return tuple(found)
+    return tuple(diagnostics)
 
 
 def _place(condition: Fact) -> tuple[bool, Span]:

@@ -55,7 +55,7 @@ def judge(conditions: Sequence[Fact]) -> Verdict:
     questions = Questions(
         encoding.terms, encoding.terms.definitions, [*formulas, *(term for term, _ in supports)]
     )
-    given = list(range(count, count + len(supports)))
+    support_numbers = list(range(count, count + len(supports)))
 
     def contradiction(core: Sequence[int]) -> Contradiction:
         return Contradiction(
@@ -66,20 +66,20 @@ def judge(conditions: Sequence[Fact]) -> Verdict:
     contradictions = []
     remaining = []
     for number in range(count):
-        core = questions.contradiction([number, *given])
+        core = questions.contradiction([number, *support_numbers])
         if core is None:
             remaining.append(number)
         else:
             contradictions.append(contradiction(core))
     possible = tuple(remaining)
     while len(remaining) > 1:
-        core = questions.contradiction([*remaining, *given])
+        core = questions.contradiction([*remaining, *support_numbers])
         if core is None:
             break
         contradictions.append(contradiction(core))
         remaining.remove(max(member for member in core if member < count))
     tautologies = tuple(
-        conditions[number] for number in possible if questions.refutes(~formulas[number], given)
+        conditions[number] for number in possible if questions.refutes(~formulas[number], support_numbers)
     )
     return Verdict(tuple(contradictions), tautologies, encoding)
 
@@ -93,15 +93,15 @@ class Encoding:
         self.nodes = Graph(roots).nodes
         self._terms_of: dict[Node, Term] = {}
         self._table = frozenset(TABLE.values())
-        shared: dict[Any, Term] = {}
+        terms_by_key: dict[Any, Term] = {}
         keys: dict[Node, Any] = {}
         for node in self.nodes:
             # The same formula written twice is one term, also where the solver knows nothing about it.
             key = self._key(node, keys)
             keys[node] = key
-            if key not in shared:
-                shared[key] = self._encode(node)
-            self._terms_of[node] = shared[key]
+            if key not in terms_by_key:
+                terms_by_key[key] = self._encode(node)
+            self._terms_of[node] = terms_by_key[key]
 
     def _key(self, node: Node, keys: dict[Node, Any]) -> Any:
         if node.operation not in self._table:  # which are all pure
@@ -151,5 +151,5 @@ class Encoding:
         if kind is Kind.BOOLEAN:
             return self.terms.truth(bool(node.payload.column[0]))
         number = value if kind.is_boxed else node.payload.column[0].item()
-        known = isinstance(number, int) or math.isfinite(number)  # there are integers that no float is
-        return self.terms.real(number) if known else self.terms.fresh(Kind.SCALAR)
+        is_finite = isinstance(number, int) or math.isfinite(number)  # there are integers that no float is
+        return self.terms.real(number) if is_finite else self.terms.fresh(Kind.SCALAR)

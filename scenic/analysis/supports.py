@@ -57,47 +57,59 @@ class DrawnSupport:
 
 def supports(graph: Graph, domain: Domain) -> tuple[DrawnSupport, ...]:
     """The supports of all primitive values of a graph, in the order of the graph."""
-    drawn: dict[Node, list[int]] = {}
+    axes_of_node: dict[Node, list[int]] = {}
     for node in graph.nodes:
         axes = [graph.axes[operand] for operand in node.operands if operand.is_axis]
         if axes:
-            drawn[node] = axes
+            axes_of_node[node] = axes
     whole = Domain.whole(graph.dimension).hull
-    before, after = over(drawn, graph.axes, *whole), over(drawn, graph.axes, *domain.hull)
+    before, after = over(axes_of_node, graph.axes, *whole), over(axes_of_node, graph.axes, *domain.hull)
     rows: list[DrawnSupport] = []
     places: dict[Span | None, int] = {}
-    for node, axes in drawn.items():
+    for node, axes in axes_of_node.items():
         span = node.span if isinstance(node.span, Span) else None
-        removed = 1 - float(np.prod([_left(domain, axis) for axis in axes]))
-        own = tuple(operand for operand in node.operands if operand.is_axis)
+        removed_share = 1 - float(np.prod([_left(domain, axis) for axis in axes]))
+        own_axes = tuple(operand for operand in node.operands if operand.is_axis)
         kind = NAMES.get(node.operation.name, "place")
         if kind == "place":
             if span in places:  # several numbers of one place
                 place = places[span]
-                known = rows[place]
+                earlier = rows[place]
                 rows[place] = DrawnSupport(
-                    kind, span, None, None, (), (), 1 - (1 - known.removed) * (1 - removed), known.axes + own
+                    kind,
+                    span,
+                    None,
+                    None,
+                    (),
+                    (),
+                    1 - (1 - earlier.removed) * (1 - removed_share),
+                    earlier.axes + own_axes,
                 )
             else:
                 places[span] = len(rows)
-                rows.append(DrawnSupport(kind, span, None, None, (), (), removed, own))
+                rows.append(DrawnSupport(kind, span, None, None, (), (), removed_share, own_axes))
             continue
         options = options_of(node, graph.nodes)
         ends = _ends(after[node])
         left = _options_left(node, graph, domain) if options else ()
-        rows.append(DrawnSupport(kind, span, _ends(before[node]), ends, options, left, removed, own))
+        rows.append(
+            DrawnSupport(kind, span, _ends(before[node]), ends, options, left, removed_share, own_axes)
+        )
     return tuple(rows)
 
 
 def places_of(position: Node, graph: Graph, domain: Domain) -> tuple[Floats, Floats]:
     """Boxes in which a position may lie, as corners ``(m, 3)``: one for each box of a part of the domain."""
-    used = {axis for axis in graph.axes if axis in Graph([position]).index}
-    numbers = np.array(sorted(graph.axes[axis] for axis in used), dtype=np.intp)
+    axes_used = {axis for axis in graph.axes if axis in Graph([position]).index}
+    numbers = np.array(sorted(graph.axes[axis] for axis in axes_used), dtype=np.intp)
     lower, upper = domain.hull
-    for part, joined in zip(domain.parts, domain.joined_axes(), strict=False):
-        if len(np.intersect1d(joined, numbers)) and len(lower) == 1:
+    for part, axes_of_part in zip(domain.parts, domain.joined_axes(), strict=False):
+        if len(np.intersect1d(axes_of_part, numbers)) and len(lower) == 1:
             lower, upper = np.repeat(lower, part.boxes, axis=0), np.repeat(upper, part.boxes, axis=0)
-            lower[:, joined], upper[:, joined] = part.lower[:, joined], part.upper[:, joined]
+            lower[:, axes_of_part], upper[:, axes_of_part] = (
+                part.lower[:, axes_of_part],
+                part.upper[:, axes_of_part],
+            )
     bounds = over([position], graph.axes, lower, upper)[position]
     if bounds is None or bounds.lower.shape[1:] != (3,):
         return np.full((1, 3), -np.inf), np.full((1, 3), np.inf)
@@ -163,9 +175,9 @@ def _left(domain: Domain, axis: int) -> float:
     for part in domain.parts:
         order = np.argsort(part.lower[:, axis])
         lower, upper = part.lower[order, axis], part.upper[order, axis]
-        reached = np.maximum.accumulate(np.concatenate([[0.0], upper[:-1]]))
-        covered = np.maximum(upper - np.maximum(lower, reached), 0).sum()
-        share = min(share, float(covered))
+        ends = np.maximum.accumulate(np.concatenate([[0.0], upper[:-1]]))
+        covered_length = np.maximum(upper - np.maximum(lower, ends), 0).sum()
+        share = min(share, float(covered_length))
     for lower, upper in _cells_left(domain, axis):
         share = min(share, float((upper - lower).sum()))
     return share

@@ -37,7 +37,7 @@ def contradictions(requirements: Sequence[Required]) -> list[tuple[tuple[Require
 
     Each comes with the number of states of a shortest trace that meets all of them but the last.
     """
-    found = []
+    cores = []
     for group in _groups(requirements):
         if not any(is_temporal(item.formula) for item in group):
             continue
@@ -50,33 +50,36 @@ def contradictions(requirements: Sequence[Required]) -> list[tuple[tuple[Require
                 if rest and shortest_trace(rest) is None:
                     core = rest
             others = core[:-1]
-            found.append((tuple(core), (shortest_trace(others) or 0) if others else 0))
+            cores.append((tuple(core), (shortest_trace(others) or 0) if others else 0))
         except _UndecidedError:
             continue
-    return found
+    return cores
 
 
 def shortest_trace(requirements: Sequence[Required]) -> int | None:
     """The number of states of a shortest trace that meets all requirements; ``None`` if there is none."""
     number: dict[Hashable, int] = {}
-    fixed: dict[int, bool] = {}
+    values_of_atoms: dict[int, bool] = {}
     atoms = [[number.setdefault(_key(atom), len(number)) for atom in item.atoms] for item in requirements]
     for item, mine in zip(requirements, atoms, strict=True):
-        fixed |= {
+        values_of_atoms |= {
             place: bool(atom()) for place, atom in zip(mine, item.atoms, strict=True) if _is_fixed(atom)
         }
-    if len(number) - len(fixed) > MOST_ATOMS:
+    if len(number) - len(values_of_atoms) > MOST_ATOMS:
         raise _UndecidedError
-    choices = [(fixed[place],) if place in fixed else (False, True) for place in range(len(number))]
+    choices = [
+        (values_of_atoms[place],) if place in values_of_atoms else (False, True)
+        for place in range(len(number))
+    ]
     start = tuple(FormulaMonitor(item.formula) for item in requirements)
     waiting: deque[tuple[int, tuple[FormulaMonitor, ...]]] = deque([(0, start)])
-    seen: set[Hashable] = set()
-    added = 0
+    states_done: set[Hashable] = set()
+    state_count = 0
     while waiting:
         length, monitors = waiting.popleft()
         for truths in product(*choices):
-            added += 1
-            if added > MOST_STATES:
+            state_count += 1
+            if state_count > MOST_STATES:
                 raise _UndecidedError
             after = tuple(copy(monitor) for monitor in monitors)
             verdicts = [
@@ -86,9 +89,9 @@ def shortest_trace(requirements: Sequence[Required]) -> int | None:
             if all(verdicts):
                 return length + 1
             left = tuple(monitor.left for monitor in after)
-            if Verdict.FALSE in verdicts or left in seen:
+            if Verdict.FALSE in verdicts or left in states_done:
                 continue
-            seen.add(left)
+            states_done.add(left)
             waiting.append((length + 1, after))
     return None
 
@@ -98,10 +101,10 @@ def _groups(requirements: Sequence[Required]) -> list[list[Required]]:
     groups: list[tuple[set[Hashable], list[Required]]] = []
     for item in requirements:
         keys = {_key(atom) for atom in item.atoms}
-        joined = [group for group in groups if group[0] & keys]
-        members = [member for _, group in joined for member in group]
-        keys = keys.union(*(known for known, _ in joined))
-        groups = [group for group in groups if group not in joined]
+        groups_to_join = [group for group in groups if group[0] & keys]
+        members = [member for _, group in groups_to_join for member in group]
+        keys = keys.union(*(atoms for atoms, _ in groups_to_join))
+        groups = [group for group in groups if group not in groups_to_join]
         groups.append((keys, [*members, item]))
     order = {id(item): place for place, item in enumerate(requirements)}
     return [sorted(members, key=lambda item: order[id(item)]) for _, members in groups]

@@ -37,10 +37,12 @@ def declared_forms() -> Iterator[DeclaredForm]:
         ("Temporal", {name: each.forms for name, each in TEMPORAL_OPERATORS.items()}),
     ):
         for name, texts in forms.items():
-            declared = [each for each in (*SPECIFIERS, *FORMS) if (each.node, each.operator) == (node, name)]
+            declaration = [
+                each for each in (*SPECIFIERS, *FORMS) if (each.node, each.operator) == (node, name)
+            ]
             for text in texts:
                 words = tuple(text.split())
-                form = next(each for each in declared if _agrees(words, each))
+                form = next(each for each in declaration if _agrees(words, each))
                 is_word = tuple(isinstance(part, Word) for part in form.parts)
                 yield DeclaredForm(node, name, text, words, is_word, form)
 

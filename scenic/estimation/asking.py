@@ -40,16 +40,16 @@ def asked_of(
         "rare": rare,
         "a search to follow": follows,
     }
-    chosen = [name for name, is_given in ways.items() if is_given]
-    if len(chosen) > 1:
+    method_names = [name for name, is_given in ways.items() if is_given]
+    if len(method_names) > 1:
         raise EstimateError(
-            f"{chosen[0]} and {chosen[1]} contradict each other: each is a way to estimate",
+            f"{method_names[0]} and {method_names[1]} contradict each other: each is a way to estimate",
             help="give one of them",
         )
-    has_budget = bool(chosen) and not follows
+    has_budget = bool(method_names) and not follows
     if runs is not None and has_budget:
         raise EstimateError(
-            f"a number of runs contradicts {chosen[0]}, which takes as many as it needs",
+            f"a number of runs contradicts {method_names[0]}, which takes as many as it needs",
             help="limit them by a budget, or leave the number away",
         )
     if budget is not None and not has_budget:

@@ -207,27 +207,30 @@ class _Course:
         is_repeatable = self._made_again()
         history = [self._asked.to_data()] if self._folder is None else self._folder.asked
         folder = None if self._folder is None else self._folder.path
-        made = _estimate_from(self._rows, self._asked, history, self._runs.settings(), folder)
-        made.is_repeatable = is_repeatable
-        made.stop_reason = made.stop_reason or reason
-        return made
+        estimate_made = _estimate_from(self._rows, self._asked, history, self._runs.settings(), folder)
+        estimate_made.is_repeatable = is_repeatable
+        estimate_made.stop_reason = estimate_made.stop_reason or reason
+        return estimate_made
 
     def _go_on(self) -> str:
         """Make runs until they are enough; returns the words for another end."""
-        begun = time.monotonic()
-        kept = [] if self._folder is None else self._folder.rows
+        start_time = time.monotonic()
+        kept_rows = [] if self._folder is None else self._folder.rows
         if self._is_enough():
             return ""
         try:
-            with closing(self._all_rows(kept)) as rows:
+            with closing(self._all_rows(kept_rows)) as rows:
                 for place, row in enumerate(rows):
-                    if self._folder is not None and place >= len(kept):
+                    if self._folder is not None and place >= len(kept_rows):
                         self._waiting.append(row)
                     self._take(row)
                     self._keep(_KEPT_TOGETHER)
                     if self._is_enough():
                         return ""
-                    if self._stop.time_limit is not None and time.monotonic() - begun > self._stop.time_limit:
+                    if (
+                        self._stop.time_limit is not None
+                        and time.monotonic() - start_time > self._stop.time_limit
+                    ):
                         return "the time limit was reached"
         finally:
             self._keep(0)
@@ -277,14 +280,14 @@ class _Course:
             if len(known) < len(moves):
                 yield from branching.rows(number + len(known), moves[len(known) :])
 
-        done = 0
+        row_count = 0
         for row in split(splitting, make, self._runs.threshold):
-            done += 1
+            row_count += 1
             yield row
         if splitting.pilot.is_flat:
             # Nothing leads to failures: what is left of the budget goes into plain runs.
-            yield from kept[done:]
-            yield from self._new_rows(max(done, len(kept)))
+            yield from kept[row_count:]
+            yield from self._new_rows(max(row_count, len(kept)))
 
     def _new_rows(self, start: int) -> Generator[dict[str, Any]]:
         """Runs of the program's law, or guided ones."""
@@ -316,8 +319,8 @@ class _Course:
                 ]
                 rows = evaluated(self._evaluation, tasks, self._engine)
             for row, point, weight in zip(rows, points, weights, strict=True):
-                named = zip(guide.addresses, map(float, point), strict=True)
-                row["numbers"] = {f"{address:016x}": number for address, number in named}
+                addresses_and_numbers = zip(guide.addresses, map(float, point), strict=True)
+                row["numbers"] = {f"{address:016x}": number for address, number in addresses_and_numbers}
                 row["weight"] = float(weight)
                 yield row
 
@@ -368,16 +371,16 @@ def _estimate_from(
     total = Tally()
     for row in filter(is_of_law, rows):
         total.add(row)
-    rare, weighted = None, None
+    rare, weights = None, None
     if asked.method == "splitting":
         rare = rare_of(rows, int(settings["seed"]), asked.runs or 0, settings["threshold"])
     elif asked.method == "importance sampling":
-        weighted = weighted_of(rows)
+        weights = weighted_of(rows)
     is_static = settings["simulator"] == "none"
     goals = settings["origin"].get("objectives") or []
     names = [goal["name"] for goal in goals if goal["is_verdict"]]
     tallies = []
-    if names and rare is None and weighted is None:
+    if names and rare is None and weights is None:
         tallies = requirement_tallies(rows, [name for name in names if name is not None])
     enough, answer = _answer(asked, total)
     is_whole = asked.runs is not None and len(rows) >= asked.runs
@@ -392,15 +395,15 @@ def _estimate_from(
         is_done = rare.is_known and len(rare.logarithms) == len(rare.repetitions)
         reason = "all repetitions are finished" if is_done else reason
         enough = is_done or (rare.is_flat and is_whole)
-    if weighted is not None:
-        enough = is_whole and weighted.is_known
+    if weights is not None:
+        enough = is_whole and weights.is_known
     # Whoever has looked before deciding on more runs has not fixed their number in advance.
-    looked = len({(item["method"], item["runs"]) for item in history}) > 1
+    has_looked = len({(item["method"], item["runs"]) for item in history}) > 1
     return Estimate(
         asked, rows, int(settings["seed"]), total, tallies,
-        at_any_time=not is_fixed or not is_whole or looked,
+        at_any_time=not is_fixed or not is_whole or has_looked,
         is_finished=is_whole if is_fixed else enough,
-        folder=folder, is_static=is_static, rare=rare, weighted=weighted, answer=answer, stop_reason=reason,
+        folder=folder, is_static=is_static, rare=rare, weighted=weights, answer=answer, stop_reason=reason,
     )  # fmt: skip
 
 
@@ -409,16 +412,16 @@ def load_estimate(folders: Sequence[Path]) -> Estimate:
     if len(folders) == 1:
         manifest = manifest_of(folders[0])
         history = manifest["asked"]
-        asked = Asked.from_data(history[-1])
+        question = Asked.from_data(history[-1])
         rows = read_rows(folders[0], manifest["first"])
-        return _estimate_from(rows, asked, history, manifest, folders[0])
+        return _estimate_from(rows, question, history, manifest, folders[0])
     manifest, rows = joined(folders)
     history = manifest["asked"]
-    asked = Asked.from_data(history[0])
+    question = Asked.from_data(history[0])
     if all(item["method"] == "fixed number" for item in history):
-        asked = Asked("fixed number", asked.confidence, sum(item["runs"] for item in history))
-        history = [asked.to_data()]
-    return _estimate_from(rows, asked, history, manifest, None)
+        question = Asked("fixed number", question.confidence, sum(item["runs"] for item in history))
+        history = [question.to_data()]
+    return _estimate_from(rows, question, history, manifest, None)
 
 
 def estimate(
@@ -486,21 +489,21 @@ def estimate(
         resume: go on with the runs in the folder.
 
     """
-    asked = asked_of(
+    question = asked_of(
         runs=n, budget=budget, confidence=confidence, precision=precision, at_most=at_most, good=good, power=power,
         rare=rare, follows=follow is not None,
     )  # fmt: skip
-    drawn = random.getrandbits(63) if seed is None else whole_number(seed, "seed")
+    chosen_seed = random.getrandbits(63) if seed is None else whole_number(seed, "seed")
 
     def runs_of(program: "Scenario") -> Runs:
         return Runs(
-            program, drawn, goals_of(program, requirement or (), objective, minimize), threshold, simulator, static, max_steps, timestep,
-            whole_number(first, "first", 0), None if hold is None else held_of(program, hold, drawn),
-            asked.runs if rare else None, None if follow is None else guide_of(Path(follow), program.digest),
+            program, chosen_seed, goals_of(program, requirement or (), objective, minimize), threshold, simulator, static, max_steps, timestep,
+            whole_number(first, "first", 0), None if hold is None else held_of(program, hold, chosen_seed),
+            question.runs if rare else None, None if follow is None else guide_of(Path(follow), program.digest),
         )  # fmt: skip
 
     programs = [runs_of(program) for program in (scenario, against) if program is not None]
-    return _estimates(programs, asked, Stop(time_limit), _engine(processes, executor), folder, resume)
+    return _estimates(programs, question, Stop(time_limit), _engine(processes, executor), folder, resume)
 
 
 def _engine(processes: int, executor: "Executor | None") -> Engine | None:

@@ -97,11 +97,11 @@ def _section(result: Estimate) -> list[str]:
 
 def settings_plot(results: Mapping[str, Estimate]) -> str:
     """The probability and its interval for each setting, as SVG."""
-    shown = {label: item for label, item in results.items() if not math.isnan(item.probability)}
-    if not shown:
+    estimates = {label: item for label, item in results.items() if not math.isnan(item.probability)}
+    if not estimates:
         return ""
-    top = min(1.0, 1.1 * max(item.interval.high for item in shown.values()))
-    height = _TOP + _ROW * len(shown) + _BOTTOM
+    top = min(1.0, 1.1 * max(item.interval.high for item in estimates.values()))
+    height = _TOP + _ROW * len(estimates) + _BOTTOM
 
     def x(share: float) -> float:
         return _WIDE_LEFT + share / top * (_WIDTH - _WIDE_LEFT - _RIGHT)
@@ -111,7 +111,7 @@ def settings_plot(results: Mapping[str, Estimate]) -> str:
         f"<text x='{x(value):.1f}' y='{height - _BOTTOM + 18}' text-anchor='middle'>{value:.3g}</text>"
         for value in _ticks(top)
     ]
-    for place, (label, item) in enumerate(shown.items()):
+    for place, (label, item) in enumerate(estimates.items()):
         y = _TOP + _ROW * (place + 0.5)
         low, high = item.interval
         parts.append(
@@ -119,7 +119,7 @@ def settings_plot(results: Mapping[str, Estimate]) -> str:
             f"<line x1='{x(low):.1f}' x2='{x(high):.1f}' y1='{y:.1f}' y2='{y:.1f}' stroke='#2e86c1' stroke-width='3'/>"
             f"<circle cx='{x(item.probability):.1f}' cy='{y:.1f}' r='4' fill='#1b4f72'/>"
         )
-    confidence = percent(next(iter(shown.values())).confidence)
+    confidence = percent(next(iter(estimates.values())).confidence)
     words = (
         f"<text x='{_WIDTH / 2:.0f}' y='{height - 8}' text-anchor='middle'>probability of a counterexample, with its interval of"
         f" {confidence}</text>"

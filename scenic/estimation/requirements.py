@@ -34,14 +34,14 @@ def _named(scenario: "Scenario", names: Sequence[str]) -> tuple[Objective, ...]:
 
     Raises `EstimateError` for a name that no part of the program can have.
     """
-    known = requirement_labels(scenario)
-    lines = {f"line {line}": label for label, line in known.items()}
+    known_labels = requirement_labels(scenario)
+    lines = {f"line {line}": label for label, line in known_labels.items()}
     labels = [lines.get(name, name) for name in dict.fromkeys(names)]
     for label in labels:
         # Behaviors, monitors and scenarios may state requirements while a simulation runs; their names are in the text.
         is_possible = bool(scenario.program.invocables) and _is_written(label, scenario.text)
-        if label not in known and not is_possible:
-            raise _unknown(label, known)
+        if label not in known_labels and not is_possible:
+            raise _unknown(label, known_labels)
     return tuple(Objective(name=label, is_verdict=True) for label in labels) or (Objective(is_verdict=True),)
 
 
@@ -90,14 +90,14 @@ def check_labels(
 def _unknown(name: str, known: Iterable[str]) -> EstimateError:
     labels = list(known)
     near = nearest(name, labels)
-    listed = (
+    label_list = (
         f"the requirements are: {', '.join(labels)}"
         if labels
         else "no requirement is stated where simulations begin"
     )
     return EstimateError(
         f"there is no requirement {name!r}",
-        help=f"did you mean {near!r}? {listed}"
+        help=f"did you mean {near!r}? {label_list}"
         if near
-        else f"{listed}; name one by its label (`as`), or as 'line 3'",
+        else f"{label_list}; name one by its label (`as`), or as 'line 3'",
     )

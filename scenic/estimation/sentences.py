@@ -56,11 +56,11 @@ def method_words(estimate: Estimate) -> str:
 
 def headline(estimate: Estimate) -> list[str]:
     """The result in a few lines."""
-    known = sum(row["values"] is not None for row in estimate.rows)
-    found = counted(estimate.violations, "counterexample")
+    outcome_count = sum(row["values"] is not None for row in estimate.rows)
+    violations = counted(estimate.violations, "counterexample")
     result = described(estimate.probability, estimate.interval, estimate.confidence)
     lines = [
-        f"{counted(len(estimate.rows), 'run')}, {known:,} with a value, {found}",
+        f"{counted(len(estimate.rows), 'run')}, {outcome_count:,} with a value, {violations}",
         f"probability of a counterexample {result}",
     ]
     test = estimate.asked.test
@@ -104,18 +104,18 @@ def _about_rare(rare: Rare, estimate: Estimate) -> list[str]:
             )
         ]
     if not rare.is_known:
-        wanted = max(2 * len(estimate.rows), 40 * rare.pilot.runs)
+        budget = max(2 * len(estimate.rows), 40 * rare.pilot.runs)
         return [
             (
                 f"The budget of {estimate.asked.runs:,} runs ended before two repetitions were finished, so the interval is that of the"
-                f" {counted(estimate.total.runs, 'run')} that no move has made. Give more: about --budget {wanted}."
+                f" {counted(estimate.total.runs, 'run')} that no move has made. Give more: about --budget {budget}."
             )
         ]
-    done = len(rare.logarithms)
+    repetition_count = len(rare.logarithms)
     levels = max(len(item.levels) for item in rare.repetitions) + 1
     words = [
         (
-            f"The probability comes from {done} repetitions in {counted(levels, 'level')}, and the interval from their spread: it"
+            f"The probability comes from {repetition_count} repetitions in {counted(levels, 'level')}, and the interval from their spread: it"
             " is not exact, as that of a number of plain runs is."
         )
     ]
@@ -124,7 +124,7 @@ def _about_rare(rare: Rare, estimate: Estimate) -> list[str]:
     plain = _plain_runs(estimate)
     if plain > _WORTH * len(estimate.rows):
         words.append(f"Plain runs would have to be about {_rounded(plain):,} for an interval as narrow.")
-    if done < len(rare.repetitions) or rare.is_out_of_budget:
+    if repetition_count < len(rare.repetitions) or rare.is_out_of_budget:
         words.append(
             f"The budget of {estimate.asked.runs:,} runs ended before the other repetitions were finished."
         )
@@ -152,11 +152,11 @@ def _rounded(number: float) -> int:
 
 def _about_weights(estimate: Estimate) -> list[str]:
     """Remarks on importance sampling."""
-    weighted = estimate.weighted
-    if weighted is None:
+    weights = estimate.weighted
+    if weights is None:
         return []
-    effective = f"{weighted.effective:.0f}"
-    if not weighted.is_known:
+    effective = f"{weights.effective:.0f}"
+    if not weights.is_known:
         return [
             (
                 f"The counterexamples count as no more than {effective} equal ones, as their weights differ much; {LEAST_EFFECTIVE:.0f} are"
@@ -189,22 +189,22 @@ def comparison_words(estimate: Estimate) -> list[str]:
 
 
 def _about_ending(estimate: Estimate) -> list[str]:
-    asked, words = estimate.asked, []
+    question, words = estimate.asked, []
     if not estimate.is_finished:
         because = f": {estimate.stop_reason}" if estimate.stop_reason else ""
-        if asked.method == "precision":
+        if question.method == "precision":
             words.append(
-                f"The precision of {asked.precision:g} is not reached{because}. The interval is right, but wider: plus or minus"
+                f"The precision of {question.precision:g} is not reached{because}. The interval is right, but wider: plus or minus"
                 f" {estimate.interval.half_width:.2g}."
             )
-        elif asked.method == "fixed number":
+        elif question.method == "fixed number":
             words.append(
-                f"Only {len(estimate.rows):,} of {asked.runs:,} runs are made{because}. The interval allows for that: it is one that"
+                f"Only {len(estimate.rows):,} of {question.runs:,} runs are made{because}. The interval allows for that: it is one that"
                 " holds whenever one stops."
             )
         else:
             words.append(f"The test has no answer yet{because}.")
-    elif asked.method == "fixed number" and estimate.at_any_time:
+    elif question.method == "fixed number" and estimate.at_any_time:
         words.append(
             "More runs were asked for when some had been looked at, so the interval is one that holds however often one looks; it"
             " is a little wider."
@@ -215,8 +215,8 @@ def _about_ending(estimate: Estimate) -> list[str]:
 def _about_counts(estimate: Estimate) -> list[str]:
     total, interval = estimate.total, estimate.interval
     confidence = percent(estimate.confidence)
-    known = total.runs - total.unknown
-    if known == 0:
+    outcome_count = total.runs - total.unknown
+    if outcome_count == 0:
         if estimate.total.rejected:
             reason = f"Scene or simulation was rejected for each of the {counted(total.rejected, 'number')}"
             return [f"{reason}: nothing is known of the probability."]
@@ -227,13 +227,13 @@ def _about_counts(estimate: Estimate) -> list[str]:
             f"No run was a counterexample. That does not show that there is none: with a confidence of {confidence}, fewer than one"
             f" run in {max(1, int(1 / interval.high)):,} is one."
         )
-    elif total.violations == known:
+    elif total.violations == outcome_count:
         words.append(
             f"Every run was a counterexample. With a confidence of {confidence}, more than {100 * interval.low:.3g}% of all runs are."
         )
-    if known < _FEW and interval.half_width > _WIDE:
+    if outcome_count < _FEW and interval.half_width > _WIDE:
         words.append(
-            f"{counted(known, 'run')} {'is' if known == 1 else 'are'} too few to say much: the probability may be anything from"
+            f"{counted(outcome_count, 'run')} {'is' if outcome_count == 1 else 'are'} too few to say much: the probability may be anything from"
             f" {interval.low:.2g} to {interval.high:.2g}. Make more (-n), or ask for a precision (--precision)."
         )
     if total.unknown:
@@ -242,9 +242,9 @@ def _about_counts(estimate: Estimate) -> list[str]:
             " for either outcome of each."
         )
     if total.rejected:
-        tried = total.rejected + total.runs
+        number_count = total.rejected + total.runs
         words.append(
-            f"{total.rejected:,} of {tried:,} numbers gave no run, as scene or simulation was rejected. The probability is that"
+            f"{total.rejected:,} of {number_count:,} numbers gave no run, as scene or simulation was rejected. The probability is that"
             " among the other runs."
         )
     return words
@@ -253,20 +253,20 @@ def _about_counts(estimate: Estimate) -> list[str]:
 def _about_requirements(estimate: Estimate) -> list[str]:
     words = []
     for tally in estimate.requirements:
-        known = tally.runs - tally.unknown
-        if known == 0:
+        outcome_count = tally.runs - tally.unknown
+        if outcome_count == 0:
             continue
-        if tally.unseen == known:
+        if tally.unseen == outcome_count:
             words.append(
                 f"`{tally.label}` was never evaluated: no run came to the part of the program that states it, so that these runs say"
                 " nothing about it."
             )
         elif tally.unseen:
             words.append(
-                f"`{tally.label}` was not evaluated in {tally.unseen:,} of {counted(known, 'run')}; these count as runs in which it"
+                f"`{tally.label}` was not evaluated in {tally.unseen:,} of {counted(outcome_count, 'run')}; these count as runs in which it"
                 " held."
             )
-        words += _about_verdicts(tally, known)
+        words += _about_verdicts(tally, outcome_count)
     return words
 
 

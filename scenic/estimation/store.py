@@ -97,5 +97,5 @@ def joined(folders: Sequence[Path]) -> tuple[dict[str, Any], list[dict[str, Any]
                 )
             numbers[row["run"]] = folder
     everything = sorted((row for some in rows for row in some), key=lambda row: int(row["run"]))
-    asked = [item for manifest in manifests for item in manifest[_ASKED][-1:]]
-    return {**manifests[0], _ASKED: asked, "joined": len(folders)}, everything
+    questions = [item for manifest in manifests for item in manifest[_ASKED][-1:]]
+    return {**manifests[0], _ASKED: questions, "joined": len(folders)}, everything

@@ -82,8 +82,8 @@ _BLOCKS: Final[Mapping[str, str]] = {
 def completions(project: Project, snapshot: Snapshot, line: int, column: int) -> Completions:
     """Completions at a place: ``line`` from 1, ``column`` in characters from 0. None in comments."""
     content = snapshot.source.line(line)[:column]
-    begun = _BEGUN.search(content)
-    start = column if begun is None else begun.start()
+    word_match = _BEGUN.search(content)
+    start = column if word_match is None else word_match.start()
     span = Span(line, start, line, column)
     if _is_in_comment(snapshot, line, start) or _is_in_open_string(snapshot, line, column):
         return _NOTHING
@@ -92,8 +92,8 @@ def completions(project: Project, snapshot: Snapshot, line: int, column: int) ->
         return _files(snapshot, line, column, text)
     if content[start : start + 1].isdigit() or _NUMBER.search(content[:start]):
         return _NOTHING
-    found = continuations(snapshot.text, line, column)
-    items = list(_find(project, snapshot, line, start, found))
+    continuation_set = continuations(snapshot.text, line, column)
+    items = list(_find(project, snapshot, line, start, continuation_set))
     unique: dict[tuple[str, CompletionKind], Completion] = {}
     for item in items:
         unique.setdefault((item.label, item.kind), item)
@@ -186,8 +186,8 @@ def _files(snapshot: Snapshot, line: int, column: int, text: str) -> Completions
     """The files that a string may name, if it is one that names a file."""
     quote = re.match(r"[A-Za-z]{0,2}(['\"])", text)
     before = snapshot.source.line(line)[: column - len(text)].rstrip()
-    named = re.search(r"\b(localPath|fromFile)\s*\($", before)
-    if quote is None or named is None or not os.path.isabs(snapshot.filename):
+    call_match = re.search(r"\b(localPath|fromFile)\s*\($", before)
+    if quote is None or call_match is None or not os.path.isabs(snapshot.filename):
         return _NOTHING
     head, slash, tail = text[quote.end() :].rpartition("/")
     folder = os.path.join(os.path.dirname(snapshot.filename), head + slash)
@@ -235,9 +235,9 @@ def _find(
     if first == "param" and last in ("param", ","):
         yield from _parameters(project, module, before)
         return
-    wanted = _WANTED.get(before[-2:], _WANTED.get(before[-1:]))
-    if wanted is not None and "a name" not in found.labels:
-        yield from _of_kind(project, module, snapshot, wanted, line, column)
+    kind_wanted = _WANTED.get(before[-2:], _WANTED.get(before[-1:]))
+    if kind_wanted is not None and "a name" not in found.labels:
+        yield from _of_kind(project, module, snapshot, kind_wanted, line, column)
         return
     if last == "with" and "new" in before:
         yield from _properties(project, snapshot, before, line, column)
@@ -259,17 +259,17 @@ def _continued(
     """Yield the completions that the grammar lets follow, in the order of its rules."""
     line, column = at
     places = _places(snapshot, line)
-    begun: set[str] = set()
+    words_before: set[str] = set()
     run = bool(before) and (before[-1] in _RUNNING or (before[-1] == "," and before[0] == "do"))
     for item in found.items:
         if run and item.kind is PhraseKind.OPERATOR:
             continue
         if item.kind is PhraseKind.STATEMENT and not places & STATEMENTS[item.name].places:
             continue
-        offered = _of_continuation(item)
+        completion = _of_continuation(item)
         # Of several forms that begin alike, the first one has the words alone for its label.
-        yield replace(offered, label=item.text) if item.words in begun else offered
-        begun.add(item.words)
+        yield replace(completion, label=item.text) if item.words in words_before else completion
+        words_before.add(item.words)
     if found.labels & _EXPRESSIONS or "a name" in found.labels:
         running = run or before[-2:] == ("with", "behavior")
         fitting = _TARGETS if running else ()
@@ -317,9 +317,11 @@ def _parameters(project: Project, module: Module, before: tuple[str, ...]) -> It
         and isinstance(node.value, ast.Name)
         and node.value.id == "globalParameters"
     )
-    known = {setting.name: setting.value for setting in settings(project, module)}
-    for name in sorted({*known, *read} - {*before}):
-        yield Completion(name, CompletionKind.PARAMETER, f"{name} = ", 1, known.get(name, "parameter"))
+    values_by_name = {setting.name: setting.value for setting in settings(project, module)}
+    for name in sorted({*values_by_name, *read} - {*before}):
+        yield Completion(
+            name, CompletionKind.PARAMETER, f"{name} = ", 1, values_by_name.get(name, "parameter")
+        )
 
 
 def _places(snapshot: Snapshot, line: int) -> frozenset[Place]:
@@ -395,12 +397,12 @@ def _snippet(item: Continuation) -> str | None:
         return f"${{{count}:{word}}}"
 
     rest = item.text[len(item.words) :].replace(", ...", "")
-    filled = re.sub(r"[A-Za-z_]\w*", place, rest)
-    while ": ... " in filled:
+    template = re.sub(r"[A-Za-z_]\w*", place, rest)
+    while ": ... " in template:
         count += 1
-        filled = filled.replace(": ... ", f":\n\t${{{count}:pass}}\n", 1)
-    filled = re.sub(r": \.\.\.$", ":\n\t$0", filled)
-    return item.words + filled if filled.strip() else None
+        template = template.replace(": ... ", f":\n\t${{{count}:pass}}\n", 1)
+    template = re.sub(r": \.\.\.$", ":\n\t$0", template)
+    return item.words + template if template.strip() else None
 
 
 def _names(
@@ -409,41 +411,41 @@ def _names(
     """The names that can be read at a place."""
     scope = snapshot.scope_at(line, column)
     place = (str(line), str(column))
-    seen: set[str] = set()
+    names_done: set[str] = set()
     for outer in scope.ancestors():
         if outer is not scope and outer.kind is ScopeKind.CLASS:
             continue
         for name, binding in outer.bindings.items():
-            if name not in seen:
-                seen.add(name)
+            if name not in names_done:
+                names_done.add(name)
                 local = outer.kind is not ScopeKind.MODULE
                 kind, detail = _kind_of_binding(project, module, binding)
                 yield Completion(
                     name, kind, name, 2 if local else 3, detail, key=("name", snapshot.filename, name, *place)
                 )
-    for name, exported in Model(module, project).brought.items():
-        if name not in seen and not name.startswith("_"):
-            seen.add(name)
-            brought = None if exported.binding is None else exported.binding
+    for name, export in Model(module, project).brought.items():
+        if name not in names_done and not name.startswith("_"):
+            names_done.add(name)
+            binding_of_export = None if export.binding is None else export.binding
             kind, detail = (
                 (CompletionKind.VARIABLE, "")
-                if brought is None
-                else _kind_of_binding(project, module, brought)
+                if binding_of_export is None
+                else _kind_of_binding(project, module, binding_of_export)
             )
             yield Completion(name, kind, name, 4, detail, key=("name", snapshot.filename, name, *place))
     for name in TRACKED:
         yield Completion(name, CompletionKind.VARIABLE, name, 3, "tracked", key=("provided", name))
-    for name, declared in NAMES.items():
-        if name not in seen:
+    for name, declaration in NAMES.items():
+        if name not in names_done:
             kind = {
                 NameKind.FUNCTION: CompletionKind.FUNCTION,
                 NameKind.VALUE: CompletionKind.VARIABLE,
-            }.get(declared.kind, CompletionKind.CLASS)
+            }.get(declaration.kind, CompletionKind.CLASS)
             yield Completion(
-                name, kind, name, 6, declared.kind.value, _call(declared.signature), ("provided", name)
+                name, kind, name, 6, declaration.kind.value, _call(declaration.signature), ("provided", name)
             )
     for name, value in vars(builtins).items():
-        if name not in seen and name not in NAMES and not name.startswith("_") and not iskeyword(name):
+        if name not in names_done and name not in NAMES and not name.startswith("_") and not iskeyword(name):
             kind = CompletionKind.CLASS if isinstance(value, type) else CompletionKind.FUNCTION
             yield Completion(name, kind, name, 9, "Python", key=("provided", name))
 
@@ -471,9 +473,9 @@ def _kind_of_binding(project: Project, module: Module, binding: Binding) -> tupl
         (BindingKind.PARAMETER, CompletionKind.PARAMETER),
         (BindingKind.SELF, CompletionKind.PARAMETER),
     )
-    for kind, shown in table:
+    for kind, completion_kind in table:
         if kind in kinds:
-            return shown, kind.value
+            return completion_kind, kind.value
     if BindingKind.IMPORTED in kinds and binding.scope.kind is ScopeKind.MODULE:
         symbol = symbol_of_exported(project, Exported(binding.name, module, binding))
         return kind_of_symbol(symbol), symbol.kind.value
@@ -500,8 +502,8 @@ def _symbol_named(
         inner = snapshot.scope_at(numbers[0], numbers[1]).lookup(name)
         if inner is not None and inner.scope.kind is not ScopeKind.MODULE:
             return symbol_of_binding(module, inner)
-    exported = Model(module, project).at_top(name)
-    return None if exported is None else symbol_of_exported(project, exported)
+    export = Model(module, project).at_top(name)
+    return None if export is None else symbol_of_exported(project, export)
 
 
 def _class_made(
@@ -519,11 +521,11 @@ def _properties(
     project: Project, snapshot: Snapshot, before: tuple[str, ...], line: int, column: int
 ) -> Iterator[Completion]:
     cls = _class_made(project, snapshot, before, line, column)
-    given = {word for place, word in enumerate(before) if place and before[place - 1] == "with"}
+    names_before = {word for place, word in enumerate(before) if place and before[place - 1] == "with"}
     if cls is None:
         cls = Classes(project).of_symbol(Symbol("Object", SymbolKind.CLASS))
     for member in () if cls is None else cls.properties.values():
-        if member.name in given or "final" in member.attributes:
+        if member.name in names_before or "final" in member.attributes:
             continue
         yield _property(snapshot, member, member.name)
 
@@ -538,15 +540,19 @@ def _inherited(project: Project, snapshot: Snapshot, line: int, column: int) -> 
         return
     scope = snapshot.scope_at(line, column)
     body = getattr(scope.node, "body", ()) if scope.kind is ScopeKind.CLASS else ()
-    own = {each.name for each in body if isinstance(each, scenic.PropertyDef)}
-    known: dict[str, Member] = {}
+    own_names = {each.name for each in body if isinstance(each, scenic.PropertyDef)}
+    members_by_name: dict[str, Member] = {}
     for base in (header["bases"] or "Object").split(","):
-        found = expression(project, snapshot, base.strip(), line, column)
-        cls = None if found is None else found[0].class_of_symbol(found[0].meaning(found[1]))
+        base_expression = expression(project, snapshot, base.strip(), line, column)
+        cls = (
+            None
+            if base_expression is None
+            else base_expression[0].class_of_symbol(base_expression[0].meaning(base_expression[1]))
+        )
         for member in () if cls is None or not cls.is_scenic else cls.properties.values():
-            known.setdefault(member.name, member)
-    for member in known.values():
-        if member.name in own or "final" in member.attributes:
+            members_by_name.setdefault(member.name, member)
+    for member in members_by_name.values():
+        if member.name in own_names or "final" in member.attributes:
             continue
         yield _property(snapshot, member, f"{member.name}:", after=" ")
 
@@ -583,12 +589,12 @@ def _modules(project: Project, snapshot: Snapshot, before: tuple[str, ...]) -> I
         return
     folder = os.path.dirname(snapshot.filename)
     for name in project.finder.importable(folder, ".".join(parts)):
-        found = project.find(".".join([*parts, name]), importer=snapshot.filename)
-        beside = found.filename is not None and found.filename.startswith(folder)
-        if before[0] == "model" and not _leads_to_models(found, beside=beside or bool(parts)):
+        module_found = project.find(".".join([*parts, name]), importer=snapshot.filename)
+        beside = module_found.filename is not None and module_found.filename.startswith(folder)
+        if before[0] == "model" and not _leads_to_models(module_found, beside=beside or bool(parts)):
             continue
         if not name.startswith("_"):
-            yield Completion(name, CompletionKind.MODULE, name, 1 if beside else 5, found.kind.value)
+            yield Completion(name, CompletionKind.MODULE, name, 1 if beside else 5, module_found.kind.value)
 
 
 def _leads_to_models(found: FoundModule, *, beside: bool) -> bool:
@@ -599,10 +605,10 @@ def _leads_to_models(found: FoundModule, *, beside: bool) -> bool:
     if not is_package and not os.path.isdir(found.filename):
         return False
     folder = os.path.dirname(found.filename) if is_package else found.filename
-    own = found.name.partition(".")[0] == "scenic"
-    deepest = folder.count(os.sep) + (_DEEPEST if beside or own else 0)
+    is_own = found.name.partition(".")[0] == "scenic"
+    deepest = folder.count(os.sep) + (_DEEPEST if beside or is_own else 0)
     for path, folders, files in os.walk(folder):
-        if any(file == "model.scenic" if own else file.endswith(SUFFIXES) for file in files):
+        if any(file == "model.scenic" if is_own else file.endswith(SUFFIXES) for file in files):
             return True
         folders[:] = (
             [] if path.count(os.sep) >= deepest else [each for each in folders if each[0] not in "._"]
@@ -614,14 +620,14 @@ def _imported(project: Project, module: Module, before: tuple[str, ...]) -> Iter
     """The names that can be imported from a module."""
     name = "".join(before[1 : before.index("import")])
     level = len(name) - len(name.lstrip("."))
-    found = project.find(name.lstrip("."), importer=module.filename, level=level)
-    exports = project.exports_of(found)
-    taken = set(before[before.index("import") + 1 :])
+    module_found = project.find(name.lstrip("."), importer=module.filename, level=level)
+    exports = project.exports_of(module_found)
+    names_before = set(before[before.index("import") + 1 :])
     for each in sorted(exports.names):
-        if each not in taken and not each.startswith("__"):
+        if each not in names_before and not each.startswith("__"):
             symbol = symbol_of_exported(project, exports.names[each])
             yield Completion(each, kind_of_symbol(symbol), each, 8 if each.startswith("_") else 1, symbol.kind.value,
-                             key=("name", found.filename or "", each))  # fmt: skip
+                             key=("name", module_found.filename or "", each))  # fmt: skip
 
 
 def _arguments(
@@ -636,13 +642,19 @@ def _arguments(
             depth -= 1
             if depth < 0:
                 text = operand_before(before[:index])
-                found = expression(project, snapshot, f"{text}()", line, column) if text else None
-                if found is None or not isinstance(found[1], ast.Call):
+                call = expression(project, snapshot, f"{text}()", line, column) if text else None
+                if call is None or not isinstance(call[1], ast.Call):
                     return
-                signature = call_signature(found[0], found[1])
-                given = {before[at - 1] for at, word in enumerate(before) if word == "=" and at > index}
+                signature = call_signature(call[0], call[1])
+                names_before = {
+                    before[at - 1] for at, word in enumerate(before) if word == "=" and at > index
+                }
                 for parameter in () if signature is None else signature.parameters:
-                    if not parameter.prefix and not parameter.positional_only and parameter.name not in given:
+                    if (
+                        not parameter.prefix
+                        and not parameter.positional_only
+                        and parameter.name not in names_before
+                    ):
                         label = f"{parameter.name}="
                         yield Completion(label, CompletionKind.PARAMETER, label, 1, str(parameter))
                 return

@@ -107,11 +107,11 @@ def continuations(text: str, line: int, column: int) -> Continuations:
     here = text.split("\n")[line - 1][:column]
     while column > 0 and (here[column - 1].isalnum() or here[column - 1] == "_"):
         column -= 1
-    wanted = wanted_at(text, line, column)
-    if wanted is None:
+    expectation = wanted_at(text, line, column)
+    if expectation is None:
         return _NOWHERE
-    found = dict.fromkeys(_find(wanted))
-    return Continuations(tuple(found), wanted.labels, wanted.kinds, wanted.before)
+    phrases = dict.fromkeys(_find(expectation))
+    return Continuations(tuple(phrases), expectation.labels, expectation.kinds, expectation.before)
 
 
 def prepare() -> None:
@@ -120,7 +120,7 @@ def prepare() -> None:
 
 
 def _find(wanted: Wanted) -> Iterator[Continuation]:
-    begun: set[str] = set()
+    words_begun: set[str] = set()
     after = _LOOSEST_AFTER.get(wanted.before[-1]) if wanted.before else None
     for phrase in _PHRASES:
         if after is not None and after > phrase.level and not phrase.is_infix:
@@ -131,9 +131,9 @@ def _find(wanted: Wanted) -> Iterator[Continuation]:
             else:
                 fits = word in wanted.words and wanted.before[-count:] == phrase.start[:count]
             if fits:
-                begun.add(word)
+                words_begun.add(word)
                 yield _continuation(phrase, count)
-    others = set(wanted.words).union(*(wanted.begins(label) for label in wanted.labels)) - begun
+    others = set(wanted.words).union(*(wanted.begins(label) for label in wanted.labels)) - words_begun
     for word in sorted(others):
         if word.isidentifier() and word != "_":
             yield Continuation(PhraseKind.KEYWORD, word, word, word, (), word)
@@ -201,8 +201,8 @@ def _statement(name: str, text: str) -> Iterator[_Phrase]:
         for form in STATEMENT_FORMS
         if form.node == name or (form.node is None and form.start == words[0])
     ]
-    known = frozenset(word for row in rows for word in words_of(row))
-    count = next((index for index, word in enumerate(words) if word not in known), len(words))
+    words_of_rows = frozenset(word for row in rows for word in words_of(row))
+    count = next((index for index, word in enumerate(words) if word not in words_of_rows), len(words))
     if count:
         rest = text.partition(" ".join(words[:count]))[2].strip()
         yield _Phrase(PhraseKind.STATEMENT, name, tuple(words[:count]), rest, text, ())

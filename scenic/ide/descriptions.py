@@ -29,9 +29,9 @@ _MOST_MEMBERS: Final = 30
 def describe(project: Project, symbol: Symbol) -> str:
     """The description of a symbol: its signature, its documentation, and its origin."""
     if symbol.is_builtin:
-        known = documentation.of_name(symbol.name) or documentation.of_property(symbol.name)
-        if known is not None:
-            return known
+        language_text = documentation.of_name(symbol.name) or documentation.of_property(symbol.name)
+        if language_text is not None:
+            return language_text
     parts = [f"```scenic\n{header(project, symbol)}\n```"]
     text = _of_module(project, symbol) if symbol.kind is SymbolKind.MODULE else symbol.documentation
     if text:
@@ -46,9 +46,9 @@ def describe(project: Project, symbol: Symbol) -> str:
     if symbol.kind is SymbolKind.CLASS:
         parts += _members(project, symbol)
     if symbol.kind in (SymbolKind.PROPERTY, SymbolKind.ATTRIBUTE) and not text:
-        inherited = documentation.of_property(symbol.name)
-        if inherited is not None:
-            parts.append(inherited)
+        property_text = documentation.of_property(symbol.name)
+        if property_text is not None:
+            parts.append(property_text)
     if symbol.filename is not None and symbol.span is not None:
         name = os.path.basename(symbol.filename)
         parts.append(
@@ -71,8 +71,8 @@ def header(project: Project, symbol: Symbol) -> str:
         return f"{word} {symbol.name}(...)" if signature is None else f"{word} {signature}"
     value = "" if symbol.module is None or symbol.extent is None else _text(symbol)
     owner = f"{symbol.container}." if symbol.container and symbol.kind is not SymbolKind.PARAMETER else ""
-    shown = value if value.startswith(symbol.name) and value != symbol.name else f"{owner}{symbol.name}"
-    return f"({symbol.kind}) {shown}"
+    title = value if value.startswith(symbol.name) and value != symbol.name else f"{owner}{symbol.name}"
+    return f"({symbol.kind}) {title}"
 
 
 def of_python(name: str) -> str | None:

@@ -53,6 +53,6 @@ def found_in(
                 ),
             )
 
-    found = snapshot.derived("diagnostics", find, stamp=stamp)
+    diagnostics = snapshot.derived("diagnostics", find, stamp=stamp)
     go_on()
-    return rules.apply(found)
+    return rules.apply(diagnostics)

@@ -67,12 +67,18 @@ def of_temporal(name: str) -> str | None:
 
 def of_name(name: str) -> str | None:
     """A name of the language: a class, a function, a distribution, a sensor."""
-    known = NAMES.get(name) or SENSORS.get(name)
-    if known is not None:
-        points = [f"{known.kind.value}, also of random values" if known.lifted else known.kind.value]
+    declaration = NAMES.get(name) or SENSORS.get(name)
+    if declaration is not None:
+        points = [
+            f"{declaration.kind.value}, also of random values"
+            if declaration.lifted
+            else declaration.kind.value
+        ]
         if name in CLASSES:
             points.append("properties: " + ", ".join(f"`{each}`" for each in properties_of(name)))
-        return _page((known.signature,), known.documentation, points, available=known.available)
+        return _page(
+            (declaration.signature,), declaration.documentation, points, available=declaration.available
+        )
     if name in ("ego", "workspace"):
         return of_keyword(name)
     return None
@@ -81,9 +87,9 @@ def of_name(name: str) -> str | None:
 def of_property(name: str) -> str | None:
     """A property or derived attribute of the built-in classes, as the most derived class has it."""
     for cls in reversed(list(CLASSES)):
-        declared = properties_of(cls).get(name)
-        if declared is not None:
-            return _property(declared)
+        declaration = properties_of(cls).get(name)
+        if declaration is not None:
+            return _property(declaration)
         attribute = attributes_of(cls).get(name)
         if attribute is not None:
             call = "(...)" if attribute.is_method else ""
@@ -98,7 +104,9 @@ def of_keyword(word: str) -> str | None:
     for table in (HARD_KEYWORDS, MEANINGS, PYTHON_KEYWORDS):
         if word in table:
             return _page((word,), table[word], ())
-    elements = [(form, declared.documentation) for declared in _elements() for form in declared.forms]
+    elements = [
+        (form, declaration.documentation) for declaration in _elements() for form in declaration.forms
+    ]
     beginning = {form: text for form, text in elements if re.match(rf"{word}\b", form)}
     if beginning:
         return _page(list(beginning)[:_MOST_FORMS], next(iter(beginning.values())), ())

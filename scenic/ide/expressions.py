@@ -44,18 +44,18 @@ def expression(
 ) -> tuple[Model, ast.expr] | None:
     """An expression with its names bound as at a place, and a model for questions about it."""
     module = project.module(snapshot.filename)
-    parsed = parse(text)
-    if module is None or parsed.diagnostics or len(parsed.tree.body) != 1:
+    result = parse(text)
+    if module is None or result.diagnostics or len(result.tree.body) != 1:
         return None
-    statement = parsed.tree.body[0]
+    statement = result.tree.body[0]
     if not isinstance(statement, ast.Expr):
         return None
     scope = snapshot.scope_at(line, column)
-    found: dict[ast.AST, Reference] = {
+    references: dict[ast.AST, Reference] = {
         node: Reference(node, scope, scope.lookup(node.id))
         for node in ast.walk(statement)
         if isinstance(node, ast.Name)
     }
     resolution = module.resolution
-    resolution = replace(resolution, references={**resolution.references, **found})
+    resolution = replace(resolution, references={**resolution.references, **references})
     return Model(replace(module, resolution=resolution), project), statement.value

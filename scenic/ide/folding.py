@@ -45,7 +45,7 @@ class Fold:
 def folds(snapshot: Snapshot) -> tuple[Fold, ...]:
     """All that can be folded, in order; no two begin and end on the same lines."""
     tokens = snapshot.tokens
-    found: dict[tuple[int, int], Fold] = {}
+    fold_by_lines: dict[tuple[int, int], Fold] = {}
     for fold in (
         *_comments(tokens, snapshot),
         *_regions(tokens),
@@ -55,8 +55,8 @@ def folds(snapshot: Snapshot) -> tuple[Fold, ...]:
     ):
         end_line = min(fold.end_line, len(snapshot.source.lines))
         if end_line > fold.line:
-            found.setdefault((fold.line, end_line), Fold(fold.line, end_line, fold.kind))
-    return tuple(found[key] for key in sorted(found))
+            fold_by_lines.setdefault((fold.line, end_line), Fold(fold.line, end_line, fold.kind))
+    return tuple(fold_by_lines[key] for key in sorted(fold_by_lines))
 
 
 def _blocks(tokens: Tokens) -> Iterator[Fold]:
@@ -85,20 +85,20 @@ def _blocks(tokens: Tokens) -> Iterator[Fold]:
 
 
 def _brackets(tokens: Tokens) -> Iterator[Fold]:
-    opened: list[int] = []
-    formatted: list[int] = []
+    opening_lines: list[int] = []
+    string_lines: list[int] = []
     for index, (kind, text) in enumerate(zip(tokens.kinds, tokens.texts, strict=True)):
         if kind == STRING:
             yield Fold(tokens.lines[index], tokens.end_lines[index], FoldKind.CODE)
         elif kind == FSTRING_START:
-            formatted.append(tokens.lines[index])
-        elif kind == FSTRING_END and formatted:
-            yield Fold(formatted.pop(), tokens.end_lines[index], FoldKind.CODE)
+            string_lines.append(tokens.lines[index])
+        elif kind == FSTRING_END and string_lines:
+            yield Fold(string_lines.pop(), tokens.end_lines[index], FoldKind.CODE)
         elif text in _OPENERS and WORDS.get(text) == kind:
-            opened.append(tokens.lines[index])
-        elif text in _CLOSERS and WORDS.get(text) == kind and opened:
+            opening_lines.append(tokens.lines[index])
+        elif text in _CLOSERS and WORDS.get(text) == kind and opening_lines:
             # The line of the closing bracket stays in sight.
-            yield Fold(opened.pop(), tokens.lines[index] - 1, FoldKind.CODE)
+            yield Fold(opening_lines.pop(), tokens.lines[index] - 1, FoldKind.CODE)
 
 
 def _imports(tokens: Tokens) -> Iterator[Fold]:
@@ -122,13 +122,13 @@ def _imports(tokens: Tokens) -> Iterator[Fold]:
 
 def _comments(tokens: Tokens, snapshot: Snapshot) -> Iterator[Fold]:
     """Comments on lines of their own that follow each other."""
-    own = [
+    comment_lines = [
         line
         for line, column, text in tokens.comments
         if not snapshot.source.line(line)[:column].strip() and not _region(text)
     ]
     start = previous = 0
-    for line in own:
+    for line in comment_lines:
         if line != previous + 1:
             if previous > start > 0:
                 yield Fold(start, previous, FoldKind.COMMENT)

@@ -71,13 +71,13 @@ def formatting(snapshot: Snapshot, *ranges: tuple[int, int]) -> tuple[Edit, ...]
     if not ranges:
         return edits
     for lines in (ranges, [_statements_around(snapshot.tree, *each) for each in ranges]):
-        chosen = tuple(
+        chosen_edits = tuple(
             each
             for each in edits
             if any(each.span.line <= last and _last_line(each) >= first for first, last in lines)
         )
-        if _same(snapshot.tree, snapshot.tokens, _edited(before, chosen)):
-            return chosen
+        if _same(snapshot.tree, snapshot.tokens, _edited(before, chosen_edits)):
+            return chosen_edits
     return edits
 
 
@@ -119,11 +119,11 @@ def _edited(text: str, edits: Sequence[Edit]) -> str:
     starts = [0]
     for line in lines:
         starts.append(starts[-1] + len(line) + 1)
-    parts, done = [], 0
+    parts, last_place = [], 0
     for each in edits:
-        parts += [text[done : starts[each.span.line - 1] + each.span.column], each.text]
-        done = starts[each.span.end_line - 1] + each.span.end_column
-    return "".join([*parts, text[done:]])
+        parts += [text[last_place : starts[each.span.line - 1] + each.span.column], each.text]
+        last_place = starts[each.span.end_line - 1] + each.span.end_column
+    return "".join([*parts, text[last_place:]])
 
 
 def _changes(old: Sequence[str], new: Sequence[str]) -> Iterator[tuple[int, int, int, int]]:
@@ -132,19 +132,19 @@ def _changes(old: Sequence[str], new: Sequence[str]) -> Iterator[tuple[int, int,
     """
     # Lines that say the same are changed one by one; those that say nothing are like all others of their kind.
     matches = _matches([_said(line) for line in old], [_said(line) for line in new])
-    done, new_done = 0, 0
+    old_place, new_done = 0, 0
     for index, other, size in matches:
         for at, new_at in zip(range(index, index + size), range(other, other + size), strict=True):
             stays = old[at] == new[new_at]
-            if at > done or (new_at > new_done and stays):
-                yield done, at, new_done, new_at
-                done, new_done = at, new_at
+            if at > old_place or (new_at > new_done and stays):
+                yield old_place, at, new_done, new_at
+                old_place, new_done = at, new_at
             if not stays:
                 # With what is inserted before it, if anything is: no two changes begin at one place.
                 yield at, at + 1, new_done, new_at + 1
-            done, new_done = at + 1, new_at + 1
-    if done < len(old) or new_done < len(new):
-        yield done, len(old), new_done, len(new)
+            old_place, new_done = at + 1, new_at + 1
+    if old_place < len(old) or new_done < len(new):
+        yield old_place, len(old), new_done, len(new)
 
 
 def _matches(old: Sequence[str], new: Sequence[str]) -> Iterator[tuple[int, int, int]]:
@@ -188,11 +188,13 @@ def _formatted(snapshot: Snapshot) -> str | None:
         return None
     lines = _logical_lines(snapshot.tokens)
     parts = [_parts(snapshot, line) for line in lines]
-    dropped = _needless(snapshot, parts)
+    needless_tokens = _needless(snapshot, parts)
     layout = _Layout(snapshot.tokens)
     for line, of_line in zip(lines, parts, strict=True):
-        written = [spaced([each for each in part if each.token not in dropped]) for part in of_line]
-        layout.add(line, written)
+        line_parts = [
+            spaced([each for each in part if each.token not in needless_tokens]) for part in of_line
+        ]
+        layout.add(line, line_parts)
     last = lines[-1].last if lines else 0
     layout.comments([comment for comment in snapshot.tokens.comments if comment[0] > last], 0)
     result = layout.text()
@@ -251,7 +253,7 @@ def _needless(snapshot: Snapshot, parts: Sequence[list[list[Lexeme]]]) -> frozen
         candidates += [(token,) for token in _needless_commas(part)]
         candidates += [(opening.token, closing.token) for opening, closing in needless_pairs(part)]
     lines = snapshot.tokens.lines
-    dropped: set[int] = set()
+    needless_tokens: set[int] = set()
     for first, last, statements in _groups(snapshot.tree):
         near = [each for each in candidates if first <= lines[each[0]] <= last]
         without = {token for each in near for token in each}
@@ -260,8 +262,8 @@ def _needless(snapshot: Snapshot, parts: Sequence[list[list[Lexeme]]]) -> frozen
             for each in near:
                 if _is_read_alike(snapshot, first, last, statements, without.union(each)):
                     without.update(each)
-        dropped |= without
-    return frozenset(dropped)
+        needless_tokens |= without
+    return frozenset(needless_tokens)
 
 
 def _is_read_alike(
@@ -273,8 +275,8 @@ def _is_read_alike(
     for token in without:
         row, column = tokens.lines[token] - first, tokens.columns[token]
         rows[row] = rows[row][:column] + b" " + rows[row][column + 1 :]
-    parsed = parse("\n".join(row.decode() for row in rows) + "\n")
-    return not parsed.diagnostics and _equal(statements, parsed.tree.body)
+    result = parse("\n".join(row.decode() for row in rows) + "\n")
+    return not result.diagnostics and _equal(statements, result.tree.body)
 
 
 def _groups(tree: ast.Module) -> Iterator[tuple[int, int, list[ast.stmt]]]:
@@ -296,25 +298,25 @@ def _groups(tree: ast.Module) -> Iterator[tuple[int, int, list[ast.stmt]]]:
 
 def _logical_lines(tokens: Tokens) -> list[_Line]:
     """The logical lines of a text with their comments."""
-    found: list[_Line] = []
+    lines: list[_Line] = []
     comments = deque(tokens.comments)
     depth = 0
     line: _Line | None = None
     # Specifiers that go on in an indented block belong to the line that they begin on.
-    continued = False
+    is_continued = False
     before = ""
     for index, (kind, text, at) in enumerate(zip(tokens.kinds, tokens.texts, tokens.lines, strict=True)):
-        if continued:
-            continued = kind != DEDENT
-            ends = not continued
+        if is_continued:
+            is_continued = kind != DEDENT
+            ends = not is_continued
         elif kind == INDENT and before == ",":
-            continued = True
+            is_continued = True
             ends = False
-            line = found.pop()
+            line = lines.pop()
         else:
             ends = kind == NEWLINE
             depth += (kind == INDENT) - (kind == DEDENT)
-        if line is not None and (ends or (continued and kind == NEWLINE)):
+        if line is not None and (ends or (is_continued and kind == NEWLINE)):
             line.last = at if kind == NEWLINE else line.last
             while comments and comments[0][0] <= line.last:
                 comment = comments.popleft()
@@ -323,7 +325,7 @@ def _logical_lines(tokens: Tokens) -> list[_Line]:
                 elif comment[0] == line.last:
                     line.trailing = comment[2].rstrip()
             if ends:
-                found.append(line)
+                lines.append(line)
                 line = None
         elif kind not in (NEWLINE, INDENT, DEDENT, ENDMARKER):
             if line is None:
@@ -331,7 +333,7 @@ def _logical_lines(tokens: Tokens) -> list[_Line]:
                 is_definition = _DEFINITION.match(words) is not None
                 line = _Line(at, at, depth, index, is_definition, text == "@")
             before = text
-    return found
+    return lines
 
 
 class _Layout:
@@ -384,12 +386,12 @@ class _Layout:
         after = self._depth > depth and self._ended_definition(depth)
         if not (line.is_definition or after) or previous.is_decorator:
             return
-        wanted = 1 if depth else 2
+        count = 1 if depth else 2
         # Comments of the block before come before the gap.
         while line.above and self._level(line.above[0][1], depth) > depth:
             self.comments([line.above.pop(0)], depth)
         first = line.above[0][0] if line.above else line.first
-        self._lines += [""] * wanted
+        self._lines += [""] * count
         self._end = first - 1
 
     def _level(self, column: int, depth: int) -> int:

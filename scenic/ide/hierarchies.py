@@ -70,7 +70,7 @@ def class_at(project: Project, filename: str, line: int, column: int) -> Symbol 
 
 def callers(project: Project, symbol: Symbol) -> tuple[CallSite, ...]:
     """The callers of a function, each once. Code outside of functions is its module."""
-    found: dict[Symbol, list[Span]] = {}
+    spans_of_caller: dict[Symbol, list[Span]] = {}
     for place in references(project, symbol):
         module = project.module(place.filename)
         if place.defines or module is None:
@@ -78,8 +78,10 @@ def callers(project: Project, symbol: Symbol) -> tuple[CallSite, ...]:
         if not _is_called(module, place.span):
             continue
         caller = _around(module, place.span)
-        found.setdefault(caller, []).append(place.span)
-    return tuple(CallSite(caller, caller.filename or "", tuple(spans)) for caller, spans in found.items())
+        spans_of_caller.setdefault(caller, []).append(place.span)
+    return tuple(
+        CallSite(caller, caller.filename or "", tuple(spans)) for caller, spans in spans_of_caller.items()
+    )
 
 
 def callees(project: Project, symbol: Symbol) -> tuple[CallSite, ...]:
@@ -90,7 +92,7 @@ def callees(project: Project, symbol: Symbol) -> tuple[CallSite, ...]:
     module, node = symbol.module, symbol.node
     if module is None or node is None:
         return ()
-    found: dict[Symbol, list[Span]] = {}
+    spans_of_callee: dict[Symbol, list[Span]] = {}
     model = Model(module, project)
     for call in _calls(node):
         target = model.meaning(call)
@@ -98,8 +100,8 @@ def callees(project: Project, symbol: Symbol) -> tuple[CallSite, ...]:
             span = (
                 module.attribute_span(call) if isinstance(call, ast.Attribute) else module.source.span(call)
             )
-            found.setdefault(target, []).append(span)
-    return tuple(CallSite(target, module.filename, tuple(spans)) for target, spans in found.items())
+            spans_of_callee.setdefault(target, []).append(span)
+    return tuple(CallSite(target, module.filename, tuple(spans)) for target, spans in spans_of_callee.items())
 
 
 def supertypes(project: Project, symbol: Symbol) -> tuple[Symbol, ...]:
@@ -135,7 +137,7 @@ def _is_called(module: Module, span: Span) -> bool:
 
 
 def _called_spans(module: Module) -> frozenset[tuple[int, int]]:
-    found = set()
+    spans = set()
     inner = (node for node in walk(module.tree) if isinstance(node, _DEFINITIONS))
     for function in (call for node in (module.tree, *inner) for call in _calls(node)):
         span = (
@@ -143,8 +145,8 @@ def _called_spans(module: Module) -> frozenset[tuple[int, int]]:
             if isinstance(function, ast.Attribute)
             else module.source.span(function)
         )
-        found.add((span.line, span.column))
-    return frozenset(found)
+        spans.add((span.line, span.column))
+    return frozenset(spans)
 
 
 def _around(module: Module, span: Span) -> Symbol:

@@ -238,29 +238,33 @@ def any_of(words: Collection[str]) -> str:
 
 
 def _patterns() -> Iterator[Pattern]:
-    known = VOCABULARY
+    vocabulary = VOCABULARY
     # A name is followed by a blank and a name only before an operator that is a word.
-    operand = rf"(?=[ \t]+(?!{any_of(known.infix)}\b)[\w\"'(\[{{])"
+    operand = rf"(?=[ \t]+(?!{any_of(vocabulary.infix)}\b)[\w\"'(\[{{])"
     no_name = r"(?![ \t]*[=(.])"
     name = r"[A-Za-z_]\w*"
     blanks = r"[ \t]+"
-    of_statements = [words for words in known.phrases if words[0] in known.statement_starts]
-    of_operators = [words for words in known.phrases if words[0] not in known.statement_starts]
+    of_statements = [words for words in vocabulary.phrases if words[0] in vocabulary.statement_starts]
+    of_operators = [words for words in vocabulary.phrases if words[0] not in vocabulary.statement_starts]
     yield Pattern(
-        ((rf"\b{any_of(known.definitions)}", Category.DEFINITION), (blanks, None), (name, Category.DEFINED))
+        (
+            (rf"\b{any_of(vocabulary.definitions)}", Category.DEFINITION),
+            (blanks, None),
+            (name, Category.DEFINED),
+        )
     )
     for words, after in (
-        (any_of(known.blocks), r"(?=[ \t]*:)"),
-        (any_of(known.headers), r"\b(?=[ \t].*:[ \t]*(?:#.*)?$)"),
-        (any_of(known.whole_statements), r"(?=[ \t]*(?:$|[#;]))"),
+        (any_of(vocabulary.blocks), r"(?=[ \t]*:)"),
+        (any_of(vocabulary.headers), r"\b(?=[ \t].*:[ \t]*(?:#.*)?$)"),
+        (any_of(vocabulary.whole_statements), r"(?=[ \t]*(?:$|[#;]))"),
         (_rows(of_statements), rf"\b{no_name}"),
-        (any_of(known.statements), rf"\b{operand}"),
+        (any_of(vocabulary.statements), rf"\b{operand}"),
     ):
         yield Pattern(((r"[ \t]*", None), (words, Category.STATEMENT)), after, is_line_start=True)
     yield Pattern(((rf"\b{_rows(of_operators)}", Category.OPERATOR),), r"\b")
-    yield Pattern(((rf"\b{any_of(known.before_operands)}", Category.OPERATOR),), rf"\b{operand}")
+    yield Pattern(((rf"\b{any_of(vocabulary.before_operands)}", Category.OPERATOR),), rf"\b{operand}")
     yield Pattern(
-        ((any_of(known.after_operands), Category.OPERATOR),), rf"\b{no_name}", before=r"[\w)\]][ \t]"
+        ((any_of(vocabulary.after_operands), Category.OPERATOR),), rf"\b{no_name}", before=r"[\w)\]][ \t]"
     )
     yield Pattern(
         ((r"\bwith", Category.OPERATOR), (blanks, None), (name, Category.PROPERTY)), after=r"(?=[ \t])"
@@ -271,14 +275,14 @@ def _patterns() -> Iterator[Pattern]:
         is_line_start=True,
     )
     for category, single in (
-        (Category.CONSTANT, known.constants),
-        (Category.OPERATOR, known.operator_words),
-        (Category.STATEMENT, known.statement_words | known.definitions & HARD_KEYWORDS.keys()),
-        (Category.VARIABLE, known.variables),
-        (Category.CLASS, known.classes),
+        (Category.CONSTANT, vocabulary.constants),
+        (Category.OPERATOR, vocabulary.operator_words),
+        (Category.STATEMENT, vocabulary.statement_words | vocabulary.definitions & HARD_KEYWORDS.keys()),
+        (Category.VARIABLE, vocabulary.variables),
+        (Category.CLASS, vocabulary.classes),
     ):
         yield Pattern(((rf"\b{any_of(single)}", category),), r"\b")
-    yield Pattern(((rf"\b{any_of(known.functions)}", Category.FUNCTION),), r"(?=\()")
+    yield Pattern(((rf"\b{any_of(vocabulary.functions)}", Category.FUNCTION),), r"(?=\()")
 
 
 def _rows(rows: Iterable[tuple[str, ...]]) -> str:

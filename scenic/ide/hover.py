@@ -105,8 +105,8 @@ def _explain(word: str, kind: int, node: ast.AST) -> str | None:
     if isinstance(node, scenic.SpecifierPhrase):
         if word == node.property:
             return documentation.of_property(word)
-        declared = SPECIFIERS.get(node.specifier)
-        return None if declared is None else documentation.of_specifier(declared)
+        declaration = SPECIFIERS.get(node.specifier)
+        return None if declaration is None else documentation.of_specifier(declaration)
     if isinstance(node, scenic.Operation):
         operator = OPERATORS.get(node.operator)
         return None if operator is None else documentation.of_operator(operator)

@@ -99,23 +99,23 @@ def missing_imports(
             yield Missing(item, f"Import `{name}` from `{module}`", edit)
         whole = _SHORT.get(name, name)
         if name in _SHORT or name in sys.stdlib_module_names:
-            called = f"import {whole}" if whole == name else f"import {whole} as {name}"
-            yield Missing(item, f"Write `{called}`", _on_own_line(snapshot, called))
+            statement = f"import {whole}" if whole == name else f"import {whole} as {name}"
+            yield Missing(item, f"Write `{statement}`", _on_own_line(snapshot, statement))
 
 
 def _modules_with(project: Project, importer: str, name: str) -> list[str]:
     """The names of the modules of the workspace that define something of this name, the nearest ones first."""
-    found = []
+    names = []
     for filename in project.files():
         if filename == importer:
             continue
         module = project.module(filename)
         if module is None or not _defines(module, name):
             continue
-        called = _module_name(project, filename, importer)
-        if called is not None:
-            found.append(called)
-    return sorted(found, key=lambda each: (each.count("."), each))[:_MOST]
+        module_name = _module_name(project, filename, importer)
+        if module_name is not None:
+            names.append(module_name)
+    return sorted(names, key=lambda each: (each.count("."), each))[:_MOST]
 
 
 def _defines(module: Module, name: str) -> bool:
@@ -222,8 +222,8 @@ def organize_imports(snapshot: Snapshot, found: Sequence[Diagnostic]) -> Edit | 
             groups.append([(node.lineno, line)])
         before = node.lineno if _is_of_python(node) else 0
     for group in groups:
-        ordered = sorted((line for _, line in group), key=_order)
-        for (number, _), line in zip(group, ordered, strict=True):
+        lines_in_order = sorted((line for _, line in group), key=_order)
+        for (number, _), line in zip(group, lines_in_order, strict=True):
             lines[number - 1] = line
     return difference(snapshot.text, "\n".join(lines))
 

@@ -30,28 +30,28 @@ def family(project: Project, symbol: Symbol) -> Family:
     if owner is None:
         return Family((symbol,))
     provider = None
-    found = {symbol: symbol}
-    seen = {owner}
+    definitions = {symbol: symbol}
+    classes_done = {owner}
     pending = [owner]
     while pending:
         cls = Classes(project).of_symbol(pending.pop())
         if cls is None:
             continue
         member = own_member(cls, symbol.name)
-        related = list(cls.bases)
+        relatives = list(cls.bases)
         if member is not None:
-            found.setdefault(member, member)
-            related += subclasses(project, cls.symbol, deep=True)
-        for each in related:
-            known = Classes(project).of_symbol(each)
-            if each in seen or known is None or known.member(symbol.name) is None:
+            definitions.setdefault(member, member)
+            relatives += subclasses(project, cls.symbol, deep=True)
+        for each in relatives:
+            class_here = Classes(project).of_symbol(each)
+            if each in classes_done or class_here is None or class_here.member(symbol.name) is None:
                 continue
-            seen.add(each)
+            classes_done.add(each)
             if each.is_builtin:
                 provider = each.name
             else:
                 pending.append(each)
-    return Family(tuple(found), provider)
+    return Family(tuple(definitions), provider)
 
 
 def own_member(cls: Class, name: str) -> Symbol | None:
@@ -68,7 +68,7 @@ def subclasses(project: Project, symbol: Symbol, *, deep: bool) -> tuple[Symbol,
 
     Directly, or if ``deep``, also through others.
     """
-    found: list[Symbol] = []
+    classes: list[Symbol] = []
     home = [] if symbol.filename is None else [symbol.filename]
     for filename in dict.fromkeys([*home, *project.files()]):
         module = project.module(filename)
@@ -76,21 +76,21 @@ def subclasses(project: Project, symbol: Symbol, *, deep: bool) -> tuple[Symbol,
             if each.kind is not SymbolKind.CLASS or each.filename != filename or each == symbol:
                 continue
             if is_derived(project, each, symbol, deep=deep):
-                found.append(each)
-    return tuple(found)
+                classes.append(each)
+    return tuple(classes)
 
 
 def is_derived(project: Project, symbol: Symbol, base: Symbol, *, deep: bool) -> bool:
     """Return whether a class derives from another one."""
-    seen: set[Symbol] = set()
+    classes_done: set[Symbol] = set()
     pending = [symbol]
     while pending:
         cls = Classes(project).of_symbol(pending.pop())
         for each in () if cls is None else cls.bases:
             if each == base:
                 return True
-            if deep and each not in seen:
-                seen.add(each)
+            if deep and each not in classes_done:
+                classes_done.add(each)
                 pending.append(each)
     return False
 

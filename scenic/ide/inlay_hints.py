@@ -73,16 +73,18 @@ def hints(snapshot: Snapshot, within: Span | None = None, remarks: Remarks | Non
 
 
 def _find(snapshot: Snapshot) -> Iterator[Hint]:
-    angles = {name for cls in CLASSES for name, declared in properties_of(cls).items() if declared.angle}
+    angles = {
+        name for cls in CLASSES for name, declaration in properties_of(cls).items() if declaration.angle
+    }
     for node in walk(snapshot.tree):
         if isinstance(node, scenic.New):
             yield from _priorities(snapshot, node)
         if isinstance(node, scenic.SpecifierPhrase):
-            declared = SPECIFIERS.get(node.specifier)
+            declaration = SPECIFIERS.get(node.specifier)
             if node.property is not None:
                 yield from _unit_of_property(snapshot, node.property, node.operands[0], angles)
-            elif declared is not None:
-                yield from _operands(snapshot, node, declared.operands, node.operands)
+            elif declaration is not None:
+                yield from _operands(snapshot, node, declaration.operands, node.operands)
         elif isinstance(node, scenic.PropertyDef):
             yield from _unit_of_property(snapshot, node.name, node.value, angles)
         elif isinstance(node, scenic.Operation) and node.operator in OPERATORS:
@@ -152,24 +154,24 @@ def _priorities(snapshot: Snapshot, node: scenic.New) -> Iterator[Hint]:
     """Specifiers of which one property is left to another specifier with a higher priority."""
     strongest: dict[str, tuple[int, str]] = {}
     for specifier in node.specifiers:
-        declared = SPECIFIERS.get(specifier.specifier)
-        for given in () if declared is None else declared.specifies:
-            if given.property not in strongest or given.priority < strongest[given.property][0]:
-                strongest[given.property] = (given.priority, specifier.specifier)
+        declaration = SPECIFIERS.get(specifier.specifier)
+        for effect in () if declaration is None else declaration.specifies:
+            if effect.property not in strongest or effect.priority < strongest[effect.property][0]:
+                strongest[effect.property] = (effect.priority, specifier.specifier)
         if specifier.property is not None:
             strongest[specifier.property] = (1, f"with {specifier.property}")
     for specifier in node.specifiers:
-        declared = SPECIFIERS.get(specifier.specifier)
-        for given in () if declared is None else declared.specifies:
-            priority, winner = strongest[given.property]
-            if priority < given.priority and winner != specifier.specifier:
+        declaration = SPECIFIERS.get(specifier.specifier)
+        for effect in () if declaration is None else declaration.specifies:
+            priority, winner = strongest[effect.property]
+            if priority < effect.priority and winner != specifier.specifier:
                 yield _after(
                     snapshot,
                     specifier,
-                    f" ({given.property}: `{winner}`)".replace("`", ""),
+                    f" ({effect.property}: `{winner}`)".replace("`", ""),
                     HintKind.PRIORITY,
-                    f"`{given.property}` comes from `{winner}` (priority {priority}); here it would have priority "
-                    f"{given.priority}",
+                    f"`{effect.property}` comes from `{winner}` (priority {priority}); here it would have priority "
+                    f"{effect.priority}",
                 )
 
 

@@ -35,14 +35,14 @@ class InlineValue:
 def inline_values(snapshot: Snapshot, span: Span, stopped: tuple[int, int]) -> tuple[InlineValue, ...]:
     """The names in a stretch of the text that have a value where the program has stopped: each but once in a line."""
     around = tuple(snapshot.scope_at(*stopped).ancestors())
-    found: dict[tuple[int, str], InlineValue] = {}
+    values_by_place: dict[tuple[int, str], InlineValue] = {}
     for node, value in _values(snapshot, around):
         place = snapshot.source.span(node)
         if span.line <= place.line <= min(span.end_line, stopped[0]):
-            known = found.get((place.line, node.id))
-            if known is None or place < known.span:
-                found[place.line, node.id] = InlineValue(place, node.id, value)
-    return tuple(sorted(found.values(), key=lambda each: each.span))
+            earlier = values_by_place.get((place.line, node.id))
+            if earlier is None or place < earlier.span:
+                values_by_place[place.line, node.id] = InlineValue(place, node.id, value)
+    return tuple(sorted(values_by_place.values(), key=lambda each: each.span))
 
 
 def _values(snapshot: Snapshot, around: tuple[Scope, ...]) -> Iterator[tuple[ast.Name, str | None]]:

@@ -33,13 +33,13 @@ def links(project: Project, snapshot: Snapshot) -> tuple[Link, ...]:
     folder = os.path.dirname(snapshot.filename)
     if not os.path.isabs(snapshot.filename):
         return ()
-    found = [
+    file_links = [
         Link(span, path)
         for span, name in _names(snapshot)
         if os.path.exists(path := os.path.normpath(os.path.join(folder, name)))
     ]
-    found += _modules(project, snapshot)
-    return tuple(sorted(found, key=lambda link: link.span))
+    file_links += _modules(project, snapshot)
+    return tuple(sorted(file_links, key=lambda link: link.span))
 
 
 def _modules(project: Project, snapshot: Snapshot) -> Iterator[Link]:

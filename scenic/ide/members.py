@@ -22,10 +22,10 @@ def members(
 ) -> Iterator[Completion]:
     """Completions after the dot that follows ``before``; none if it is not known what has members there."""
     text = operand_before(before)
-    found = expression(project, snapshot, text, line, column) if text else None
-    if found is None:
+    owner_expression = expression(project, snapshot, text, line, column) if text else None
+    if owner_expression is None:
         return
-    model, node = found
+    model, node = owner_expression
     if text == "globalParameters":
         for setting in settings(project, model.module):
             yield Completion(setting.name, CompletionKind.PARAMETER, setting.name, 1, setting.value)
@@ -34,9 +34,11 @@ def members(
     if home is not None:
         exports = project.exports_of(home)
         for name in sorted(exports.public & exports.names.keys()):
-            brought = symbol_of_exported(project, exports.names[name])
-            place = ("name", brought.filename or "", brought.name)
-            yield Completion(name, kind_of_symbol(brought), name, 1, brought.kind.value, key=place)
+            imported_symbol = symbol_of_exported(project, exports.names[name])
+            place = ("name", imported_symbol.filename or "", imported_symbol.name)
+            yield Completion(
+                name, kind_of_symbol(imported_symbol), name, 1, imported_symbol.kind.value, key=place
+            )
         return
     symbol = model.meaning(node)
     owner = symbol if symbol is not None and symbol.kind is SymbolKind.CLASS else model.class_of(node)
@@ -51,8 +53,8 @@ def members(
     elif kind is not None:
         of_kind = "region" if kind.name == "workspace" else kind.name
         for name in MEMBERS.get(of_kind, ()):
-            shown = CompletionKind.METHOD if name in LIFTED_METHODS else CompletionKind.ATTRIBUTE
-            yield Completion(name, shown, name, 3, of_kind)
+            completion_kind = CompletionKind.METHOD if name in LIFTED_METHODS else CompletionKind.ATTRIBUTE
+            yield Completion(name, completion_kind, name, 3, of_kind)
 
 
 def _is_instance(kind: ValueKind | None) -> bool:

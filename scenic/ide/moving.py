@@ -23,13 +23,13 @@ def imports_after_moves(
     With another name in the same folder, every word changes that means the module. Of what moves elsewhere, ``model m``
     and ``from m import ...`` change, where the new place can be named from the same beginning.
     """
-    found: dict[tuple[str, Span], tuple[Location, str]] = {}
+    changes: dict[tuple[str, Span], tuple[Location, str]] = {}
     for old, new in moves:
         old, new = os.path.abspath(old), os.path.abspath(new)
         same = os.path.dirname(old) == os.path.dirname(new)
         for place, text in (_renamed if same else _moved)(project, old, new):
-            found.setdefault((place.filename, place.span), (place, text))
-    return tuple(found.values())
+            changes.setdefault((place.filename, place.span), (place, text))
+    return tuple(changes.values())
 
 
 def _module_name(path: str) -> str:
@@ -39,8 +39,8 @@ def _module_name(path: str) -> str:
 
 
 def _renamed(project: Project, old: str, new: str) -> Iterator[tuple[Location, str]]:
-    name, meant = _module_name(old), _module_name(new)
-    if name == meant or not meant.isidentifier():
+    name, new_name = _module_name(old), _module_name(new)
+    if name == new_name or not new_name.isidentifier():
         return
     initial = [os.path.join(old, f"__init__{end}") for end in (*SUFFIXES, ".py")]
     for filename in (old, *initial):
@@ -50,7 +50,7 @@ def _renamed(project: Project, old: str, new: str) -> Iterator[tuple[Location, s
                 module = project.module(place.filename)
                 line = "" if module is None else module.source.line(place.span.line)
                 if line[place.span.column : place.span.end_column] == name:
-                    yield place, meant
+                    yield place, new_name
 
 
 def _moved(project: Project, old: str, new: str) -> Iterator[tuple[Location, str]]:
@@ -59,14 +59,14 @@ def _moved(project: Project, old: str, new: str) -> Iterator[tuple[Location, str
         if module is None or _module_name(old) not in module.source.text:
             continue
         for node, name, span in _named(module):
-            found = project.find(name, importer=filename)
-            target = _after(found.filename, old, new)
-            if found.filename is None or target is None:
+            module_found = project.find(name, importer=filename)
+            target = _after(module_found.filename, old, new)
+            if module_found.filename is None or target is None:
                 continue
-            base = _without(found.filename, name)
-            dotted = None if base is None else _dotted(target, base)
-            if dotted is not None and dotted != name:
-                yield Location(filename, span, isinstance(node, scenic.Model)), dotted
+            base = _without(module_found.filename, name)
+            dotted_name = None if base is None else _dotted(target, base)
+            if dotted_name is not None and dotted_name != name:
+                yield Location(filename, span, isinstance(node, scenic.Model)), dotted_name
 
 
 def _named(module: Module) -> Iterator[tuple[ast.AST, str, Span]]:
@@ -99,8 +99,8 @@ def _without(filename: str, name: str) -> str | None:
     elif os.path.isdir(filename):
         folder = filename
     for part in reversed(parts):
-        folder, own = os.path.split(folder)
-        if own != part:
+        folder, last_part = os.path.split(folder)
+        if last_part != part:
             return None
     return folder
 

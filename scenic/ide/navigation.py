@@ -83,16 +83,16 @@ def definitions(project: Project, snapshot: Snapshot, line: int, column: int) ->
 
     A name that several places bind leads to all of them; a module to its file; a global parameter to where it is set.
     """
-    module, found = _occurrence(project, snapshot, line, column)
+    module, occurrence = _occurrence(project, snapshot, line, column)
     parameter = parameter_at(snapshot, line, column)
     if module is not None and parameter is not None:
         name, origin = parameter
         set_here = [each for each in settings(project, module) if each.name == name]
         return tuple(Target(each.filename, each.span, each.extent, origin) for each in set_here)
-    symbol = None if module is None or found is None else symbol_of(Model(module, project), found)
-    if symbol is None or found is None or symbol.is_builtin:
-        return _ego(module, found) or _provided(snapshot, line, column)
-    return _targets(symbol, found.span)
+    symbol = None if module is None or occurrence is None else symbol_of(Model(module, project), occurrence)
+    if symbol is None or occurrence is None or symbol.is_builtin:
+        return _ego(module, occurrence) or _provided(snapshot, line, column)
+    return _targets(symbol, occurrence.span)
 
 
 def _provided(snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
@@ -114,17 +114,17 @@ def _provided(snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
     if declaring is None or declaring.__file__ is None:
         return ()
     for number, content in enumerate(read_source(declaring.__file__).lines, 1):
-        found = re.search(rf'"{re.escape(name)}\b', content)
-        if found is not None:
-            span = Span(number, found.start() + 1, number, found.end())
+        match = re.search(rf'"{re.escape(name)}\b', content)
+        if match is not None:
+            span = Span(number, match.start() + 1, number, match.end())
             return (Target(declaring.__file__, span, span, snapshot.span_of_token(index)),)
     return ()
 
 
 def moniker(project: Project, snapshot: Snapshot, line: int, column: int) -> Moniker | None:
     """The moniker of the name at a place; ``None`` if the language provides it."""
-    module, found = _occurrence(project, snapshot, line, column)
-    symbol = None if module is None or found is None else symbol_of(Model(module, project), found)
+    module, occurrence = _occurrence(project, snapshot, line, column)
+    symbol = None if module is None or occurrence is None else symbol_of(Model(module, project), occurrence)
     if module is None or symbol is None or symbol.filename is None:
         return None
     homes = [root for root in project.finder.roots if symbol.filename.startswith(os.path.join(root, ""))]
@@ -141,52 +141,52 @@ def moniker(project: Project, snapshot: Snapshot, line: int, column: int) -> Mon
 
 def declarations(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
     """Return the place at which the name at a place enters its module: the import of an imported name, else its definition."""
-    module, found = _occurrence(project, snapshot, line, column)
-    if module is None or found is None:
+    module, occurrence = _occurrence(project, snapshot, line, column)
+    if module is None or occurrence is None:
         return ()
-    if isinstance(found.node, ast.Name):
-        reference = module.resolution.references.get(found.node)
+    if isinstance(occurrence.node, ast.Name):
+        reference = module.resolution.references.get(occurrence.node)
         binding = None if reference is None else reference.binding
         if binding is not None:
             symbol = symbol_of_binding(module, binding)
-            return _targets(symbol, found.span)
+            return _targets(symbol, occurrence.span)
     return definitions(project, snapshot, line, column)
 
 
 def type_definitions(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
     """Return the definition of the class of the value that the name at a place has."""
-    module, found = _occurrence(project, snapshot, line, column)
-    if module is None or found is None:
+    module, occurrence = _occurrence(project, snapshot, line, column)
+    if module is None or occurrence is None:
         return ()
     symbol: Symbol | None = None
-    if isinstance(found.node, ast.expr):
-        symbol = Model(module, project).class_of(found.node)
+    if isinstance(occurrence.node, ast.expr):
+        symbol = Model(module, project).class_of(occurrence.node)
     if symbol is None:
-        meant = symbol_of(Model(module, project), found)
-        symbol = meant if meant is not None and meant.kind is SymbolKind.CLASS else None
-    return () if symbol is None else _targets(symbol, found.span)
+        named_symbol = symbol_of(Model(module, project), occurrence)
+        symbol = named_symbol if named_symbol is not None and named_symbol.kind is SymbolKind.CLASS else None
+    return () if symbol is None else _targets(symbol, occurrence.span)
 
 
 def implementations(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
     """The classes derived from the class at a place, or what they define under the name of the member at a place."""
-    module, found = _occurrence(project, snapshot, line, column)
-    symbol = None if module is None or found is None else symbol_of(Model(module, project), found)
-    if symbol is None or found is None:
+    module, occurrence = _occurrence(project, snapshot, line, column)
+    symbol = None if module is None or occurrence is None else symbol_of(Model(module, project), occurrence)
+    if symbol is None or occurrence is None:
         return ()
     if symbol.kind is SymbolKind.CLASS:
-        derived = subclasses(project, symbol, deep=True)
-        return tuple(target for each in derived for target in _targets(each, found.span)) or _targets(
-            symbol, found.span
-        )
+        subclasses_of_symbol = subclasses(project, symbol, deep=True)
+        return tuple(
+            target for each in subclasses_of_symbol for target in _targets(each, occurrence.span)
+        ) or _targets(symbol, occurrence.span)
     members = (SymbolKind.METHOD, SymbolKind.PROPERTY, SymbolKind.ATTRIBUTE)
-    targets = list(_targets(symbol, found.span))
+    targets = list(_targets(symbol, occurrence.span))
     if symbol.kind in members and symbol.container is not None:
         owner = owner_of(symbol)
         for each in () if owner is None else subclasses(project, owner, deep=True):
             cls = Classes(project).of_symbol(each)
             member = None if cls is None else own_member(cls, symbol.name)
             if member is not None:
-                targets += _targets(member, found.span)
+                targets += _targets(member, occurrence.span)
     return tuple(targets)
 
 
@@ -203,14 +203,14 @@ def usages(
 
     ``go_on`` is called before each file, and may raise.
     """
-    module, found = _occurrence(project, snapshot, line, column)
-    if module is None or found is None:
+    module, occurrence = _occurrence(project, snapshot, line, column)
+    if module is None or occurrence is None:
         return
-    symbol = symbol_of(Model(module, project), found)
+    symbol = symbol_of(Model(module, project), occurrence)
     places: Iterable[Location]
     if symbol is None or symbol.is_builtin:
         places = (
-            Location(module.filename, each.span, each.defines) for each in _same(project, module, found)
+            Location(module.filename, each.span, each.defines) for each in _same(project, module, occurrence)
         )
     else:
         places = references(project, *family(project, symbol).definitions, go_on=go_on)
@@ -229,15 +229,15 @@ def highlights(project: Project, snapshot: Snapshot, line: int, column: int) -> 
 
 def linked(project: Project, snapshot: Snapshot, line: int, column: int) -> tuple[Span, ...]:
     """The places that change together while the name at a place is edited: those of a local name of a function."""
-    module, found = _occurrence(project, snapshot, line, column)
-    if module is None or found is None:
+    module, occurrence = _occurrence(project, snapshot, line, column)
+    if module is None or occurrence is None:
         return ()
-    symbol = symbol_of(Model(module, project), found)
+    symbol = symbol_of(Model(module, project), occurrence)
     if symbol is None or symbol.binding is None or symbol.container is None:
         return ()
     if symbol.kind not in (SymbolKind.VARIABLE, SymbolKind.PARAMETER) or symbol.filename != module.filename:
         return ()
-    places = tuple(each.span for each in _same(project, module, found))
+    places = tuple(each.span for each in _same(project, module, occurrence))
     return places if len(places) > 1 else ()
 
 
@@ -246,29 +246,33 @@ def prepare_rename(project: Project, snapshot: Snapshot, line: int, column: int)
 
     Raises `RenameError` for a name that cannot be changed.
     """
-    module, found = _occurrence(project, snapshot, line, column)
-    if module is None or found is None:
+    module, occurrence = _occurrence(project, snapshot, line, column)
+    if module is None or occurrence is None:
         return None
-    if _alias(module, found) is not None:
-        return found.span, found.name  # Whatever it means: the name is the program's own.
-    symbol = symbol_of(Model(module, project), found)
-    if found.name in RESERVED or found.name in TRACKED or (symbol is not None and symbol.is_builtin):
-        raise RenameError(f"`{found.name}` belongs to the language and cannot be renamed")
+    if _alias(module, occurrence) is not None:
+        return occurrence.span, occurrence.name  # Whatever it means: the name is the program's own.
+    symbol = symbol_of(Model(module, project), occurrence)
+    if (
+        occurrence.name in RESERVED
+        or occurrence.name in TRACKED
+        or (symbol is not None and symbol.is_builtin)
+    ):
+        raise RenameError(f"`{occurrence.name}` belongs to the language and cannot be renamed")
     if symbol is None:
-        raise RenameError(f"it is not known what `{found.name}` means here")
+        raise RenameError(f"it is not known what `{occurrence.name}` means here")
     if symbol.kind is SymbolKind.MODULE:
         raise RenameError("rename the file of a module to give it another name")
     if symbol.filename is not None and not _is_own(project, symbol.filename, snapshot.filename):
-        raise RenameError(f"`{found.name}` is defined outside the workspace, in {symbol.filename}")
-    related = family(project, symbol)
-    if related.provider is not None:
+        raise RenameError(f"`{occurrence.name}` is defined outside the workspace, in {symbol.filename}")
+    relatives = family(project, symbol)
+    if relatives.provider is not None:
         raise RenameError(
-            f"`{symbol.name}` is defined by `{related.provider}`, which belongs to the language"
+            f"`{symbol.name}` is defined by `{relatives.provider}`, which belongs to the language"
         )
-    for each in related.definitions:
+    for each in relatives.definitions:
         if not _is_own(project, each.filename, snapshot.filename):
             raise RenameError(f"`{symbol.name}` is also defined outside the workspace, in {each.filename}")
-    return found.span, found.name
+    return occurrence.span, occurrence.name
 
 
 def rename(
@@ -278,46 +282,46 @@ def rename(
 
     Raises `RenameError` if that is impossible, or would change what the program means.
     """
-    prepared = prepare_rename(project, snapshot, line, column)
-    if prepared is None:
+    preparation = prepare_rename(project, snapshot, line, column)
+    if preparation is None:
         raise RenameError("there is no name here")
     _refuse_word(name)
-    module, found = _occurrence(project, snapshot, line, column)
+    module, occurrence = _occurrence(project, snapshot, line, column)
     assert module is not None
-    assert found is not None
-    own = _alias(module, found)
-    if own is not None:
-        if name != found.name and name in module.resolution.names:
+    assert occurrence is not None
+    alias_binding = _alias(module, occurrence)
+    if alias_binding is not None:
+        if name != occurrence.name and name in module.resolution.names:
             raise RenameError(f"there is a `{name}` already in the same scope")
-        _refuse_capture(module.resolution, own, name)
-        same = _same(project, module, found)
+        _refuse_capture(module.resolution, alias_binding, name)
+        same = _same(project, module, occurrence)
         return tuple(
             (Location(module.filename, each.span, each.defines), name)
             for each in same
-            if each.name == found.name and not isinstance(each.node, ast.Attribute)
+            if each.name == occurrence.name and not isinstance(each.node, ast.Attribute)
         )
-    symbol = symbol_of(Model(module, project), found)
+    symbol = symbol_of(Model(module, project), occurrence)
     assert symbol is not None
     binding = symbol.binding
     names = (symbol.module or module).resolution
-    if name != found.name and binding is not None and name in binding.scope.bindings:
+    if name != occurrence.name and binding is not None and name in binding.scope.bindings:
         raise RenameError(f"there is a `{name}` already in the same scope")
-    related = family(project, symbol)
-    if name != found.name:
-        _refuse_clash(project, related.definitions, name)
+    relatives = family(project, symbol)
+    if name != occurrence.name:
+        _refuse_clash(project, relatives.definitions, name)
         if binding is not None:
             _refuse_capture(names, binding, name)
-    places = references(project, *related.definitions)
+    places = references(project, *relatives.definitions)
     # A place that names it differently (`import a as b`) keeps its own name.
-    changed = [(place, name) for place in places if _text(project, place) == symbol.name]
-    if found.name != symbol.name:
+    changes = [(place, name) for place in places if _text(project, place) == symbol.name]
+    if occurrence.name != symbol.name:
         # Another name was asked about that an import gave: only that one changes.
-        changed = [
+        changes = [
             (Location(module.filename, each.span, each.defines), name)
-            for each in _same(project, module, found)
-            if each.name == found.name
+            for each in _same(project, module, occurrence)
+            if each.name == occurrence.name
         ]
-    return tuple(changed)
+    return tuple(changes)
 
 
 # Helpers
@@ -337,12 +341,12 @@ def _refuse_capture(names: Resolution, binding: Binding, name: str) -> None:
     """Raise `RenameError` if a name of another scope would come between a binding and its uses, or the binding between
     another one of that name and the uses of that.
     """
-    own = binding.scope
+    scope = binding.scope
     for reference in names.references.values():
         around = tuple(reference.scope.ancestors())
-        if own not in around:
+        if scope not in around:
             continue
-        within = around[: around.index(own)]
+        within = around[: around.index(scope)]
         if reference.binding is binding:
             other = reference.scope.lookup(name)
             if other is not None and other.scope in within:
@@ -389,12 +393,12 @@ def _same(project: Project, module: Module, found: Occurrence, *related: Symbol)
     model = Model(module, project)
     symbol = symbol_of(model, found)
     names = {found.name} | ({symbol.name} if symbol is not None else set())
-    aliased = {alias.asname for alias in module.import_of if alias.asname}
-    same = [each for each in occurrences(module) if each.name in names or each.name in aliased]
+    alias_names = {alias.asname for alias in module.import_of if alias.asname}
+    same = [each for each in occurrences(module) if each.name in names or each.name in alias_names]
     if symbol is None:
         return [each for each in same if each.name == found.name and type(each.node) is type(found.node)]
-    wanted = {symbol, *related}
-    return [each for each in same if symbol_of(model, each) in wanted]
+    targets = {symbol, *related}
+    return [each for each in same if symbol_of(model, each) in targets]
 
 
 def _targets(symbol: Symbol, origin: Span) -> tuple[Target, ...]:

@@ -27,7 +27,7 @@ class Setting:
 
 def settings(project: Project, module: Module) -> Iterator[Setting]:
     """The settings of a module, then those of the Scenic modules that it imports, however far."""
-    seen = {module.filename}
+    files_done = {module.filename}
     modules = [module]
     for each in modules:
         for node in each.derived("parameter nodes", lambda own=each: tuple(_nodes(own))):  # type: ignore[misc]
@@ -35,10 +35,10 @@ def settings(project: Project, module: Module) -> Iterator[Setting]:
                 yield from (_setting(each, item) for item in node.items if item.name.isidentifier())
                 continue
             for filename in _imported(project, each, node):
-                imported = None if filename in seen else project.module(filename)
-                seen.add(filename)
-                if imported is not None and imported.is_scenic:
-                    modules.append(imported)
+                imported_module = None if filename in files_done else project.module(filename)
+                files_done.add(filename)
+                if imported_module is not None and imported_module.is_scenic:
+                    modules.append(imported_module)
 
 
 def parameter_at(snapshot: Snapshot, line: int, column: int) -> tuple[str, Span] | None:
@@ -69,9 +69,9 @@ def _imported(project: Project, module: Module, node: ast.AST) -> Iterator[str]:
     elif isinstance(node, ast.ImportFrom):
         names = [node.module or ""]
     for name in names:
-        found = project.find(name, importer=module.filename, level=level)
-        if found.filename is not None:
-            yield found.filename
+        module_found = project.find(name, importer=module.filename, level=level)
+        if module_found.filename is not None:
+            yield module_found.filename
 
 
 def _setting(module: Module, item: scenic.ParamItem) -> Setting:

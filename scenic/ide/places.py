@@ -36,13 +36,15 @@ def name_span(snapshot: Snapshot, node: Any, name: str | None = None) -> Span:
         # The attribute is the last word of the node.
         return _word(snapshot, node, node.attr, last=True) or whole
     if isinstance(node, ast.alias):
-        wanted: str | None = node.asname or name or node.name.partition(".")[0]
-        return _word(snapshot, node, str(wanted), last=node.asname is not None) or whole
-    wanted = name or getattr(node, "name", None) or getattr(node, "arg", None) or getattr(node, "rest", None)
-    if not isinstance(wanted, str):
+        name_wanted: str | None = node.asname or name or node.name.partition(".")[0]
+        return _word(snapshot, node, str(name_wanted), last=node.asname is not None) or whole
+    name_wanted = (
+        name or getattr(node, "name", None) or getattr(node, "arg", None) or getattr(node, "rest", None)
+    )
+    if not isinstance(name_wanted, str):
         return whole
     # A decorator may hold the same word: the line of the definition begins after it.
-    return _word(snapshot, node, wanted, last=False, skip=isinstance(node, _DEFINITIONS)) or whole
+    return _word(snapshot, node, name_wanted, last=False, skip=isinstance(node, _DEFINITIONS)) or whole
 
 
 def _word(snapshot: Snapshot, node: Any, word: str, *, last: bool, skip: bool = False) -> Span | None:
@@ -50,7 +52,7 @@ def _word(snapshot: Snapshot, node: Any, word: str, *, last: bool, skip: bool = 
     tokens = snapshot.tokens
     begin = (node.lineno, node.col_offset)
     end = (node.end_lineno, node.end_col_offset)
-    found = None
+    token = None
     first = True
     start = snapshot.tokens_of_line(node.lineno).start
     for index in range(start, len(tokens.kinds)):
@@ -60,8 +62,8 @@ def _word(snapshot: Snapshot, node: Any, word: str, *, last: bool, skip: bool = 
         if place >= end:
             break
         if tokens.texts[index] == word and snapshot.is_word(index) and not (skip and first):
-            found = index
+            token = index
             if not last:
                 break
         first = False
-    return None if found is None else snapshot.span_of_token(found)
+    return None if token is None else snapshot.span_of_token(token)

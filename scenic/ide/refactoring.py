@@ -86,10 +86,10 @@ def inline_variable(snapshot: Snapshot, line: int, column: int) -> Refactoring |
     ]
     if len(uses) != 1:
         return None
-    found = _neighbours(snapshot.tree, binding.sites[0], uses[0])
-    if found is None:
+    neighbours = _neighbours(snapshot.tree, binding.sites[0], uses[0])
+    if neighbours is None:
         return None
-    assignment, statement = found
+    assignment, statement = neighbours
     path = snapshot.path_to(uses[0].lineno, snapshot.source.character(uses[0].lineno, uses[0].col_offset))
     inside = path[path.index(statement) + 1 :] if statement in path else [uses[0], uses[0]]
     if any(isinstance(each, _SOMETIMES) for each in inside) or inside[-1] is not uses[0]:
@@ -99,8 +99,8 @@ def inline_variable(snapshot: Snapshot, line: int, column: int) -> Refactoring |
     text = _text(snapshot, snapshot.source.span(assignment.value))
     if not isinstance(assignment.value, _ATOMS):
         text = f"({text})"
-    removed = Span(assignment.lineno, 0, assignment.lineno + 1, 0)
-    edits = (Edit(removed, ""), Edit(snapshot.source.span(uses[0]), text))
+    line_span = Span(assignment.lineno, 0, assignment.lineno + 1, 0)
+    edits = (Edit(line_span, ""), Edit(snapshot.source.span(uses[0]), text))
     return Refactoring(f"Inline `{binding.name}`", edits)
 
 

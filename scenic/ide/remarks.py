@@ -50,7 +50,7 @@ def shares(snapshot: Snapshot, remarks: Remarks) -> tuple[Share, ...]:
     """The shares of the requirements of a program, and of what the language requires, at most one for each line."""
     if remarks.text != snapshot.text or not remarks.data["candidates"]:
         return ()
-    found: dict[Span, Share] = {}
+    share_by_span: dict[Span, Share] = {}
     worst: dict[Span, float] = {}
     nodes = {
         span_of(snapshot, node): node for node in walk(snapshot.tree) if isinstance(node, ast.stmt | ast.expr)
@@ -62,14 +62,14 @@ def shares(snapshot: Snapshot, remarks: Remarks) -> tuple[Share, ...]:
             continue
         worst[span] = row["rejected"]
         subject = "" if isinstance(node, scenic.Require) else f"{row['label']} "
-        found[span] = Share(span, f"{subject}rejects {_percent(row['rejected'])}{_alone(row)}")
+        share_by_span[span] = Share(span, f"{subject}rejects {_percent(row['rejected'])}{_alone(row)}")
     none = f"rejects none of {remarks.data['candidates']:,} candidates"
     if remarks.data["values"]:
         none += ", after narrowing"
     for node in _requirements(snapshot, remarks.scenario):
         span = span_of(snapshot, node)
-        found.setdefault(span, Share(span, none))
-    return tuple(sorted(found.values(), key=lambda each: (each.span.line, each.span.column)))
+        share_by_span.setdefault(span, Share(span, none))
+    return tuple(sorted(share_by_span.values(), key=lambda each: (each.span.line, each.span.column)))
 
 
 def _requirements(snapshot: Snapshot, scenario: str | None) -> Iterator[scenic.Require]:
@@ -91,14 +91,16 @@ def ranges(snapshot: Snapshot, remarks: Remarks) -> tuple[Range, ...]:
         return ()
     calls = {span_of(snapshot, node) for node in walk(snapshot.tree) if isinstance(node, ast.Call)}
     rows = [(_span(row["span"]), row) for row in remarks.data["values"]]
-    found = {
+    range_by_span = {
         span: Range(span, _values(row["after"]), _values(row["before"]))
         for span, row in rows
         if span in calls
     }
     # What is written once and drawn several times, in a loop or function, has a range for each.
-    several = {span for span in found if sum(span == each for each, _ in rows) > 1}
-    return tuple(each for span, each in found.items() if span not in several and each.left != each.before)
+    several = {span for span in range_by_span if sum(span == each for each, _ in rows) > 1}
+    return tuple(
+        each for span, each in range_by_span.items() if span not in several and each.left != each.before
+    )
 
 
 def _span(data: Mapping[str, int]) -> Span:

@@ -27,7 +27,7 @@ def ignoring(
     snapshot: Snapshot, found: Sequence[Diagnostic], span: Span
 ) -> tuple[tuple[Diagnostic, Edit], ...]:
     """Return the diagnostics that touch ``span`` and that a comment on their line may silence, each with the comment."""
-    commented = {line: (column, text) for line, column, text in snapshot.tokens.comments}
+    comments = {line: (column, text) for line, column, text in snapshot.tokens.comments}
     result = []
     for item in found:
         if (
@@ -38,7 +38,7 @@ def ignoring(
         ):
             continue
         line = item.span.line
-        if line in commented:
+        if line in comments:
             continue  # What the comment says must not become a part of another one.
         if any(
             first < line <= last
@@ -68,11 +68,11 @@ def repair_all(
     that it imports.
     """
     surroundings_of = None if project is None else surroundings_in(project)
-    shown = (rules or Rules()).apply
-    repaired = repair(text, filename=filename, shown=shown, surroundings_of=surroundings_of)
-    if not repaired.count:
+    select = (rules or Rules()).apply
+    result = repair(text, filename=filename, shown=select, surroundings_of=surroundings_of)
+    if not result.count:
         return None
-    return difference(text, repaired.text)
+    return difference(text, result.text)
 
 
 def difference(text: str, changed: str) -> Edit | None:

@@ -101,36 +101,36 @@ def _run(arguments: list[str], text: str, folder: str, view: str | None, go_on: 
     # -P: a module in the present folder must not take the place of one of ours.
     command = [sys.executable, "-P", "-m", "scenic.cli.main", *arguments]
     with (
-        tempfile.TemporaryFile() as given,
+        tempfile.TemporaryFile() as input_file,
         tempfile.TemporaryFile() as page,
-        tempfile.TemporaryFile() as said,
+        tempfile.TemporaryFile() as error_file,
     ):
-        given.write(text.encode("utf-8", "surrogatepass"))
-        given.seek(0)
+        input_file.write(text.encode("utf-8", "surrogatepass"))
+        input_file.seek(0)
         process = subprocess.Popen(
             command,
-            stdin=given,
+            stdin=input_file,
             stdout=page,
-            stderr=said,
+            stderr=error_file,
             cwd=folder if os.path.isdir(folder) else None,
             start_new_session=True,
         )
         try:
-            code = _wait(process, (page, said), go_on)
+            code = _wait(process, (page, error_file), go_on)
         finally:
             _end(process)
         if code == 0 and view is not None and os.path.exists(view):
             with open(view, "rb") as stream:
                 return stream.read(_LARGEST).decode()
         if code != 0 or view is not None:
-            said.seek(0)
-            reason = said.read(_LONGEST).decode(errors="replace").strip()
+            error_file.seek(0)
+            reason = error_file.read(_LONGEST).decode(errors="replace").strip()
             raise RunError(reason or f"the program ended with code {code}", is_rejected=code == _PARTIAL)
         page.seek(0)
-        found = page.read(_LARGEST).decode()
-        if not found.strip():
+        text_of_page = page.read(_LARGEST).decode()
+        if not text_of_page.strip():
             raise RunError("the program ended the process before there was anything to show")
-        return found
+        return text_of_page
 
 
 def _end(process: "subprocess.Popen[bytes]") -> None:

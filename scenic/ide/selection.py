@@ -18,15 +18,15 @@ def selections(snapshot: Snapshot, line: int, column: int) -> tuple[Span, ...]:
     whole = Span(1, 0, len(lines), len(lines[-1]))
     line = min(max(line, 1), len(lines))
     column = min(column, len(lines[line - 1]))
-    found = [whole]
+    spans = [whole]
     for node in snapshot.path_to(line, column)[1:]:
-        _grow(found, span_of(snapshot, node))
+        _grow(spans, span_of(snapshot, node))
     token = snapshot.token_at(line, column)
     if token is not None:
-        _grow(found, snapshot.span_of_token(token))
-    if len(found) > _MOST:
-        del found[1 : len(found) - _MOST + 1]
-    return tuple(reversed(found))
+        _grow(spans, snapshot.span_of_token(token))
+    if len(spans) > _MOST:
+        del spans[1 : len(spans) - _MOST + 1]
+    return tuple(reversed(spans))
 
 
 def _grow(found: list[Span], span: Span) -> None:

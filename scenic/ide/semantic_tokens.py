@@ -123,37 +123,37 @@ def _find(snapshot: Snapshot, project: Project | None) -> Iterator[SemanticToken
     tokens, source = snapshot.tokens, snapshot.source
     names = _names(snapshot, _imported(snapshot, project))
     plain: frozenset[str] = frozenset()
-    spelled: dict[int, _What] = dict.fromkeys(_OPERATOR_KINDS, ("operator", plain))
-    spelled |= dict.fromkeys(_HARD_KINDS, ("keyword", plain))
-    spelled |= dict.fromkeys(_STRING_KINDS, ("string", plain))
-    spelled[NUMBER] = ("number", plain)
-    spelled[NAME] = ("variable", plain)
+    meaning_of_kind: dict[int, _What] = dict.fromkeys(_OPERATOR_KINDS, ("operator", plain))
+    meaning_of_kind |= dict.fromkeys(_HARD_KINDS, ("keyword", plain))
+    meaning_of_kind |= dict.fromkeys(_STRING_KINDS, ("string", plain))
+    meaning_of_kind[NUMBER] = ("number", plain)
+    meaning_of_kind[NAME] = ("variable", plain)
     soft: _What = ("keyword", plain)
     ascii_lines = [line.isascii() for line in source.lines]
-    found: list[SemanticToken] = []
+    semantic_tokens: list[SemanticToken] = []
     for kind, line, start, end_line, end in zip(
         tokens.kinds, tokens.lines, tokens.columns, tokens.end_lines, tokens.end_columns, strict=True
     ):
         what = names.get((line, start)) if kind >= NAME or kind in _STRING_KINDS else None
         if what is None:
-            what = soft if kind > NAME else spelled.get(kind)
+            what = soft if kind > NAME else meaning_of_kind.get(kind)
             if what is None:
                 continue
         if line == end_line and ascii_lines[line - 1]:
             if end > start:
-                found.append(SemanticToken(line, start, end, *what))
+                semantic_tokens.append(SemanticToken(line, start, end, *what))
             continue
         first_column, last_column = source.character(line, start), source.character(end_line, end)
         for at in range(line, end_line + 1):
             first = first_column if at == line else 0
             last = last_column if at == end_line else len(source.line(at))
             if last > first:
-                found.append(SemanticToken(at, first, last, *what))
+                semantic_tokens.append(SemanticToken(at, first, last, *what))
     for line, column, text in tokens.comments:
-        found.append(SemanticToken(line, column, column + len(text), "comment", plain))
-    found.sort()
+        semantic_tokens.append(SemanticToken(line, column, column + len(text), "comment", plain))
+    semantic_tokens.sort()
     end_of_last = (0, 0)
-    for token in found:
+    for token in semantic_tokens:
         if (token.line, token.column) >= end_of_last:
             yield token
             end_of_last = (token.line, token.end_column)
@@ -188,13 +188,13 @@ _DEFINITIONS: Final[Mapping[type[ast.AST], str]] = MappingProxyType(
 def _names(snapshot: Snapshot, imported: Callable[[str], str | None]) -> dict[tuple[int, int], _What]:
     """By line and column in bytes: what the names and strings there are that are more than their spelling says."""
     resolution = snapshot.resolution
-    found: dict[tuple[int, int], _What] = {}
+    meaning_at: dict[tuple[int, int], _What] = {}
     none: frozenset[str] = frozenset()
 
     def put(node: object, what: str, *modifiers: str, name: str | None = None) -> None:
         span = name_span(snapshot, node, name)
         place = (span.line, snapshot.source.byte(span.line, span.column))
-        found[place] = (what, frozenset(modifiers))
+        meaning_at[place] = (what, frozenset(modifiers))
 
     # What a name is because of the node around it, which is visited first.
     outer: dict[ast.AST, str] = {}
@@ -205,9 +205,9 @@ def _names(snapshot: Snapshot, imported: Callable[[str], str | None]) -> dict[tu
         if isinstance(node, ast.Name):
             what = outer.get(node)
             place = (node.lineno, node.col_offset)
-            found[place] = _of_name(node, resolution, imported) if what is None else (what, none)
+            meaning_at[place] = _of_name(node, resolution, imported) if what is None else (what, none)
         elif isinstance(node, ast.Attribute):
-            found[_end_of(node, node.attr)] = (outer.get(node, "property"), none)
+            meaning_at[_end_of(node, node.attr)] = (outer.get(node, "property"), none)
         elif isinstance(node, ast.Call):
             if isinstance(node.func, ast.Attribute):
                 outer[node.func] = "method"
@@ -218,22 +218,22 @@ def _names(snapshot: Snapshot, imported: Callable[[str], str | None]) -> dict[tu
             in_class = scope is not None and scope.parent is not None and scope.parent.kind is ScopeKind.CLASS
             put(node, "method" if in_class else "function", "definition")
         elif isinstance(node, ast.arg):
-            found[node.lineno, node.col_offset] = ("parameter", frozenset({"declaration"}))
+            meaning_at[node.lineno, node.col_offset] = ("parameter", frozenset({"declaration"}))
         elif isinstance(node, ast.keyword) and node.arg is not None:
-            found[node.lineno, node.col_offset] = ("parameter", none)
+            meaning_at[node.lineno, node.col_offset] = ("parameter", none)
         elif isinstance(node, scenic.PropertyDef | scenic.ParamItem):
-            found[node.lineno, node.col_offset] = ("property", frozenset({"definition"}))
+            meaning_at[node.lineno, node.col_offset] = ("property", frozenset({"definition"}))
         elif isinstance(node, scenic.SpecifierPhrase) and node.property is not None:
             put(node, "property", name=node.property)
         elif isinstance(node, ast.Import | ast.ImportFrom | scenic.Model):
-            _of_import(snapshot, node, found)
+            _of_import(snapshot, node, meaning_at)
         elif isinstance(node, ast.ExceptHandler | ast.MatchAs | ast.MatchStar) and node.name:
             put(node, "variable", "declaration", name=node.name)
         elif isinstance(node, ast.MatchMapping) and node.rest:
             put(node, "variable", "declaration", name=node.rest)
         elif isinstance(node, ast.Expr) and scenic.is_documentation(node):
-            found[node.lineno, node.col_offset] = ("string", frozenset({"documentation"}))
-    return found
+            meaning_at[node.lineno, node.col_offset] = ("string", frozenset({"documentation"}))
+    return meaning_at
 
 
 def _of_name(node: ast.Name, resolution: Resolution, imported: Callable[[str], str | None]) -> _What:
@@ -243,13 +243,13 @@ def _of_name(node: ast.Name, resolution: Resolution, imported: Callable[[str], s
     if node.id in TRACKED:
         return "variable", frozenset({*modifiers, "defaultLibrary"})
     if binding is None or BindingKind.IMPORTED in binding.kinds:
-        brought = imported(node.id)
-        if brought is not None:
-            return brought, frozenset(modifiers)
+        imported_kind = imported(node.id)
+        if imported_kind is not None:
+            return imported_kind, frozenset(modifiers)
     if binding is None:
-        known = NAMES.get(node.id)
-        if known is not None:
-            return _OF_NAME.get(known.kind, "variable"), frozenset({*modifiers, "defaultLibrary"})
+        declaration = NAMES.get(node.id)
+        if declaration is not None:
+            return _OF_NAME.get(declaration.kind, "variable"), frozenset({*modifiers, "defaultLibrary"})
         if node.id in PYTHON_NAMES:
             value = PYTHON_NAMES[node.id]
             return value, frozenset({*modifiers, "defaultLibrary"})
@@ -282,12 +282,12 @@ def _of_import(
             in_module = False
         elif tokens.kinds[index] >= NAME:
             binding = resolution.names.get(text)
-            known = (
+            kind = (
                 None
                 if binding is None
                 else next((_OF_BINDING[k] for k in _OF_BINDING if k in binding.kinds), None)
             )
-            found[at] = ("namespace" if in_module else known or "variable", frozenset({"declaration"}))
+            found[at] = ("namespace" if in_module else kind or "variable", frozenset({"declaration"}))
 
 
 def _end_of(node: ast.Attribute, name: str) -> tuple[int, int]:

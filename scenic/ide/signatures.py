@@ -38,10 +38,10 @@ def signature_help(project: Project, snapshot: Snapshot, line: int, column: int)
     if call is None:
         return None
     text, index, name = call
-    found = expression(project, snapshot, f"{text}()", line, column)
-    if found is None or not isinstance(found[1], ast.Call):
+    call_expression = expression(project, snapshot, f"{text}()", line, column)
+    if call_expression is None or not isinstance(call_expression[1], ast.Call):
         return None
-    signature = call_signature(found[0], found[1])
+    signature = call_signature(call_expression[0], call_expression[1])
     return None if signature is None else _help(signature, index, name)
 
 
@@ -77,10 +77,10 @@ def _call_around(snapshot: Snapshot, line: int, column: int) -> tuple[str, int, 
                 and index
                 and (tokens.texts[index - 1].isidentifier() or tokens.texts[index - 1] in _CLOSERS)
             ):
-                called = operand_before(tokens.texts[max(0, index - 200) : index])
+                callee = operand_before(tokens.texts[max(0, index - 200) : index])
                 if _is_defined(tokens, index - 1):
                     return None
-                return (called, commas, name or _keyword(argument)) if called else None
+                return (callee, commas, name or _keyword(argument)) if callee else None
             else:
                 # Brackets of another kind: the call is further out.
                 commas, argument, name = 0, [], None

@@ -94,16 +94,16 @@ class Snapshot:
         if not 1 <= line <= len(source.lines) or column > len(source.line(line)):
             return None
         byte = source.byte(line, column)
-        found = None
+        token = None
         for index in self.tokens_of_line(line):
             if tokens.columns[index] <= byte <= tokens.end_columns[index] and tokens.texts[index]:
                 touching = index
                 if byte < tokens.end_columns[index] or self.is_word(index):
-                    if found is None or not self.is_word(found):
-                        found = touching
-                elif found is None:
-                    found = touching
-        return found
+                    if token is None or not self.is_word(token):
+                        token = touching
+                elif token is None:
+                    token = touching
+        return token
 
     def tokens_of_line(self, line: int) -> range:
         """The tokens that begin on a line."""
@@ -152,14 +152,14 @@ class Snapshot:
     def scope_at(self, line: int, column: int) -> Scope:
         """The innermost scope at a place; after the last statement of a block, the scope that the indentation selects."""
         resolution = self.resolution
-        found = resolution.module
+        scope = resolution.module
         path = self.path_to(line, column)
         for node in [*path, *self._blocks_after(path[-1], line, column)]:
-            found = resolution.scopes.get(node) or found
-        if found.kind is ScopeKind.CLASS and _PROPERTY.match(self.source.line(line)[:column]):
+            scope = resolution.scopes.get(node) or scope
+        if scope.kind is ScopeKind.CLASS and _PROPERTY.match(self.source.line(line)[:column]):
             # A property whose default is still to be written is not in the tree yet.
-            return _scope_of_default(found)
-        return found
+            return _scope_of_default(scope)
+        return scope
 
     def _blocks_after(self, node: ast.AST, line: int, column: int) -> Iterator[ast.AST]:
         """The blocks within a node that end before a place, though its line is indented as one of theirs."""

@@ -56,33 +56,33 @@ class Lexeme(NamedTuple):
 def lexemes(snapshot: Snapshot, begin: int, end: int) -> list[Lexeme]:
     """The tokens from ``begin`` on and before ``end``, without layout."""
     tokens, names = snapshot.tokens, _places_of_names(snapshot)
-    found: list[Lexeme] = []
-    opened = depth = 0
+    result: list[Lexeme] = []
+    first_token = depth = 0
     for index in range(begin, end):
         kind, text = tokens.kinds[index], tokens.texts[index]
         if kind == FSTRING_START:
-            opened = opened if depth else index
+            first_token = first_token if depth else index
             depth += 1
         elif kind == FSTRING_END:
             depth -= 1
             if not depth:
-                found.append(Lexeme(opened, _source(snapshot, opened, index), is_value=True))
+                result.append(Lexeme(first_token, _source(snapshot, first_token, index), is_value=True))
         elif not depth and kind not in _LAYOUT:
             place = tokens.lines[index], tokens.columns[index]
-            before = found[-1].text if found else ""
+            before = result[-1].text if result else ""
             is_name = text.isidentifier() and (
                 kind == NAME
                 or place in names
                 or before in _DEFINING
-                or (before == "." and found[0].text != "from")
+                or (before == "." and result[0].text != "from")
             )
-            if before == "with" and found[0].text not in ("with", "async"):
+            if before == "with" and result[0].text not in ("with", "async"):
                 is_name = False  # A property, whose value follows.
             is_value = kind in (NUMBER, STRING) or text in _VALUES
             if kind == NAME and text in WORDS:
                 text = _source(snapshot, index, index)  # In letters that keep it from being a keyword.
-            found.append(Lexeme(index, text, is_name and not is_value, is_value))
-    return found
+            result.append(Lexeme(index, text, is_name and not is_value, is_value))
+    return result
 
 
 def _places_of_names(snapshot: Snapshot) -> Container[tuple[int, int]]:
@@ -216,7 +216,7 @@ def needless_pairs(line: Sequence[Lexeme]) -> Iterator[tuple[Lexeme, Lexeme]]:
 
     Each pair is judged as if those before it were gone. Whether the line is read as before without it is another question.
     """
-    dropped: set[int] = set()
+    token_numbers: set[int] = set()
     for place, opening in enumerate(line):
         if opening.text != "(" or _adjoins(line, place):
             continue
@@ -230,10 +230,10 @@ def needless_pairs(line: Sequence[Lexeme]) -> Iterator[tuple[Lexeme, Lexeme]]:
         is_import = place > 0 and line[place - 1].text == "import"
         if not is_import and any(each.text in (",", ":=", "for", "async") for each in tops):
             continue
-        beside = [_kept(reversed(line[:place]), dropped), _kept(line[last + 1 :], dropped)]
+        beside = [_kept(reversed(line[:place]), token_numbers), _kept(line[last + 1 :], token_numbers)]
         if any(map(_is_operator, tops)) and any(each is not None and _is_operator(each) for each in beside):
             continue
-        dropped.update((opening.token, line[last].token))
+        token_numbers.update((opening.token, line[last].token))
         yield opening, line[last]
 
 

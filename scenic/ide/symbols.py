@@ -73,14 +73,14 @@ def _of_block(
     """The definitions in a block and in the blocks within it, with up to ``depth`` levels of definitions in them."""
     if not depth:
         return
-    seen: set[str] = set()
+    names: set[str] = set()
     # Definitions under a condition or in a loop belong to the block around it. Such blocks may nest deeply.
     stack: list[Any] = [*reversed(statements)]
     while stack:
         node = stack.pop()
         inner = _blocks_of(node)
         if inner is None:
-            yield from _of_statement(snapshot, node, seen, depth - 1, in_class=in_class)
+            yield from _of_statement(snapshot, node, names, depth - 1, in_class=in_class)
         else:
             stack.extend(reversed(inner))
 

@@ -113,7 +113,7 @@ class Project:
 
     def refresh(self) -> bool:
         """Check the files again, and read the changed ones; return whether any has changed."""
-        changed = False
+        has_changes = False
         for filename, entry in list(self._entries.items()):
             if _stamp(filename) != entry.stamp:
                 text = None if entry.module is None else entry.module.source.text
@@ -123,11 +123,11 @@ class Project:
                     entry.stamp = fresh.stamp
                 else:
                     self._entries[filename] = fresh
-                    changed = True
+                    has_changes = True
         self.finder.forget()
         self._files = object()
         self._forget()
-        return changed
+        return has_changes
 
     def state_beside(self, filename: str) -> object:
         """A value that equals another such state as long as no module but the one in this file has changed."""
@@ -141,13 +141,13 @@ class Project:
 
     def module(self, filename: str) -> Module | None:
         """The module in a file; ``None`` if it cannot be read, or is too large to look into."""
-        own = self._absolute.get(filename)
-        if own is None:
-            own = self._absolute[filename] = os.path.abspath(filename)
-        filename = own
-        opened = self._opened.get(filename)
-        if opened is not None:
-            return opened
+        absolute_path = self._absolute.get(filename)
+        if absolute_path is None:
+            absolute_path = self._absolute[filename] = os.path.abspath(filename)
+        filename = absolute_path
+        open_module = self._opened.get(filename)
+        if open_module is not None:
+            return open_module
         entry = self._entries.get(filename)
         if entry is None:
             entry = self._entries[filename] = self._read(filename)
@@ -165,8 +165,8 @@ class Project:
 
     def files(self) -> Iterator[str]:
         """The Scenic and Python files of the workspace, and those that are open; no hidden folders."""
-        seen = set(self._opened)
-        yield from sorted(seen)
+        open_files = set(self._opened)
+        yield from sorted(open_files)
         for root in self.finder.roots:
             for folder, folders, names in os.walk(root):
                 folders[:] = sorted(
@@ -178,8 +178,8 @@ class Project:
                 )
                 for name in sorted(names):
                     filename = os.path.join(folder, name)
-                    if name.endswith((*SUFFIXES, ".py")) and filename not in seen:
-                        seen.add(filename)
+                    if name.endswith((*SUFFIXES, ".py")) and filename not in open_files:
+                        open_files.add(filename)
                         yield filename
 
     # Modules
@@ -199,10 +199,10 @@ class Project:
         if found.kind is ModuleKind.NAMESPACE:
             return _NOTHING
         if found.kind is ModuleKind.COMPILED:
-            known = self._compiled.get(found.name)
-            if known is None:
-                known = self._compiled[found.name] = _compiled(found)
-            return known
+            exports = self._compiled.get(found.name)
+            if exports is None:
+                exports = self._compiled[found.name] = _compiled(found)
+            return exports
         if found.is_missing:
             return _unknown(found.name, "it is not found")
         module = self.found_module(found)
@@ -210,17 +210,17 @@ class Project:
 
     def exports(self, module: Module) -> Exports:
         """The names of a module, with those that it imports."""
-        known = self._exports.get(module.filename)
+        earlier = self._exports.get(module.filename)
         current = self._is_current(module)
-        if known is not None and current:
-            return known
+        if earlier is not None and current:
+            return earlier
         gathering = _Gathering()
-        found = self._gather(module, gathering)
+        new_exports = self._gather(module, gathering)
         if not gathering.incomplete:
             self._exports.update(gathering.done)
         elif current:
-            self._exports[module.filename] = found
-        return found
+            self._exports[module.filename] = new_exports
+        return new_exports
 
     def _gather(self, module: Module, gathering: "_Gathering") -> Exports:
         filename = module.filename
@@ -236,31 +236,37 @@ class Project:
             return _unknown(os.path.basename(filename), "it is reached through too many imports")
         gathering.pending.add(filename)
         names: dict[str, Exported] = {}
-        unseen: dict[Unseen, None] = {}
+        unseen_names: dict[Unseen, None] = {}
         for node in module.stars:
-            found = self.found_by(node, filename)
-            inner = self.found_module(found)
-            brought = self.exports_of(found) if inner is None else self._gather(inner, gathering)
-            names.update((name, brought.names[name]) for name in brought.public if name in brought.names)
-            unseen.update(dict.fromkeys(brought.unseen))
+            module_found = self.found_by(node, filename)
+            inner = self.found_module(module_found)
+            imported_exports = (
+                self.exports_of(module_found) if inner is None else self._gather(inner, gathering)
+            )
+            names.update(
+                (name, imported_exports.names[name])
+                for name in imported_exports.public
+                if name in imported_exports.names
+            )
+            unseen_names.update(dict.fromkeys(imported_exports.unseen))
         sets_ego = module.is_scenic and (
             module.sets_ego
             or any(self._gather(other, gathering).sets_ego for other in self._imported(module))
         )
-        own = module.resolution.names
-        names.update((name, Exported(name, module, binding)) for name, binding in own.items())
+        own_names = module.resolution.names
+        names.update((name, Exported(name, module, binding)) for name, binding in own_names.items())
         if module.is_dynamic:
             reason = "parts of it cannot be parsed" if module.broken else "it binds names while it runs"
-            unseen[Unseen(os.path.basename(filename), reason)] = None
-        listed = module.public
-        if listed is not None:
-            public = listed
-        elif "__all__" in own:
+            unseen_names[Unseen(os.path.basename(filename), reason)] = None
+        public_names = module.public
+        if public_names is not None:
+            public = public_names
+        elif "__all__" in own_names:
             public = frozenset(names)
         else:
             public = frozenset(name for name in names if not name.startswith("_"))
         gathering.pending.remove(filename)
-        exports = Exports(MappingProxyType(names), public, tuple(unseen), sets_ego)
+        exports = Exports(MappingProxyType(names), public, tuple(unseen_names), sets_ego)
         if self._is_current(module):
             gathering.done[filename] = exports
         return exports
@@ -311,21 +317,21 @@ class Project:
 
         What is no plain import, or leads to where nothing is known, is its own definition.
         """
-        seen: set[Binding] = set()
+        bindings_done: set[Binding] = set()
         while exported.module is not None and exported.binding is not None:
-            if exported.binding in seen:
+            if exported.binding in bindings_done:
                 break
-            seen.add(exported.binding)
+            bindings_done.add(exported.binding)
             alias, statement = self._import_of(exported.module, exported.binding)
             if alias is None or statement is None:
                 break
             importer = exported.module.filename
             if isinstance(statement, ast.Import):
                 name = alias.name if alias.asname else alias.name.partition(".")[0]
-                found = self.find(name, importer=importer)
-                return exported if found.is_missing else found
-            found = self.found_by(statement, importer)
-            target = self.member(found, alias.name, importer=importer, level=statement.level)
+                module_found = self.find(name, importer=importer)
+                return exported if module_found.is_missing else module_found
+            module_found = self.found_by(statement, importer)
+            target = self.member(module_found, alias.name, importer=importer, level=statement.level)
             if target is None:
                 break
             if isinstance(target, FoundModule):

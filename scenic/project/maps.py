@@ -68,12 +68,12 @@ def _wrong(path: str, name: str) -> tuple[str, str] | None:
 
 def _beside(path: str) -> str:
     """A hint at the maps in the folder of one that is missing."""
-    folder, wanted = os.path.split(path)
+    folder, file_name = os.path.split(path)
     try:
         names = sorted(name for name in os.listdir(folder) if name.endswith(_SUFFIX))
     except OSError:
         return "paths of `localPath` are relative to the folder of the program"
-    near = nearest(wanted, names)
+    near = nearest(file_name, names)
     if near is not None:
         return f"did you mean '{near}'?"
     if names:

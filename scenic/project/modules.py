@@ -24,20 +24,20 @@ def read_module(
     ``tree`` is the tree of the text, and ``resolution`` what its names are bound to, where that is already known.
     """
     is_scenic = not source.filename.endswith((".py", ".pyi"))
-    broken = False
+    is_broken = False
     try:
         with deep_recursion():
             if tree is None and is_scenic:
-                parsed = parse(source.text, filename=source.filename)
-                tree = parsed.tree
+                result = parse(source.text, filename=source.filename)
+                tree = result.tree
             elif tree is None:
                 tree = _python(source)
             resolution = bind(tree) if resolution is None else resolution
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        tree, broken = _EMPTY, True
+        tree, is_broken = _EMPTY, True
         resolution = bind(tree)
-    broken = broken or bool(resolution.nodes(scenic.ErrorStatement))
-    return Module(source, tree, resolution, is_scenic, broken)
+    is_broken = is_broken or bool(resolution.nodes(scenic.ErrorStatement))
+    return Module(source, tree, resolution, is_scenic, is_broken)
 
 
 def _python(source: Source) -> ast.Module:

@@ -172,7 +172,7 @@ def occurrence_at(module: Module, line: int, column: int) -> Occurrence | None:
         resolution = module.resolution
         parts = [each for each in module.tree.body if _first_line(each) <= line <= (each.end_lineno or line)]
         nodes = [node for part in parts for node in walk(part)]
-        bindings = {node: found for node in nodes if (found := resolution.sites.get(node)) is not None}
+        bindings = {node: binding for node in nodes if (binding := resolution.sites.get(node)) is not None}
         names = {node for node in nodes if node in resolution.references}
         around = ast.Module(body=parts, type_ignores=[])
         every = _in_order(_occurrences(module, around, names, bindings))
@@ -248,8 +248,10 @@ def _alias(model: Model, alias: ast.alias, occurrence: Occurrence) -> Symbol | N
         return _bound(model, alias)
     if statement is None:
         return None
-    found = model.modules.found_by(statement, model.module.filename)
-    target = model.modules.member(found, alias.name, importer=model.module.filename, level=statement.level)
+    module_found = model.modules.found_by(statement, model.module.filename)
+    target = model.modules.member(
+        module_found, alias.name, importer=model.module.filename, level=statement.level
+    )
     if target is None:
         return _bound(model, alias)
     return (
@@ -265,8 +267,8 @@ def _property(model: Model, node: scenic.SpecifierPhrase) -> Symbol | None:
     if not isinstance(owner, scenic.New):
         return None
     cls = model.meaning(owner.cls)
-    known = None if cls is None else model.class_of_symbol(cls)
-    member = None if known is None else known.member(node.property or "")
+    owner_class = None if cls is None else model.class_of_symbol(cls)
+    member = None if owner_class is None else owner_class.member(node.property or "")
     if member is None:
         return None
     return member.symbol or Symbol(member.name, member.kind, container=member.owner)
@@ -286,8 +288,8 @@ def _keyword(model: Model, node: ast.keyword) -> Symbol | None:
     call = model.module.call_of.get(node)
     callee = None if call is None else model.meaning(call.func)
     if callee is not None and callee.kind is SymbolKind.CLASS:
-        known = model.class_of_symbol(callee)
-        initial = None if known is None else known.member("__init__")
+        callee_class = model.class_of_symbol(callee)
+        initial = None if callee_class is None else callee_class.member("__init__")
         callee = None if initial is None else initial.symbol
     if callee is None or callee.module is None or not isinstance(callee.node, DEFINITIONS):
         return None
@@ -322,8 +324,8 @@ def references(
 
     The symbols have one name. The files that define them come first; ``go_on`` is called before each, and may raise.
     """
-    wanted = {each for each in symbols if not each.is_builtin}
-    if not wanted:
+    targets = {each for each in symbols if not each.is_builtin}
+    if not targets:
         return
     name = symbols[0].name
     homes = [each.filename for each in symbols if each.filename is not None]
@@ -339,7 +341,7 @@ def references(
         spans = {
             each.span: each.defines
             for each in occurrences(module)
-            if each.name in names and symbol_of(model, each) in wanted
+            if each.name in names and symbol_of(model, each) in targets
         }
         yield from (Location(module.filename, span, defines) for span, defines in spans.items())
 

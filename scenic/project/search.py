@@ -42,10 +42,10 @@ class Finder:
     ) -> None:
         self.roots = tuple(dict.fromkeys(os.path.abspath(root) for root in roots))
         self._given = tuple(os.path.abspath(folder) for folder in python_path)
-        installed = sys.path if interpreter_path is None else interpreter_path
+        installed_paths = sys.path if interpreter_path is None else interpreter_path
         self._hooks = interpreter_path is None
         # An empty entry is the current folder, which a hostile one could fill: programs say what is beside them.
-        self._installed = tuple(dict.fromkeys([*(each for each in installed if each), _LIBRARY]))
+        self._installed = tuple(dict.fromkeys([*(each for each in installed_paths if each), _LIBRARY]))
         self._entries: dict[str, frozenset[str]] = {}
         self._stamps: dict[str, int] = {}
         """By folder that was listed: when something in it was last made, renamed or removed."""
@@ -92,12 +92,12 @@ class Finder:
         if level:
             for _ in range(level - 1):
                 folder = os.path.dirname(folder)
-            own: tuple[str, ...] = (folder,)
+            own_paths: tuple[str, ...] = (folder,)
             rest: tuple[str, ...] = ()
         else:
-            own = (*self._beside(folder), *self._given)
+            own_paths = (*self._beside(folder), *self._given)
             rest = self._installed
-        everywhere = (*own, *rest)
+        everywhere = (*own_paths, *rest)
         for base in everywhere:
             file = self._scenic(base, parts)
             if file is not None:
@@ -106,47 +106,47 @@ class Finder:
             return FoundModule(name, ModuleKind.COMPILED)
         namespace: str | None = None
         for base in everywhere:
-            found = self._python(base, parts)
-            if found is not None and found[1] is not ModuleKind.NAMESPACE:
-                return FoundModule(name, found[1], found[0])
-            if found is not None and namespace is None:
-                namespace = found[0]
+            place_and_kind = self._python(base, parts)
+            if place_and_kind is not None and place_and_kind[1] is not ModuleKind.NAMESPACE:
+                return FoundModule(name, place_and_kind[1], place_and_kind[0])
+            if place_and_kind is not None and namespace is None:
+                namespace = place_and_kind[0]
         if namespace is not None:
             return FoundModule(name, ModuleKind.NAMESPACE, namespace)
         if not level and parts[0] in sys.stdlib_module_names and name in sys.modules:
             return FoundModule(name, ModuleKind.COMPILED)  # `os.path` is no file.
         if not level and self._hooks:
             home = _hooked(parts[0])
-            found = None if home is None else self._python(home, parts)
-            if found is not None:
-                return FoundModule(name, found[1], found[0])
-        return self._missing(name, parts, own, rest, level)
+            place_and_kind = None if home is None else self._python(home, parts)
+            if place_and_kind is not None:
+                return FoundModule(name, place_and_kind[1], place_and_kind[0])
+        return self._missing(name, parts, own_paths, rest, level)
 
     def _missing(
         self, name: str, parts: list[str], own: tuple[str, ...], rest: tuple[str, ...], level: int
     ) -> FoundModule:
-        known = 0
+        depth = 0
         homes: list[str] = list(own)
-        while known < len(parts) - 1:
+        while depth < len(parts) - 1:
             inner = [
-                os.path.join(base, *parts[: known + 1])
+                os.path.join(base, *parts[: depth + 1])
                 for base in (*own, *rest)
-                if self._is_folder(base, parts[: known + 1])
+                if self._is_folder(base, parts[: depth + 1])
             ]
             if not inner:
                 break
-            known, homes = known + 1, inner
-        beginning = ".".join(parts[:known])
+            depth, homes = depth + 1, inner
+        beginning = ".".join(parts[:depth])
         candidates = {each for home in homes for each in self._modules(home)}
-        if not known:
+        if not depth:
             candidates |= {each for base in rest for each in self._modules(base)}
             if not level:
                 candidates |= sys.stdlib_module_names
-        wrong = parts[known] if parts else ""
+        wrong = parts[depth] if parts else ""
         near = nearest(wrong, (each for each in candidates if not each.startswith("_")))
         if near is not None:
-            near = ".".join([*parts[:known], near, *parts[known + 1 :]])
-        within = bool(known) and any(home.startswith(_closed(base)) for home in homes for base in own)
+            near = ".".join([*parts[:depth], near, *parts[depth + 1 :]])
+        within = bool(depth) and any(home.startswith(_closed(base)) for home in homes for base in own)
         return FoundModule(name, ModuleKind.MISSING, None, tuple(homes), beginning, within, near)
 
     def _beside(self, folder: str) -> tuple[str, ...]:
@@ -154,8 +154,8 @@ class Finder:
 
         Where that is a package, up to the one that holds the outermost package: what imports the package will find that.
         """
-        known = self._folders.get(folder)
-        if known is None:
+        chain_of_folders = self._folders.get(folder)
+        if chain_of_folders is None:
             inside = [root for root in self.roots if folder == root or folder.startswith(_closed(root))]
             chain = [folder]
             if inside:
@@ -164,8 +164,8 @@ class Finder:
                     chain.append(os.path.dirname(chain[-1]))
             while self._initial(chain[-1], _INITIAL) is not None and os.path.dirname(chain[-1]) != chain[-1]:
                 chain.append(os.path.dirname(chain[-1]))
-            known = self._folders[folder] = tuple(chain)
-        return known
+            chain_of_folders = self._folders[folder] = tuple(chain)
+        return chain_of_folders
 
     def _list(self, folder: str) -> frozenset[str]:
         entries = self._entries.get(folder)

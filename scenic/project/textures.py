@@ -68,12 +68,12 @@ def _names(value: ast.expr | None) -> Iterator[tuple[str, ast.expr]]:
 
 def _advice(path: str) -> str:
     """A hint at the images in the folder of one that is missing."""
-    folder, wanted = os.path.split(path)
+    folder, file_name = os.path.split(path)
     try:
         names = sorted(name for name in os.listdir(folder) if name.lower().endswith(SUFFIXES))
     except OSError:
         names = []
-    near = nearest(wanted, names)
+    near = nearest(file_name, names)
     if near is not None:
         return f"did you mean '{near}'?"
     return "paths of textures start from the folder of the program"

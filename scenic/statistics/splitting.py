@@ -262,8 +262,8 @@ class Splitting(Generic[_Point]):
         populations: Sequence[list[_Member[_Point]]],
     ) -> _Making[_Point]:
         """Make the first populations; there is less of them if the budget ends."""
-        asked, total = 0, size * len(repetitions)
-        while asked < _TRIES * total:
+        attempts, total = 0, size * len(repetitions)
+        while attempts < _TRIES * total:
             places = [place for place, members in enumerate(populations) for _ in range(size - len(members))]
             if not places:
                 return
@@ -272,7 +272,7 @@ class Splitting(Generic[_Point]):
                 self.is_out_of_budget = True
                 return
             outcomes = yield [Move(None, repetition=number + place) for place in places]
-            asked += len(places)
+            attempts += len(places)
             for place, outcome in zip(places, outcomes, strict=True):
                 if outcome.value is not None:
                     members = populations[place]

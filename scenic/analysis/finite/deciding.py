@@ -107,15 +107,15 @@ def decide(
     impossible = next((one for one in components if one.share == 0), None)
     if impossible is not None:
         return Decision(order, components, impossible=_core(problem, impossible), problem=problem)
-    parts = tuple(_part(drawn, order) for one in components for drawn in one.drawn)
+    parts = tuple(_part(draw, order) for one in components for draw in one.drawn)
     met_always = {id(constraint) for one in components for constraint in one.met}
     reasons = {
         constraint.check: _NO_WAY for constraint in builder.constraints if id(constraint) not in met_always
     }
     reasons |= builder.undecided
-    settled = frozenset(numbers) - reasons.keys()
+    decided_numbers = frozenset(numbers) - reasons.keys()
     return Decision(
-        order, components, parts, settled, tuple(sorted(reasons)), problem=problem, reasons=reasons
+        order, components, parts, decided_numbers, tuple(sorted(reasons)), problem=problem, reasons=reasons
     )
 
 
@@ -144,10 +144,10 @@ class _Finiteness:
             if node.is_drawn:
                 self._draws[node] = 1 if node in variables else 0 if node in seeds else 2
             else:
-                found = 0
+                draws = 0
                 for operand in node.operands:
-                    found |= self._draws[operand]
-                self._draws[node] = found
+                    draws |= self._draws[operand]
+                self._draws[node] = draws
 
     def __call__(self, nodes: Sequence[Node]) -> int:
         """The bits of some nodes together."""
@@ -170,8 +170,8 @@ def _pieces(checks: Sequence[Check], finite: _Finiteness) -> Iterator[_Piece]:
             below = np.array([finite(item.all) for item in check.objects])
             one, other = below[check.pairs].T
             # Bounds show collisions only of things whose places are known but for a little.
-            coupled = ((one | other) == 1) | ((one & other) == 1) | ((one & other) == 3)
-            for place in np.flatnonzero(coupled).tolist():
+            is_coupled = ((one | other) == 1) | ((one & other) == 1) | ((one & other) == 3)
+            for place in np.flatnonzero(is_coupled).tolist():
                 yield _Piece(check.of_pairs(check.pairs[place : place + 1]), number, "collision")
         elif isinstance(check, DrawingCheck):
             if finite(check.nodes) == 1:
@@ -214,8 +214,8 @@ class _Builder:
         """Add the constraint of a piece, if it can be made."""
         check = piece.check
         scope, _, every = self._tabulator.below(check.nodes)
-        allowed = self._tabulator.table(scope, check.nodes, every, check.test, piece.kind)
-        if allowed is None:
+        combinations = self._tabulator.table(scope, check.nodes, every, check.test, piece.kind)
+        if combinations is None:
             tables = None
             if isinstance(check, NodeCheck) and check.node.kind is Kind.BOOLEAN:
                 tables = self._decomposer.tables(check.node)
@@ -223,7 +223,7 @@ class _Builder:
                 self.undecided[piece.number] = self._tabulator.reason
                 return
         else:
-            tables = [_simplified([self._number[variable.axis] for variable in scope], allowed)]
+            tables = [_simplified([self._number[variable.axis] for variable in scope], combinations)]
         if all(table.allowed.all() for table in tables):
             return
         self.constraints.append(Constraint(tuple(tables), piece.number))

@@ -72,14 +72,14 @@ class Decomposer:
         except _TooLargeError:
             return None
         final = Table(scope, column.astype(np.bool_).reshape(shape))
-        needed: dict[int, None] = {}
+        variables: dict[int, None] = {}
         stack = list(scope)
         while stack:
             variable = stack.pop()
-            if variable in self._defining and variable not in needed:
-                needed[variable] = None
+            if variable in self._defining and variable not in variables:
+                variables[variable] = None
                 stack += self._below[variable]
-        return [*(self._defining[variable] for variable in needed), final]
+        return [*(self._defining[variable] for variable in variables), final]
 
     def _operands(self, node: Node) -> tuple[list[_Value], tuple[int, ...], tuple[Kind, ...]]:
         values = [self._value(operand) for operand in node.operands]
@@ -119,9 +119,9 @@ class Decomposer:
             raise _TooLargeError
         number = len(self._sizes)
         self._sizes.append(len(first))
-        allowed = np.zeros((len(column), len(first)), dtype=np.bool_)
-        allowed[np.arange(len(column)), place.reshape(-1)] = True
-        self._defining[number] = Table((*scope, number), allowed.reshape(*shape, len(first)))
+        relation = np.zeros((len(column), len(first)), dtype=np.bool_)
+        relation[np.arange(len(column)), place.reshape(-1)] = True
+        self._defining[number] = Table((*scope, number), relation.reshape(*shape, len(first)))
         self._below[number] = scope
         return _Value(number, column[first], node.kind)
 

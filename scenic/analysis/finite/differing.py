@@ -82,7 +82,7 @@ def _labelled(
         if not all(variable in neighbours[member] for member in labels):
             continue
         mine: list[int] = []
-        used = width
+        label_count = width
         for value in range(sizes[variable]):
             clashes = {
                 member: {
@@ -91,11 +91,11 @@ def _labelled(
                 }
                 for member, theirs in labels.items()
             }
-            named = set().union(*clashes.values())
-            if len(named) > 1:
+            labels_around = set().union(*clashes.values())
+            if len(labels_around) > 1:
                 break
-            label = named.pop() if named else used
-            used += label == used
+            label = labels_around.pop() if labels_around else label_count
+            label_count += label == label_count
             # Whoever has the label clashes with the value, in all places that have it.
             if any(
                 (label in theirs) != (label in clashes[member])
@@ -110,7 +110,7 @@ def _labelled(
             mine.append(label)
         if len(mine) == sizes[variable]:
             labels[variable] = mine
-            width = used
+            width = label_count
     return labels
 
 

@@ -94,24 +94,24 @@ def eliminate(tables: Sequence[Table], weights: Mapping[int, Floats], order: Seq
     steps: list[ConditionalChoice] = []
     for variable in order:
         factors = buckets.pop(variable)
-        given = tuple(
+        neighbours = tuple(
             sorted(
                 {other for scope, _ in factors for other in scope if other != variable}, key=place.__getitem__
             )
         )
-        scope = (*given, variable)
-        sizes = tuple(len(weights[other]) for other in given)
+        scope = (*neighbours, variable)
+        sizes = tuple(len(weights[other]) for other in neighbours)
         product = np.broadcast_to(weights[variable], (*sizes, len(weights[variable]))).copy()
         for theirs, entries in factors:
             product *= _spread(theirs, entries, scope)
         cumulative, sums = _law_of_rows(product.reshape(-1, product.shape[-1]))
-        steps.append(ConditionalChoice(variable, given, sizes, cumulative))
+        steps.append(ConditionalChoice(variable, neighbours, sizes, cumulative))
         most = float(sums.max(initial=0.0))
         if most <= 0:
             return Elimination((), 0.0)
         logarithm += np.log(most)
-        if given:
-            buckets[given[0]].append((given, (sums / most).reshape(sizes)))
+        if neighbours:
+            buckets[neighbours[0]].append((neighbours, (sums / most).reshape(sizes)))
         else:
             logarithm += np.log(sums[0] / most)
     return Elimination(tuple(reversed(steps)), float(np.exp(logarithm)))

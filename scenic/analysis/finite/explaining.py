@@ -115,26 +115,26 @@ def findings(
         problem.draws,
         problem.constraints,
     )
-    found = []
-    for one, counted in zip(decision.components, solve(counting), strict=True):
+    result = []
+    for one, count in zip(decision.components, solve(counting), strict=True):
         in_boxes = any(decision.variables[variable].number in joined for variable in one.variables)
-        met = {id(constraint) for constraint in one.met}
+        met_constraints = {id(constraint) for constraint in one.met}
         chance = dict.fromkeys(
             checks[constraint.check].label
             for constraint in one.constraints
-            if id(constraint) not in met or constraint.check in decision.left
+            if id(constraint) not in met_constraints or constraint.check in decision.left
         )
-        found.append(
+        result.append(
             FiniteFinding(
                 tuple(decision.variables[variable].address for variable in one.variables),
                 math.prod(float(decision.variables[variable].size) for variable in one.variables),
-                counted.share,
-                (_IN_BOXES,) if in_boxes else tuple(dict.fromkeys(drawn.way for drawn in one.drawn)),
+                count.share,
+                (_IN_BOXES,) if in_boxes else tuple(dict.fromkeys(draw.way for draw in one.drawn)),
                 0 if in_boxes else len(one.met),
                 tuple(chance) if one.drawn else (),
             )
         )
-    return tuple(found)
+    return tuple(result)
 
 
 def narrowed_values(decision: Decision) -> tuple[Finite, ...]:
@@ -167,10 +167,10 @@ def _alive(decision: Decision, component: Component) -> dict[int, Mask]:
     masks = {variable: component.domains[variable].copy() for variable in component.variables}
     if problem is None:
         return masks
-    for drawn in component.drawn:
-        if isinstance(drawn.law, Listed):
-            for place, variable in enumerate(drawn.variables):
-                masks[variable] = _of(drawn.law.rows[:, place], drawn.values[place], len(masks[variable]))
+    for draw in component.drawn:
+        if isinstance(draw.law, Listed):
+            for place, variable in enumerate(draw.variables):
+                masks[variable] = _of(draw.law.rows[:, place], draw.values[place], len(masks[variable]))
             return masks
     tables = merged(table for constraint in component.constraints for table in constraint.tables)
     sizes = {variable: len(mask) for variable, mask in component.domains.items()}
@@ -197,9 +197,9 @@ def contradiction(decision: Decision, checks: Sequence[Check]) -> tuple[Diagnost
         return ()
     core = [checks[number] for number in decision.impossible]
     core.sort(key=lambda check: (check.span is None, check.span.line if check.span is not None else 0))
-    placed = [check for check in core if check.span is not None]
-    last = placed[-1] if placed else core[-1]
-    others = [check for check in placed if check is not last]
+    checks_with_places = [check for check in core if check.span is not None]
+    last = checks_with_places[-1] if checks_with_places else core[-1]
+    others = [check for check in checks_with_places if check is not last]
     subject = "this requirement" if last.position > 0 else f"'{last.label}', which the language requires,"
     message = (
         f"{subject} cannot hold together with the others marked, whatever the discrete values are"

@@ -34,17 +34,17 @@ def solutions(
     rows = np.zeros((1, 0), dtype=np.int16)
     work = 0
     for place, variable in enumerate(order):
-        known = order[:place]
-        allowed = np.ones((len(rows), sizes[variable]), dtype=np.bool_)
-        for scope, entries in _speaking(tables, variable, frozenset(known)):
-            work += allowed.size
+        earlier_variables = order[:place]
+        is_allowed = np.ones((len(rows), sizes[variable]), dtype=np.bool_)
+        for scope, entries in _speaking(tables, variable, frozenset(earlier_variables)):
+            work += is_allowed.size
             if work > MOST_WORK:
                 return None
             inner = tuple(rows[:, columns[other]].astype(np.intp) for other in scope)
-            allowed &= entries[inner] if inner else entries[np.newaxis]
-        if np.count_nonzero(allowed) > MOST_PARTIAL:
+            is_allowed &= entries[inner] if inner else entries[np.newaxis]
+        if np.count_nonzero(is_allowed) > MOST_PARTIAL:
             return None
-        row, value = np.nonzero(allowed)
+        row, value = np.nonzero(is_allowed)
         rows = np.concatenate([rows[row], value[:, np.newaxis].astype(np.int16)], axis=1)
     if len(rows) > MOST_SOLUTIONS:
         return None
@@ -54,7 +54,7 @@ def solutions(
 def _order(tables: Sequence[Table], sizes: Mapping[int, int]) -> list[int]:
     """The variables, next always the one that the tables bind most to those before it."""
     left = dict.fromkeys(sizes)
-    known: set[int] = set()
+    ordered_variables: set[int] = set()
     order: list[int] = []
     scopes = [(frozenset(table.scope), float(np.log(max(table.allowed.mean(), 1e-9)))) for table in tables]
     while left:
@@ -63,28 +63,35 @@ def _order(tables: Sequence[Table], sizes: Mapping[int, int]) -> list[int]:
         for scope, selectivity in scopes:
             for variable in scope:
                 if variable in left:
-                    unknown = len(scope - known) - 1
+                    unknown_count = len(scope - ordered_variables) - 1
                     strength[variable] += (
-                        selectivity if unknown == 0 else selectivity * 0.1 * (len(scope) > unknown + 1)
+                        selectivity
+                        if unknown_count == 0
+                        else selectivity * 0.1 * (len(scope) > unknown_count + 1)
                     )
                     degree[variable] += selectivity
         best = min(
-            left, key=lambda one: (strength[one] + np.log(sizes[one]) * (1 if known else 0), degree[one], one)
+            left,
+            key=lambda one: (
+                strength[one] + np.log(sizes[one]) * (1 if ordered_variables else 0),
+                degree[one],
+                one,
+            ),
         )
         order.append(best)
-        known.add(best)
+        ordered_variables.add(best)
         del left[best]
     return order
 
 
 def _speaking(tables: Sequence[Table], variable: int, known: frozenset[int]) -> list[tuple[list[int], Mask]]:
     """The tables about a variable, given known ones: of each table the known variables, and the entries by them and the variable."""
-    found = []
+    pairs = []
     for table in tables:
         if variable not in table.scope:
             continue
-        given = [other for other in table.scope if other in known]
-        if not given and len(table.scope) > 1 and table.allowed.size > _LARGEST_PROJECTION:
+        known_variables = [other for other in table.scope if other in known]
+        if not known_variables and len(table.scope) > 1 and table.allowed.size > _LARGEST_PROJECTION:
             continue
         others = tuple(
             place for place, other in enumerate(table.scope) if other != variable and other not in known
@@ -93,5 +100,5 @@ def _speaking(tables: Sequence[Table], variable: int, known: frozenset[int]) -> 
         scope = [other for other in table.scope if other == variable or other in known]
         entries = np.moveaxis(entries, scope.index(variable), -1)
         if not entries.all():
-            found.append((given, entries))
-    return found
+            pairs.append((known_variables, entries))
+    return pairs

@@ -69,10 +69,10 @@ def merged(tables: Iterable[Table]) -> list[Table]:
     result = []
     for group in groups.values():
         scope = group[0].scope
-        allowed = group[0].allowed
+        combinations = group[0].allowed
         for other in group[1:]:
-            allowed = allowed & aligned(other, scope)
-        result.append(Table(scope, np.asarray(allowed)))
+            combinations = combinations & aligned(other, scope)
+        result.append(Table(scope, np.asarray(combinations)))
     return result
 
 
@@ -82,13 +82,13 @@ def components(constraints: Sequence[Constraint]) -> list[list[Constraint]]:
     owner: dict[int, int] = {}
     for number, constraint in enumerate(constraints):
         scope = set(constraint.scope)
-        joined = sorted({owner[variable] for variable in scope if variable in owner})
+        group_numbers = sorted({owner[variable] for variable in scope if variable in owner})
         members: list[Constraint] = []
-        for other in joined:
+        for other in group_numbers:
             more, theirs = groups.pop(other)
             scope |= more
             members += theirs
-        target = joined[0] if joined else number
+        target = group_numbers[0] if group_numbers else number
         groups[target] = scope, [*members, constraint]
         owner.update(dict.fromkeys(scope, target))
     return [members for _, members in groups.values()]

@@ -89,47 +89,47 @@ def _solved(problem: Problem, constraints: Sequence[Constraint]) -> Component:
     tables = merged(table for constraint in constraints for table in constraint.tables)
     if not consistent(tables, domains):
         return Component(draws, domains, every, (), every, 0.0)
-    reduced = Reduced(problem, every, domains)
-    struck = float(np.prod([reduced.weights[variable].sum() for variable in draws]))
+    reduction = Reduced(problem, every, domains)
+    remaining_share = float(np.prod([reduction.weights[variable].sum() for variable in draws]))
     best: tuple[tuple[Drawn, ...], tuple[Constraint, ...]] | None = None
-    eliminated = _eliminated(reduced, every)
-    if eliminated is not None:
-        best = (eliminated,), every
+    elimination = _eliminated(reduction, every)
+    if elimination is not None:
+        best = (elimination,), every
         count = None
     else:
-        listed = _listed(reduced, every)
+        listing = _listed(reduction, every)
         count = None
-        if listed is not None:
-            best = listed, every
-            count = len(listed[0].law.rows) if isinstance(listed[0].law, Listed) else None
+        if listing is not None:
+            best = listing, every
+            count = len(listing[0].law.rows) if isinstance(listing[0].law, Listed) else None
     if best is None:
-        best = _strongest(reduced)
-    share = float(np.prod([drawn.share for drawn in best[0]])) if best[0] else struck
+        best = _strongest(reduction)
+    share = float(np.prod([draw.share for draw in best[0]])) if best[0] else remaining_share
     if share <= 0:
         return Component(draws, domains, every, (), every, 0.0)
-    kept = best[0] if share <= GAIN else ()
-    return Component(draws, domains, every, kept, best[1] if kept else (), share, count)
+    draws_to_use = best[0] if share <= GAIN else ()
+    return Component(draws, domains, every, draws_to_use, best[1] if draws_to_use else (), share, count)
 
 
 def _eliminated(reduced: Reduced, constraints: Sequence[Constraint]) -> Drawn | None:
     """The way by elimination, if tables remain small."""
     tables = reduced.tables(constraints)
     scopes = [frozenset(table.scope) for table in tables]
-    named = frozenset().union(*scopes) if scopes else frozenset[int]()
+    variables_in_tables = frozenset().union(*scopes) if scopes else frozenset[int]()
     draws = [variable for variable in reduced.draws if any(variable in item.scope for item in constraints)]
-    scopes += [frozenset((variable,)) for variable in draws if variable not in named]
+    scopes += [frozenset((variable,)) for variable in draws if variable not in variables_in_tables]
     order = ordered(scopes, reduced.sizes)
     if order is None:
         return None
-    found = eliminate(tables, reduced.weights, order)
-    law = Sequential(found.steps, tuple(draws))
-    numbers = tuple(step.variable for step in found.steps)
+    elimination = eliminate(tables, reduced.weights, order)
+    law = Sequential(elimination.steps, tuple(draws))
+    numbers = tuple(step.variable for step in elimination.steps)
     return Drawn(
         tuple(draws),
         tuple(reduced.values[variable] for variable in draws),
         law,
         numbers,
-        found.weight,
+        elimination.weight,
         "by elimination",
     )
 
@@ -137,9 +137,11 @@ def _eliminated(reduced: Reduced, constraints: Sequence[Constraint]) -> Drawn | 
 def _listed(reduced: Reduced, constraints: Sequence[Constraint]) -> tuple[Drawn, ...] | None:
     """The way by a list of all solutions, if these are few."""
     tables = reduced.tables(constraints)
-    coupled = frozenset[int]().union(*(table.scope for table in tables))
-    draws = [variable for variable in reduced.draws if variable in coupled]
-    rows = solutions(tables, {variable: reduced.sizes[variable] for variable in sorted(coupled)}, draws)
+    coupled_variables = frozenset[int]().union(*(table.scope for table in tables))
+    draws = [variable for variable in reduced.draws if variable in coupled_variables]
+    rows = solutions(
+        tables, {variable: reduced.sizes[variable] for variable in sorted(coupled_variables)}, draws
+    )
     if rows is None:
         return None
     logarithms = np.zeros(len(rows))
@@ -148,7 +150,7 @@ def _listed(reduced: Reduced, constraints: Sequence[Constraint]) -> tuple[Drawn,
     order = np.lexsort(rows.T[::-1])
     cumulative = np.cumsum(np.exp(logarithms[order]))
     share = float(cumulative[-1]) if len(rows) else 0.0
-    drawn = Drawn(
+    draw = Drawn(
         tuple(draws),
         tuple(reduced.values[variable] for variable in draws),
         Listed(rows[order], cumulative / (share or 1.0)),
@@ -156,7 +158,9 @@ def _listed(reduced: Reduced, constraints: Sequence[Constraint]) -> tuple[Drawn,
         share,
         "from a list",
     )
-    return drawn, *(_alone(reduced, variable) for variable in reduced.draws if variable not in coupled)
+    return draw, *(
+        _alone(reduced, variable) for variable in reduced.draws if variable not in coupled_variables
+    )
 
 
 def _alone(reduced: Reduced, variable: int) -> Drawn:
@@ -177,11 +181,11 @@ def _strongest(reduced: Reduced) -> tuple[tuple[Drawn, ...], tuple[Constraint, .
     """Ways that meet the strongest constraints: by elimination alone, or after values that differ."""
     ways = [_relaxed(reduced, reduced.constraints, frozenset())]
     for exclusive in exclusives(reduced):
-        drawn, met = _differing(reduced, exclusive)
-        if drawn is not None:
-            others, more = _relaxed(reduced, reduced.constraints, frozenset(drawn.variables))
-            ways.append(((drawn, *others), (*met, *more)))
-    return min(ways, key=lambda way: float(np.prod([drawn.share for drawn in way[0]])))
+        draw, met_constraints = _differing(reduced, exclusive)
+        if draw is not None:
+            others, more = _relaxed(reduced, reduced.constraints, frozenset(draw.variables))
+            ways.append(((draw, *others), (*met_constraints, *more)))
+    return min(ways, key=lambda way: float(np.prod([draw.share for draw in way[0]])))
 
 
 def _differing(reduced: Reduced, exclusive: Exclusive) -> tuple[Drawn | None, tuple[Constraint, ...]]:
@@ -206,20 +210,20 @@ def _relaxed(
     """The way by elimination that takes as many constraints as possible, the strongest first, none about some variables."""
     free = [constraint for constraint in constraints if not constraint.scope & without]
     free.sort(key=_strength)
-    taken: list[Constraint] = []
+    selection: list[Constraint] = []
     for constraint in free[:MOST_TRIED]:
-        tables = reduced.tables([*taken, constraint])
+        tables = reduced.tables([*selection, constraint])
         if ordered([frozenset(table.scope) for table in tables], reduced.sizes) is not None:
-            taken.append(constraint)
-    found = []
-    for group in components(taken):
-        drawn = _eliminated(reduced, group)
-        if drawn is not None:
-            found.append(drawn)
-    covered = {variable for drawn in found for variable in drawn.variables} | without
+            selection.append(constraint)
+    draws = []
+    for group in components(selection):
+        draw = _eliminated(reduced, group)
+        if draw is not None:
+            draws.append(draw)
+    covered_variables = {variable for draw in draws for variable in draw.variables} | without
     # What was struck out of the values of the others is met, too.
-    found += [_alone(reduced, variable) for variable in reduced.draws if variable not in covered]
-    return tuple(found), tuple(taken)
+    draws += [_alone(reduced, variable) for variable in reduced.draws if variable not in covered_variables]
+    return tuple(draws), tuple(selection)
 
 
 def _strength(constraint: Constraint) -> float:

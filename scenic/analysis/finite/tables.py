@@ -114,9 +114,9 @@ class Tabulator:
         if key not in self._known:
             price = int(count) * len(every) // _UNIT
             self._left -= price
-            allowed = None if self._left < 0 else self._made(scope, test)
+            combinations = None if self._left < 0 else self._made(scope, test)
             # Code that draws random numbers by itself does not follow from the axes.
-            self._known[key] = None if any(call.habit.draws for call in calls) else allowed
+            self._known[key] = None if any(call.habit.draws for call in calls) else combinations
         if self._known[key] is None:
             self.reason = (
                 "the tables of other requirements take all the work that is allowed"
@@ -190,10 +190,10 @@ def _most_calls(call: OpaqueCode) -> int:
     if not isinstance(call.function, FunctionType | BuiltinFunctionType | type):
         return 0
     reads = [call.function, *call.args, *call.keywords.values()]
-    reached = list(reachable(reads, call.names))
-    if mention(reached, *_SEEN):
+    values = list(reachable(reads, call.names))
+    if mention(values, *_SEEN):
         return 0
-    functions = [value for value in reached if isinstance(value, FunctionType)]
+    functions = [value for value in values if isinstance(value, FunctionType)]
     is_known = all(is_pure(function, global_names(function)) for function in functions)
     return LARGEST_OF_CODE if is_known else LARGEST_OF_OTHER_CODE
 

@@ -58,9 +58,11 @@ def variables_of(graph: Graph) -> dict[Node, Variable]:
             if not operand.is_axis:
                 continue
             reading = node.operation.cuts if node.kind is Kind.INTEGER else None
-            found = None if reading is None else reading(node.payload, node.operands)
-            known = cuts.get(operand, [])
-            cuts[operand] = None if found is None or known is None else [*known, found]
+            values_read = None if reading is None else reading(node.payload, node.operands)
+            earlier_cuts = cuts.get(operand, [])
+            cuts[operand] = (
+                None if values_read is None or earlier_cuts is None else [*earlier_cuts, values_read]
+            )
     variables: dict[Node, Variable] = {}
     for axis, places in cuts.items():
         if places is None:

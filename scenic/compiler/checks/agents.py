@@ -45,11 +45,11 @@ def check_agents(context: CheckContext) -> Iterator[Diagnostic]:
         if agent is None or behavior is None or behavior.kind is not SymbolKind.BEHAVIOR:
             continue
         able = _abilities(context, agent)
-        needed = _needs(context, behavior, 0)
+        needs = _needs(context, behavior, 0)
         # A behavior for several kinds of agents asks which one it has.
-        if able is None or len(needed) != 1 or needed.keys() <= able or not all(needed.values()):
+        if able is None or len(needs) != 1 or needs.keys() <= able or not all(needs.values()):
             continue
-        (need,) = needed
+        (need,) = needs
         yield context.error(
             "SC314",
             f"objects of the class `{agent.name}` cannot {need}, as `{behavior.name}` does",
@@ -71,21 +71,21 @@ def _given(tree: ast.Module) -> Iterator[tuple[ast.expr, ast.expr]]:
 def _abilities(model: Model, agent: Symbol) -> frozenset[str] | None:
     """The abilities of the instances of a class; ``None`` where that is not known."""
     able: set[str] = set()
-    waiting, seen = [agent], set[Symbol]()
+    waiting, classes_done = [agent], set[Symbol]()
     while waiting:
         symbol = waiting.pop()
-        known = model.class_of_symbol(symbol)
-        if known is None or not known.complete:
+        class_here = model.class_of_symbol(symbol)
+        if class_here is None or not class_here.complete:
             return None
         # A class that extends one of the same name is another symbol in another file.
         if symbol.filename is not None and symbol.filename.startswith(LIBRARY) and symbol.name in _ABLE:
             able.add(_ABLE[symbol.name])
-        if known.member("setThrottle") is not None:
+        if class_here.member("setThrottle") is not None:
             able.add("drive")
-        if known.member("setWalkingSpeed") is not None:
+        if class_here.member("setWalkingSpeed") is not None:
             able.add("walk")
-        seen.add(symbol)
-        waiting += [base for base in known.bases if base not in seen]
+        classes_done.add(symbol)
+        waiting += [base for base in class_here.bases if base not in classes_done]
     return frozenset(able)
 
 
@@ -95,7 +95,7 @@ def _needs(model: Model, behavior: Symbol, depth: int) -> dict[str, bool]:
     if module is None or not isinstance(node, scenic.BehaviorDef) or depth > _DEEPEST:
         return {}
     home = model.beside(module)
-    guarded = {id(part) for branch in walk(node) if isinstance(branch, ast.If) for part in walk(branch)}
+    guarded_parts = {id(part) for branch in walk(node) if isinstance(branch, ast.If) for part in walk(branch)}
     needs: dict[str, bool] = {}
     for part in walk(node):
         inner: dict[str, bool] = {}
@@ -111,7 +111,7 @@ def _needs(model: Model, behavior: Symbol, depth: int) -> dict[str, bool]:
                 if run is not None and run != behavior:
                     inner |= _needs(model, run, depth + 1)
         for need, always in inner.items():
-            needs[need] = needs.get(need, False) or (always and id(part) not in guarded)
+            needs[need] = needs.get(need, False) or (always and id(part) not in guarded_parts)
     return needs
 
 
@@ -131,6 +131,6 @@ def _need_of_action(model: Model, action: Symbol) -> str | None:
         cls = waiting.pop()
         if cls.name in _NEEDS and cls.filename is not None and cls.filename.startswith(LIBRARY):
             return _NEEDS[cls.name]
-        known = model.class_of_symbol(cls)
-        waiting += () if known is None else known.bases
+        class_here = model.class_of_symbol(cls)
+        waiting += () if class_here is None else class_here.bases
     return None

@@ -20,14 +20,16 @@ def _class(node: ast.ClassDef, _scope: Scope, context: CheckContext) -> Iterator
     cls = context.class_at(node)
     if cls is None:
         return
-    inherited = cls.inherited
-    own = {item.name for item in node.body if isinstance(item, scenic.PropertyDef)}
+    base_properties = cls.inherited
+    own_names = {item.name for item in node.body if isinstance(item, scenic.PropertyDef)}
     for item in node.body:
         match item:
-            case ast.Assign(targets=[ast.Name(id=name) as target]) if name in own or name in inherited:
-                yield _attribute(context, node, target, item.value, known=name in own)
-            case scenic.PropertyDef(name=name) if name not in inherited:
-                yield from _misspelt(context, node, item, inherited, own)
+            case ast.Assign(targets=[ast.Name(id=name) as target]) if (
+                name in own_names or name in base_properties
+            ):
+                yield _attribute(context, node, target, item.value, known=name in own_names)
+            case scenic.PropertyDef(name=name) if name not in base_properties:
+                yield from _misspelt(context, node, item, base_properties, own_names)
 
 
 def _attribute(

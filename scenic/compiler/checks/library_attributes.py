@@ -31,28 +31,28 @@ _COMMON: Final = frozenset(properties_of("Object")).union(attributes_of("Object"
 
 def check_library_attributes(context: CheckContext) -> Iterator[Diagnostic]:
     """Reports slips in attributes of what star imports and the model bring."""
-    brought, resolution = context.brought, context.resolution
-    if not any(each.module is not None and is_of_library(each.module.filename) for each in brought.values()):
+    imports, resolution = context.brought, context.resolution
+    if not any(each.module is not None and is_of_library(each.module.filename) for each in imports.values()):
         return
     if context.writes_any_attribute:
         return
-    known = context.stored_attributes | context.given | context.asked_attributes
-    called = {id(node.func) for node, _ in resolution.nodes(ast.Call)}
-    seen: dict[tuple[str, str], tuple[str, str | None, str, bool] | None] = {}
+    members = context.stored_attributes | context.given | context.asked_attributes
+    callee_identities = {id(node.func) for node, _ in resolution.nodes(ast.Call)}
+    slips: dict[tuple[str, str], tuple[str, str | None, str, bool] | None] = {}
     for node, _ in resolution.nodes(ast.Attribute):
-        if node.attr in known or node.attr.startswith("_") or is_attempt(node, context):
+        if node.attr in members or node.attr.startswith("_") or is_attempt(node, context):
             continue
-        if node.attr in _COMMON and not _is_near(node, brought):
+        if node.attr in _COMMON and not _is_near(node, imports):
             continue
-        chain = _chain(node.value, resolution, brought)
+        chain = _chain(node.value, resolution, imports)
         if chain is None:
             continue
         key = (chain, node.attr)
-        if key not in seen:
-            seen[key] = _slip(context, node)
-        found = seen[key]
-        if found is not None:
-            kind, meant, advice, is_method = found
+        if key not in slips:
+            slips[key] = _slip(context, node)
+        slip = slips[key]
+        if slip is not None:
+            kind, similar_name, advice, is_method = slip
             whole = context.source.span(node)
             place = Span(
                 whole.end_line, max(0, whole.end_column - len(node.attr)), whole.end_line, whole.end_column
@@ -62,8 +62,13 @@ def check_library_attributes(context: CheckContext) -> Iterator[Diagnostic]:
                 f"{'an' if kind[0] in 'AEIOU' else 'a'} `{kind}` has no attribute `{node.attr}`",
                 place,
                 advice,
-                fix=_renamed(place, meant, context.source, is_called=id(node) in called and not is_method)
-                if meant
+                fix=_renamed(
+                    place,
+                    similar_name,
+                    context.source,
+                    is_called=id(node) in callee_identities and not is_method,
+                )
+                if similar_name
                 else None,
             )
 
@@ -116,12 +121,21 @@ def _slip(context: CheckContext, node: ast.Attribute) -> tuple[str, str | None, 
     symbol = context.class_of(node.value)
     element = context.class_of_elements(node.value) if symbol is None else None
     if element is not None and node.attr not in _OF_SEQUENCES:
-        known = context.class_of_symbol(element)
-        meant = None if known is None else nearest(node.attr, {each.name for each in known.members})
+        element_class = context.class_of_symbol(element)
+        similar_name = (
+            None
+            if element_class is None
+            else nearest(node.attr, {each.name for each in element_class.members})
+        )
         return (
             None
-            if meant is None
-            else (f"sequence of {element.name}", f"[0].{meant}", f"did you mean `[0].{meant}`?", True)
+            if similar_name is None
+            else (
+                f"sequence of {element.name}",
+                f"[0].{similar_name}",
+                f"did you mean `[0].{similar_name}`?",
+                True,
+            )
         )
     if symbol is None:
         # An attribute of the class itself, such as a member of an enumeration.
@@ -132,15 +146,20 @@ def _slip(context: CheckContext, node: ast.Attribute) -> tuple[str, str | None, 
     if cls is None or cls.member(node.attr) is not None or cls.member("__getattr__") is not None:
         return None
     names = {each.name for each in cls.members if not each.name.startswith("_")}
-    meant, is_slip = _meant(node.attr, names)
-    if meant is None:
+    similar_name, is_slip = _meant(node.attr, names)
+    if similar_name is None:
         owner = _owner_beside(symbol, node.attr)
         if owner is not None:
             return symbol.name, None, _OTHER_WAYS.get((symbol.name, owner), f"a `{owner}` has it"), False
         if not (cls.complete and names):
             return None
         return symbol.name, None, f"it has {_some(cls, names)}, ...", False
-    return symbol.name, meant if is_slip else None, f"did you mean `{meant}`?", _is_called(cls, meant)
+    return (
+        symbol.name,
+        similar_name if is_slip else None,
+        f"did you mean `{similar_name}`?",
+        _is_called(cls, similar_name),
+    )
 
 
 def _meant(name: str, names: Collection[str]) -> tuple[str | None, bool]:
@@ -166,7 +185,7 @@ def _is_called(cls: Class, name: str) -> bool:
 def _some(cls: Class, names: Collection[str]) -> str:
     """Some names that programs use of a class of the library, which its own code has in other writing."""
     home = os.path.dirname(cls.symbol.filename or "")
-    own = [
+    own_names = [
         each.name
         for each in cls.members
         if each.name in names
@@ -174,7 +193,7 @@ def _some(cls: Class, names: Collection[str]) -> str:
         and os.path.dirname(each.symbol.filename or "") == home
         and "_" not in each.name
     ]
-    return ", ".join(f"`{each}`" for each in sorted(own or names)[:_SHOWN])
+    return ", ".join(f"`{each}`" for each in sorted(own_names or names)[:_SHOWN])
 
 
 def _has_like_words(name: str, meant: str) -> bool:

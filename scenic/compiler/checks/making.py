@@ -252,10 +252,10 @@ def _new(node: scenic.New, scope: Scope, context: CheckContext) -> Iterator[Diag
 def _take(node: scenic.Take, _scope: Scope, context: CheckContext) -> Iterator[Diagnostic]:
     """SC314: ``take SetBrakeAction``."""
     for action in node.actions:
-        called = action.func if isinstance(action, ast.Call) else action
-        symbol = context.definition(called)
+        callee = action.func if isinstance(action, ast.Call) else action
+        symbol = context.definition(callee)
         if symbol is not None and isinstance(symbol.node, scenic.BehaviorDef):
-            text = context.text(called) or "Name"
+            text = context.text(callee) or "Name"
             run = text if isinstance(action, ast.Call) else f"{text}()"
             yield context.warning(
                 "SC314",

@@ -212,8 +212,8 @@ def _cycle(node: scenic.New, properties: Mapping[str, Member], context: CheckCon
     # other modules are checked there.
     cls = context.class_named(node.cls)
     is_here = cls is not None and cls.symbol.module is context.module
-    own = properties if cls is not None and is_here and cls.is_circular else ()
-    cycle = find_cycle([*(name for name in providers if needed(name)), *own], needed)
+    circular_properties = properties if cls is not None and is_here and cls.is_circular else ()
+    cycle = find_cycle([*(name for name in providers if needed(name)), *circular_properties], needed)
     if cycle is not None:
         yield _needs_itself(node, cycle, providers, context)
 

@@ -385,10 +385,12 @@ def _set_by_methods(module: Module, symbol: Symbol, node: ast.ClassDef) -> Itera
         positional = [*method.args.posonlyargs, *method.args.args]
         if not positional:
             continue
-        own = positional[0].arg
+        first_parameter = positional[0].arg
         for part in walk(method):
             match part:
-                case ast.Attribute(value=ast.Name(id=name), attr=attribute, ctx=ast.Store()) if name == own:
+                case ast.Attribute(value=ast.Name(id=name), attr=attribute, ctx=ast.Store()) if (
+                    name == first_parameter
+                ):
                     place = Symbol(
                         attribute,
                         SymbolKind.ATTRIBUTE,
@@ -404,11 +406,11 @@ def _set_by_methods(module: Module, symbol: Symbol, node: ast.ClassDef) -> Itera
 
 def find_cycle(names: list[str], needed: Callable[[str], tuple[str, ...]]) -> list[str] | None:
     """The properties of one cycle, in order; ``None`` if there is none."""
-    done: set[str] = set()
+    finished: set[str] = set()
     for start in names:
         path: list[str] = []
         stack: list[tuple[str, Iterator[str]]] = []
-        if start not in done:
+        if start not in finished:
             path.append(start)
             stack.append((start, iter(needed(start))))
         while stack:
@@ -417,10 +419,10 @@ def find_cycle(names: list[str], needed: Callable[[str], tuple[str, ...]]) -> li
             if following is None:
                 stack.pop()
                 path.pop()
-                done.add(name)
+                finished.add(name)
             elif following in path:
                 return path[path.index(following) :]
-            elif following not in done:
+            elif following not in finished:
                 path.append(following)
                 stack.append((following, iter(needed(following))))
     return None

@@ -115,15 +115,18 @@ def joint(kinds: Sequence[ValueKind | None]) -> ValueKind | None:
     first = kinds[0] if kinds else None
     if first is None or any(each is None or each.name != first.name for each in kinds):
         return None
-    known = [each for each in kinds if each is not None]
-    if all(each == first for each in known):
+    definite_kinds = [each for each in kinds if each is not None]
+    if all(each == first for each in definite_kinds):
         return first
     members: frozenset[str] | None = frozenset()
-    for each in known:
+    for each in definite_kinds:
         members = None if members is None or each.members is None else members | each.members
-    sizes = {each.size for each in known}
+    sizes = {each.size for each in definite_kinds}
     return ValueKind(
-        first.name, sizes.pop() if len(sizes) == 1 else None, members, joint([each.items for each in known])
+        first.name,
+        sizes.pop() if len(sizes) == 1 else None,
+        members,
+        joint([each.items for each in definite_kinds]),
     )
 
 

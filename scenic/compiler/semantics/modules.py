@@ -65,14 +65,14 @@ class Module:
     @cached_property
     def loop_of(self) -> dict[ast.AST, ast.expr]:
         """The values that each name runs through, of loops, comprehensions and functions without a name that are called for each."""
-        found: dict[ast.AST, ast.expr] = {}
+        values_by_target: dict[ast.AST, ast.expr] = {}
         loops: list[ast.For | ast.comprehension] = [node for node, _ in self.resolution.nodes(ast.For)]
         for kind in (ast.ListComp, ast.SetComp, ast.GeneratorExp, ast.DictComp):
             for node, _ in self.resolution.nodes(kind):
                 loops += node.generators
         for loop in loops:
             if isinstance(loop.target, ast.Name):
-                found[loop.target] = loop.iter
+                values_by_target[loop.target] = loop.iter
         for node, _ in self.resolution.nodes(ast.Call):
             match node:
                 case ast.Call(func=ast.Name(id="filter" | "map"), args=[ast.Lambda() as function, values]):
@@ -86,8 +86,8 @@ class Module:
                 case _:
                     continue
             if len(function.args.args) == 1:
-                found[function.args.args[0]] = values
-        return found
+                values_by_target[function.args.args[0]] = values
+        return values_by_target
 
     def word_span(self, node: ast.AST, word: str) -> Span:
         """The place of a word in a node."""
@@ -159,7 +159,7 @@ class Module:
             if isinstance(reference.node.ctx, ast.Load) and reference.scope.kind is ScopeKind.MODULE:
                 return None  # It may be changed in place: `__all__.append("name")`.
         names: set[str] = set()
-        understood: set[ast.AST] = set()
+        assignments: set[ast.AST] = set()
         for node in self.tree.body:
             match node:
                 case ast.Assign(targets=[ast.Name(id="__all__") as target], value=value):
@@ -172,8 +172,8 @@ class Module:
             if not all(isinstance(text, str) for text in texts):
                 return None
             names.update(text for text in texts if isinstance(text, str))
-            understood.add(target)
-        return frozenset(names) if understood.issuperset(binding.sites) else None
+            assignments.add(target)
+        return frozenset(names) if assignments.issuperset(binding.sites) else None
 
     @cached_property
     def is_dynamic(self) -> bool:

@@ -382,7 +382,7 @@ def _parts(
     if isinstance(target, ast.Name):
         yield target, (value, whole)
     elif isinstance(target, ast.Tuple | ast.List) and isinstance(value, ast.Tuple | ast.List):
-        starred = any(isinstance(each, ast.Starred) for each in (*target.elts, *value.elts))
-        if not starred and len(target.elts) == len(value.elts):
+        has_star = any(isinstance(each, ast.Starred) for each in (*target.elts, *value.elts))
+        if not has_star and len(target.elts) == len(value.elts):
             for part, of in zip(target.elts, value.elts, strict=True):
                 yield from _parts(part, of, whole=False)

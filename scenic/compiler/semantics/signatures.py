@@ -49,31 +49,31 @@ class Signature:
     documentation: str | None = field(default=None, compare=False)
 
     def __str__(self) -> str:
-        shown: list[str] = []
+        words: list[str] = []
         for index, parameter in enumerate(self.parameters):
             before = self.parameters[index - 1] if index else None
             if before is not None and before.positional_only and not parameter.positional_only:
-                shown.append("/")
+                words.append("/")
             if (
                 parameter.keyword_only
                 and not parameter.prefix
                 and not (before is not None and (before.keyword_only or before.prefix == "*"))
             ):
-                shown.append("*")
-            shown.append(str(parameter))
+                words.append("*")
+            words.append(str(parameter))
         if self.parameters and self.parameters[-1].positional_only:
-            shown.append("/")
-        text = f"{self.name}({', '.join(shown)})"
+            words.append("/")
+        text = f"{self.name}({', '.join(words)})"
         return text if self.returns is None else f"{text} -> {self.returns}"
 
 
 def signature_of(modules: Modules, symbol: Symbol) -> Signature | None:
     """The signature of a symbol; ``None`` if it cannot be called, or its signature is not known."""
     if symbol.is_builtin:
-        declared = NAMES.get(symbol.name)
-        if declared is None or "(" not in declared.signature:
+        declaration = NAMES.get(symbol.name)
+        if declaration is None or "(" not in declaration.signature:
             return None
-        return _declared(declared.signature, declared.documentation)
+        return _declared(declaration.signature, declaration.documentation)
     node: Any = symbol.node
     module = symbol.module
     if module is None:
@@ -97,14 +97,18 @@ def signature_of(modules: Modules, symbol: Symbol) -> Signature | None:
 
 
 def _of_class(modules: Modules, symbol: Symbol, node: ast.ClassDef) -> Signature | None:
-    known = Classes(modules).of_symbol(symbol)
-    if known is None or known.is_scenic:
+    class_here = Classes(modules).of_symbol(symbol)
+    if class_here is None or class_here.is_scenic:
         return None
-    initial = next((member for member in known.members if member.name == "__init__"), None)
+    initial = next((member for member in class_here.members if member.name == "__init__"), None)
     if initial is not None and initial.symbol is not None:
-        found = signature_of(modules, initial.symbol)
-        return None if found is None else Signature(symbol.name, found.parameters, None, symbol.documentation)
-    if not known.complete or node.decorator_list or node.keywords:
+        initial_signature = signature_of(modules, initial.symbol)
+        return (
+            None
+            if initial_signature is None
+            else Signature(symbol.name, initial_signature.parameters, None, symbol.documentation)
+        )
+    if not class_here.complete or node.decorator_list or node.keywords:
         return None
     return Signature(symbol.name, (), None, symbol.documentation)
 
@@ -123,19 +127,19 @@ def _signature(
     positional = [*args.posonlyargs, *args.args]
     defaults: list[ast.expr | None] = [None] * (len(positional) - len(args.defaults))
     defaults += args.defaults
-    found = [
+    parameters = [
         parameter(arg, default, positional_only=index < len(args.posonlyargs))
         for index, (arg, default) in enumerate(zip(positional, defaults, strict=True))
     ][skip:]
     if args.vararg is not None:
-        found.append(parameter(args.vararg, None, prefix="*"))
-    found += [
+        parameters.append(parameter(args.vararg, None, prefix="*"))
+    parameters += [
         parameter(arg, default, keyword_only=True)
         for arg, default in zip(args.kwonlyargs, args.kw_defaults, strict=False)
     ]
     if args.kwarg is not None:
-        found.append(parameter(args.kwarg, None, prefix="**"))
-    return Signature(symbol.name, tuple(found), returns, symbol.documentation)
+        parameters.append(parameter(args.kwarg, None, prefix="**"))
+    return Signature(symbol.name, tuple(parameters), returns, symbol.documentation)
 
 
 def _declared(text: str, documentation: str) -> Signature:

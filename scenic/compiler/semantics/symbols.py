@@ -180,13 +180,13 @@ def symbol_of_binding(module: Module, binding: Binding) -> Symbol:
 
 
 def _kind(node: ast.AST, binding: Binding) -> SymbolKind:
-    known = _KINDS.get(type(node))
+    kind = _KINDS.get(type(node))
     if binding.kinds == {BindingKind.SELF}:
         return SymbolKind.PARAMETER
-    if known is SymbolKind.FUNCTION and binding.scope.kind is ScopeKind.CLASS:
+    if kind is SymbolKind.FUNCTION and binding.scope.kind is ScopeKind.CLASS:
         return SymbolKind.METHOD
-    if known is not None:
-        return known
+    if kind is not None:
+        return kind
     if binding.kinds == {BindingKind.PARAMETER}:
         return SymbolKind.PARAMETER
     if binding.kinds == {BindingKind.TYPE_PARAMETER}:
@@ -216,10 +216,10 @@ def symbols_of(module: Module) -> tuple[Symbol, ...]:
 def documentation_of(symbol: Symbol) -> str | None:
     """The docstring of a symbol, or the language's documentation of it; ``None`` if it has neither."""
     if symbol.is_builtin:
-        declared = NAMES.get(symbol.name)
-        if declared is None:
+        declaration = NAMES.get(symbol.name)
+        if declaration is None:
             return TRACKED.get(symbol.name)
-        return declared.documentation
+        return declaration.documentation
     node: Any = symbol.node
     match node:
         case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
@@ -244,9 +244,9 @@ def _docstring(body: list[Any]) -> str | None:
 def _comment(module: Module, line: int) -> str | None:
     """The comment at the end of a line, else the comments alone on the lines before it."""
     text = module.source.line(line)
-    found = re.fullmatch(r"[^#'\"]*#:?\s*(.*)", text)
-    if found is not None:
-        return found[1] or None
+    match = re.fullmatch(r"[^#'\"]*#:?\s*(.*)", text)
+    if match is not None:
+        return match[1] or None
     lines: list[str] = []
     while line > 1:
         line -= 1

@@ -114,12 +114,12 @@ def build_roads(
             tell(MapProblem("SC621", message, record.line, "road"))
     strips = {id(shape): _strips_of(shape, types) for shape in shapes}
     _fill_polygons([strip for rows in strips.values() for row in rows for strip in row])
-    built: dict[str, BuiltRoad] = {}
+    roads: dict[str, BuiltRoad] = {}
     for shape in shapes:
-        made = _RoadBuilder(network, shape, strips[id(shape)], types, tell).build()
-        if made is not None:
-            built[shape.record.id] = made
-    return built
+        road = _RoadBuilder(network, shape, strips[id(shape)], types, tell).build()
+        if road is not None:
+            roads[shape.record.id] = road
+    return roads
 
 
 def _strips_of(shape: RoadShape, types: LaneTypes) -> list[list[_Strip]]:
@@ -151,10 +151,10 @@ def _fill_polygons(strips: Sequence[_Strip]) -> None:
     polygons = shapely.polygons(shapely.linearrings(points, indices=owner))
     valid = shapely.is_valid(polygons)
     areas = shapely.area(polygons)
-    broken = np.bincount(owner[~finite], minlength=len(rings)) > 0
+    is_broken = np.bincount(owner[~finite], minlength=len(rings)) > 0
     for index, strip in enumerate(strips):
         polygon = polygons[index]
-        if broken[index]:
+        if is_broken[index]:
             continue
         if not valid[index]:
             polygon = _folded(strip)
@@ -243,9 +243,9 @@ class _RoadBuilder:
             tags=tags,
         )
         road.speedLimitRanges = road_speeds(record)
-        built = BuiltRoad(record, self._shape, road)
+        result = BuiltRoad(record, self._shape, road)
         sections = self._lane_sections(road, tags)
-        self._lanes(built, road, sections)
+        self._lanes(result, road, sections)
         self._groups(road)
         self._sections(road, sections)
         self._neighbours(sections)
@@ -264,7 +264,7 @@ class _RoadBuilder:
             )
             if signal.is_valid
         )
-        return built
+        return result
 
     def _register(self, cls: type[Any], uid: str, polygon: object, **named: Any) -> Any:
         element: NetworkElement = cls(self._network, uid, polygon, **named)
@@ -296,7 +296,7 @@ class _RoadBuilder:
     def _lane_sections(self, road: Road, tags: frozenset[str]) -> list[dict[int, LaneSection]]:
         rows = []
         for number, row in enumerate(self._drivable):
-            found: dict[int, LaneSection] = {}
+            sections_by_id: dict[int, LaneSection] = {}
             for strip in row:
                 forward = self._is_forward(strip.id)
                 element: LaneSection = self._register(
@@ -314,8 +314,8 @@ class _RoadBuilder:
                 element.openDriveID = strip.id
                 element.isForward = forward
                 element.place(*strip.lines(forward))
-                found[strip.id] = element
-            rows.append(found)
+                sections_by_id[strip.id] = element
+            rows.append(sections_by_id)
         return rows
 
     def _lanes(
@@ -325,11 +325,11 @@ class _RoadBuilder:
         sections: list[dict[int, LaneSection]],
     ) -> None:
         """Join lane sections to lanes by their links, and give each its successor within the road."""
-        begun, merging = self._chains(sections)
+        chains, merging = self._chains(sections)
         # Of the lanes that begin in one section the rightmost, as seen along the road, comes first, whatever their order in the file.
         lanes = [
             self._lane(road, number, chain)
-            for number, (*_, chain) in enumerate(sorted(begun, key=lambda each: each[:2]))
+            for number, (*_, chain) in enumerate(sorted(chains, key=lambda each: each[:2]))
         ]
         for section, after in merging:
             # In the direction of the road the lane ends there; against it, traffic begins there.
@@ -347,15 +347,15 @@ class _RoadBuilder:
     ) -> tuple[list[tuple[int, int, list[LaneSection]]], list[tuple[LaneSection, LaneSection]]]:
         """The sections of each lane, with where it begins; and pairs of which the first leads into a lane that has begun."""
         lane_of: dict[int, list[LaneSection]] = {}
-        begun: list[tuple[int, int, list[LaneSection]]] = []
-        taken: set[int] = set()
+        chains: list[tuple[int, int, list[LaneSection]]] = []
+        sections_taken: set[int] = set()
         merging: list[tuple[LaneSection, LaneSection]] = []
         following = [self._following(number, sections) for number in range(len(sections) - 1)]
         for number, row in enumerate(sections):
             for key, section in row.items():
                 if id_of(section) not in lane_of:
                     chain = [section]
-                    begun.append((number, key, chain))
+                    chains.append((number, key, chain))
                     lane_of[id_of(section)] = chain
                 chain = lane_of[id_of(section)]
                 if number == len(following) or key not in following[number]:
@@ -363,13 +363,13 @@ class _RoadBuilder:
                 after = sections[number + 1].get(following[number][key])
                 if after is None:
                     continue
-                if id_of(after) in taken:
+                if id_of(after) in sections_taken:
                     merging.append((section, after))
                     continue
-                taken.add(id_of(after))
+                sections_taken.add(id_of(after))
                 chain.append(after)
                 lane_of[id_of(after)] = chain
-        return begun, merging
+        return chains, merging
 
     def _lane(self, road: Road, number: int, chain: list[LaneSection]) -> Lane:
         """Make the lane of some sections, which stand in the order of the road."""
@@ -400,21 +400,25 @@ class _RoadBuilder:
         """For lanes of a section, by id, the lane of the next section that they lead into along the reference line."""
         here = {strip.id: strip.lane for strip in self._drivable[number]}
         there = {strip.id: strip.lane for strip in self._drivable[number + 1]}
-        found = {}
+        next_lanes = {}
         for key, lane in here.items():
             if lane.successor is not None and lane.successor in there:
-                found[key] = lane.successor
+                next_lanes[key] = lane.successor
         for key, lane in there.items():
-            if lane.predecessor is not None and lane.predecessor in here and lane.predecessor not in found:
-                found[lane.predecessor] = key  # the link is given on one side only
-        linked = any(lane.successor is not None for lane in here.values()) or any(
+            if (
+                lane.predecessor is not None
+                and lane.predecessor in here
+                and lane.predecessor not in next_lanes
+            ):
+                next_lanes[lane.predecessor] = key  # the link is given on one side only
+        has_links = any(lane.successor is not None for lane in here.values()) or any(
             lane.predecessor is not None for lane in there.values()
         )
-        if not linked:
-            found = {key: key for key in here if key in there}
+        if not has_links:
+            next_lanes = {key: key for key in here if key in there}
         return {
             key: other
-            for key, other in found.items()
+            for key, other in next_lanes.items()
             if sections[number][key].isForward == self._is_forward(other)
         }
 
@@ -470,7 +474,7 @@ class _RoadBuilder:
         return lines[1][::-1], lines[0][::-1], lines[2][::-1]
 
     def _sections(self, road: Road, rows: list[dict[int, LaneSection]]) -> None:
-        made = []
+        sections = []
         for number, (row, drivable) in enumerate(zip(rows, self._drivable, strict=True)):
             if not row:
                 continue
@@ -489,10 +493,10 @@ class _RoadBuilder:
             section.lanesByOpenDriveID = dict(row)
             bounds = shape.boundaries
             section.place(shape.reference, bounds[drivable[0].index], bounds[drivable[-1].index + 1])
-            made.append(section)
-        for before, after in pairwise(made):
+            sections.append(section)
+        for before, after in pairwise(sections):
             before._successor, after._predecessor = after, before
-        road.sections = tuple(made)
+        road.sections = tuple(sections)
 
     def _neighbours(self, rows: list[dict[int, LaneSection]]) -> None:
         for row in rows:
@@ -582,8 +586,8 @@ class _RoadBuilder:
             tags=road.tags,
         )
         lane.road, lane.group = road, group
-        ordered = strips if forward else strips[::-1]
-        lines = [strip.lines(forward) for strip in ordered]
+        strips_in_order = strips if forward else strips[::-1]
+        lines = [strip.lines(forward) for strip in strips_in_order]
         lane.place(*(joined(list(parts)) for parts in zip(*lines, strict=True)))
         return lane
 

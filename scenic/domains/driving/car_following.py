@@ -117,8 +117,8 @@ def following_acceleration(
 
     """
     approach = speed * (speed - ahead) / (2 * math.sqrt(acceleration * deceleration))
-    wanted = gap.standing + max(0.0, speed * gap.headway + approach)
-    return acceleration * (1 - (wanted / max(distance, 0.1)) ** 2)
+    target_gap = gap.standing + max(0.0, speed * gap.headway + approach)
+    return acceleration * (1 - (target_gap / max(distance, 0.1)) ** 2)
 
 
 def leader_on(path: Path, index: int, agent: Any, traffic: Traffic, course: Course) -> Leader | None:
@@ -153,8 +153,8 @@ def leader_on(path: Path, index: int, agent: Any, traffic: Traffic, course: Cour
         place = along[point] + share * (along[point + 1] - along[point])
         if place <= along[index] or (best is not None and place >= best.along):
             continue
-        turned = other.heading - path.headings[point]
-        sine, cosine = abs(math.sin(turned)), abs(math.cos(turned))
+        heading_difference = other.heading - path.headings[point]
+        sine, cosine = abs(math.sin(heading_difference)), abs(math.cos(heading_difference))
         half = (other.length * sine + other.width * cosine) / 2
         if abs(side) < half + agent.width / 2 + _BESIDE and _is_level(path, point, other):
             best = Leader(other, place, (other.length * cosine + other.width * sine) / 2)

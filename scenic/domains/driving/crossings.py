@@ -21,7 +21,7 @@ def add_crossings(network: RoadNetwork, built: Mapping[str, BuiltRoad], tell: Te
     """Give a network its crossings."""
     import shapely
 
-    made = []
+    crossings = []
     junction_of = {
         id(lane): intersection for intersection in network.intersections for lane in intersection._connecting
     }
@@ -52,9 +52,9 @@ def add_crossings(network: RoadNetwork, built: Mapping[str, BuiltRoad], tell: Te
             left, right = _long_sides(polygon)
             crossing.place((left + right) / 2, left, right)
             parent.crossings += (crossing,)
-            made.append(crossing)
-    network.crossings = tuple(made)
-    for crossing in made:
+            crossings.append(crossing)
+    network.crossings = tuple(crossings)
+    for crossing in crossings:
         ends = [_sidewalk_at(network, crossing.line[0]), _sidewalk_at(network, crossing.line[-1])]
         crossing.startSidewalk, crossing.endSidewalk = ends
         for sidewalk in dict.fromkeys(end for end in ends if end is not None):

@@ -162,20 +162,20 @@ class NetworkElement(Frozen, Surface):
     def _guide_at(self, places: Floats) -> NDArray[np.intp]:
         """The guide ``(n,)`` that holds each place ``(n, 2)``, the first one if several do; else the nearest."""
         guides = self._guides()
-        chosen = np.full(len(places), -1, dtype=np.intp)
+        guide_numbers = np.full(len(places), -1, dtype=np.intp)
         for number, guide in enumerate(guides):
             if len(guides) == 1:
-                chosen[:] = 0
+                guide_numbers[:] = 0
                 break
-            free = chosen < 0
+            free = guide_numbers < 0
             if not free.any():
                 break
-            chosen[free] = np.where(guide.outline.contains(*places[free].T), number, -1)
-        lost = chosen < 0
-        if lost.any():
-            distances = np.stack([guide.outline.distances(*places[lost].T) for guide in guides])
-            chosen[lost] = distances.argmin(axis=0)
-        return chosen
+            guide_numbers[free] = np.where(guide.outline.contains(*places[free].T), number, -1)
+        is_outside = guide_numbers < 0
+        if is_outside.any():
+            distances = np.stack([guide.outline.distances(*places[is_outside].T) for guide in guides])
+            guide_numbers[is_outside] = distances.argmin(axis=0)
+        return guide_numbers
 
     def nominalDirectionsAt(self, point: object) -> tuple[Orientation, ...]:
         """The directions of traffic that are possible at a point; here one."""
@@ -540,7 +540,7 @@ class PedestrianCrossing(LinearElement):
         """The maneuvers that lead over it: of its intersection, or with a lane of its road."""
         import shapely
 
-        found = []
+        maneuvers = []
         for maneuver in self.network.maneuvers:
             lanes = [maneuver.startLane, maneuver.connectingLane, maneuver.endLane]
             if isinstance(self.parent, Road):
@@ -549,8 +549,8 @@ class PedestrianCrossing(LinearElement):
                 continue
             lines = [shapely.LineString(lane.line) for lane in lanes if lane is not None]
             if any(self.polygon.intersects(line) for line in lines):
-                found.append(maneuver)
-        return tuple(found)
+                maneuvers.append(maneuver)
+        return tuple(maneuvers)
 
     @cached_property
     def _road_uid(self) -> str:

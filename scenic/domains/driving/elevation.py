@@ -231,8 +231,8 @@ class _Shapes:
         if self.is_zero:
             nothing = np.zeros(len(s))
             return nothing, nothing, nothing
-        found = np.searchsorted(self._keys, roads * _APART + s, side="right") - 1
-        before = np.clip(found, self._first[roads], self._last[roads])
+        places = np.searchsorted(self._keys, roads * _APART + s, side="right") - 1
+        before = np.clip(places, self._first[roads], self._last[roads])
         after = np.minimum(before + 1, self._last[roads])
         length = self._places[after] - self._places[before]
         share = np.clip((s - self._places[before]) / np.where(length > 0, length, 1.0), 0.0, 1.0)
@@ -278,8 +278,8 @@ class _Lines:
         import shapely
 
         along = shapely.line_locate_point(self._lines[roads], shapely.points(places))
-        found = np.searchsorted(self._keys, roads * _APART + along, side="right") - 1
-        index = np.clip(found, self._first[roads], self._last[roads])
+        segments = np.searchsorted(self._keys, roads * _APART + along, side="right") - 1
+        index = np.clip(segments, self._first[roads], self._last[roads])
         length = self._s[index + 1] - self._s[index]
         chord = np.maximum(self._chord[index + 1] - self._chord[index], 1e-12)
         share = (along - self._chord[index]) / chord

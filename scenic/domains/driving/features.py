@@ -65,6 +65,9 @@ def _lanes(network: "Network") -> dict[str, Any]:
         ],
     }
     return {
-        name: {"sections": len(found), "examples": [each.uid for each in found[:_EXAMPLES]]}
-        for name, found in kinds.items()
+        name: {
+            "sections": len(sections_of_kind),
+            "examples": [each.uid for each in sections_of_kind[:_EXAMPLES]],
+        }
+        for name, sections_of_kind in kinds.items()
     }

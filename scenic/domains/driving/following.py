@@ -210,7 +210,7 @@ class Driver:
 
     def _take_controllers(self, kind: str) -> None:
         simulation, agent = self._simulation, self._agent
-        own = (
+        own_controllers = (
             getattr(agent, "longitudinalController", None),
             getattr(agent, "lateralController", None),
         )
@@ -219,8 +219,8 @@ class Driver:
         if simulation.has_own_controllers(name):
             longitudinal, lateral = getattr(simulation, name)(agent)
         # A controller has a state of its own: each behavior and each simulation begins with that of the property.
-        self._longitudinal = longitudinal if own[0] is None else deepcopy(own[0])
-        self._lateral = lateral if own[1] is None else deepcopy(own[1])
+        self._longitudinal = longitudinal if own_controllers[0] is None else deepcopy(own_controllers[0])
+        self._lateral = lateral if own_controllers[1] is None else deepcopy(own_controllers[1])
 
     # Steps
 
@@ -259,29 +259,29 @@ class Driver:
         if place < 0:
             place, share = 0, 0.0
         if place + 1 < len(speeds):
-            wanted = speeds[place] + share * (speeds[place + 1] - speeds[place])
+            target_speed = speeds[place] + share * (speeds[place + 1] - speeds[place])
             along = accelerations[place] + share * (accelerations[place + 1] - accelerations[place])
         else:
-            wanted, along = speeds[-1], 0.0
+            target_speed, along = speeds[-1], 0.0
         if self._longitudinal is not None:
-            return float(self._longitudinal.run_step(wanted - speed))
+            return float(self._longitudinal.run_step(target_speed - speed))
         comfort, timestep = self.comfort, self._simulation.timestep
         lengths, index = self._path.along, self._index
-        own = lengths[index] + share * (lengths[index + 1] - lengths[index])
-        is_stopping = self._stop is not None and self._stop - own < _STOPPING
+        own_place = lengths[index] + share * (lengths[index + 1] - lengths[index])
+        is_stopping = self._stop is not None and self._stop - own_place < _STOPPING
         if self._stop is not None and is_stopping:
-            acceleration = _stopping(speed, self._stop - own, timestep)
+            acceleration = _stopping(speed, self._stop - own_place, timestep)
         else:
-            acceleration = along + _SETTLING * (wanted - speed)
+            acceleration = along + _SETTLING * (target_speed - speed)
         if self._gap is not None:
             acceleration = min(acceleration, self._behind(speed, share))
-        acceleration = min(acceleration, self.extra_acceleration(speed, own))
+        acceleration = min(acceleration, self.extra_acceleration(speed, own_place))
         if acceleration > -_HARD * comfort.deceleration:
             # Jolts are limited; the profile keeps to that, so that this is for what no profile foresees.
             change = (1.4 if acceleration > -1.2 * comfort.deceleration else 1.7) * comfort.jerk * timestep
             acceleration = min(max(acceleration, self._acceleration - change), self._acceleration + change)
         acceleration = min(acceleration, 1.2 * comfort.acceleration)
-        if wanted < 0.02 and speed < 0.3 and not is_stopping:
+        if target_speed < 0.02 and speed < 0.3 and not is_stopping:
             acceleration = min(acceleration, -1.0)
         self._watch_standing(speed)
         hardest = self._simulation.acceleration_of(agent, -1.0)
@@ -331,9 +331,9 @@ class Driver:
         a, b, *_ = leader.item.position
         index, part, _ = path.locate(a, b, index)
         lengths = path.along
-        own = lengths[self._index] + share * (lengths[self._index + 1] - lengths[self._index])
+        own_place = lengths[self._index] + share * (lengths[self._index + 1] - lengths[self._index])
         other = lengths[index] + part * (lengths[index + 1] - lengths[index])
-        distance = other - own - leader.reach - agent.length / 2
+        distance = other - own_place - leader.reach - agent.length / 2
         gap = self._gap
         assert gap is not None
         if gap.is_of_centres:
@@ -364,9 +364,9 @@ class Driver:
         part = (ahead - lengths[after]) / (lengths[after + 1] - lengths[after])
         curve = curvatures[after] + min(part, 1.0) * (curvatures[after + 1] - curvatures[after])
         along = headings[index] + share * (headings[index + 1] - headings[index]) + here * lead * way
-        turned = (agent.heading - along + math.pi) % (2 * math.pi) - math.pi
+        heading_error = (agent.heading - along + math.pi) % (2 * math.pi) - math.pi
         rate = 1.41421356 / max(3.0, 0.8 * speed)
-        back = rate * rate * offset + 2 * _DAMPING * rate * math.sin(turned)
+        back = rate * rate * offset + 2 * _DAMPING * rate * math.sin(heading_error)
         square = max(speed, 1.0) ** 2
         most = max(abs(curve), _COMFORTABLE / square)
         curvature = min(max(curve - back, -most), most)
@@ -444,10 +444,10 @@ def _applied(agent: Any) -> tuple[float, float] | None:
     """
     simulation = running_traffic()
     # Those of this step are chosen after the last one's have been forgotten.
-    taken = (
+    actions = (
         agent.lastActions or (simulation.actionSequence and simulation.actionSequence[-1].get(agent)) or ()
     )
-    for action in reversed(taken):
+    for action in reversed(actions):
         if isinstance(action, RegulatedControlAction):
             pedal = action.throttle or -action.brake
             standing = pedal < 0 and agent.speed < 0.05

@@ -44,9 +44,9 @@ class JoinedSurface(Surface):
         self.network = network
         self.elements = tuple(elements)
         self.fillings = tuple(fillings)
-        merged = shapely.union_all([*(element.polygon for element in elements), *fillings])
+        union = shapely.union_all([*(element.polygon for element in elements), *fillings])
         field = network.direction_of(self.elements)
-        super().__init__(polygon=merged, orientation=field)
+        super().__init__(polygon=union, orientation=field)
         roads = sorted({road for element in elements for road in element.surface.roads})
         self.ground = Ground(network.levels, field.roads_at, roads)
 
@@ -70,19 +70,21 @@ class JoinedSurface(Surface):
             if deck is None:
                 decks.append(deck := [])
             deck.append(number)
-        made = []
+        pairs = []
         for index, deck in enumerate(decks):
-            chosen = [self.elements[number] for number in deck]
+            elements_of_deck = [self.elements[number] for number in deck]
             # What closes gaps lies on the ground.
-            parts = [element.polygon for element in chosen] + list(self.fillings if index == 0 else ())
-            field = RoadDirection("deck", chosen, self.network.tolerance)
-            made.append(
+            parts = [element.polygon for element in elements_of_deck] + list(
+                self.fillings if index == 0 else ()
+            )
+            field = RoadDirection("deck", elements_of_deck, self.network.tolerance)
+            pairs.append(
                 (
                     Polygons(shapely.union_all(parts)),
                     Ground(self.network.levels, field.roads_at, self.ground.roads if self.ground else ()),
                 )
             )
-        return made
+        return pairs
 
     def sizes(self, *columns: Column) -> Column:
         return np.full(1, sum(polygons.area for polygons, _ in self._decks))
@@ -90,10 +92,10 @@ class JoinedSurface(Surface):
     def draw_points(self, uniforms: Column, keys: Column, *columns: Column) -> tuple[Points, Mask | None]:
         areas = np.array([polygons.area for polygons, _ in self._decks])
         shares = np.concatenate([[0.0], np.cumsum(areas) / areas.sum()])
-        chosen = np.clip(np.searchsorted(shares, uniforms[0], side="right") - 1, 0, len(areas) - 1)
+        deck_numbers = np.clip(np.searchsorted(shares, uniforms[0], side="right") - 1, 0, len(areas) - 1)
         points = np.zeros((uniforms.shape[1], 3))
         for number, (polygons, ground) in enumerate(self._decks):
-            mine = np.flatnonzero(chosen == number)
+            mine = np.flatnonzero(deck_numbers == number)
             if len(mine):
                 choice = (uniforms[0, mine] - shares[number]) / (shares[number + 1] - shares[number])
                 points[mine, :2] = polygons.sample(choice, uniforms[1, mine], uniforms[2, mine])
@@ -135,13 +137,13 @@ class JoinedSurface(Surface):
         """The union of the elements that do not pass above or below one of them."""
         import shapely
 
-        known = self.__dict__.setdefault("_beside_known", {})
-        if owner not in known:
+        unions = self.__dict__.setdefault("_beside_known", {})
+        if owner not in unions:
             rivals = self._rivals[owner]
             parts = [element.polygon for number, element in enumerate(self.elements) if number not in rivals]
-            known[owner] = Polygons(shapely.union_all([*parts, *self.fillings]))
-        found: Polygons = known[owner]
-        return found
+            unions[owner] = Polygons(shapely.union_all([*parts, *self.fillings]))
+        union: Polygons = unions[owner]
+        return union
 
     def union(self, other: object) -> Region:
         """The points that lie in either region; with another surface of the network, a surface again."""

@@ -46,10 +46,10 @@ def lane_under(agent: Any) -> Lane:
 
     """
     before = running_simulation().drivers.get(id(agent))
-    chosen = None if before is None else before.lane_now()
-    if chosen is not None:
+    planned_lane = None if before is None else before.lane_now()
+    if planned_lane is not None:
         # A behavior goes on where the one before it was going.
-        return chosen  # type: ignore[no-any-return] # lanes of paths
+        return planned_lane  # type: ignore[no-any-return] # lanes of paths
     intersection = agent.roadNetwork.intersectionAt(agent.position)
     if intersection is not None:
         ways = intersection.maneuversAt(agent.position)
@@ -394,8 +394,8 @@ def turns_of(network: Any, path: Path) -> list[tuple[int, int]]:
         return []
     inside = network.intersections_holding(path.points())
     edges = np.flatnonzero(np.diff(np.concatenate([[0], inside.astype(int), [0]])))
-    found = []
+    ranges = []
     for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
         if abs(path.headings[end - 1] - path.headings[begin]) >= _TURN:
-            found.append((begin, end))
-    return found
+            ranges.append((begin, end))
+    return ranges

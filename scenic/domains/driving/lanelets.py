@@ -72,12 +72,12 @@ def road_records(network: RoadNetwork, lights: TrafficLights, name: str) -> Road
         name: of the map.
 
     """
-    made = _Records(network)
+    records = _Records(network)
     x, y, _, turn = network.offset
     return RoadRecords(
         name,
-        tuple(made.lanelets()),
-        tuple(made.signs.values()),
+        tuple(records.lanelets()),
+        tuple(records.signs.values()),
         tuple(
             TrafficLight(signal.uid, _place(signal), _direction(signal), lights.cycle(signal))
             for signal in network.signals

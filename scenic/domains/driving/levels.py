@@ -85,10 +85,10 @@ class Levels:
         one, two = self._tree.query(self._polygons, predicate="intersects")
         may = (one < two) & (np.maximum(high[one] - low[two], high[two] - low[one]) > _STOREY)
         one, two = one[may], two[may]
-        shared = shapely.intersection(self._polygons[one], self._polygons[two])
-        some = shapely.area(shared) > _SHARED
-        one, two, shared = one[some], two[some], shared[some]
-        middles = shapely.get_coordinates(shapely.point_on_surface(shared))
+        overlaps = shapely.intersection(self._polygons[one], self._polygons[two])
+        some = shapely.area(overlaps) > _SHARED
+        one, two, overlaps = one[some], two[some], overlaps[some]
+        middles = shapely.get_coordinates(shapely.point_on_surface(overlaps))
         heights = [self.elevation.heights(self._roads[side], middles) for side in (one, two)]
         above = np.abs(heights[0] - heights[1]) > _STOREY
         pairs = {
@@ -98,7 +98,7 @@ class Levels:
         }
         if not pairs:
             return pairs, None
-        area = shapely.union_all(shared[above]).buffer(0.5)
+        area = shapely.union_all(overlaps[above]).buffer(0.5)
         shapely.prepare(area)
         return pairs, area
 

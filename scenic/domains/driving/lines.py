@@ -29,12 +29,14 @@ def concatenateCenterlines(centerlines: Sequence[Any] = ()) -> PolylineRegion:
         for x, y, *_ in line.points:
             if not points or max(abs(points[-1][0] - x), abs(points[-1][1] - y)) > 1e-6:
                 points.append((x, y))
-    grounded = [line for line in centerlines if isinstance(line, GroundedLine)]
-    if not grounded:
+    grounded_lines = [line for line in centerlines if isinstance(line, GroundedLine)]
+    if not grounded_lines:
         return PolylineRegion(points)
     import shapely
 
-    return GroundedLine(shapely.LineString(points), joined_ground(grounded[0].ground.levels, grounded))
+    return GroundedLine(
+        shapely.LineString(points), joined_ground(grounded_lines[0].ground.levels, grounded_lines)
+    )
 
 
 def joined_ground(levels: Levels, lines: Sequence[GroundedLine]) -> Ground:

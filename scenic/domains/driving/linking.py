@@ -175,11 +175,11 @@ class _Linker:
         for what in self._missing:
             lane, _, road = what.partition(" of ")
             roads[road or lane].append(what)
-        for found in roads.values():
-            lines = sorted(line for what in found for line in self._missing[what])
+        for missing_names in roads.values():
+            lines = sorted(line for what in missing_names for line in self._missing[what])
             names = f"{len(lines)} links name" if len(lines) > 1 else "a link names"
-            are = "are" if len(found) > 1 else "is"
-            message = f"{', '.join(found)}, which {names}, {are} not there: dropped"
+            are = "are" if len(missing_names) > 1 else "is"
+            message = f"{', '.join(missing_names)}, which {names}, {are} not there: dropped"
             self._tell(MapProblem("SC623", message, lines[0], "dangling"))
 
     def _contact(self, other: BuiltRoad, id: str) -> str:
@@ -351,30 +351,32 @@ class _Linker:
         other = self._built[link.id]
         contact = link.contact or self._contact(other, connecting.record.id)
         lane = connecting.lane_at(_OPPOSITE[end], id)
-        found = None if lane is None else lane._successor
-        return found, (other, contact)
+        next_lane = None if lane is None else lane._successor
+        return next_lane, (other, contact)
 
     # Everything that needs the intersections
 
     def road_ends(self) -> None:
         """Give roads, sections and groups what they lead into, and the network its lists."""
-        for built in self._built.values():
-            road = built.road
-            after = self._at_end(built.record.successor)
-            before = self._at_end(built.record.predecessor)
+        for built_road in self._built.values():
+            road = built_road.road
+            after = self._at_end(built_road.record.successor)
+            before = self._at_end(built_road.record.predecessor)
             road._successor, road._predecessor = after, before
             if road.sections:
                 road.sections[-1]._successor, road.sections[0]._predecessor = after, before
             for group in road.laneGroups:
                 forward = group is road.forwardLanes
-                ahead, behind = (built.record.successor, built.record.predecessor)
+                ahead, behind = (built_road.record.successor, built_road.record.predecessor)
                 if not forward:
                     ahead, behind = behind, ahead
                 group._successor = self._group_at(group, ahead, -1)
                 group._predecessor = self._group_at(group, behind, 0)
         inside = {id(road) for road in self._network.connectingRoads}
         self._network.roads = tuple(
-            built.road for built in self._built.values() if id(built.road) not in inside and built.road.lanes
+            built_road.road
+            for built_road in self._built.values()
+            if id(built_road.road) not in inside and built_road.road.lanes
         )
         order = {junction.id: index for index, junction in enumerate(self._map.junctions)}
         self._network.intersections = tuple(
@@ -427,25 +429,28 @@ class _Linker:
             for record in road.signals
             if isinstance(record, records.Signal)
         )
-        known = {signal.openDriveID: signal for signal in self._network.signals}
+        signals_by_id = {signal.openDriveID: signal for signal in self._network.signals}
         for signal in self._network.signals:
             signal.network = self._network
-        for built in self._built.values():
-            added = []
-            for item in built.record.signals:
+        for built_road in self._built.values():
+            new_signals = []
+            for item in built_road.record.signals:
                 if not isinstance(item, records.SignalReference):
                     continue
-                named = known.get(item.id)
-                if named is None:
+                referenced_signal = signals_by_id.get(item.id)
+                if referenced_signal is None:
                     message = (
-                        f"road {built.record.id} refers to signal {item.id}, which is not there: dropped"
+                        f"road {built_road.record.id} refers to signal {item.id}, which is not there: dropped"
                     )
                     self._tell(MapProblem("SC623", message, item.line, "signal"))
                     continue
-                named.placements = (*named.placements, placement_of(item, built.road.uid))
-                added.append(named)
-            if added:
-                built.road.signals += tuple(dict.fromkeys(added))
+                referenced_signal.placements = (
+                    *referenced_signal.placements,
+                    placement_of(item, built_road.road.uid),
+                )
+                new_signals.append(referenced_signal)
+            if new_signals:
+                built_road.road.signals += tuple(dict.fromkeys(new_signals))
         invalid = {
             record.id
             for road in self._map.roads
@@ -457,7 +462,7 @@ class _Linker:
                 signal.placements = (replace(signal.placements[0], holds=False), *signal.placements[1:])
         for name, intersection in self._intersections.items():
             signals = {signal.uid: signal for signal in intersection.signals}
-            for road in (*(built.road for built in self._inside[name]), *intersection.roads):
+            for road in (*(built_road.road for built_road in self._inside[name]), *intersection.roads):
                 for sign in road.signals:
                     signals.setdefault(sign.uid, sign)
             intersection.signals = tuple(signals.values())

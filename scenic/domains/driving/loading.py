@@ -149,16 +149,16 @@ def _found(content: bytes, filename: str, options: MapOptions, cls: type[RoadNet
     """A network that was kept, or is built."""
     if not (options.useCache or options.writeCache):
         return _build(content, filename, options, cls)
-    built: list[RoadNetwork] = []
+    networks: list[RoadNetwork] = []
 
     def build() -> Arrays:
-        built.append(_build(content, filename, options, cls))
-        return stored(built[0])
+        networks.append(_build(content, filename, options, cls))
+        return stored(networks[0])
 
     key = hashlib.sha256(_code() + options.key() + content).digest()
     arrays = kept(KIND, key, build, read=options.useCache, write=options.writeCache)
     try:
-        network = built[0] if built else restored(arrays, filename, options.tolerance, cls)
+        network = networks[0] if networks else restored(arrays, filename, options.tolerance, cls)
         network.origin = key
         return network
     except (LookupError, TypeError, ValueError):
@@ -184,7 +184,7 @@ def _build(content: bytes, filename: str, options: MapOptions, cls: type[RoadNet
     left = sum(road.left_hand for road in records.roads) * 2 > len(records.roads)
     network = cls(tolerance=options.tolerance, driveOnLeft=left)
     network.offset = records.offset
-    built = build_roads(
+    roads = build_roads(
         network,
         records,
         tell,
@@ -192,7 +192,7 @@ def _build(content: bytes, filename: str, options: MapOptions, cls: type[RoadNet
         max_error=options.max_error,
         min_points=max(2, options.ref_points),
     )
-    if not any(road.road.lanes for road in built.values()):
+    if not any(road.road.lanes for road in roads.values()):
         raise MapError(
             "the map has no lane for traffic",
             filename=filename,
@@ -202,12 +202,12 @@ def _build(content: bytes, filename: str, options: MapOptions, cls: type[RoadNet
     link_roads(
         network,
         records,
-        built,
+        roads,
         tell,
         fill_gaps=options.fill_gaps,
         fill_intersections=options.fill_intersections,
     )
-    add_crossings(network, built, tell)
+    add_crossings(network, roads, tell)
     network._elevation = Elevation(
         [
             RoadHeight(
@@ -218,7 +218,7 @@ def _build(content: bytes, filename: str, options: MapOptions, cls: type[RoadNet
                 road.record.crossfall,
                 road.record.shapes,
             )
-            for road in built.values()
+            for road in roads.values()
         ]
     )
     network.problems = tuple(_diagnostic(problem, filename) for problem in told(tuple(problems)))

@@ -72,23 +72,23 @@ class Finder:
         """
         import shapely
 
-        found = self.holding(places)
+        indices = self.holding(places)
         if self._levels is not None and places.shape[1] > 2:
             some = np.flatnonzero(self._levels.stacked(places[:, :2]))
             if len(some):
-                found[some] = self._at_level(places[some])
-        lost = np.flatnonzero(found == len(self.elements))
-        if len(lost) and self.elements and self._tolerance > 0:
-            points = shapely.points(places[lost])
+                indices[some] = self._at_level(places[some])
+        outside = np.flatnonzero(indices == len(self.elements))
+        if len(outside) and self.elements and self._tolerance > 0:
+            points = shapely.points(places[outside])
             pairs = self._tree.query(points, predicate="dwithin", distance=self._tolerance)
-            np.minimum.at(found, lost[pairs[0]], pairs[1])
-        return found
+            np.minimum.at(indices, outside[pairs[0]], pairs[1])
+        return indices
 
     def _at_level(self, points: Floats) -> Indices:
         """Index of the first element that holds each point ``(n, 3)`` and is at its level; else of the first that holds it."""
         import shapely
 
-        found = self.holding(points)
+        first_holders = self.holding(points)
         best = np.full(len(points), len(self.elements), dtype=np.intp)
         owner, number = self._tree.query(shapely.points(points[:, :2]), predicate="intersects")
         for element in np.unique(number).tolist():
@@ -96,7 +96,7 @@ class Finder:
             ground = self.elements[element].ground
             fits = np.ones(len(mine), dtype=np.bool_) if ground is None else ground.fits(points[mine])
             np.minimum.at(best, mine[fits], element)
-        return np.where(best < len(self.elements), best, found)
+        return np.where(best < len(self.elements), best, first_holders)
 
     def nearest(self, places: Floats) -> Indices:
         """Index of the first element that holds each place, else of the nearest one."""
@@ -176,11 +176,11 @@ class RoadDirection(TabulatedField):
         """Headings at points ``(n, 3)``, and which of them lie in some element, and in which of the guides."""
         places = points[:, :2]
         headings = np.zeros(len(places))
-        found = self._finder.near(points if self._levels is not None else places)
-        there = np.flatnonzero(found < len(self._finder.elements))
+        element_numbers = self._finder.near(points if self._levels is not None else places)
+        there = np.flatnonzero(element_numbers < len(self._finder.elements))
         guide = there
         if len(there):
-            guide = self._guide_at(places[there], found[there])
+            guide = self._guide_at(places[there], element_numbers[there])
             headings[there] = self._along(places[there], guide)
         return headings, there, guide
 
@@ -215,13 +215,13 @@ class RoadDirection(TabulatedField):
             return super().stepped(points, strides)
         ahead = np.zeros((len(points), 3))
         ahead[:, 1] = strides
-        reached = points + quaternions.rotate(self.frames(points), ahead)
+        ends = points + quaternions.rotate(self.frames(points), ahead)
         on_road = self._levels.heights(points)
         above = points[:, 2] - on_road
-        lands = self._levels.heights(np.column_stack([reached[:, :2], on_road + (reached - points)[:, 2]]))
-        known = np.isfinite(above) & np.isfinite(lands)
-        reached[known, 2] = (lands + above)[known]
-        return reached, np.ones(len(points), dtype=np.bool_)
+        lands = self._levels.heights(np.column_stack([ends[:, :2], on_road + (ends - points)[:, 2]]))
+        has_height = np.isfinite(above) & np.isfinite(lands)
+        ends[has_height, 2] = (lands + above)[has_height]
+        return ends, np.ones(len(points), dtype=np.bool_)
 
     def __getitem__(self, position: Any) -> Any:
         place = to_vector(position, f"field {self.name!r}")
@@ -242,13 +242,13 @@ class RoadDirection(TabulatedField):
         owner, place = expand(counts[element[several]])
         candidate = starts[element[several]][owner] + place
         x, y = places[several][owner].T
-        held = shapely.intersects_xy(polygons[candidate], x, y)
+        is_inside = shapely.intersects_xy(polygons[candidate], x, y)
         none = len(guides)
         first = np.full(len(several), none, dtype=np.intp)
-        np.minimum.at(first, owner[held], candidate[held])
-        lost = first == none
-        if lost.any():
-            mine = lost[owner]
+        np.minimum.at(first, owner[is_inside], candidate[is_inside])
+        is_outside = first == none
+        if is_outside.any():
+            mine = is_outside[owner]
             away = shapely.distance(polygons[candidate[mine]], shapely.points(x[mine], y[mine]))
             order = np.lexsort((candidate[mine], away, owner[mine]))
             owners = owner[mine][order]

@@ -73,7 +73,7 @@ class MapPatches:
         import shapely
 
         network = self._network
-        found: list[tuple[str, NetworkElement, Any]] = []
+        areas: list[tuple[str, NetworkElement, Any]] = []
         for kind, elements in (
             ("shoulder", network.shoulders),
             ("sidewalk", network.sidewalks),
@@ -81,15 +81,15 @@ class MapPatches:
             ("intersection", network.intersections),
             ("crossing", network.crossings),
         ):
-            shown = _stripes if kind == "crossing" else _whole
-            found += [(kind, element, shown(element.polygon)) for element in elements]
+            shape_of = _stripes if kind == "crossing" else _whole
+            areas += [(kind, element, shape_of(element.polygon)) for element in elements]
         for road in network.roads:
             edges = {id(edge): edge for lane in road.lanes for edge in (lane.left, lane.right)}
             lines = shapely.union_all([shapely.LineString(edge) for edge in edges.values()])
             strip = shapely.buffer(lines, _MARKING / 2, cap_style="flat")
             # Halves of a strip that two tiles share are too narrow to be simplified.
-            found.append(("lane", road, shapely.simplify(strip, _SIMPLE)))
-        return found, shapely.STRtree([polygon for _, _, polygon in found])
+            areas.append(("lane", road, shapely.simplify(strip, _SIMPLE)))
+        return areas, shapely.STRtree([polygon for _, _, polygon in areas])
 
     def _made(self, tile: tuple[int, int]) -> Sequence[Patch]:
         import shapely
@@ -105,7 +105,7 @@ class MapPatches:
                 cut = shapely.simplify(cut, _SIMPLE)
             if shapely.area(cut) > 0:
                 parts.setdefault(kind, []).append((element, cut))
-        return [self._patch(kind, found) for kind, found in parts.items()]
+        return [self._patch(kind, areas_of_kind) for kind, areas_of_kind in parts.items()]
 
     def _patch(self, kind: str, parts: Sequence[tuple[NetworkElement, Any]]) -> Patch:
         import shapely

@@ -56,20 +56,20 @@ def _along_lane(car: Any, other: Any) -> tuple[float, float, float] | None:
         lanes.append(maneuvers[0].endLane)
     line = shapely.LineString(np.concatenate([item.line for item in lanes]))
     spots = [shapely.Point(item.position[0], item.position[1]) for item in (car, other)]
-    own, place = (float(line.project(spot)) for spot in spots)
+    own_place, place = (float(line.project(spot)) for spot in spots)
     headings = []
-    for along in (own, place):
+    for along in (own_place, place):
         x0, y0 = line.interpolate(max(along - 0.05, 0.0)).coords[0]
         x1, y1 = line.interpolate(along + 0.05).coords[0]
         length = max(math.hypot(x1 - x0, y1 - y0), 1e-9)
         headings.append(((x1 - x0) / length, (y1 - y0) / length))
     (dx, dy), (ex, ey) = headings
     aside = abs(spots[1].distance(line))
-    if place <= own or aside > (_extent(other, -ey, ex) + _extent(car, -dy, dx)):
+    if place <= own_place or aside > (_extent(other, -ey, ex) + _extent(car, -dy, dx)):
         return None
     if not all(lane.network.is_level(item, other.position) for item in lanes):
         return None  # on a bridge, or below one
-    gap = place - own - _extent(car, dx, dy) - _extent(other, ex, ey)
+    gap = place - own_place - _extent(car, dx, dy) - _extent(other, ex, ey)
     speeds = (
         car.velocity[0] * dx + car.velocity[1] * dy,
         other.velocity[0] * ex + other.velocity[1] * ey,
@@ -103,13 +103,13 @@ def required_deceleration(car: object, other: object) -> float:
 
     It is 0 where none is required, and infinite at contact.
     """
-    found = _along_lane(car, other)
-    if found is None:
+    gap_and_speeds = _along_lane(car, other)
+    if gap_and_speeds is None:
         return 0.0
-    gap, own, ahead = found
-    if own <= ahead:
+    gap, own_speed, ahead = gap_and_speeds
+    if own_speed <= ahead:
         return 0.0
-    return math.inf if gap == 0 else (own - ahead) ** 2 / (2 * gap)
+    return math.inf if gap == 0 else (own_speed - ahead) ** 2 / (2 * gap)
 
 
 def distance_to_lane_border(car: Any) -> float:

@@ -222,8 +222,8 @@ class RoadNetwork(Frozen):
             return nowhere
         if self.is_elevated:
             return JoinedSurface(self, elements, fillings)
-        merged = shapely.union_all([*(element.polygon for element in elements), *fillings])
-        return PolygonalRegion(polygon=merged, orientation=self.direction_of(elements))
+        union = shapely.union_all([*(element.polygon for element in elements), *fillings])
+        return PolygonalRegion(polygon=union, orientation=self.direction_of(elements))
 
     def direction_of(self, elements: Sequence[NetworkElement]) -> RoadDirection:
         """The field of the first of some elements that holds a point."""
@@ -299,14 +299,14 @@ class RoadNetwork(Frozen):
             return defer(self.findPointIn, place, elems, reject)
         if is_random(place):
             return element_at(self._finder(tuple(elems)), place, reject)
-        found = self._finder(tuple(elems)).at(place.x, place.y, place.z)
-        if found is None and reject:
+        element = self._finder(tuple(elems)).at(place.x, place.y, place.z)
+        if element is None and reject:
             error = RejectionException(
                 reject if isinstance(reject, str) else "there is no such element at the point"
             )
             error.subject = None if place is point else point
             raise error
-        return found
+        return element
 
     def _finder(self, elements: tuple[NetworkElement, ...]) -> Finder:
         key = tuple(map(id, elements))  # they live as long as the network does

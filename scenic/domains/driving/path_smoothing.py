@@ -51,13 +51,13 @@ def _without_folds(points: Floats) -> Floats:
 
     Connecting lanes of some maps run past their end and come back.
     """
-    kept: list[tuple[float, float]] = []
+    vertices: list[tuple[float, float]] = []
     for x, y in points.tolist():
-        while len(kept) > 1 and _turns_back(*kept[-2], *kept[-1], x, y):
-            kept.pop()
-        if not kept or math.hypot(x - kept[-1][0], y - kept[-1][1]) >= 0.05:
-            kept.append((x, y))
-    return np.array(kept) if len(kept) > 1 else points[[0, -1]]
+        while len(vertices) > 1 and _turns_back(*vertices[-2], *vertices[-1], x, y):
+            vertices.pop()
+        if not vertices or math.hypot(x - vertices[-1][0], y - vertices[-1][1]) >= 0.05:
+            vertices.append((x, y))
+    return np.array(vertices) if len(vertices) > 1 else points[[0, -1]]
 
 
 def _turns_back(x0: float, y0: float, x1: float, y1: float, x2: float, y2: float) -> bool:
@@ -104,26 +104,26 @@ def smoothed(
     tubes = np.where(bends < _STRAIGHT, *_TUBES)
     reach = np.clip(np.sqrt(24 * tubes / np.maximum(bends, 1e-4)) / 4, _SHORTEST, _REACH)
     weights = (_REACH / reach) ** 6
-    allowed = np.ones(count)
+    tube_shares = np.ones(count)
     goal = points.copy()
-    pinned = np.zeros(count)
+    pin_weights = np.zeros(count)
     if first is not None:
-        goal[: len(first)], pinned[: len(first)] = first, _PINNED
+        goal[: len(first)], pin_weights[: len(first)] = first, _PINNED
     if last is not None:
-        goal[-len(last) :], pinned[-len(last) :] = last, _PINNED
+        goal[-len(last) :], pin_weights[-len(last) :] = last, _PINNED
     curve = goal
     for _ in range(_ROUNDS):
-        curve = _solved(goal, np.maximum(weights * allowed, pinned))
+        curve = _solved(goal, np.maximum(weights * tube_shares, pin_weights))
         away = np.hypot(*(curve - goal).T)
         sharp = np.abs(curvatures_of(curve)) > tightest
         if sharp.any():
             near = np.convolve(sharp, np.ones(13), "same")[:count] > 0
-            allowed[near] /= 4
-        wide = (away > tubes) & (allowed == 1)
+            tube_shares[near] /= 4
+        wide = (away > tubes) & (tube_shares == 1)
         if not wide.any() and not sharp.any():
             break
         weights[wide] *= np.minimum(away[wide] / tubes[wide], 4) ** 3
-    bent = (allowed < 1) & (pinned == 0)
+    bent = (tube_shares < 1) & (pin_weights == 0)
     return nearer_in_bends(curve, points, bent, tightest) if bent.any() else curve
 
 
@@ -131,8 +131,8 @@ def _bends(points: Floats) -> Floats:
     """Curvatures ``(n,)`` of a polyline without sign, averaged over three metres on either side, the largest within two metres."""
     headings = headings_of(points)
     half = 6
-    padded = np.pad(headings, half, mode="edge")
-    change = np.abs(padded[2 * half :] - padded[: -2 * half]) / (2 * half * SPACING)
+    padded_headings = np.pad(headings, half, mode="edge")
+    change = np.abs(padded_headings[2 * half :] - padded_headings[: -2 * half]) / (2 * half * SPACING)
     change = np.concatenate([change, change[-1:]])
     around = np.stack([np.roll(change, shift) for shift in range(-4, 5)])
     around[:4, -4:] = change[-4:]

@@ -76,11 +76,11 @@ def piece_along(
     """
     steps = headings_of(points)
     headings = np.concatenate([steps[:1], (steps[:-1] + steps[1:]) / 2, steps[-1:]])
-    kept = slice(cut[0], len(points) - cut[1])
+    remaining = slice(cut[0], len(points) - cut[1])
     return Piece(
-        points[kept],
-        headings[kept],
-        curvatures_of(points)[kept],
+        points[remaining],
+        headings[remaining],
+        curvatures_of(points)[remaining],
         tuple((max(0, index - cut[0]), lane) for index, lane in lanes),
     )
 

@@ -141,12 +141,12 @@ def join(
         values[index] + min(max(share, 0.0), 1.0) * (values[index + 1] - values[index])
         for values in (path.headings, path.curvatures)
     )
-    turned = (heading - direction + math.pi) % (2 * math.pi) - math.pi
+    heading_error = (heading - direction + math.pi) % (2 * math.pi) - math.pi
     bend = 0.0 if curvature is None else curvature - bend
     pull = abs(bend) * speed * speed
-    if duration == 0.0 and abs(offset) < _OFF and abs(turned) < _TURNED and pull < _PULL:
+    if duration == 0.0 and abs(offset) < _OFF and abs(heading_error) < _TURNED and pull < _PULL:
         return 0.0
-    slope = math.tan(min(max(turned, -1.2), 1.2))
+    slope = math.tan(min(max(heading_error, -1.2), 1.2))
     # The acceleration of a curve of least jerk is 5.77 d / T^2 at most, of which 2 m/s^2 are allowed, and its jerk 60 d / T^3, of
     # which 3.4 m/s^3 are unless a time is given; the jerk of a slope m is 36 m v / T^2.
     time = duration or math.cbrt(60.0 * abs(offset) / 3.4)
@@ -229,9 +229,9 @@ def speeds_of(
     along = np.array(path.along[begin:])
     curvatures = np.array(path.curvatures[begin:])
     top = speeds_in_bends(along, curvatures, comfort, np.array(path.bends[begin:]))
-    wanted = np.full(len(top), target)
+    target_speeds = np.full(len(top), target)
     if limits is not None:
-        wanted = np.minimum(wanted, limits[begin : begin + len(top)])
+        target_speeds = np.minimum(target_speeds, limits[begin : begin + len(top)])
     count = len(along)
     if stops is not None:
         count = max(2, int(np.searchsorted(along, along[-1] - stops, side="right")))
@@ -243,7 +243,7 @@ def speeds_of(
         top[:count],
         speed,
         comfort,
-        wanted=wanted[:count],
+        wanted=target_speeds[:count],
         acceleration=acceleration,
         stops=stops is not None,
         junctions=ahead,

@@ -68,17 +68,17 @@ def comes_first(other: Maneuver, own: Maneuver) -> bool:
     on_ring = [maneuver.startLane.road.uid in _roads_of_rings(network) for maneuver in (other, own)]
     if on_ring[0] != on_ring[1]:
         return on_ring[0]
-    turned = _approach(other) - _approach(own)
-    turned = (turned + math.pi) % (2 * math.pi) - math.pi
-    if abs(turned) > math.radians(135):
+    angle = _approach(other) - _approach(own)
+    angle = (angle + math.pi) % (2 * math.pi) - math.pi
+    if abs(angle) > math.radians(135):
         far = ManeuverType.RIGHT_TURN if network.driveOnLeft else ManeuverType.LEFT_TURN
         crosses = [maneuver.type in (far, ManeuverType.U_TURN) for maneuver in (other, own)]
         return crosses[1] and not crosses[0]
-    if abs(turned) < math.radians(45):
+    if abs(angle) < math.radians(45):
         # Ways side by side: the one that keeps on comes first.
         return other.type is ManeuverType.STRAIGHT and own.type is not ManeuverType.STRAIGHT
     # Somebody who comes from the right drives to the left.
-    return turned > 0
+    return angle > 0
 
 
 @lru_cache(maxsize=16)
@@ -132,15 +132,15 @@ class RightOfWay:
         """
         intersection = claim.maneuver.intersection
         assert intersection is not None
-        taken = self._taken.setdefault(intersection.uid, {})
-        for key, (_, way) in taken.items():
+        claims = self._taken.setdefault(intersection.uid, {})
+        for key, (_, way) in claims.items():
             if key != id(claim.agent) and ways_meet(claim.maneuver, way):
                 return False
         if by_priority:
             for key, other in self._claims.get(intersection.uid, {}).items():
                 if key != id(claim.agent) and self._goes_before(other, claim):
                     return False
-        taken[id(claim.agent)] = claim.agent, claim.maneuver
+        claims[id(claim.agent)] = claim.agent, claim.maneuver
         return True
 
     def _goes_before(self, other: Claim, own: Claim) -> bool:

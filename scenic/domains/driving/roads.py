@@ -108,8 +108,8 @@ class Network(RoadNetwork):
 
         """
         try:
-            with np.load(path, allow_pickle=False) as kept:
-                arrays = dict(kept)
+            with np.load(path, allow_pickle=False) as file:
+                arrays = dict(file)
             if str(arrays["form"]) != KIND:
                 raise KeyError("form")
             if originalDigest is not None and arrays["digest"].tobytes() != originalDigest:

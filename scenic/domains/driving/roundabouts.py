@@ -47,18 +47,18 @@ def roundabouts(network: RoadNetwork) -> tuple[Roundabout, ...]:
     """The roundabouts of a network: rings of one-way lanes round a middle, at most 400 m long, in the direction of circular traffic."""
     way = -1.0 if network.driveOnLeft else 1.0
     after = _continuations(network)
-    found: list[Roundabout] = []
+    rings: list[Roundabout] = []
     for lane in network.lanes:
-        if lane.is_connecting or not lane.road.is1Way or any(lane in item.lanes for item in found):
+        if lane.is_connecting or not lane.road.is1Way or any(lane in item.lanes for item in rings):
             continue
         ring = next(_rings(lane, after, way), None)
         if ring is None:
             continue
         center, radius = _circle(ring)
-        near = [item for item in found if math.dist(item.center, center) < _ONE * radius]
+        near = [item for item in rings if math.dist(item.center, center) < _ONE * radius]
         if not near:
-            found.append(Roundabout(center, radius, ring, _arms(network, ring)))
-    return tuple(found)
+            rings.append(Roundabout(center, radius, ring, _arms(network, ring)))
+    return tuple(rings)
 
 
 def _continuations(network: RoadNetwork) -> dict[int, list[Lane]]:
@@ -68,9 +68,9 @@ def _continuations(network: RoadNetwork) -> dict[int, list[Lane]]:
         parts = [maneuver.startLane, maneuver.connectingLane, maneuver.endLane]
         lanes = [lane for lane in parts if lane is not None]
         for lane, follower in pairwise(lanes):
-            known = after.setdefault(id(lane), [])
-            if not any(follower is other for other in known):
-                known.append(follower)
+            followers = after.setdefault(id(lane), [])
+            if not any(follower is other for other in followers):
+                followers.append(follower)
     for lane in network.lanes:
         follower = lane._successor
         if isinstance(follower, Lane):
@@ -125,7 +125,7 @@ def _circle(ring: tuple[Lane, ...]) -> tuple[tuple[float, float], float]:
 
 def _arms(network: RoadNetwork, ring: tuple[Lane, ...]) -> int:
     """The number of roads beside the ring that lead into it or out of it."""
-    own = {lane.road.uid for lane in ring}
+    ring_roads = {lane.road.uid for lane in ring}
     parts = {id(lane) for lane in ring}
     places = {
         id(maneuver.intersection) for maneuver in network.maneuvers if id(maneuver.connectingLane) in parts
@@ -136,4 +136,4 @@ def _arms(network: RoadNetwork, ring: tuple[Lane, ...]) -> int:
         if id(maneuver.intersection) in places
         for lane in (maneuver.startLane, maneuver.endLane)
     }
-    return len(roads - own)
+    return len(roads - ring_roads)

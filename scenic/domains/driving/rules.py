@@ -100,8 +100,8 @@ class RulesDriver(LaneDriver):
         self._marks = 0
         self._next_check = 0.0
         self._bound = math.inf
-        kept = None if "gaps" in self._ignored else gap or Gap()
-        super().__init__(agent, _FASTEST if target is None else target, None, comfort, kept)
+        own_gap = None if "gaps" in self._ignored else gap or Gap()
+        super().__init__(agent, _FASTEST if target is None else target, None, comfort, own_gap)
         self._simulation.note_rules(agent, "priority" not in self._ignored)
 
     @property
@@ -119,15 +119,15 @@ class RulesDriver(LaneDriver):
             return None
         along = np.array(path.along)
         limits = np.full(len(along), np.inf)
-        known = _UNLIMITED
+        last_limit = _UNLIMITED
         marks = [*path.lanes, (len(along), None)]
         for (begin, lane), (end, _) in pairwise(marks):
             if end <= begin:
                 continue
-            own = limits_along(lane.speedLimitRanges, along[begin:end] - along[begin])
-            own = np.where(np.isfinite(own), own, known)
-            limits[begin:end] = own
-            known = float(own[-1]) if len(own) else known
+            lane_limits = limits_along(lane.speedLimitRanges, along[begin:end] - along[begin])
+            lane_limits = np.where(np.isfinite(lane_limits), lane_limits, last_limit)
+            limits[begin:end] = lane_limits
+            last_limit = float(lane_limits[-1]) if len(lane_limits) else last_limit
         return limits
 
     def _find_halts(self) -> None:
@@ -191,7 +191,7 @@ class RulesDriver(LaneDriver):
         front = own + agent.length / 2
         reach = 1.3 * speed * speed / (2 * self.comfort.deceleration) + 2 * speed + 12.0
         remaining = []
-        found: float | None = None
+        line_place: float | None = None
         self._halted_at = None
         for number, halt in enumerate(self._halts):
             if halt.along - front > reach:
@@ -207,13 +207,13 @@ class RulesDriver(LaneDriver):
                     # Whoever is in it already, as at the beginning, is in the way of others.
                     self._simulation.right_of_way.hold(agent, halt.maneuver)
                 continue
-            if found is not None:
+            if line_place is not None:
                 continue
             if self._must_halt(halt, speed, halt.along - front, now):
-                found = halt.along
+                line_place = halt.along
                 self._halted_at = halt
         self._halts = remaining
-        return found
+        return line_place
 
     def reason_to_stand(self) -> str | None:
         """The reason for which the car stands: at a line, or behind somebody; ``None`` if nothing holds it."""

@@ -69,12 +69,12 @@ def check_lights(parameters: Any, network: Network) -> None:
         SettingError: an entry is unknown or no time, or names a light that the map does not have.
 
     """
-    given = parameters["traffic_lights"]
-    if is_random(given) or not given:
+    lights = parameters["traffic_lights"]
+    if is_random(lights) or not lights:
         return
-    if not isinstance(given, Mapping):
-        raise _wrong("traffic_lights", f"traffic_lights is {given!r}, not a dictionary", _LIGHTS)
-    definite = {name: value for name, value in given.items() if not is_random(value)}
+    if not isinstance(lights, Mapping):
+        raise _wrong("traffic_lights", f"traffic_lights is {lights!r}, not a dictionary", _LIGHTS)
+    definite = {name: value for name, value in lights.items() if not is_random(value)}
     try:
         states = LightTimes.of(definite).states or {}
         if not isinstance(states, Mapping):
@@ -127,12 +127,12 @@ def nearer(objects: Iterable[object], agent: Any, threshold: float, kind: Any) -
     """The objects of a class, others than an agent, whose centres are nearer to it than a threshold in metres."""
     x, y, z = agent.position
     limit = threshold * threshold
-    found: list[Any] = []
+    nearby: list[Any] = []
     for other in objects:
         if other is agent or not isinstance(other, kind):
             continue
         a, b, c = other.position
         a, b, c = a - x, b - y, c - z
         if a * a + b * b + c * c < limit:
-            found.append(other)
-    return found
+            nearby.append(other)
+    return nearby

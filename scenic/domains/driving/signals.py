@@ -56,13 +56,13 @@ class LightTimes:
             InvalidScenarioError: an entry has an unknown name, or is not a time.
 
         """
-        known = [field.name for field in fields(cls)]
+        field_names = [field.name for field in fields(cls)]
         for name, value in given.items():
-            if name not in known:
-                near = nearest(name, known)
+            if name not in field_names:
+                near = nearest(name, field_names)
                 raise InvalidScenarioError(
                     f"traffic_lights has no entry {name!r}",
-                    help=f"did you mean {near!r}?" if near else f"the entries are {', '.join(known)}",
+                    help=f"did you mean {near!r}?" if near else f"the entries are {', '.join(field_names)}",
                 )
             is_time = isinstance(value, int | float) and math.isfinite(value) and value >= 0
             if name != "states" and not is_time:
@@ -161,17 +161,17 @@ class TrafficLights:
 
     def get(self, signal: Signal) -> str:
         """The colour of a light now: ``red``, ``yellow``, ``green`` or ``off``."""
-        fixed = self._fixed.get(signal.uid)
-        if fixed is not None:
-            return fixed
-        planned = self._planned(signal)
+        fixed_color = self._fixed.get(signal.uid)
+        if fixed_color is not None:
+            return fixed_color
+        planned_color = self._planned(signal)
         if signal.uid in self._set:
             color, before = self._set[signal.uid]
             # A light that has been set stays so until it would change.
-            if before == planned or self._frozen is not None:
+            if before == planned_color or self._frozen is not None:
                 return color
             del self._set[signal.uid]
-        return planned
+        return planned_color
 
     def _planned(self, signal: Signal) -> str:
         place = self._phase.get(signal.uid)
@@ -187,20 +187,22 @@ class TrafficLights:
 
     def cycle(self, signal: Signal) -> tuple[tuple[float, str], ...]:
         """Seconds and colours of a light from the beginning of the simulation on, as they are repeated unless somebody sets it."""
-        fixed, place = self._fixed.get(signal.uid), self._phase.get(signal.uid)
-        if fixed is not None or place is None:
-            return ((1.0, fixed or "off"),)
+        fixed_color, place = self._fixed.get(signal.uid), self._phase.get(signal.uid)
+        if fixed_color is not None or place is None:
+            return ((1.0, fixed_color or "off"),)
         number, count = place
         times = self._times
         length = times.green + times.yellow + times.all_red
         colors = ["red", "green", "yellow", "red"]
         ends = np.cumsum([number * length, times.green, times.yellow])
         borders = [0.0, *ends.tolist(), length * count]
-        begun = times.offset % borders[-1]
+        start_time = times.offset % borders[-1]
         parts = [(*border, color) for border, color in zip(pairwise(borders), colors, strict=True)]
-        turned = [(max(start, begun), end, color) for start, end, color in parts if end > begun]
-        turned += [(start, min(end, begun), color) for start, end, color in parts if start < begun]
-        return tuple((end - start, color) for start, end, color in turned if end > start)
+        intervals = [(max(start, start_time), end, color) for start, end, color in parts if end > start_time]
+        intervals += [
+            (start, min(end, start_time), color) for start, end, color in parts if start < start_time
+        ]
+        return tuple((end - start, color) for start, end, color in intervals if end > start)
 
     @property
     def longest_cycle(self) -> float:

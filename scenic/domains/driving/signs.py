@@ -195,8 +195,8 @@ class Signal(Frozen):
             if section is None:
                 continue
             # Lanes that are named count; exporters disagree about the orientation beside them.
-            oriented = place.orientation in ("+", "-") and not place.validity
-            if oriented and (place.orientation == "+") != section.isForward:
+            has_direction = place.orientation in ("+", "-") and not place.validity
+            if has_direction and (place.orientation == "+") != section.isForward:
                 continue
             ids = {part.openDriveID for part in lane.sections}
             if place.validity and not any(low <= key <= high for low, high in place.validity for key in ids):

@@ -45,14 +45,14 @@ def _ranges(speeds: Sequence[records.Speed], begin: float, end: float, base: Ran
     """The limits of records, and before the first record those of ``base``."""
     places = [speed for speed in speeds if speed.start < end]
     first = max(begin, places[0].start) if places else end
-    found = [(start, min(stop, first), limit) for start, stop, limit in base if start < first]
+    ranges = [(start, min(stop, first), limit) for start, stop, limit in base if start < first]
     stops = [*(speed.start for speed in places[1:]), *([end] if places else [])]
-    found += [
+    ranges += [
         (max(begin, speed.start), stop, speed.limit)
         for speed, stop in zip(places, stops, strict=True)
         if stop > speed.start
     ]
-    return merged(found)
+    return merged(ranges)
 
 
 def ranges_of(parts: Iterable[Any]) -> Ranges:

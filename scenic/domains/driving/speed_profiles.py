@@ -115,8 +115,8 @@ def speeds_along(
         way = _Way(along, limits, wanted, comfort, junctions, stops)
         return way.speeds(speed, acceleration, comfort.deceleration, window)
     # Too fast for what lies ahead: an even, harder braking that begins at once, until comfort is enough.
-    needed = _needed(along, _allowed(along, limits, _AT_ONCE / 2, stops=stops), speed, 0.0)
-    deceleration = max(comfort.deceleration, min(1.1 * needed, _EMERGENCY))
+    deceleration_needed = _needed(along, _allowed(along, limits, _AT_ONCE / 2, stops=stops), speed, 0.0)
+    deceleration = max(comfort.deceleration, min(1.1 * deceleration_needed, _EMERGENCY))
     way = _Way(along, limits, wanted, comfort, junctions, stops)
     speeds, accelerations = way.speeds(speed, acceleration, deceleration, _AT_ONCE)
     slow = speeds**2 <= _backward(squares, 2 * _HARDER * comfort.deceleration * np.diff(along))

@@ -99,9 +99,9 @@ def _away(points: Floats, normals: Floats, line: Floats) -> Floats:
     feet = a + np.clip(share, 0.0, 1.0)[..., None] * along
     delta = feet - points[:, None]
     nearest = (delta * delta).sum(axis=2).argmin(axis=1)
-    chosen = delta[np.arange(len(points)), nearest]
-    signs = np.sign((chosen * normals).sum(axis=1))
-    away: Floats = signs * np.hypot(*chosen.T)
+    nearest_deltas = delta[np.arange(len(points)), nearest]
+    signs = np.sign((nearest_deltas * normals).sum(axis=1))
+    away: Floats = signs * np.hypot(*nearest_deltas.T)
     return away
 
 

@@ -112,8 +112,8 @@ class UTurner:
         curvature = self._steered(self._side * self._gear * lock, speed)
         free = self._free_distance(lock) - 1.5 * speed * simulation.timestep
         self._braked |= free < _CLOSE
-        wanted = 0.0 if self._braked else min(_SPEED, math.sqrt(2 * _BRAKING * free))
-        acceleration = min(max((wanted - speed) / (2 * simulation.timestep), -2 * _BRAKING), 1.5)
+        target_speed = 0.0 if self._braked else min(_SPEED, math.sqrt(2 * _BRAKING * free))
+        acceleration = min(max((target_speed - speed) / (2 * simulation.timestep), -2 * _BRAKING), 1.5)
         if self._braked and speed < 0.3:
             acceleration = -speed / simulation.timestep - 0.1
         pedal = simulation.pedal_for(agent, acceleration)
@@ -137,15 +137,15 @@ class UTurner:
         back = self._simulation.pivot_of(self._agent)
         x, y = x + back * math.sin(heading), y - back * math.cos(heading)
         reach = np.arange(0.0, _LOOK, _GRAIN)
-        turned = self._side * lock * reach
-        chord = self._gear * reach * np.sinc(turned / (2 * np.pi))
-        middle, after = heading + turned / 2, heading + turned
+        turn_angles = self._side * lock * reach
+        chord = self._gear * reach * np.sinc(turn_angles / (2 * np.pi))
+        middle, after = heading + turn_angles / 2, heading + turn_angles
         xs = x - chord * np.sin(middle) - back * np.sin(after)
         ys = y + chord * np.cos(middle) + back * np.cos(after)
         outside = self._outside(xs, ys, after)
         # A car that begins across the edge may go on where that does not make it worse.
-        blocked = np.flatnonzero((outside & ~outside[0]).any(axis=1))
-        return float(reach[blocked[0]]) if len(blocked) else _LOOK
+        collisions = np.flatnonzero((outside & ~outside[0]).any(axis=1))
+        return float(reach[collisions[0]]) if len(collisions) else _LOOK
 
     def _outside(self, x: Any, y: Any, heading: Any) -> Any:
         """Return for each corner of the car if it is off the road, ``(n, 4)``, at poses ``(n,)``."""

@@ -75,11 +75,11 @@ def walking_step(agent: Any, place: Any, speed: float) -> tuple[float, float]:
 def _standing(agent: Any, others: Iterable[Any]) -> Iterator[tuple[float, float, float]]:
     """Yield the position of each nearby standing object, relative to the agent, and the distance that the centres must keep."""
     x, y, *_ = agent.position
-    own = math.hypot(agent.width, agent.length) / 2
+    own_radius = math.hypot(agent.width, agent.length) / 2
     for other in others:
         if getattr(other, "isVehicle", False) and other.speed > _MOVING:
             continue
-        radius = own + math.hypot(other.width, other.length) / 2 + _CLEARANCE
+        radius = own_radius + math.hypot(other.width, other.length) / 2 + _CLEARANCE
         a, b = other.position[0] - x, other.position[1] - y
         if math.hypot(a, b) < _LOOK + radius:
             yield a, b, radius

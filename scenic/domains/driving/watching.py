@@ -39,10 +39,10 @@ class Nearness:
         x, y, *_ = point
         if self._target is not None:
             return math.hypot(x - self._target[0], y - self._target[1]) < limit
-        moved = math.hypot(x - self._x, y - self._y)
-        if self._distance - moved > limit:
+        displacement = math.hypot(x - self._x, y - self._y)
+        if self._distance - displacement > limit:
             return False
-        if self._distance + moved < limit:
+        if self._distance + displacement < limit:
             return True
         import shapely
 
@@ -79,13 +79,13 @@ class InsideWatch:
     def __call__(self) -> bool:
         """Return whether it is now."""
         x, y, *_ = self._agent.position
-        moved = math.hypot(x - self._x, y - self._y)
+        displacement = math.hypot(x - self._x, y - self._y)
         if self._found is not None:
-            if self._room - moved > self._outer:
+            if self._room - displacement > self._outer:
                 return True
-            if self._room + moved < self._inner:
+            if self._room + displacement < self._inner:
                 return False
-        elif moved < self._room:
+        elif displacement < self._room:
             return False
         return self._looked(x, y)
 
@@ -95,27 +95,27 @@ class InsideWatch:
 
         self._x, self._y = x, y
         point = shapely.Point(x, y)
-        found = self._found
-        if found is None or not shapely.contains_xy(found.polygon, x, y):
-            found = self._network.intersectionAt(self._agent.position)
-        self._found = found
-        if found is None:
+        intersection = self._found
+        if intersection is None or not shapely.contains_xy(intersection.polygon, x, y):
+            intersection = self._network.intersectionAt(self._agent.position)
+        self._found = intersection
+        if intersection is None:
             region = self._network.intersectionRegion
             polygons = getattr(region, "polygons", None)
             away = _FAR if polygons is None else float(shapely.distance(polygons, point))
             # Lookups find what is within the tolerance, too.
             self._room = away - self._network.tolerance
             return False
-        shapely.prepare(found.polygon)
-        self._room = float(shapely.distance(found.polygon.boundary, point))
+        shapely.prepare(intersection.polygon)
+        self._room = float(shapely.distance(intersection.polygon.boundary, point))
         if self._room > self._outer:
             return True
         if self._room < self._inner:
             return False
         agent = self._agent
         if not isinstance(agent.shape, BoxShape):
-            return bool(found.containsObject(agent))
-        return bool(shapely.covers(found.polygon, shapely.Polygon(self._corners(x, y))))
+            return bool(intersection.containsObject(agent))
+        return bool(shapely.covers(intersection.polygon, shapely.Polygon(self._corners(x, y))))
 
     def _corners(self, x: float, y: float) -> list[tuple[float, float]]:
         """The corners of the object seen from above; it stands upright."""

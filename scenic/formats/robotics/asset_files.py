@@ -51,15 +51,15 @@ def hull(points: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], npt.
     """Corners ``(v, 3)`` and triangles ``(f, 3)``, anticlockwise from outside, of the convex hull of points."""
     from scipy.spatial import ConvexHull  # slow to import
 
-    found = ConvexHull(points)
-    used = np.unique(found.simplices)
-    vertices = points[used]
-    faces = np.searchsorted(used, found.simplices)
+    convex_hull = ConvexHull(points)
+    corner_numbers = np.unique(convex_hull.simplices)
+    vertices = points[corner_numbers]
+    faces = np.searchsorted(corner_numbers, convex_hull.simplices)
     corners = vertices[faces]
     outside = np.einsum(
         "fx,fx->f",
         np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
-        found.equations[:, :3],
+        convex_hull.equations[:, :3],
     )
     faces[outside < 0] = faces[outside < 0][:, ::-1]
     return vertices, faces

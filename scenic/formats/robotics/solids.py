@@ -148,16 +148,16 @@ def solids_of(scene: Scene) -> tuple[Solid, ...]:
 
 def identifiers(labels: Iterator[str]) -> list[str]:
     """Names of letters, digits and underscores, each once, that resemble the labels."""
-    found: dict[str, None] = {}
+    names: dict[str, None] = {}
     for label in labels:
         base = re.sub(r"\W", "_", label, flags=re.ASCII) or "thing"
         base = f"_{base}" if base[0].isdigit() else base
         name, count = base, 1
-        while name in found:
+        while name in names:
             count += 1
             name = f"{base}_{count}"
-        found[name] = None
-    return list(found)
+        names[name] = None
+    return list(names)
 
 
 def _label(scene: Scene, thing: SceneObject) -> str:

@@ -102,10 +102,10 @@ class _Writer:
     def files(self, name: str) -> dict[str, bytes]:
         solids = tuple(solid.without_ellipsoid for solid in solids_of(self._scene))
         self._surroundings(solids)
-        taken = iter(
+        free_names = iter(
             identifiers(iter(["Looks", "Sun", "Sky", "PhysicsScene", "Ground", *(s.name for s in solids)]))
         )
-        names = list(taken)[5:]
+        names = list(free_names)[5:]
         for solid, label in zip(solids, names, strict=True):
             self._solid(solid, f"/World/{label}")
         # A stage would look for the files of references, which are not written yet.
@@ -290,14 +290,14 @@ class _Writer:
             reader = UsdShade.Shader.Define(self._stage, f"{path}/coordinates")
             reader.CreateIdAttr("UsdPrimvarReader_float2")
             reader.CreateInput("varname", Sdf.ValueTypeNames.String).Set("st")
-            found = reader.CreateOutput("result", Sdf.ValueTypeNames.Float2)
+            reader_output = reader.CreateOutput("result", Sdf.ValueTypeNames.Float2)
             texture = UsdShade.Shader.Define(self._stage, f"{path}/image")
             texture.CreateIdAttr("UsdUVTexture")
             texture.CreateInput("file", Sdf.ValueTypeNames.Asset).Set(Sdf.AssetPath(f"./{file}"))
             texture.CreateInput("sourceColorSpace", Sdf.ValueTypeNames.Token).Set("sRGB")
             for axis in ("wrapS", "wrapT"):
                 texture.CreateInput(axis, Sdf.ValueTypeNames.Token).Set("repeat")
-            texture.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(found)
+            texture.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(reader_output)
             diffuse.ConnectToSource(texture.CreateOutput("rgb", Sdf.ValueTypeNames.Float3))
         material.CreateSurfaceOutput().ConnectToSource(
             shader.CreateOutput("surface", Sdf.ValueTypeNames.Token)

@@ -63,24 +63,24 @@ class Poses:
 
     def take(self, entries: Indices) -> "Poses":
         """The poses of these entries; parts that are the same everywhere stay so."""
-        taken = Poses(
+        result = Poses(
             _take(self.position, entries),
             _take(self.orientation, entries),
             _take(self.size, entries),
         )
         if "matrix" in self.__dict__:
-            taken.__dict__["matrix"] = _take(self.matrix, entries)
+            result.__dict__["matrix"] = _take(self.matrix, entries)
         if "_bounds" in self.__dict__:
             lower, upper = self._bounds
-            taken.__dict__["_bounds"] = _take(lower, entries), _take(upper, entries)
-        return taken
+            result.__dict__["_bounds"] = _take(lower, entries), _take(upper, entries)
+        return result
 
     def to_world(self, points: Floats) -> Floats:
         """Unit-frame points ``(n | 1, ..., 3)`` in the world."""
-        scaled = points * _spread(self.size, points)
+        sized_points = points * _spread(self.size, points)
         matrix = self.matrix.reshape(len(self.matrix), *(1,) * (points.ndim - 2), 3, 3)
         position = _spread(self.position, points)
-        x, y, z = scaled[..., 0], scaled[..., 1], scaled[..., 2]
+        x, y, z = sized_points[..., 0], sized_points[..., 1], sized_points[..., 2]
         return np.stack(
             [
                 matrix[..., i, 0] * x + matrix[..., i, 1] * y + matrix[..., i, 2] * z + position[..., i]
@@ -118,10 +118,10 @@ class Poses:
     @cached_property
     def _bounds(self) -> tuple[Floats, Floats]:
         half = 0.5 * self.size
-        turned = np.abs(self.matrix)
+        extents = np.abs(self.matrix)
         reach = np.stack(
             [
-                turned[:, i, 0] * half[:, 0] + turned[:, i, 1] * half[:, 1] + turned[:, i, 2] * half[:, 2]
+                extents[:, i, 0] * half[:, 0] + extents[:, i, 1] * half[:, 1] + extents[:, i, 2] * half[:, 2]
                 for i in range(3)
             ],
             axis=-1,

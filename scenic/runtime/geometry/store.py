@@ -58,12 +58,12 @@ def kept(
         write: keep the result for later runs.
 
     """
-    found = find(kind, content) if read else None
-    if found is None:
-        found = compute()
+    arrays = find(kind, content) if read else None
+    if arrays is None:
+        arrays = compute()
         if write:
-            keep(kind, content, found)
-    return found
+            keep(kind, content, arrays)
+    return arrays
 
 
 def find(kind: str, content: bytes) -> Arrays | None:
@@ -89,9 +89,9 @@ def store_folder() -> Path | None:
     """The folder of the store; ``None`` if it is turned off, or if there is no home folder."""
     if os.environ.get("SCENIC_CACHE", "").lower() in ("off", "0", "no", "false"):
         return None
-    chosen = os.environ.get("SCENIC_CACHE_DIR")
-    if chosen:
-        return Path(chosen)
+    folder = os.environ.get("SCENIC_CACHE_DIR")
+    if folder:
+        return Path(folder)
     base = os.environ.get("XDG_CACHE_HOME")
     try:
         return Path(base) / "scenic" if base else Path.home() / ".cache" / "scenic"
@@ -119,13 +119,13 @@ def _read(path: Path) -> Arrays | None:
             return None
         stream = io.BytesIO(content)
         names = json.loads(stream.readline())
-        found = {name: np.lib.format.read_array(stream, allow_pickle=False) for name in names}
+        arrays = {name: np.lib.format.read_array(stream, allow_pickle=False) for name in names}
     except (OSError, ValueError, EOFError):
         # Not there, or no file of ours: what is computed takes its place.
         return None
     with contextlib.suppress(OSError):
         os.utime(path)
-    return found
+    return arrays
 
 
 def _checksum(content: bytes) -> bytes:

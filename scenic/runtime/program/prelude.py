@@ -496,8 +496,11 @@ class Loader:
         module = self._load(path, name, importer)
         for item in fromlist or ():
             # As in Python, modules of a package are among its attributes once somebody has imported them from it.
-            if not hasattr(module, item) and (found := self._modules.find(f"{name}.{item}")) is not None:
-                setattr(module, item, self._load(found, f"{name}.{item}", importer))
+            if (
+                not hasattr(module, item)
+                and (module_path := self._modules.find(f"{name}.{item}")) is not None
+            ):
+                setattr(module, item, self._load(module_path, f"{name}.{item}", importer))
         if fromlist:
             return module
         # `import a.b` binds `a`, by whose attributes all modules are found that are imported so.

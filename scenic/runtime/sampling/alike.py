@@ -202,33 +202,33 @@ def _kind(
 ) -> Kind:
     first, form = members[0]
     axes = np.array([graph.axes[node] for node in form.nodes if node.is_axis], dtype=np.intp)
-    narrowed, renamed = domain.along(axes)
+    part_of_domain, new_addresses = domain.along(axes)
     table = {
         graph.address(node): [graph.address(each.nodes[place]) for _, each in members]
         for place, node in enumerate(form.nodes)
     }
     # Boxes are chosen by the numbers of a group's own parts of the domain; what is chosen jointly is alike for all.
-    shared = [place for places in narrowed.addresses() for place in places.tolist()]
-    table |= {place: [place] * len(members) for place in shared}
+    common_places = [place for places in part_of_domain.addresses() for place in places.tolist()]
+    table |= {place: [place] * len(members) for place in common_places}
     parts = sorted(range(len(form.parts)), key=form.parts.__getitem__)
-    own = domain.addresses()
-    for address, place in zip(renamed, parts, strict=False):
-        table[address] = [int(own[each.parts[place]][0]) for _, each in members]
+    box_places = domain.addresses()
+    for address, place in zip(new_addresses, parts, strict=False):
+        table[address] = [int(box_places[each.parts[place]][0]) for _, each in members]
     addresses = np.array(sorted(table), dtype=np.uint64)
-    chosen = [groups[number] for number, _ in members]
+    groups_of_members = [groups[number] for number, _ in members]
     return Kind(
         np.array([number for number, _ in members], dtype=np.intp),
         groups[first].joints,
         groups[first].objects,
-        _rows([group.numbers for group in chosen]),
-        narrowed,
+        _rows([group.numbers for group in groups_of_members]),
+        part_of_domain,
         addresses,
         np.array([table[place] for place in sorted(table)], dtype=np.uint64).reshape(-1, len(members)),
-        _rows([[joint.number for joint in group.joints] for group in chosen]),
+        _rows([[joint.number for joint in group.joints] for group in groups_of_members]),
         _rows(
             [
                 [-1 if joint.soft_place is None else joint.soft_place for joint in group.joints]
-                for group in chosen
+                for group in groups_of_members
             ]
         ),
     )

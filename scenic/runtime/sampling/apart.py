@@ -111,7 +111,7 @@ def separated(engine: Engine, plan: Plan, reads: Reads, leaf: int) -> Apart | No
         return None
     owner = {draw: number for number, mine in enumerate(groups) for draw in mine}
     group_of = np.array([owner[next(iter(mine))] if mine else -1 for mine in below], dtype=np.intp)
-    made = _groups(
+    new_groups = _groups(
         plan,
         place,
         check,
@@ -119,7 +119,7 @@ def separated(engine: Engine, plan: Plan, reads: Reads, leaf: int) -> Apart | No
         group_of,
         [(number, owner[next(iter(mine))] if mine else 0) for number, mine in others],
     )
-    kinds = kinds_of(made, engine.plan.graph, engine.plan.domain)
+    kinds = kinds_of(new_groups, engine.plan.graph, engine.plan.domain)
     if len(kinds) > max(MOST_KINDS, len(groups) // 4) or not all(_passes(engine, kind) for kind in kinds):
         return None
     kind_of = np.empty(len(groups), dtype=np.intp)
@@ -167,9 +167,9 @@ def _groups(
         zip(soft, range(len(soft)) if plan.soft_places is None else plan.soft_places, strict=True)
     )
     numbers = range(len(plan.checks)) if plan.numbers is None else plan.numbers
-    own: list[list[tuple[int, Check]]] = [[] for _ in draws]
+    checks_of_group: list[list[tuple[int, Check]]] = [[] for _ in draws]
     for number, group in others:
-        own[group].append((number, plan.checks[number]))
+        checks_of_group[group].append((number, plan.checks[number]))
     one, two = (group_of[collisions.pairs[:, side]] for side in (0, 1))
     inner = np.flatnonzero((one == two) | (one < 0) | (two < 0))
     inner = inner[np.maximum(one, two)[inner] >= 0]
@@ -177,7 +177,7 @@ def _groups(
     for pair, group in zip(inner.tolist(), np.maximum(one, two)[inner].tolist(), strict=True):
         pairs.setdefault(group, []).append(pair)
     for group, mine in pairs.items():
-        own[group].append((place, collisions.of_pairs(collisions.pairs[mine])))
+        checks_of_group[group].append((place, collisions.of_pairs(collisions.pairs[mine])))
     members: list[list[int]] = [[] for _ in draws]
     for number, group in enumerate(group_of.tolist()):
         if group >= 0:
@@ -192,7 +192,7 @@ def _groups(
             tuple(collisions.objects[number] for number in objects),
             tuple(objects),
         )
-        for mine, checks, objects in zip(draws, own, members, strict=True)
+        for mine, checks, objects in zip(draws, checks_of_group, members, strict=True)
     ]
 
 
@@ -216,14 +216,14 @@ def attempts_at_kind(
     for place, joint in enumerate(kind.joints):
         if not len(batch.rows):
             return batch  # operations need not work on no lane at all
-        begun = time.perf_counter()
+        start_time = time.perf_counter()
         batch.need(joint.check.nodes)
         verdict = joint.check.test(batch)
         if joint.soft_place is not None:
             here = batch.rows
             verdict = verdict.unless(pending.inactive[scenes[here], kind.soft_places[member[here], place]])
         alive = verdict.passes
-        engine.note(joint.number, len(alive), int(np.count_nonzero(alive)), time.perf_counter() - begun)
+        engine.note(joint.number, len(alive), int(np.count_nonzero(alive)), time.perf_counter() - start_time)
         batch.keep(alive)
     if len(batch.rows):
         batch.need(_nodes(kind))
@@ -259,7 +259,7 @@ def rehearsed(engine: Engine, apart: Apart) -> tuple[dict[int, Mask], int]:
     """
     pending, count = engine.pending([(0, 0)]), engine.rehearsed_of
     bodies = Bodies()
-    met: dict[int, Mask] = {}
+    results: dict[int, Mask] = {}
     passes = np.ones(count, dtype=np.bool_)
     first, lane, part = [], [], []
     for kind in apart.kinds:
@@ -271,16 +271,16 @@ def rehearsed(engine: Engine, apart: Apart) -> tuple[dict[int, Mask], int]:
                 holds = joint.check.test(batch).holds.reshape(len(members), count)
                 passes &= holds.all(axis=0)
                 if not isinstance(joint.check, CollisionCheck):
-                    met |= zip(kind.checks[members, place].tolist(), holds, strict=True)
+                    results |= zip(kind.checks[members, place].tolist(), holds, strict=True)
             row = bodies.add([item.body(batch) for item in kind.objects], kind.numbers[member])
             owner, offset = expand(np.full(len(row), len(kind.objects)))
             first.append(row[owner] + offset)
             lane.append(attempts[owner])
             part.append(kind.members[member[owner]])
-    chosen, lanes, parts = (np.concatenate(each) for each in (first, lane, part))
+    bodies_tested, lanes, parts = (np.concatenate(each) for each in (first, lane, part))
     order = np.argsort(lanes, kind="stable")
-    passes &= bodies.apart(count, chosen[order], lanes[order], parts[order], apart.may_meet)
-    return met, int(np.count_nonzero(passes))
+    passes &= bodies.apart(count, bodies_tested[order], lanes[order], parts[order], apart.may_meet)
+    return results, int(np.count_nonzero(passes))
 
 
 class _Union:
@@ -295,14 +295,14 @@ class _Union:
         """Join draws, and all that is joined with one of them."""
         if not draws:
             return
-        met = sorted({self._owner[place] for place in draws if place in self._owner})
-        target = met[0] if met else self._count
+        owners = sorted({self._owner[place] for place in draws if place in self._owner})
+        target = owners[0] if owners else self._count
         whole = self._sets.setdefault(target, set())
-        self._count += not met
-        for number in met[1:]:
-            moved = self._sets.pop(number)
-            whole |= moved
-            self._owner.update(dict.fromkeys(moved, target))
+        self._count += not owners
+        for number in owners[1:]:
+            draws_of_other = self._sets.pop(number)
+            whole |= draws_of_other
+            self._owner.update(dict.fromkeys(draws_of_other, target))
         whole |= draws
         self._owner.update(dict.fromkeys(draws, target))
 

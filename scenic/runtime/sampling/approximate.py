@@ -118,14 +118,14 @@ def approximated(
     """
     sampler = _Sampler(engine, max_attempts, checks, fixing)
     for group in range(first // lanes, -(-(first + count) // lanes)):
-        wanted = range(max(first, group * lanes), min(first + count, (group + 1) * lanes))
+        numbers = range(max(first, group * lanes), min(first + count, (group + 1) * lanes))
         try:
-            found = sampler.group(seed, group, lanes)
+            lanes_of_group = sampler.group(seed, group, lanes)
         except _GaveUpError:
-            report = engine.report(Task(seed, wanted.start), 200)
-            yield from (Exhausted(seed, k, max_attempts, "attempts", report) for k in wanted)
+            report = engine.report(Task(seed, numbers.start), 200)
+            yield from (Exhausted(seed, k, max_attempts, "attempts", report) for k in numbers)
             continue
-        yield from ((found, k - group * lanes) for k in wanted)
+        yield from ((lanes_of_group, k - group * lanes) for k in numbers)
 
 
 class _Sampler:
@@ -217,9 +217,9 @@ class _Sampler:
         log_probability, since = 0.0, 1.0
         blocks = plan.blocks
         for number, block in enumerate(blocks):
-            ancestors, tried = self._extend(random, state, block)
+            ancestors, attempts = self._extend(random, state, block)
             roots = roots[ancestors]
-            share = 1.0 if tried == lanes else max(lanes - 1, 1) / max(tried - 1, 1)
+            share = 1.0 if attempts == lanes else max(lanes - 1, 1) / max(attempts - 1, 1)
             survival.append(share)
             log_probability += math.log(share)
             since *= share
@@ -227,22 +227,22 @@ class _Sampler:
                 since = 1.0
                 self._sweep(random, state, plan.moves(number), pace)
         start, correlation, sweeps = state.copy(), 1.0, 0
-        constrained = plan.moves(len(blocks) - 1)
+        moves = plan.moves(len(blocks) - 1)
         if min(survival, default=1.0) == 1.0:
-            constrained, correlation = (), 0.0  # no lane was lost: all are independent
-        while constrained and sweeps < _SWEEPS[1]:
-            self._sweep(random, state, constrained, pace)
+            moves, correlation = (), 0.0  # no lane was lost: all are independent
+        while moves and sweeps < _SWEEPS[1]:
+            self._sweep(random, state, moves, pace)
             sweeps += 1
             if sweeps >= _SWEEPS[0]:
                 correlation = _correlation(
-                    [start.correlation(state, place) for block, _ in constrained for place in block.numbers],
+                    [start.correlation(state, place) for block, _ in moves for place in block.numbers],
                     lanes,
                 )
                 if correlation < CORRELATED:
                     break
         sizes = np.bincount(roots, minlength=lanes)
-        shared = float(np.square(sizes).sum()) / lanes
-        effective = lanes / (1 + (shared - 1) * correlation**2)
+        descent = float(np.square(sizes).sum()) / lanes
+        effective = lanes / (1 + (descent - 1) * correlation**2)
         report = Approximation(lanes, log_probability, effective, tuple(survival), sweeps, correlation)
         return state, report
 
@@ -254,11 +254,11 @@ class _Sampler:
         if not block.decided:
             state.redraw(random, block, 0.5)
             return np.arange(lanes), lanes
-        kept: list[_State] = []
+        survivors: list[_State] = []
         ancestors: list[NDArray[np.intp]] = []
-        missing, tried = lanes, 0
+        missing, attempts = lanes, 0
         while missing:
-            if tried >= self._max_attempts * lanes:
+            if attempts >= self._max_attempts * lanes:
                 raise _GaveUpError
             order = random.permutation(
                 lanes
@@ -266,26 +266,26 @@ class _Sampler:
             trial = state.take(order)
             trial.redraw(random, block, 0.5)
             good = np.flatnonzero(self._passes(trial, block.decided))[:missing]
-            tried += int(good[-1]) + 1 if len(good) == missing else lanes
+            attempts += int(good[-1]) + 1 if len(good) == missing else lanes
             missing -= len(good)
-            kept.append(trial.take(good))
+            survivors.append(trial.take(good))
             ancestors.append(order[good])
-        state.become(kept)
-        return np.concatenate(ancestors), tried
+        state.become(survivors)
+        return np.concatenate(ancestors), attempts
 
     def _sweep(
         self, random: np.random.Generator, state: "_State", moves: Sequence[_Move], pace: "_Steps"
     ) -> None:
         """Move each block of each lane once, where all checks still hold after it."""
-        step, moved = pace.step, 0
+        step, move_count = pace.step, 0
         for block, checks in moves:
             trial = state.copy()
             trial.redraw(random, block, step)
             # All draws of a block have the law of the cube before and after, so that a move is good if its lane is.
             good = np.flatnonzero(self._passes(trial, checks))
             state.put_block(good, trial, block)
-            moved += len(good)
-        pace.learn(step, moved / max(1, len(moves) * len(state)))
+            move_count += len(good)
+        pace.learn(step, move_count / max(1, len(moves) * len(state)))
 
     def _passes(self, state: "_State", checks: Sequence[Check]) -> NDArray[np.bool_]:
         """Return a mask of the lanes that pass all checks."""
@@ -362,13 +362,13 @@ class _Objects:
 
     def below(self, checks: Sequence[Check]) -> tuple[Node, ...]:
         """The nodes of the first objects, up to the last one that some checks of collisions look at, and a few more."""
-        seen = [
+        object_numbers = [
             self._place[id(item)]
             for check in checks
             if isinstance(check, CollisionCheck)
             for item in (check.objects[0], check.objects[-1])
         ]
-        count = -(-(max(seen, default=-1) + 1) // _OBJECTS)
+        count = -(-(max(object_numbers, default=-1) + 1) // _OBJECTS)
         if count not in self._made:
             self._made[count] = tuple(node for nodes in self._nodes[: count * _OBJECTS] for node in nodes)
         return self._made[count]

@@ -34,8 +34,8 @@ class Reads:
         self._graph = graph
         self._boxes_of: dict[int, list[int]] = {}
         """The addresses of the boxes that axes, by number, are drawn from."""
-        for place, joined in self.boxes:
-            for number in joined:
+        for place, members in self.boxes:
+            for number in members:
                 self._boxes_of.setdefault(number, []).append(place)
 
     @property
@@ -76,7 +76,7 @@ class Piece:
 def pieces(reads: Reads, checks: Sequence[Check]) -> tuple[list[Piece], list[frozenset[int]]]:
     """The pieces of checks, and sets of draws in the order in which they are best made: those of objects come first."""
     units: list[frozenset[int]] = []
-    found: list[Piece] = []
+    result: list[Piece] = []
     for number, check in enumerate(checks):
         if isinstance(check, CollisionCheck):
             below = [reads.of(item.all) for item in check.objects]
@@ -84,30 +84,30 @@ def pieces(reads: Reads, checks: Sequence[Check]) -> tuple[list[Piece], list[fro
             owners: dict[frozenset[int], list[int]] = {}
             for pair, (one, other) in enumerate(check.pairs.tolist()):
                 owners.setdefault(below[one] | below[other], []).append(pair)
-            found += [
+            result += [
                 Piece(check.of_pairs(check.pairs[pairs]), read, number, tuple(pairs))
                 for read, pairs in owners.items()
             ]
         else:
             units.append(reads.of(check.nodes))
-            found.append(Piece(check, units[-1], number))
-    return found, units
+            result.append(Piece(check, units[-1], number))
+    return result, units
 
 
 def coarse_pieces(reads: Reads, checks: Sequence[Check]) -> tuple[list[Piece], list[frozenset[int]]]:
     """The checks as pieces, all pairs of a check of collisions as one, and sets of draws; those of objects come first."""
     units: list[frozenset[int]] = []
-    found: list[Piece] = []
+    result: list[Piece] = []
     for number, check in enumerate(checks):
         if isinstance(check, CollisionCheck):
             below = [reads.of(item.all) for item in check.objects]
             units = [*below, *units]
             whole = frozenset[int]().union(*below)
-            found.append(Piece(check, whole, number, tuple(range(len(check.pairs)))))
+            result.append(Piece(check, whole, number, tuple(range(len(check.pairs)))))
         else:
             units.append(reads.of(check.nodes))
-            found.append(Piece(check, units[-1], number))
-    return found, units
+            result.append(Piece(check, units[-1], number))
+    return result, units
 
 
 def blocks(units: Iterable[frozenset[int]]) -> list[frozenset[int]]:

@@ -293,8 +293,8 @@ class CollisionCheck:
 
     def parts(self, batch: Batch) -> Sequence[Part]:
         bodies = [item.body(batch) for item in self.objects]
-        found = collide(bodies, self.pairs, lanes=len(batch), exhaustive=True).pairs
-        assert found is not None
+        meetings = collide(bodies, self.pairs, lanes=len(batch), exhaustive=True).pairs
+        assert meetings is not None
         sizes = [size_in_words(item.size) for item in self.objects]
         notes = [
             f"{item.label} is {size}" if size else "" for item, size in zip(self.objects, sizes, strict=True)
@@ -303,7 +303,7 @@ class CollisionCheck:
             Part(
                 f"collision of {self.objects[first].label} and {self.objects[second].label}",
                 self.objects[second].span,
-                ~found[:, pair],
+                ~meetings[:, pair],
                 ", ".join(filter(None, (notes[first], notes[second]))),
             )
             for pair, (first, second) in enumerate(self.pairs.tolist())

@@ -68,27 +68,27 @@ def divided(engine: Engine, components: Components | None, *, always: bool = Fal
         always: divide them whether or not that pays.
 
     """
-    known = components or Components((engine.plan,), {}, (None,))
+    components_before = components or Components((engine.plan,), {}, (None,))
     reads = Reads(engine.plan.graph, engine.plan.domain)
-    divider = Divider(engine, known.plans, reads, always=always)
+    divider = Divider(engine, components_before.plans, reads, always=always)
     trees: list[Tree | Apart | None] = []
     leaf = 0
-    for plan in known.plans:
+    for plan in components_before.plans:
         tree: Tree | Apart | None = None
         if not may_fault(plan):
-            if not always and (len(known.plans) == 1 or _passes_seldom(engine, plan)):
+            if not always and (len(components_before.plans) == 1 or _passes_seldom(engine, plan)):
                 tree = separated(engine, plan, reads, leaf)
             tree = tree or divider.divide(plan, leaf)
         trees.append(tree)
         leaf += 1 if tree is None else tree.leaves
     if not any(trees):
         return components
-    made = Components(known.plans, {}, tuple(trees))
-    places = made.places
-    owner = {place: places[number] for place, number in known.owner.items()}
+    new_components = Components(components_before.plans, {}, tuple(trees))
+    places = new_components.places
+    owner = {place: places[number] for place, number in components_before.owner.items()}
     for tree in trees:
         owner |= tree.owners() if tree is not None else {}
-    return Components(known.plans, owner, made.trees)
+    return Components(components_before.plans, owner, new_components.trees)
 
 
 def crowd_of(engine: Engine) -> Apart | None:
@@ -135,19 +135,19 @@ def _split(plan: Plan) -> Components | None:
         for index, check in enumerate(plan.checks)
         if isinstance(check, CollisionCheck)
     ]
-    kept: list[tuple[int, int, Check]] = []
+    rows: list[tuple[int, int, Check]] = []
     for index, check in enumerate(plan.checks):
         if isinstance(check, CollisionCheck):
             continue
         # Bounds cost more than what they save, but where something hangs on them.
         if not joins.would_join(check.nodes) or not _always_holds(check, bounds(check.nodes[0])):
-            kept.append((index, joins.add(check.nodes), check))
-    kept += [(index, member, check) for index, meeting in meetings for member, check in meeting.parts(joins)]
-    kept.sort(key=_index)
+            rows.append((index, joins.add(check.nodes), check))
+    rows += [(index, member, check) for index, meeting in meetings for member, check in meeting.parts(joins)]
+    rows.sort(key=_index)
     groups: dict[int, list[tuple[int, Check]]] = {}
-    for index, member, check in kept:
+    for index, member, check in rows:
         groups.setdefault(joins.leader(member) if joins.has_draws(member) else -1, []).append((index, check))
-    fixed = groups.pop(-1, [])
+    constant_rows = groups.pop(-1, [])
     if len(groups) < 2:
         return None
     numbers = {leader: number for number, leader in enumerate(groups)}
@@ -156,7 +156,9 @@ def _split(plan: Plan) -> Components | None:
         index: place
         for place, index in enumerate(i for i, item in enumerate(plan.checks) if item.probability < 1)
     }
-    plans = tuple(_part(plan, group, places) for group in (sorted([*fixed, *first], key=_index), *others))
+    plans = tuple(
+        _part(plan, group, places) for group in (sorted([*constant_rows, *first], key=_index), *others)
+    )
     owner: dict[int, int] = {}
     for node, leader in joins.draws():
         if leader in numbers:
@@ -209,8 +211,8 @@ def _chained(one: NDArray[np.intp], two: NDArray[np.intp], count: int) -> NDArra
         np.minimum.at(label, label[two], least)
         while not (label == label[label]).all():
             label = label[label]
-    chained = np.flatnonzero(label != np.arange(count))
-    return np.stack([label[chained], chained], axis=1)
+    followers = np.flatnonzero(label != np.arange(count))
+    return np.stack([label[followers], followers], axis=1)
 
 
 def _part(plan: Plan, group: Sequence[tuple[int, Check]], places: Mapping[int, int]) -> Plan:
@@ -329,21 +331,21 @@ class _Joins:
 
     def would_join(self, nodes: Iterable[Node]) -> bool:
         """Return whether adding a set of nodes would join draws that are apart yet."""
-        met: set[int | Node] = set()
-        seen: set[Node] = set()
+        leaders: set[int | Node] = set()
+        nodes_done: set[Node] = set()
         stack = list(nodes)
-        while stack and len(met) < 2:
+        while stack and len(leaders) < 2:
             node = stack.pop()
-            if node in seen or not self._random[node]:
+            if node in nodes_done or not self._random[node]:
                 continue
-            seen.add(node)
+            nodes_done.add(node)
             if node in self._owner:
-                met.add(self.leader(self._owner[node]))
+                leaders.add(self.leader(self._owner[node]))
             elif node.is_drawn:
-                met.add(node)
+                leaders.add(node)
             else:
                 stack.extend(node.operands)
-        return len(met) > 1
+        return len(leaders) > 1
 
     def has_draws(self, member: int) -> bool:
         """Return whether any draw is below a set."""

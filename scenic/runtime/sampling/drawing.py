@@ -23,12 +23,12 @@ def drawing_checks(outputs: Sequence[Node], program: Program) -> list[Check]:
     """
     sources: dict[Node, None] = {}
     stack = list(outputs)[::-1]
-    seen: set[Node] = set()
+    nodes_done: set[Node] = set()
     while stack:
         node = stack.pop()
-        if node in seen:
+        if node in nodes_done:
             continue
-        seen.add(node)
+        nodes_done.add(node)
         if not node.operation.strict:
             if any(_may_mark(below) for operand in node.operands for below in Graph([operand]).nodes):
                 sources[node] = None

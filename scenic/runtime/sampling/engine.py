@@ -220,16 +220,16 @@ class Engine:
         """
         scheduler, checks, outputs = self._scheduler, self.plan.checks, self.plan.outputs
         keys = _attempts(Task(0, 0), np.arange(_REHEARSED_LANES, dtype=np.int64)).keys
-        begun = time.thread_time()
+        start_time = time.thread_time()
         batch = self.batch(Counter(keys))
         nodes = (*outputs, *(node for check in checks for node in check.nodes))
         clear = scheduler.without_python(nodes)
         with suppress(ScenicError), np.errstate(all="ignore"):
             if len(clear) < len(nodes):
-                known = set(clear)
+                constant_nodes = set(clear)
                 batch.need(clear)
                 for index, check in enumerate(checks):
-                    if known.issuperset(check.nodes):
+                    if constant_nodes.issuperset(check.nodes):
                         self._note(index, check.test(batch))
                 return
             stages = self._stages.expected(_FIRST_LANES[-1])
@@ -237,13 +237,13 @@ class Engine:
                 batch.follow(stage.schedule, stage.nodes)
                 for index in stage.checks:
                     self._note(index, checks[index].test(batch))
-            made = time.thread_time()
-            self._pace.add(len(keys), 0, made - begun)
+            middle_time = time.thread_time()
+            self._pace.add(len(keys), 0, middle_time - start_time)
             # What the first turn has made, the second one finds: that one is measured.
             batch = self.batch(Counter(keys))
             self._judge(batch, stages[:-1], None)
             self.rehearsed = len(batch)
-            self._pace.add(len(keys), len(batch), time.thread_time() - made)
+            self._pace.add(len(keys), len(batch), time.thread_time() - middle_time)
 
     def _note(self, index: int, verdict: Verdict) -> None:
         self.met[index] = verdict.holds if verdict.failed is None else verdict.holds & ~verdict.failed
@@ -288,12 +288,12 @@ class Engine:
             if given:
                 # A round costs mostly the same whatever its size. So much is found in vain, if nobody wants more, as takes
                 # about as long as all before.
-                fixed, _ = self._pace.cost()
-                likely = max(32 * given, self._pace.scenes_within(fixed + self.seconds - before))
+                fixed_cost, _ = self._pace.cost()
+                likely = max(32 * given, self._pace.scenes_within(fixed_cost + self.seconds - before))
             # Where a round that finds next to nothing takes longer, so may one that finds many.
             patience = max(_FORESIGHT_SECONDS, 2 * self._pace.cost()[0])
-            wanted = min(likely, _MOST_FORESEEN, self._pace.scenes_within(patience))
-            return wanted, wanted * 3 // 2 if given >= _MOST_FORESEEN else wanted
+            scene_count = min(likely, _MOST_FORESEEN, self._pace.scenes_within(patience))
+            return scene_count, scene_count * 3 // 2 if given >= _MOST_FORESEEN else scene_count
 
         return self._results(tasks, max_attempts, self._pace.most, window, None)
 
@@ -314,25 +314,27 @@ class Engine:
         """
         waiting = iter(tasks)
         pending = Pending(self._chances, self._soft_places, tried)
-        done: dict[int, Accepted | Exhausted | CandidateError] = {}
+        results: dict[int, Accepted | Exhausted | CandidateError] = {}
         upcoming = 0
         more = True
         while True:
-            wanted, room = window(upcoming)
-            missing = min(wanted, room - len(done)) - len(pending)
+            scene_count, room = window(upcoming)
+            missing = min(scene_count, room - len(results)) - len(pending)
             if missing > 0 and more:
-                added = list(islice(waiting, missing))
-                pending.add(added)
-                more = len(added) == missing
+                new_tasks = list(islice(waiting, missing))
+                pending.add(new_tasks)
+                more = len(new_tasks) == missing
             if not len(pending):
                 return
             if deadline is not None and time.monotonic() > deadline:
                 every = np.ones(len(pending), dtype=np.bool_)
-                self._give_up(pending, every, "time", done)
+                self._give_up(pending, every, "time", results)
                 pending.leave(every)
             else:
-                self._round(pending, done, max_attempts, wanted, most, more=more and room > wanted)
-            while (result := done.pop(upcoming, None)) is not None:
+                self._round(
+                    pending, results, max_attempts, scene_count, most, more=more and room > scene_count
+                )
+            while (result := results.pop(upcoming, None)) is not None:
                 if type(result) is not tuple and isinstance(result, CandidateError):
                     raise result
                 yield result
@@ -367,10 +369,10 @@ class Engine:
         *,
         more: bool,
     ) -> None:
-        begun = time.thread_time()
-        chosen = self._pace.choose(min(len(pending), wanted), most, more=more)
-        active = slice(chosen.scenes)
-        counts = np.minimum(chosen.ahead, max_attempts - pending.attempts[active])
+        start_time = time.thread_time()
+        round_size = self._pace.choose(min(len(pending), wanted), most, more=more)
+        active = slice(round_size.scenes)
+        counts = np.minimum(round_size.ahead, max_attempts - pending.attempts[active])
         owner, offset = expand(counts)
         attempts = pending.attempts[owner] + offset
         batch = self.attempts_at(pending, owner, attempts)
@@ -379,27 +381,27 @@ class Engine:
         pending.attempts[active] += counts
         rows = batch.rows
         first = first_of_each(owner[rows])
-        failed = failures[rows]
+        failure_numbers = failures[rows]
         self.candidates += len(owner)
-        passed = int((failed < 0).sum())
-        self.passed += passed
-        finished = np.zeros(len(pending), dtype=np.bool_)
-        finished[owner[rows[first]]] = True
-        for row in rows[first[failed[first] >= 0]].tolist():
+        pass_count = int((failure_numbers < 0).sum())
+        self.passed += pass_count
+        is_finished = np.zeros(len(pending), dtype=np.bool_)
+        is_finished[owner[rows[first]]] = True
+        for row in rows[first[failure_numbers[first] >= 0]].tolist():
             scene = int(owner[row])
             check = self.plan.checks[int(failures[row])]
             done[int(pending.number[scene])] = self._error(check, pending.task(scene), int(attempts[row]))
-        good = first[failed[first] < 0]
-        accepted = self._completed(batch, last, good, pending, owner, attempts)
-        done.update(zip(pending.number[owner[rows[good]]].tolist(), accepted, strict=True))
-        hopeless = ~finished & (pending.attempts >= max_attempts)
+        good = first[failure_numbers[first] < 0]
+        scenes = self._completed(batch, last, good, pending, owner, attempts)
+        done.update(zip(pending.number[owner[rows[good]]].tolist(), scenes, strict=True))
+        hopeless = ~is_finished & (pending.attempts >= max_attempts)
         self._give_up(pending, hopeless, "attempts", done)
-        pending.leave(finished | hopeless)
-        seconds = time.thread_time() - begun
+        pending.leave(is_finished | hopeless)
+        seconds = time.thread_time() - start_time
         self.seconds += seconds
-        self._pace.add(len(owner), passed, seconds)
+        self._pace.add(len(owner), pass_count, seconds)
         if self._meter is not None:
-            self._meter.round(len(owner), passed, seconds)
+            self._meter.round(len(owner), pass_count, seconds)
 
     def _completed(
         self,
@@ -418,31 +420,31 @@ class Engine:
         batch.follow(last.schedule, last.nodes)
         batch.settle(last.nodes)
         scenes = owner[rows]
-        found = self._found(
+        lanes = self._found(
             pending.given[scenes].tolist(), pending.k[scenes].tolist(), (attempts[rows] + 1).tolist(), batch
         )
-        return list(zip(repeat(found), range(len(scenes))))
+        return list(zip(repeat(lanes), range(len(scenes))))
 
     def first_candidates(
         self, tasks: Sequence[tuple[int, int]]
     ) -> list[tuple[int, Accepted | CandidateError]]:
         """The first candidates for some scenes, each evaluated once: those that nothing rejects, with their places, in order."""
-        begun = time.thread_time()
+        start_time = time.thread_time()
         pending = self.pending(tasks)
         owner = np.arange(len(tasks))
         batch = self.attempts_at(pending, owner, pending.attempts)
         *stages, last = self._stages.order(len(batch))
         failures = self._judge(batch, stages, pending.inactive if self._soft else None)
         rows = batch.rows
-        failed = failures[rows] >= 0
+        is_failure = failures[rows] >= 0
         results: dict[int, Accepted | CandidateError] = {
             row: self._error(self.plan.checks[int(failures[row])], pending.task(row), 0)
-            for row in rows[failed].tolist()
+            for row in rows[is_failure].tolist()
         }
-        good = np.flatnonzero(~failed)
-        accepted = self._completed(batch, last, good, pending, owner, pending.attempts)
-        results.update(zip(rows[good].tolist(), accepted, strict=True))
-        seconds = time.thread_time() - begun
+        good = np.flatnonzero(~is_failure)
+        scenes = self._completed(batch, last, good, pending, owner, pending.attempts)
+        results.update(zip(rows[good].tolist(), scenes, strict=True))
+        seconds = time.thread_time() - start_time
         self.candidates += len(owner)
         self.passed += len(rows)
         self.seconds += seconds
@@ -480,8 +482,8 @@ class Engine:
         keys = attempt_keys(scene_keys(seeds, numbers), attempts - 1)
         batch = self.batch(self._source(Lanes(seeds, numbers, attempts - 1, keys)))
         batch.settle(self.plan.outputs)
-        found = self._found([seed] * len(numbers), numbers.tolist(), attempts.tolist(), batch)
-        return [(found, lane) for lane in range(len(numbers))]
+        lanes = self._found([seed] * len(numbers), numbers.tolist(), attempts.tolist(), batch)
+        return [(lanes, lane) for lane in range(len(numbers))]
 
     def _found(
         self, seeds: Sequence[int], numbers: Sequence[int], attempts: Sequence[int], batch: Batch
@@ -582,18 +584,18 @@ class Engine:
         for stage in stages:
             if len(batch) == 0:
                 break
-            begun = time.thread_time()
+            start_time = time.thread_time()
             try:
                 batch.follow(stage.schedule, stage.nodes)
             except Located as error:
                 self._place(error, batch, stage)
                 raise
-            shared = (time.thread_time() - begun) / len(stage.checks)
+            seconds_of_stage = (time.thread_time() - start_time) / len(stage.checks)
             rows = batch.rows
             alive = np.ones(len(rows), dtype=np.bool_)
             for index in stage.checks:
                 check = checks[index]
-                begun = time.thread_time()
+                start_time = time.thread_time()
                 verdict = check.test(batch)
                 if inactive is not None and check.probability < 1:
                     verdict = verdict.unless(inactive[rows, self._soft.index(index)])
@@ -603,11 +605,11 @@ class Engine:
                     earlier = verdict.failed & (place < failed_at[rows])
                     failures[rows[earlier]] = index
                     failed_at[rows[earlier]] = place
-                seconds = shared + time.thread_time() - begun
-                passed = int(np.count_nonzero(passes))
-                self._stages.measure(index, len(rows), seconds, passed)
+                seconds = seconds_of_stage + time.thread_time() - start_time
+                pass_count = int(np.count_nonzero(passes))
+                self._stages.measure(index, len(rows), seconds, pass_count)
                 if self._meter is not None:
-                    self._meter.check(self._numbers[index], len(rows), passed, seconds - shared)
+                    self._meter.check(self._numbers[index], len(rows), pass_count, seconds - seconds_of_stage)
                 alive &= passes
             if not alive.all():
                 batch.keep(alive)

@@ -65,12 +65,12 @@ def estimate(engines: Sequence[Engine], *, seed: int, candidates: int) -> tuple[
 
 
 def _estimated(engine: Engine, seed: int, most: int) -> ComponentEstimate:
-    tried = accepted = 0
-    while tried < most and accepted < _ENOUGH:
-        count = min(engine.most_lanes, most - tried)
-        accepted += engine.trial([(seed, k) for k in range(tried, tried + count)])
-        tried += count
-    share = accepted / tried
+    attempts = acceptances = 0
+    while attempts < most and acceptances < _ENOUGH:
+        count = min(engine.most_lanes, most - attempts)
+        acceptances += engine.trial([(seed, k) for k in range(attempts, attempts + count)])
+        attempts += count
+    share = acceptances / attempts
     report = engine.report(Task(seed, 0), min(_REPORTED, most))
     rows = [
         RequirementEstimate(
@@ -83,4 +83,4 @@ def _estimated(engine: Engine, seed: int, most: int) -> ComponentEstimate:
         for row in report.rows
     ]
     rows.sort(key=lambda row: (-(row.factor or 0), -row.rejected, -row.alone))
-    return ComponentEstimate(engine.plan.draws, tried, accepted, tuple(rows))
+    return ComponentEstimate(engine.plan.draws, attempts, acceptances, tuple(rows))

@@ -174,16 +174,16 @@ def _divided(plan: Plan, reads: Reads, batch: Batch, leaf: int, always: bool) ->
     The leaves are numbered from ``leaf``.
     """
     is_large = sum(map(_pairs, plan.checks)) > MOST_PAIRS
-    found, units = coarse_pieces(reads, plan.checks) if is_large else pieces(reads, plan.checks)
-    read = frozenset[int]().union(*(piece.read for piece in found))
+    found_pieces, units = coarse_pieces(reads, plan.checks) if is_large else pieces(reads, plan.checks)
+    read = frozenset[int]().union(*(piece.read for piece in found_pieces))
     if is_large:
-        holds = np.array([_holds(piece.check, batch) for piece in found])
+        holds = np.array([_holds(piece.check, batch) for piece in found_pieces])
     else:
         parts = [check.parts(batch) for check in plan.checks]
         holds = np.array(
             [
                 np.logical_and.reduce([parts[piece.number][pair].holds for pair in piece.pairs or (0,)])
-                for piece in found
+                for piece in found_pieces
             ]
         )
     passing = float(holds.all(axis=0).mean()) if len(holds) else 1.0
@@ -196,9 +196,9 @@ def _divided(plan: Plan, reads: Reads, batch: Batch, leaf: int, always: bool) ->
             or (passing > (0.0 if most == RARE else most) and not always)
         ):
             continue
-        outlined = _Outline(sets, found, holds)
-        if always or outlined.pays(most):
-            return _Division(_tree(plan, outlined, leaf, always), most == SELDOM)
+        outline_of_plan = _Outline(sets, found_pieces, holds)
+        if always or outline_of_plan.pays(most):
+            return _Division(_tree(plan, outline_of_plan, leaf, always), most == SELDOM)
     return None
 
 
@@ -221,12 +221,12 @@ def _grouped(
         id(item): item for check in plan.checks if isinstance(check, CollisionCheck) for item in check.objects
     }
     for mine in (reads.of(item.all) & read for item in objects.values()):
-        joined = sorted({owner[place] for place in mine if place in owner})
-        whole = mine.union(*(groups[number] for number in joined))
-        for number in joined:
+        group_numbers = sorted({owner[place] for place in mine if place in owner})
+        whole = mine.union(*(groups[number] for number in group_numbers))
+        for number in group_numbers:
             groups[number] = frozenset()
-        target = joined[0] if joined else len(groups)
-        if joined:
+        target = group_numbers[0] if group_numbers else len(groups)
+        if group_numbers:
             groups[target] = whole
         else:
             groups.append(whole)
@@ -270,7 +270,9 @@ def _tree(plan: Plan, outlined: _Outline, leaf: int, always: bool) -> Tree:
     places = range(len(soft)) if plan.soft_places is None else plan.soft_places
     soft_places = dict(zip(soft, places, strict=True))
     numbers = range(len(plan.checks)) if plan.numbers is None else plan.numbers
-    ordered = sorted(zip(outlined.found, outlined.spans, strict=True), key=lambda item: item[0].check.cost)
+    pieces_by_cost = sorted(
+        zip(outlined.found, outlined.spans, strict=True), key=lambda item: item[0].check.cost
+    )
 
     def tree(start: int, stop: int, leaf: int, cut: int) -> Tree:
         if cut == _APART:
@@ -282,9 +284,9 @@ def _tree(plan: Plan, outlined: _Outline, leaf: int, always: bool) -> Tree:
             way = 0 if cut == _APART else int(cuts[first, last])
             halves.append(tree(first, last, halves[-1].stop if halves else leaf, way))
         inner = [*pairwise(edges)] if cut else []
-        own = [
+        pieces_here = [
             piece
-            for piece, (low, high) in ordered
+            for piece, (low, high) in pieces_by_cost
             if start <= low and high < stop and not any(first <= low and high < last for first, last in inner)
         ]
         chance = within[start, stop] - sum(within[first, last] for first, last in inner)
@@ -292,7 +294,7 @@ def _tree(plan: Plan, outlined: _Outline, leaf: int, always: bool) -> Tree:
             leaf,
             halves[-1].stop if halves else leaf + 1,
             frozenset[int]().union(*outlined.sets[start:stop]),
-            _joints(own, numbers, soft_places),
+            _joints(pieces_here, numbers, soft_places),
             float(np.exp(chance)),
             tuple(halves) or None,
         )
@@ -342,7 +344,7 @@ def _cheapest(
     cost = np.zeros((count + 1, count + 1))
     cuts = np.zeros((count + 1, count + 1), dtype=np.intp)
     alone = within[np.arange(count), np.arange(1, count + 1)]
-    summed = np.concatenate([[0.0], np.cumsum(alone)])
+    sums = np.concatenate([[0.0], np.cumsum(alone)])
     costs = np.concatenate([[0.0], np.cumsum((1 + OVERHEAD) * np.exp(-alone))])
     for width in range(1, len(edges)):
         for number in range(len(edges) - width):
@@ -352,17 +354,17 @@ def _cheapest(
             if length == 1:
                 continue
             apart = costs[stop] - costs[start] + length + OVERHEAD
-            apart *= np.exp(min(summed[stop] - summed[start] - within[start, stop], -_LEAST))
+            apart *= np.exp(min(sums[stop] - sums[start] - within[start, stop], -_LEAST))
             if apart < cost[start, stop] and not always:
                 cost[start, stop], cuts[start, stop] = apart, _APART
             cut = edges[number + 1 : number + width]
             if not len(cut):
                 continue
             between = within[start, stop] - within[start, cut] - within[cut, stop]
-            divided = (cost[start, cut] + cost[cut, stop] + length + OVERHEAD) * np.exp(
+            costs_of_cuts = (cost[start, cut] + cost[cut, stop] + length + OVERHEAD) * np.exp(
                 np.minimum(-between, -_LEAST)
             )
-            best = int(divided.argmin())
-            if divided[best] < cost[start, stop] or always:
-                cost[start, stop], cuts[start, stop] = divided[best], cut[best]
+            best = int(costs_of_cuts.argmin())
+            if costs_of_cuts[best] < cost[start, stop] or always:
+                cost[start, stop], cuts[start, stop] = costs_of_cuts[best], cut[best]
     return float(cost[0, count]), cuts

@@ -165,9 +165,9 @@ class _Search:
             self._supply(root, np.ones(scenes, dtype=np.int64))
         except LateError:
             in_time = False
-        found = root.count > 0
+        has_result = root.count > 0
         attempts = np.zeros((scenes, self._tree.leaves), dtype=np.int64)
-        where = np.flatnonzero(found)
+        where = np.flatnonzero(has_result)
         attempts[where] = root.at(where, np.zeros(len(where), dtype=np.int64))
         leaves = [queue.tried for queue in self._queues.values() if queue.tree.halves is None]
         return Joined(attempts, np.maximum.reduce(leaves), in_time)
@@ -196,8 +196,8 @@ class _Search:
         for _ in range(_TURNS):
             missing = np.max([wanted - leaf.count for leaf in leaves], axis=0)
             scenes = np.flatnonzero((missing > 0) & ~self._is_over)
-            tried = np.max([leaf.tried[scenes] for leaf in leaves], axis=0)
-            scenes = scenes[tried < self._limit]
+            attempts = np.max([leaf.tried[scenes] for leaf in leaves], axis=0)
+            scenes = scenes[attempts < self._limit]
             if not len(scenes):
                 return
             if self._deadline is not None and time.monotonic() > self._deadline:
@@ -228,13 +228,13 @@ class _Search:
         batch = self._engine.batch(self._source(trees, lanes, candidates))
         batch.need(dict.fromkeys(node for _, joint in joints for node in joint.check.nodes))
         for number, joint in joints:
-            begun = time.perf_counter()
+            start_time = time.perf_counter()
             verdict = joint.check.test(batch)
             if joint.soft_place is not None:
                 verdict = verdict.unless(self._pending.inactive[lanes, joint.soft_place])
             passes[number] &= verdict.passes
             count = int(np.count_nonzero(verdict.passes))
-            self._engine.note(joint.number, len(lanes), count, time.perf_counter() - begun)
+            self._engine.note(joint.number, len(lanes), count, time.perf_counter() - start_time)
         return passes
 
     def _next(
@@ -249,11 +249,11 @@ class _Search:
             candidates = (queue.tried[lanes] + offset + 1)[:, np.newaxis]
         else:
             halves = [self._queues[id(half)] for half in queue.tree.halves]
-            wanted = np.zeros(len(self._is_over), dtype=np.int64)
-            wanted[scenes] = counts
-            self._supply_together([half for half in halves if half.tree.halves is None], wanted)
+            needs = np.zeros(len(self._is_over), dtype=np.int64)
+            needs[scenes] = counts
+            self._supply_together([half for half in halves if half.tree.halves is None], needs)
             for half in halves:
-                self._supply(half, wanted)
+                self._supply(half, needs)
             counts = np.where(self._is_over[scenes], 0, counts)
             owner, offset = expand(counts)
             lanes = scenes[owner]
@@ -270,14 +270,14 @@ class _Search:
             return passes
         batch = self._engine.batch(self._source([tree], lanes, candidates))
         for joint in tree.joints:
-            begun = time.perf_counter()
+            start_time = time.perf_counter()
             batch.need(joint.check.nodes)
             verdict = joint.check.test(batch)
             if joint.soft_place is not None:
                 verdict = verdict.unless(self._pending.inactive[lanes[batch.rows], joint.soft_place])
             alive = verdict.passes
             self._engine.note(
-                joint.number, len(alive), int(np.count_nonzero(alive)), time.perf_counter() - begun
+                joint.number, len(alive), int(np.count_nonzero(alive)), time.perf_counter() - start_time
             )
             passes[batch.rows[~alive]] = False
             batch.keep(alive)

@@ -87,13 +87,13 @@ class Bodies:
         free = np.ones(lanes, dtype=np.bool_)
         first, second = self._near(chosen, lane, part)
         one, two, lane = chosen[first], chosen[second], lane[first]
-        wanted = self._forbidden(one, two, may_meet)
-        one, two, lane = one[wanted], two[wanted], lane[wanted]
+        is_relevant = self._forbidden(one, two, may_meet)
+        one, two, lane = one[is_relevant], two[is_relevant], lane[is_relevant]
         for step in rows(len(lane), 1, _STEP):
             left = np.flatnonzero(free[lane[step]]) + step.start
             if len(left):
-                met = self._collide(one[left], two[left])
-                free[lane[left[met]]] = False
+                collides = self._collide(one[left], two[left])
+                free[lane[left[collides]]] = False
         return free
 
     def meetings(

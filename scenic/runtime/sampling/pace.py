@@ -117,21 +117,25 @@ class Pace:
         ``more`` says whether others will take the places of those that are found. Then what counts is the time for each that
         is found now; otherwise the last ones of them may take as many rounds as all before, and those count, too.
         """
-        fixed, lane = self.cost()
-        most = max(1, min(self.most, most, int((_ROUND_SECONDS - fixed) / lane)))
-        believed = min(most, max(waiting, _FIRST, _TRUST * self._largest))
-        rejected = 1 - self.acceptance
+        fixed_cost, lane = self.cost()
+        most = max(1, min(self.most, most, int((_ROUND_SECONDS - fixed_cost) / lane)))
+        lane_limit = min(most, max(waiting, _FIRST, _TRUST * self._largest))
+        rejection_rate = 1 - self.acceptance
         if not more:
-            ahead = _until_all_are_found(waiting, believed, fixed, lane, rejected)
+            ahead = _until_all_are_found(waiting, lane_limit, fixed_cost, lane, rejection_rate)
             if ahead is not None:
                 return Round(waiting, ahead)
         best, price = Round(1, 1), float("inf")
         ahead = 1
-        while ahead <= believed:
-            scenes = min(waiting, believed // ahead)
-            found = scenes * (1 - rejected**ahead)
-            this = (fixed + lane * scenes * ahead) / found if found > 0 else float("inf")
-            if this < price or (found <= 0 and price == float("inf")):
+        while ahead <= lane_limit:
+            scenes = min(waiting, lane_limit // ahead)
+            expected_scenes = scenes * (1 - rejection_rate**ahead)
+            this = (
+                (fixed_cost + lane * scenes * ahead) / expected_scenes
+                if expected_scenes > 0
+                else float("inf")
+            )
+            if this < price or (expected_scenes <= 0 and price == float("inf")):
                 best, price = Round(scenes, ahead), this
             ahead *= 2
         return best

@@ -88,8 +88,8 @@ class _Search:
         rows = np.flatnonzero(top.count > 0)
         attempts = np.zeros((self._scenes, self._apart.leaves), dtype=np.int64)
         ones, zeros = np.ones(len(rows), dtype=np.int64), np.zeros(len(rows), dtype=np.int64)
-        found = top.take(rows, ones, zeros, np.arange(len(rows)))
-        attempts[rows] = self._candidates.attempts(found[:, self._is_leaf])
+        candidates = top.take(rows, ones, zeros, np.arange(len(rows)))
+        attempts[rows] = self._candidates.attempts(candidates[:, self._is_leaf])
         return Joined(attempts, self._candidates.tried.max(axis=1), in_time)
 
     def _supply(self, number: int, wanted: Numbers) -> None:
@@ -123,14 +123,14 @@ class _Search:
         owner, offset = expand(counts)
         pieces = [below.take(level.fan * rows + place, counts, offset, owner) for place in range(level.fan)]
         candidates = np.concatenate(pieces, axis=1)
-        begun = time.perf_counter()
+        start_time = time.perf_counter()
         passes = np.empty(len(owner), dtype=np.bool_)
         step = max(1, LEAVES // level.width)
         for start in range(0, len(owner), step):
             some = slice(start, start + step)
             passes[some] = self._are_apart(candidates[some], below.width)
         good = np.flatnonzero(passes)
-        self._engine.note(self._apart.number, len(owner), len(good), time.perf_counter() - begun)
+        self._engine.note(self._apart.number, len(owner), len(good), time.perf_counter() - start_time)
         level.judged += len(owner)
         level.passed += len(good)
         level.add(rows[owner[good]], candidates[good])
@@ -145,9 +145,9 @@ class _Search:
     def _forget(self) -> None:
         """Forget candidates for groups that no part holds any more."""
         upper = self._levels[1:]
-        renamed = self._candidates.forget([level.kept[level.live()] for level in upper])
+        new_numbers = self._candidates.forget([level.kept[level.live()] for level in upper])
         for level in upper:
-            level.kept = renamed[level.kept]
+            level.kept = new_numbers[level.kept]
 
 
 def _levels(leaves: int, bunch: int, scenes: int) -> list[Queues]:

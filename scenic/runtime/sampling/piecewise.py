@@ -170,17 +170,17 @@ class PiecewiseEngine:
         """The same for tasks without end, of which nobody knows how many are wanted."""
         waiting, limits = iter(tasks), _Limits(max_attempts)
         size = _FORESEEN[0] if more else 1
-        spent = 0.0
-        while wanted := list(islice(waiting, size)):
-            begun = time.thread_time()
-            block = self._block(wanted, limits)
+        seconds = 0.0
+        while tasks_here := list(islice(waiting, size)):
+            start_time = time.thread_time()
+            block = self._block(tasks_here, limits)
             first = next(block)  # which takes the time of all of them
-            last = time.thread_time() - begun
-            spent += last
+            last = time.thread_time() - start_time
+            seconds += last
             yield first
             yield from block
             # A larger block that nobody wants takes at most about as long as all before, and mostly hardly longer than the last.
-            if last < _FORESIGHT_SECONDS or (last < _LONGEST_SECONDS and 4 * last <= spent):
+            if last < _FORESIGHT_SECONDS or (last < _LONGEST_SECONDS and 4 * last <= seconds):
                 size = min(4 * size, _FORESEEN[1])
 
     def accepted(self, seed: int, numbers: NDArray[np.int64], attempts: NDArray[np.int64]) -> list[Accepted]:
@@ -206,14 +206,14 @@ class PiecewiseEngine:
                 self._joined(tree, block, limits)
         good = [row for row in range(block.end) if row not in block.missing and row not in block.errors]
         approximation = joined(block.reports)
-        found = iter(self._finished([tasks[row] for row in good], block.attempts[good], approximation))
+        scenes = iter(self._finished([tasks[row] for row in good], block.attempts[good], approximation))
         for row in range(block.end):
             if row in block.missing:
                 yield block.missing[row]
             elif row in block.errors:
                 raise min(block.errors[row], key=lambda error: error.check.position)
             else:
-                yield next(found)
+                yield next(scenes)
         if block.end < len(tasks):
             yield from self._block(tasks[block.end :], limits)
 
@@ -245,8 +245,8 @@ class PiecewiseEngine:
                 report = self._whole.report(Task(result.seed, result.k), result.attempts)
                 block.missing.setdefault(row, replace(result, report=report))
             else:
-                found, lane = result
-                mine[row] = found.attempts[lane]
+                lanes, lane = result
+                mine[row] = lanes.attempts[lane]
 
     def _joined(self, tree: Tree | Apart, block: _Block, limits: _Limits) -> None:
         """Look for a component that is divided."""
@@ -259,53 +259,56 @@ class PiecewiseEngine:
             "lanes": limits.lanes,
             "deadline": limits.deadline,
         }
-        begun = time.thread_time()
-        found: Joined
+        start_time = time.thread_time()
+        search_result: Joined
         if isinstance(tree, Apart) and limits.approximate:
-            found, report = settle(self._whole, tree, tasks, max_attempts=limits.attempts)
+            search_result, report = settle(self._whole, tree, tasks, max_attempts=limits.attempts)
             block.reports.append(report)
         elif isinstance(tree, Apart):
-            found = pair(self._whole, tree, tasks, **options)
+            search_result = pair(self._whole, tree, tasks, **options)
         else:
-            found = join(self._whole, tree, tasks, **options)
-        tried, passed = int(found.tried.sum()), int(np.count_nonzero(found.attempts[:, 0]))
-        self._whole.note_round(tried, passed, time.thread_time() - begun)
-        block.attempts[rows, tree.first : tree.stop] = found.attempts
-        for row, (seed, k), tried, attempts in zip(
-            rows, tasks, found.tried.tolist(), found.attempts, strict=True
+            search_result = join(self._whole, tree, tasks, **options)
+        attempt_count, pass_count = (
+            int(search_result.tried.sum()),
+            int(np.count_nonzero(search_result.attempts[:, 0])),
+        )
+        self._whole.note_round(attempt_count, pass_count, time.thread_time() - start_time)
+        block.attempts[rows, tree.first : tree.stop] = search_result.attempts
+        for row, (seed, k), attempt_count, attempts in zip(
+            rows, tasks, search_result.tried.tolist(), search_result.attempts, strict=True
         ):
             if not attempts[0]:
-                given_up = self._whole.given_up(seed, k, tried)
-                reason = "attempts" if found.in_time else "time"
+                given_up = self._whole.given_up(seed, k, attempt_count)
+                reason = "attempts" if search_result.in_time else "time"
                 block.missing.setdefault(row, replace(given_up, reason=reason))
 
     def _together(self, block: _Block, ahead: int) -> None:
         """Make a number of attempts at all components that are not divided."""
-        begun = time.thread_time()
+        start_time = time.thread_time()
         pending = self._whole.pending(block.tasks)
         owner, offset = expand(np.full(len(block.tasks), ahead, dtype=np.int64))
         batch = self._whole.attempts_at(pending, owner, offset)
         self._whole.evaluate(batch, self._nodes)
         passes = np.ones((len(self._whole_ones), len(owner)), dtype=np.bool_)
-        failed = np.zeros((len(self._whole_ones), len(owner)), dtype=np.bool_)
+        has_fault = np.zeros((len(self._whole_ones), len(owner)), dtype=np.bool_)
         for number, component in enumerate(self._whole_ones):
             plan = self._components.plans[component]
             soft = iter(plan.soft_places or ())
             for index, check in zip(plan.numbers or (), plan.checks, strict=True):
-                asked = time.perf_counter()
+                check_start = time.perf_counter()
                 verdict = check.test(batch)
                 if check.probability < 1:
                     verdict = verdict.unless(pending.inactive[owner, next(soft)])
                 passes[number] &= verdict.passes
                 if verdict.failed is not None:
-                    failed[number] |= verdict.failed
-                spent = time.perf_counter() - asked
-                self._whole.note(index, len(owner), int(np.count_nonzero(verdict.passes)), spent)
-        self._whole.note_round(len(owner), int(passes.all(axis=0).sum()), time.thread_time() - begun)
+                    has_fault[number] |= verdict.failed
+                seconds = time.perf_counter() - check_start
+                self._whole.note(index, len(owner), int(np.count_nonzero(verdict.passes)), seconds)
+        self._whole.note_round(len(owner), int(passes.all(axis=0).sum()), time.thread_time() - start_time)
         shape = (len(self._whole_ones), len(block.tasks), ahead)
-        passes, failed = passes.reshape(shape), failed.reshape(shape)
+        passes, has_fault = passes.reshape(shape), has_fault.reshape(shape)
         first = passes.argmax(axis=2)
-        fails = np.take_along_axis(failed, first[..., np.newaxis], axis=2)[..., 0]
+        fails = np.take_along_axis(has_fault, first[..., np.newaxis], axis=2)[..., 0]
         places = [self._components.places[number] for number in self._whole_ones]
         block.attempts[:, places] = np.where(passes.any(axis=2), np.where(fails, _FAILED, first + 1), 0).T
 
@@ -327,8 +330,8 @@ class PiecewiseEngine:
             return self._whole.batch(self._source(seeds[one], numbers[one], attempts[one]), grouped=False)
 
         most = attempts.max(axis=1).tolist()
-        found = FinishedLanes(seeds, numbers, most, batch, alone, attempts, approximation)
-        return [(found, lane) for lane in range(len(tasks))]
+        lanes = FinishedLanes(seeds, numbers, most, batch, alone, attempts, approximation)
+        return [(lanes, lane) for lane in range(len(tasks))]
 
     def _source(self, seeds: Sequence[int], numbers: Sequence[int], attempts: NDArray[np.int64]) -> Source:
         words = np.array([seed_word(seed) for seed in seeds], dtype=np.uint64)

@@ -82,8 +82,8 @@ def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_
             filename=filename,
             help="leave `present` out, or make another object the ego",
         )
-    reached = dependencies(program.reachable())
-    checks: list[Check] = drawing_checks(reached, program)
+    roots = dependencies(program.reachable())
+    checks: list[Check] = drawing_checks(roots, program)
     checks += _finite(program)
     checks += _sizes(program)
     built_in = [*_containment(program, workspace), *_visibility(program, ego, mode_2d=mode_2d)]
@@ -91,7 +91,7 @@ def outline(program: Program, ego: Object | None, workspace: Workspace, *, mode_
     checks += _collisions(program)
     checks += _requirements(program)
     nodes = [node for check in checks for node in check.nodes]
-    graph = Graph([*reached, *nodes])
+    graph = Graph([*roots, *nodes])
     outputs = dependencies([*program.objects, *program.parameters.values()])
     hard = tuple(item for item in program.requirements if item.probability == 1)
     return Outline(graph, tuple(checks), tuple(outputs), hard, tuple(built_in), len(program.objects))
@@ -104,7 +104,7 @@ def _place(program: Program, item: object) -> tuple[Span | None, str | None]:
 def _finite(program: Program) -> list[Check]:
     """Random positions and angles must come out finite."""
     checks: list[Check] = []
-    known: dict[Node, Bounds | None] = {}
+    bounds_of: dict[Node, Bounds | None] = {}
     forms, answers = Forms(), dict[int, bool]()
     for item in program.objects:
         span, _ = _place(program, item)
@@ -113,7 +113,7 @@ def _finite(program: Program) -> list[Check]:
                 continue
             form = forms.number(value.node)
             if form not in answers:
-                answers[form] = _may_be_infinite(value.node, known)
+                answers[form] = _may_be_infinite(value.node, bounds_of)
             if answers[form]:
                 size = operate("norm" if value is item.position else "absolute", value)
                 # What is undefined is not less than anything.
@@ -152,8 +152,8 @@ def _may_be_infinite(root: Node, known: dict[Node, Bounds | None]) -> bool:
         if bounds is not None and _may_be_no_turn(node, operands):
             bounds = Bounds(np.full_like(bounds.lower, -math.inf), np.full_like(bounds.upper, math.inf))
         known[node] = bounds
-    found = known[root]
-    return found is None or not _is_bounded(found)
+    bounds_of_root = known[root]
+    return bounds_of_root is None or not _is_bounded(bounds_of_root)
 
 
 def _may_be_no_turn(node: Node, operands: Sequence[Bounds | None]) -> bool:
@@ -229,20 +229,20 @@ def _containment(program: Program, workspace: Workspace) -> list[NodeCheck]:
         if region not in footprints:
             footprints[region] = region.footprint
             reaches[region] = extents(footprints[region])
-        held = _if_present(item, truth(footprints[region].containsObject(item)))
+        containment = _if_present(item, truth(footprints[region].containsObject(item)))
         node = as_node(body_operands(item)[2])
         size = size_in_words(node)
-        found = _required(
-            held,
+        checks_of_object = _required(
+            containment,
             f"{called(program, item)} inside its container",
             _place(program, item),
             f"{_subject(program, item)}{f', {size},' if size else ''} is not inside its container, {region!r}",
             "move or shrink it, or enlarge the workspace or its `regionContainedIn`",
             f"{called(program, item)} is {size}" if size else "",
         )
-        if found and size and outgrows(node, reaches[region]):
+        if checks_of_object and size and outgrows(node, reaches[region]):
             _warn_of_size(program, item, size, "the workspace" if container is None else "its container")
-        checks += found
+        checks += checks_of_object
     return checks
 
 
@@ -293,12 +293,12 @@ def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[
         advice = "move one of the two, or what stands between them"
         checks += _required(node, label, _place(program, item), never, advice)
     for item in program.objects:
-        wanted = item.requireVisible
-        if item is ego or (not is_random(wanted) and not wanted):
+        requirement = item.requireVisible
+        if item is ego or (not is_random(requirement) and not requirement):
             continue
         span, filename = _place(program, item)
-        if ego is None and is_random(wanted):
-            node = _if_present(item, connect("not", [truth(wanted)]))
+        if ego is None and is_random(requirement):
+            node = _if_present(item, connect("not", [truth(requirement)]))
             label = f"{called(program, item)} visible from the ego"
             checks.append(NodeCheck(node, label, span, BUILT_IN))
             continue
@@ -310,8 +310,8 @@ def _visibility(program: Program, ego: Object | None, *, mode_2d: bool) -> list[
                 help="set `ego = new Object ...`, or write `with requireVisible False`",
             )
         node = seen(ego, item)
-        if is_random(wanted):
-            node = connect("or", [connect("not", [truth(wanted)]), node])
+        if is_random(requirement):
+            node = connect("or", [connect("not", [truth(requirement)]), node])
         node = _if_present(item, node)
         checks += _required(
             node,
@@ -328,16 +328,16 @@ def _collisions(program: Program) -> list[Check]:
     objects = program.objects
     nodes = [_object_nodes(program, item) for item in objects]
     never = np.array([_is_true(item.allow_collisions) for item in nodes], dtype=np.bool_)
-    fixed = np.array([all(node.is_constant for node in item.all) for item in nodes], dtype=np.bool_)
+    is_fixed = np.array([all(node.is_constant for node in item.all) for item in nodes], dtype=np.bool_)
     first, second = np.triu_indices(len(objects), 1)
-    wanted = ~(never[first] | never[second])
+    may_collide = ~(never[first] | never[second])
     if (assemblies := [item.__dict__.get("_assembly") for item in objects]).count(None) < len(objects):
         # The parts of one thing touch each other at their joints.
         owners = np.array([-1 if owner is None else id(owner) for owner in assemblies])
-        wanted &= (owners[first] != owners[second]) | (owners[first] == -1)
-    settled = fixed[first] & fixed[second]
-    _check_fixed(program, nodes, np.stack([first, second], axis=1)[wanted & settled])
-    pairs = np.stack([first, second], axis=1)[wanted & ~settled]
+        may_collide &= (owners[first] != owners[second]) | (owners[first] == -1)
+    is_settled = is_fixed[first] & is_fixed[second]
+    _check_fixed(program, nodes, np.stack([first, second], axis=1)[may_collide & is_settled])
+    pairs = np.stack([first, second], axis=1)[may_collide & ~is_settled]
     if not len(pairs):
         return []
     shapes = [nodes[index].shape for index in distinct(pairs).tolist()]
@@ -370,15 +370,15 @@ def _check_fixed(program: Program, nodes: Sequence[ObjectNodes], pairs: NDArray[
     if not len(pairs):
         return
     members = distinct(pairs)
-    chosen = [nodes[member] for member in members.tolist()]
-    batch = fixed_batch(node for item in chosen for node in item.all)
-    bodies = [item.body(batch) for item in chosen]
-    numbered = np.searchsorted(members, pairs)
-    if collide(bodies, numbered, lanes=1).free[0]:
+    objects = [nodes[member] for member in members.tolist()]
+    batch = fixed_batch(node for item in objects for node in item.all)
+    bodies = [item.body(batch) for item in objects]
+    pair_numbers = np.searchsorted(members, pairs)
+    if collide(bodies, pair_numbers, lanes=1).free[0]:
         return
-    found = collide(bodies, numbered, lanes=1, exhaustive=True).pairs
-    assert found is not None
-    bad = pairs[found[0]]
+    meetings = collide(bodies, pair_numbers, lanes=1, exhaustive=True).pairs
+    assert meetings is not None
+    bad = pairs[meetings[0]]
     # The first in the program: of the earliest second object, the earliest first one.
     first, second = bad[np.lexsort((bad[:, 0], bad[:, 1]))[0]].tolist()
     one, other = program.objects[first], program.objects[second]

@@ -175,16 +175,16 @@ class Meter:
             )
         ]
         rows: dict[tuple[str, Span | None], CheckRow] = {}
-        for index, found in sorted(self._checks.items()):
+        for index, sums in sorted(self._checks.items()):
             check = checks[index]
             # What one line asks of several objects is one row.
             row = rows.get((check.label, check.span)) or CheckRow(check.label, check.span, 0, 0, 0.0, False)
             rows[check.label, check.span] = CheckRow(
                 check.label,
                 check.span,
-                row.candidates + found.candidates,
-                row.passed + found.passed,
-                row.seconds + found.seconds,
+                row.candidates + sums.candidates,
+                row.passed + sums.passed,
+                row.seconds + sums.seconds,
                 row.in_python or len(scheduler.without_python(check.nodes)) < len(check.nodes),
             )
         found_rows = tuple(rows.values())

@@ -47,19 +47,19 @@ def rejection_rows(parts: Sequence[Part]) -> tuple[RejectionRow, ...]:
     """
     if not parts:
         return ()
-    rejected = np.array([~part.holds for part in parts])
-    undecided = np.array([part.lacks_value() for part in parts])
-    rejected &= ~undecided | ~(rejected & ~undecided).any(axis=0)
+    rejections = np.array([~part.holds for part in parts])
+    lacks_value = np.array([part.lacks_value() for part in parts])
+    rejections &= ~lacks_value | ~(rejections & ~lacks_value).any(axis=0)
     groups: dict[tuple[str, Span | None], list[int]] = {}
     for number, part in enumerate(parts):
         groups.setdefault((part.label, part.span), []).append(number)
-    merged = np.array([rejected[members].any(axis=0) for members in groups.values()])
-    alone = merged & (merged.sum(axis=0) == 1)
+    rejections_by_label = np.array([rejections[members].any(axis=0) for members in groups.values()])
+    alone = rejections_by_label & (rejections_by_label.sum(axis=0) == 1)
     rows = [
         RejectionRow(
             *key, float(mine.mean()), float(only.mean()), parts[members[0]].note, parts[members[0]].is_clause
         )
-        for (key, members), mine, only in zip(groups.items(), merged, alone, strict=True)
+        for (key, members), mine, only in zip(groups.items(), rejections_by_label, alone, strict=True)
     ]
     return tuple(row for row in rows if row.rejected > 0)
 
@@ -136,14 +136,14 @@ class Approximation:
         return self.correlation < CORRELATED
 
     def __str__(self) -> str:
-        told = (
+        summary = (
             f"approximate: {self.lanes} lanes, effective sample size {self.effective:.0f}, "
             f"log-probability {self.log_probability:.2f}, {self.sweeps} sweeps"
         )
         if self.is_mixed:
-            return told
+            return summary
         return (
-            f"{told}; warning: scenes still depend on how they were begun (correlation {self.correlation:.2f}), so that "
+            f"{summary}; warning: scenes still depend on how they were begun (correlation {self.correlation:.2f}), so that "
             f"the law may be far from the program's; compare several seeds, or make more scenes together"
         )
 

@@ -73,8 +73,8 @@ def description_of(path: Any) -> Description:
     name = None if context is None else context.file()
     # While a program runs, its folder is the first on Python's path.
     folders = [Path(sys.path[0]), *([] if name is None else [Path(name).parent]), Path()]
-    found = next((folder / path for folder in folders if (folder / path).is_file()), folders[0] / path)
-    return read_description(found, str(path))
+    file = next((folder / path for folder in folders if (folder / path).is_file()), folders[0] / path)
+    return read_description(file, str(path))
 
 
 def base_shape(path: Any) -> Shape:
@@ -153,7 +153,7 @@ def assemble(thing: Any, part: type[Any]) -> None:
             continue
         shape, middle = _formed(link)
         position, orientation = frames.point(link.chain, middle)
-        made = new(
+        link_object = new(
             part,
             [
                 At(position),
@@ -165,8 +165,8 @@ def assemble(thing: Any, part: type[Any]) -> None:
                 With("density", thing.density),
             ],
         )
-        made.__dict__["_assembly"] = thing
-        links[link.name] = made
+        link_object.__dict__["_assembly"] = thing
+        links[link.name] = link_object
     thing.__dict__["links"] = links
 
 
@@ -187,9 +187,9 @@ class _Frames:
     def at(self, chain: tuple[Segment, ...]) -> tuple[Any, Any]:
         """The place and the orientation of the frame at the end of a chain."""
         if chain not in self._known:
-            known = max(end for end in range(len(chain)) if chain[:end] in self._known)
-            place, turn = self._known[chain[:known]]
-            rest = chain[known:]
+            prefix_length = max(end for end in range(len(chain)) if chain[:end] in self._known)
+            place, turn = self._known[chain[:prefix_length]]
+            rest = chain[prefix_length:]
             joints = [self._values[joint.name] for segment in rest for joint in segment.joints]
             self._known[chain] = (
                 apply(_PLACE, place, turn, *joints, payload=rest),
@@ -219,9 +219,11 @@ def link_of(thing: Any, name: str) -> Any:
     if name not in thing.links:
         from scenic.language.spelling import nearest
 
-        meant = nearest(name, thing.links)
+        similar_name = nearest(name, thing.links)
         raise DescriptionError(
             f"there is no link {name!r}",
-            help=f"did you mean {meant!r}?" if meant else f"its links are {', '.join(thing.links)}",
+            help=f"did you mean {similar_name!r}?"
+            if similar_name
+            else f"its links are {', '.join(thing.links)}",
         ).at((here(), None))
     return thing.links[name]

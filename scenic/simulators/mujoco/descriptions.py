@@ -156,8 +156,8 @@ class _Reader:
         frames[BASE] = ()
         for site in range(model.nsite):
             x, y, z, w = self._turned(model.site_quat[site])
-            own = Segment(tuple(model.site_pos[site].tolist()), (x, y, z, w), ())
-            frames[model.site(site).name] = (*chains[model.site_bodyid[site]], own)
+            site_segment = Segment(tuple(model.site_pos[site].tolist()), (x, y, z, w), ())
+            frames[model.site(site).name] = (*chains[model.site_bodyid[site]], site_segment)
         joints = {joint.name: joint for joint in self._joints.values()}
         return Description(self._path, joints, tuple(links), frames)
 

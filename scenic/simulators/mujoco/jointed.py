@@ -40,9 +40,9 @@ def attach(spec: Any, thing: Any, prefix: str) -> None:
         child.delete(item)
     for key in list(child.keys):
         child.delete(key)
-    driven = {actuator.target for actuator in child.actuators}
+    driven_joints = {actuator.target for actuator in child.actuators}
     for name, joint in description.joints.items():
-        if name not in driven and getattr(thing, "servos", True):
+        if name not in driven_joints and getattr(thing, "servos", True):
             servo = child.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
             servo.set_to_position(kp=_STIFFNESS[joint.slides], dampratio=1.0)
     if getattr(thing, "weightless", True):
@@ -107,11 +107,11 @@ class Jointed:
             int(model.jnt_bodyid[model.joint(self._prefix + name).id])
             for name in getattr(self._thing, "gripper", ())
         }
-        moved: list[int] = []
+        bodies: list[int] = []
         for body in range(model.nbody):  # parents come first
-            if body in roots or int(model.body_parentid[body]) in moved:
-                moved.append(body)
-        return moved
+            if body in roots or int(model.body_parentid[body]) in bodies:
+                bodies.append(body)
+        return bodies
 
     def place(self, link: str, middle: Floats) -> tuple[Floats, Floats]:
         """The place of a point of a link ``(3,)``, and the link's orientation ``(x, y, z, w)``."""

@@ -86,9 +86,9 @@ def forward(
             if not anchor.any():  # on the axis, whose points the joint leaves where they are
                 turn = quaternions.multiply(turn, _hinged(axis, change))
                 continue
-            fixed = position + quaternions.rotate(turn, anchor)
+            anchor_place = position + quaternions.rotate(turn, anchor)
             turn = quaternions.multiply(turn, _hinged(axis, change))
-            position = fixed - quaternions.rotate(turn, anchor)
+            position = anchor_place - quaternions.rotate(turn, anchor)
     return position, turn
 
 

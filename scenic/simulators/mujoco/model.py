@@ -265,7 +265,7 @@ class Builder:
         """Friction, contacts and colour as arguments of a geom."""
         color = getattr(thing, "color", None)
         red, green, blue, *alpha = _COLOR if color is None else (float(part) for part in color)
-        found: dict[str, Any] = {"rgba": [red, green, blue, alpha[0] if alpha else 1.0]}
+        arguments: dict[str, Any] = {"rgba": [red, green, blue, alpha[0] if alpha else 1.0]}
         friction = getattr(thing, "friction", None)
         if friction is not None:
             if isinstance(friction, bool) or not isinstance(friction, int | float) or not 0 <= friction < 100:
@@ -273,10 +273,10 @@ class Builder:
                     f"the friction of {thing!r} must be a coefficient from 0, not {friction!r}",
                     help="0 is ice, 1 is rubber",
                 )
-            found["friction"] = [float(friction), 0.005, 0.0001]
+            arguments["friction"] = [float(friction), 0.005, 0.0001]
         if not getattr(thing, "collides", True):
-            found["contype"] = found["conaffinity"] = 0
-        return found
+            arguments["contype"] = arguments["conaffinity"] = 0
+        return arguments
 
     def _mesh(self, thing: Any, size: tuple[float, ...]) -> str:
         """The name of the mesh of an object's shape at a size, metres."""

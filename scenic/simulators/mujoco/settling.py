@@ -118,7 +118,7 @@ class Settling:
 
     def _compared(self, before: "list[_Pose]", after: "list[_Pose]") -> bool:
         """Count the objects that have moved, by the kind of their motion; returns whether none has."""
-        fell = tipped = slid = 0
+        fell = tip_count = slid = 0
         for first, last in zip(before, after, strict=True):
             distance, tilt, height = _change(first, last)
             if math.isfinite(distance) and distance <= self.distance and tilt <= self.angle:
@@ -126,11 +126,11 @@ class Settling:
             if not math.isfinite(distance) or height < -_FALLEN:
                 fell += 1
             elif tilt > self.angle:
-                tipped += 1
+                tip_count += 1
             else:
                 slid += 1
-        steady = not fell + tipped + slid
-        self.tally.add(1, steady, len(before), fell, tipped, slid)
+        steady = not fell + tip_count + slid
+        self.tally.add(1, steady, len(before), fell, tip_count, slid)
         return steady
 
 
@@ -146,10 +146,10 @@ def require_rest(program: Program, settling: Settling, *, keep: bool) -> Any:
         program.requirements.append(Requirement(as_node(stays), 1.0, label))
         return None
     # Copies keep the poses before, of which the settled ones are made.
-    settled = call_later(settling.settled, tuple(type(item)._make(item.__dict__) for item in program.objects))
+    result = call_later(settling.settled, tuple(type(item)._make(item.__dict__) for item in program.objects))
     label = f"everything is at rest after {settling.seconds:g} s (--settle)"
-    program.requirements.append(Requirement(as_node(operate("getitem", settled, 0)), 1.0, label))
-    return settled
+    program.requirements.append(Requirement(as_node(operate("getitem", result, 0)), 1.0, label))
+    return result
 
 
 def keep_poses(program: Program, outlined: Outline, settled: object) -> Outline:

@@ -184,19 +184,19 @@ class MujocoSimulation(Simulation):
     def grasp(self, gripper: object, target: object) -> None:
         """Let a gripper hold an object as it stands to it now, if it is within reach."""
         mujoco = library()
-        hand, held = self._parts[id(gripper)], self._parts.get(id(target))
-        if held is None or not held.moves or held is hand:
+        hand, target_part = self._parts[id(gripper)], self._parts.get(id(target))
+        if target_part is None or not target_part.moves or target_part is hand:
             return
         mujoco.mj_kinematics(self.model, self.data)
         reach = float(getattr(gripper, "reach", _REACH))
-        if not any(self._within(reach, *pair) for pair in product(*map(self._geoms, (hand, held)))):
+        if not any(self._within(reach, *pair) for pair in product(*map(self._geoms, (hand, target_part)))):
             return
-        first, second = (self.data.body(part.name) for part in (hand, held))
+        first, second = (self.data.body(part.name) for part in (hand, target_part))
         turn = first.xmat.reshape(3, 3)
         back, between = np.empty(4), np.empty(4)
         mujoco.mju_negQuat(back, first.xquat)
         mujoco.mju_mulQuat(between, back, second.xquat)
-        weld = self.model.equality(grip_name(hand, held))
+        weld = self.model.equality(grip_name(hand, target_part))
         weld.data[:3] = 0.0
         weld.data[3:6] = turn.T @ (second.xpos - first.xpos)
         weld.data[6:10] = between
@@ -229,16 +229,18 @@ class MujocoSimulation(Simulation):
     def step(self) -> None:
         """Advance by the steps of the physics that make a step of the simulation."""
         mujoco = library()
-        jointed = list(self._jointed.values())
-        steered = [part for part in self._parts.values() if part.model in ("guided", "quadrotor", "bicycle")]
+        jointed_things = list(self._jointed.values())
+        steered_parts = [
+            part for part in self._parts.values() if part.model in ("guided", "quadrotor", "bicycle")
+        ]
         feeling = [part for part in self._parts.values() if part.moves and hasattr(part.thing, "touches")]
         self._touches = {id(part.thing): [] for part in feeling}
         self._push()
         with quietly():
-            if steered or jointed:
+            if steered_parts or jointed_things:
                 for _ in range(self._substeps):
-                    self._steer(steered)
-                    for thing in jointed:
+                    self._steer(steered_parts)
+                    for thing in jointed_things:
                         thing.drive(self.model.opt.timestep)
                     mujoco.mj_step(self.model, self.data)
                     self._feel(feeling)
@@ -304,8 +306,8 @@ class MujocoSimulation(Simulation):
         bodies = self.model.body_rootid[self.model.geom_bodyid[contacts.geom[sideways]]]
         for part in parts:
             body = self.data.body(part.name)
-            own = sideways[(bodies == body.id).any(axis=1)]
-            places = (contacts.pos[own] - body.xpos) @ body.xmat.reshape(3, 3)
+            sides_of_body = sideways[(bodies == body.id).any(axis=1)]
+            places = (contacts.pos[sides_of_body] - body.xpos) @ body.xmat.reshape(3, 3)
             self._touches[id(part.thing)] += [Vector.of(tuple(place)) for place in places.tolist()]
 
     def _accelerate(self, command: dict[str, float], step: float) -> None:
@@ -321,10 +323,10 @@ class MujocoSimulation(Simulation):
         mujoco.mju_quat2Mat(matrix, quaternion)
         turn = matrix.reshape(3, 3)
         force = part.mass * (command["thrust"] * turn[:, 2] - DRAG * data.qvel[velocity : velocity + 3])
-        wanted = Orientation.fromEuler(command["yaw"], command["pitch"], command["roll"])
+        attitude = Orientation.fromEuler(command["yaw"], command["pitch"], command["roll"])
         back, error, angle = np.empty(4), np.empty(4), np.empty(3)
         mujoco.mju_negQuat(back, quaternion)
-        mujoco.mju_mulQuat(error, back, np.array([wanted.w, wanted.x, wanted.y, wanted.z]))
+        mujoco.mju_mulQuat(error, back, np.array([attitude.w, attitude.x, attitude.y, attitude.z]))
         mujoco.mju_quat2Vel(angle, error, 1.0)
         # All in the body's frame, as the velocity of a free joint is.
         rate = data.qvel[velocity + 3 : velocity + 6]
@@ -374,17 +376,17 @@ class MujocoSimulation(Simulation):
 
     def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
         """Read the body's state."""
-        part, stored = self._parts[id(obj)], obj.__dict__
+        part, attributes = self._parts[id(obj)], obj.__dict__
         if part.model in ("articulated", "link"):
             return self._jointed_properties(part, properties)
         if not part.moves:
-            return {name: stored[name] for name in properties}
+            return {name: attributes[name] for name in properties}
         position, velocity = self._joint(part)
         x, y, z, qw, qx, qy, qz = self.data.qpos[position : position + 7].tolist()
         vx, vy, vz = self.data.qvel[velocity : velocity + 3].tolist()
         turn = Orientation.of((qx, qy, qz, qw))
         wx, wy, wz = (_matrix(turn) @ self.data.qvel[velocity + 3 : velocity + 6]).tolist()
-        parent = stored["parentOrientation"]
+        parent = attributes["parentOrientation"]
         local = turn if parent == _UPRIGHT else parent.inverse * turn
         yaw, pitch, roll = local.eulerAngles
         values = {
@@ -401,29 +403,29 @@ class MujocoSimulation(Simulation):
             values["holding"] = any(self.data.eq_active[number] for number in self._grips(part))
         if "touches" in properties:
             values["touches"] = tuple(self._touches.get(id(obj), ()))
-        return {name: values[name] if name in values else stored[name] for name in properties}
+        return {name: values[name] if name in values else attributes[name] for name in properties}
 
     def _jointed_properties(self, part: Part, properties: Any) -> Mapping[str, Any]:
         """Read the state of a thing with joints, or of one of its links."""
-        stored = part.thing.__dict__
+        attributes = part.thing.__dict__
         values: dict[str, Any] = {}
         if part.model == "articulated":
-            jointed = self._jointed[id(part.thing)]
+            joints = self._jointed[id(part.thing)]
             values = {
-                "jointValues": jointed.values(),
-                "jointVelocities": jointed.velocities(),
-                "jointTorques": jointed.torques(),
+                "jointValues": joints.values(),
+                "jointVelocities": joints.velocities(),
+                "jointTorques": joints.torques(),
             }
             if "gripperContacts" in properties:
-                values["gripperContacts"] = self._held(jointed)
-        elif (jointed := self._jointed.get(id(part.thing.base))) is not None:  # type: ignore[assignment] # or none
-            middle = middle_of(jointed.description, part.thing.linkName)
-            place, (x, y, z, w) = jointed.place(part.thing.linkName, middle)
-            parent = stored["parentOrientation"]
+                values["gripperContacts"] = self._held(joints)
+        elif (joints := self._jointed.get(id(part.thing.base))) is not None:  # type: ignore[assignment] # or none
+            middle = middle_of(joints.description, part.thing.linkName)
+            place, (x, y, z, w) = joints.place(part.thing.linkName, middle)
+            parent = attributes["parentOrientation"]
             turn = parent.inverse * Orientation.of((float(x), float(y), float(z), float(w)))
             yaw, pitch, roll = turn.eulerAngles
             values = {"position": Vector.of(tuple(place.tolist())), "yaw": yaw, "pitch": pitch, "roll": roll}
-        return {name: values[name] if name in values else stored[name] for name in properties}
+        return {name: values[name] if name in values else attributes[name] for name in properties}
 
     def _held(self, jointed: Jointed) -> tuple[Any, ...]:
         """The objects that the links of a gripper touch."""
@@ -434,10 +436,10 @@ class MujocoSimulation(Simulation):
         bodies = self.model.geom_bodyid[contacts.geom]
         one, other = bodies[:, 0], bodies[:, 1]
         among = [np.isin(side, fingers) for side in (one, other)]
-        touched = {
+        body_numbers = {
             int(body) for body in np.concatenate([other[among[0] & ~among[1]], one[among[1] & ~among[0]]])
         }
-        return tuple(part.thing for part in self._parts.values() if touched & self._bodies(part))
+        return tuple(part.thing for part in self._parts.values() if body_numbers & self._bodies(part))
 
     def _bodies(self, part: Part) -> set[int]:
         """Numbers of the bodies of the model that are an object; none for things with joints and their links."""

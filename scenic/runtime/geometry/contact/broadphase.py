@@ -47,8 +47,8 @@ def boxes_overlap(a: Poses, b: Poses) -> Booleans:
     result = np.empty(count, dtype=np.bool_)
     entries = np.arange(count)
     for part in rows(count, 1, _CHUNK):
-        chosen = entries[part]
-        result[part] = _boxes_overlap(a.take(chosen), b.take(chosen), len(chosen))
+        entries_here = entries[part]
+        result[part] = _boxes_overlap(a.take(entries_here), b.take(entries_here), len(entries_here))
     return result
 
 

@@ -69,9 +69,9 @@ class Collider:
 
     def __init__(self, bodies: Sequence[Body], pairs: npt.ArrayLike | None = None) -> None:
         count = len(bodies)
-        fixed = np.array([body.is_fixed for body in bodies], dtype=np.bool_)
-        self._moving = np.flatnonzero(~fixed)
-        self._fixed = np.flatnonzero(fixed)
+        is_fixed = np.array([body.is_fixed for body in bodies], dtype=np.bool_)
+        self._moving = np.flatnonzero(~is_fixed)
+        self._fixed = np.flatnonzero(is_fixed)
         # Moving bodies first, as `near_pairs` wants them.
         self._order = np.concatenate([self._moving, self._fixed])
         self.pairs: Final = _all_pairs(count) if pairs is None else _as_pairs(pairs)
@@ -99,7 +99,7 @@ class Collider:
 
         """
         free = np.ones(lanes, dtype=np.bool_)
-        found: list[_Entries] | None = [] if exhaustive else None
+        entries: list[_Entries] | None = [] if exhaustive else None
         if len(self.fixed_collisions):
             free[:] = False
         if len(self._moving) and (exhaustive or free.any()):
@@ -109,8 +109,8 @@ class Collider:
             if self._still is not None:
                 crowd = crowd.followed_by(self._still)
             solids = self._solids_of(crowd)
-            _Search(crowd, solids, len(self._moving), self._wanted, free, found).run()
-        return Collisions(free, None if found is None else self._matrix(found, lanes))
+            _Search(crowd, solids, len(self._moving), self._wanted, free, entries).run()
+        return Collisions(free, None if entries is None else self._matrix(entries, lanes))
 
     def _solids_of(self, crowd: Crowd) -> Solids:
         """Return the precomputed tables of a crowd's meshes; they are kept while the meshes stay the same."""
@@ -121,13 +121,15 @@ class Collider:
     def _fixed_pairs(self) -> Indices:
         if self._still is None:
             return np.empty((0, 2), dtype=np.intp)
-        wanted = None
+        wanted_pairs = None
         if self._wanted is not None:
-            wanted = self._wanted[len(self._moving) :, len(self._moving) :]
-        found: list[_Entries] = []
+            wanted_pairs = self._wanted[len(self._moving) :, len(self._moving) :]
+        entries: list[_Entries] = []
         solids = self._solids_of(self._still)
-        _Search(self._still, solids, len(self._fixed), wanted, np.ones(1, dtype=np.bool_), found).run()
-        pairs = [np.stack([self._fixed[part.first], self._fixed[part.second]], axis=1) for part in found]
+        _Search(
+            self._still, solids, len(self._fixed), wanted_pairs, np.ones(1, dtype=np.bool_), entries
+        ).run()
+        pairs = [np.stack([self._fixed[part.first], self._fixed[part.second]], axis=1) for part in entries]
         return np.concatenate([np.empty((0, 2), dtype=np.intp), *pairs])
 
     def _matrix(self, found: list["_Entries"], lanes: int) -> Booleans:
@@ -207,34 +209,34 @@ class _Search:
             self._chunk(start, min(start + step, len(self._free)), cells)
 
     def _chunk(self, start: int, stop: int, cells: CellMap) -> None:
-        padded = -(-(stop - start) // 8) * 8
-        shape = (3, len(self._crowd), padded)
+        width = -(-(stop - start) // 8) * 8
+        shape = (3, len(self._crowd), width)
         lower, upper = np.full(shape, 255, dtype=np.uint8), np.zeros(shape, dtype=np.uint8)
         for part in rows(stop - start, len(self._crowd), _BOXES):
             low, high = self._crowd.boxes(slice(start + part.start, start + part.stop))
             cells.put(low, lower[:, :, part])
             cells.put(high, upper[:, :, part])
-        collected: list[_Entries] = []
+        batches: list[_Entries] = []
         total = 0
         for first, second, lane in near_pairs(lower, upper, self._moving):
             entries = _Entries(first, second, lane + start)
             if self._wanted is not None:
                 entries = entries.where(self._wanted[first, second])
-            collected.append(entries)
+            batches.append(entries)
             total += len(entries.lane)
             if total >= _MOST_ENTRIES:
-                self._settle(collected)
-                collected, total = [], 0
+                self._settle(batches)
+                batches, total = [], 0
         if total:
-            self._settle(collected)
+            self._settle(batches)
 
     def _settle(self, collected: list[_Entries]) -> None:
         """Decide about entries: those that look like collisions first, since they spare others of the lane."""
         entries = self._alive(_joined(collected))
         allow = self._crowd.allow
         if allow.values.any():
-            allowed = allow.at(entries.first, entries.lane) | allow.at(entries.second, entries.lane)
-            entries = entries.where(~allowed)
+            is_allowed = allow.at(entries.first, entries.lane) | allow.at(entries.second, entries.lane)
+            entries = entries.where(~is_allowed)
         open_entries = []
         for group in self._by_likelihood(entries):
             for part in rows(len(group.lane), 1, _STEP):

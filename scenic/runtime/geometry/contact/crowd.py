@@ -113,12 +113,12 @@ class Crowd:
         """At least one body."""
         meshes = tuple(dict.fromkeys(mesh for body in bodies for mesh in body.meshes))
         number = {mesh: index for index, mesh in enumerate(meshes)}
-        chosen = [
+        pose_parts = [
             np.array([number[mesh] for mesh in body.meshes])[[0] if body.choice is None else body.choice]
             for body in bodies
         ]
         poses = [body.poses for body in bodies]
-        known = np.array([item.knows_bounds for item in poses])
+        has_bounds = np.array([item.knows_bounds for item in poses])
         corners = [item.bounds() for item in poses if item.knows_bounds]
         lower, upper = zip(*corners, strict=True) if corners else ((), ())
         return cls(
@@ -126,11 +126,11 @@ class Crowd:
             Rows.of([item.position for item in poses]),
             Rows.of([item.orientation for item in poses]),
             Rows.of([item.size for item in poses]),
-            Rows.of(chosen),
+            Rows.of(pose_parts),
             Rows.of([body.allow for body in bodies]),
             Rows.of(lower),
             Rows.of(upper),
-            np.where(known, np.cumsum(known) - 1, -1),
+            np.where(has_bounds, np.cumsum(has_bounds) - 1, -1),
         )
 
     @classmethod
@@ -173,7 +173,7 @@ class Crowd:
         meshes = tuple(dict.fromkeys(self.meshes + others.meshes))
         number = {mesh: index for index, mesh in enumerate(meshes)}
         renumber = np.array([number[mesh] for mesh in others.meshes])
-        known = int((self.bounded >= 0).sum())
+        bounded_count = int((self.bounded >= 0).sum())
         return Crowd(
             meshes,
             self.position.followed_by(others.position),
@@ -183,7 +183,7 @@ class Crowd:
             self.allow.followed_by(others.allow),
             self.lower.followed_by(others.lower),
             self.upper.followed_by(others.upper),
-            np.concatenate([self.bounded, np.where(others.bounded >= 0, others.bounded + known, -1)]),
+            np.concatenate([self.bounded, np.where(others.bounded >= 0, others.bounded + bounded_count, -1)]),
         )
 
     def poses(self, body: Indices, lane: Indices) -> Poses:
@@ -202,22 +202,25 @@ class Crowd:
         """
         lower = np.empty((len(self), lanes.stop - lanes.start, 3))
         upper = np.empty_like(lower)
-        known = np.flatnonzero(self.bounded >= 0)
-        if len(known):
-            number = self.bounded[known]
-            lower[known], upper[known] = self.lower.over(number, lanes), self.upper.over(number, lanes)
+        bounded_numbers = np.flatnonzero(self.bounded >= 0)
+        if len(bounded_numbers):
+            number = self.bounded[bounded_numbers]
+            lower[bounded_numbers], upper[bounded_numbers] = (
+                self.lower.over(number, lanes),
+                self.upper.over(number, lanes),
+            )
         first = self.size.values[self.size.base]
-        elongated = first.max(axis=1) > _ELONGATED * first.min(axis=1)
-        turned = self.orientation.stride > 0
-        unknown = self.bounded < 0
+        is_elongated = first.max(axis=1) > _ELONGATED * first.min(axis=1)
+        is_turning = self.orientation.stride > 0
+        is_unbounded = self.bounded < 0
         # Groups in which orientations and sizes are the same everywhere come out in a single row.
-        for chosen, tight in (
-            (unknown & turned & ~elongated, False),
-            (unknown & turned & elongated, True),
-            (unknown & ~turned & (self.size.stride > 0), True),
-            (unknown & ~turned & (self.size.stride == 0), True),
+        for mask, tight in (
+            (is_unbounded & is_turning & ~is_elongated, False),
+            (is_unbounded & is_turning & is_elongated, True),
+            (is_unbounded & ~is_turning & (self.size.stride > 0), True),
+            (is_unbounded & ~is_turning & (self.size.stride == 0), True),
         ):
-            members = np.flatnonzero(chosen)
+            members = np.flatnonzero(mask)
             if len(members):
                 size, position = self.size.over(members, lanes), self.position.over(members, lanes)
                 reach = _half_diagonal(size)[..., None]

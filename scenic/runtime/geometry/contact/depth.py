@@ -71,10 +71,10 @@ def convex_gap(first: Floats, second: Floats) -> float:
     weights = np.ones(1)
     nearest = simplex[0]
     for _ in range(_ROUNDS):
-        squared = float(nearest @ nearest)
+        square = float(nearest @ nearest)
         corner = first[np.argmin(first @ nearest)] - second[np.argmax(second @ nearest)]
         # What is left is at most that much nearer.
-        if squared - float(corner @ nearest) <= _EXACT * size * np.sqrt(squared):
+        if square - float(corner @ nearest) <= _EXACT * size * np.sqrt(square):
             break
         if (simplex == corner).all(axis=1).any():
             break
@@ -86,14 +86,14 @@ def convex_gap(first: Floats, second: Floats) -> float:
 def _nearest_in(simplex: Floats, weights: Floats) -> tuple[Floats, Floats]:
     """The corners that hold a simplex's point nearest to the origin, and its weights, from those of another point."""
     while True:
-        wanted = _nearest_in_plane(simplex)
-        if (wanted > 0).all():
-            return simplex, wanted
+        new_weights = _nearest_in_plane(simplex)
+        if (new_weights > 0).all():
+            return simplex, new_weights
         # As far as the simplex goes towards it; there a corner counts no more.
-        falling = wanted <= 0
-        fall = np.maximum(weights[falling] - wanted[falling], np.finfo(float).tiny)
+        falling = new_weights <= 0
+        fall = np.maximum(weights[falling] - new_weights[falling], np.finfo(float).tiny)
         share = float((weights[falling] / fall).min(initial=1.0))
-        weights = weights + share * (wanted - weights)
+        weights = weights + share * (new_weights - weights)
         weights[falling & (weights <= weights[falling].min())] = 0.0
         left = weights > 0
         simplex, weights = simplex[left], weights[left]

@@ -69,7 +69,7 @@ class Fronts:
         forest, proofs = self._forest, self._proofs
         pairs = len(moving) // 2
         touching = np.zeros(pairs, dtype=np.bool_)
-        found: list[tuple[Indices, Indices, Floats, Floats]] = []
+        leaves: list[tuple[Indices, Indices, Floats, Floats]] = []
         entry, offset = expand(self._counts[moving])
         node = self._first[moving][entry] + offset
         while len(entry):
@@ -80,11 +80,11 @@ class Fronts:
             left = np.flatnonzero(proofs.near_filled(there, centre, reach) & ~touching[entry % pairs])
             inner = forest.child[node[left]] >= 0
             ends, left = left[~inner], left[inner]
-            found.append((entry[ends], node[ends], centre.take(ends, axis=1), reach.take(ends, axis=1)))
+            leaves.append((entry[ends], node[ends], centre.take(ends, axis=1), reach.take(ends, axis=1)))
             entry, node = entry[left], node[left]
             for _ in range(_STEP):
                 entry, node = forest.parts(entry, node)
-        entry, leaf, centre, reach = (np.concatenate(parts, axis=-1) for parts in zip(*found, strict=True))
+        entry, leaf, centre, reach = (np.concatenate(parts, axis=-1) for parts in zip(*leaves, strict=True))
         order = np.argsort(entry, kind="stable")
         order = order[~touching[entry[order] % pairs]]
         return Front(

@@ -146,9 +146,9 @@ class Solids:
         for stage in _STAGES if self._can_prove else ():
             if not len(left):
                 break
-            done = self._stage(stage, pairs.take(left))
-            together[left[done]] = stage is not None
-            left = left[~done]
+            is_decided = self._stage(stage, pairs.take(left))
+            together[left[is_decided]] = stage is not None
+            left = left[~is_decided]
         remains = np.zeros(count, dtype=np.bool_)
         remains[left] = True
         return together, remains
@@ -197,11 +197,11 @@ class Solids:
         while len(left) and not self._can_prove:
             part, left = left[:count], left[count:]
             count = min(2 * count, _TRIED)
-            begun = time.thread_time()
+            start_time = time.thread_time()
             result[part] = self._touch(
                 first[part], first_poses.take(part), second[part], second_poses.take(part)
             )
-            self._spent += time.thread_time() - begun
+            self._spent += time.thread_time() - start_time
         if len(left):
             a, b = first_poses.take(left), second_poses.take(left)
             result[left], open_ = self.prove(first[left], a, second[left], b)

@@ -137,8 +137,8 @@ def gap(one: Placed, other: Placed) -> float | None:
         return None
     if meet(one, other):
         return 0.0
-    found = convex_gap(one.hull(), other.hull())
-    return found if found > one.slack + other.slack else None
+    distance = convex_gap(one.hull(), other.hull())
+    return distance if distance > one.slack + other.slack else None
 
 
 def overlap(one: Placed, other: Placed) -> float:

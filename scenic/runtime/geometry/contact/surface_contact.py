@@ -78,7 +78,7 @@ class Surfaces:
         """All pairs of leaves whose boxes meet in both frames, in groups (place in ``chosen``, first leaf, second leaf)."""
         first, second = (groups.take(chosen) for groups in front.leaves())
         pairs = first.counts * second.counts
-        own = self._forest.middle.take(front.leaf, axis=1), self._forest.half.take(front.leaf, axis=1)
+        boxes = self._forest.middle.take(front.leaf, axis=1), self._forest.half.take(front.leaf, axis=1)
         images = front.centre, front.reach
         few = np.flatnonzero(pairs <= _GRID)
         for part in pieces(pairs[few], _PAIRS):
@@ -86,8 +86,8 @@ class Surfaces:
             owner = few[owner + part.start]
             width = second.counts[owner]
             one, two = first.starts[owner] + offset // width, second.starts[owner] + offset % width
-            near = _near(images, one, own, two)
-            near = near[_near(images, two[near], own, one[near])]
+            near = _near(images, one, boxes, two)
+            near = near[_near(images, two[near], boxes, one[near])]
             yield owner[near], front.leaf[one[near]], front.leaf[two[near]]
         # A grid of rows and columns takes no index for each pair.
         for place in np.flatnonzero(pairs > _GRID).tolist():
@@ -98,7 +98,7 @@ class Surfaces:
                 )
             )
             one, two = np.nonzero(
-                _grid_near(images, rows, own, columns) & _grid_near(images, columns, own, rows).T
+                _grid_near(images, rows, boxes, columns) & _grid_near(images, columns, boxes, rows).T
             )
             yield np.full(len(one), place), front.leaf[rows][one], front.leaf[columns][two]
 
@@ -207,15 +207,15 @@ def _turns(entry: Indices) -> Iterator[Indices]:
         yield np.arange(len(entry))
         return
     order = np.argsort(entry, kind="stable")
-    grouped = entry[order]
-    starts = np.flatnonzero(np.diff(grouped, prepend=-1))
+    entries = entry[order]
+    starts = np.flatnonzero(np.diff(entries, prepend=-1))
     rank = np.arange(len(order)) - np.repeat(starts, np.diff(starts, append=len(order)))
-    done, most = 0, max(_FIRST, _LEAST // len(starts))
-    while done < len(order):
-        chosen = order[(rank >= done) & (rank < done + most)]
-        if not len(chosen):
+    count, most = 0, max(_FIRST, _LEAST // len(starts))
+    while count < len(order):
+        indices = order[(rank >= count) & (rank < count + most)]
+        if not len(indices):
             return
-        for start in range(0, len(chosen), _CHUNK):
-            yield chosen[start : start + _CHUNK]
-        done += most
+        for start in range(0, len(indices), _CHUNK):
+            yield indices[start : start + _CHUNK]
+        count += most
         most *= 4

@@ -34,13 +34,13 @@ def contains_points(body: Body, points: Floats) -> Booleans:
     """Return whether the solid of a body holds a point ``(n | 1, 3)``, lane by lane."""
     lanes = max(len(body), len(points))
     result = np.zeros(lanes, dtype=np.bool_)
-    for mesh, chosen in body.by_mesh(lanes):
-        local = body.poses.take(chosen).to_unit(points if len(points) == 1 else points[chosen])
+    for mesh, lanes_of_mesh in body.by_mesh(lanes):
+        local = body.poses.take(lanes_of_mesh).to_unit(points if len(points) == 1 else points[lanes_of_mesh])
         if mesh.is_box:
             close = np.abs(local) <= 0.5
-            result[chosen] = close[:, 0] & close[:, 1] & close[:, 2]
+            result[lanes_of_mesh] = close[:, 0] & close[:, 1] & close[:, 2]
         else:
-            result[chosen] = inside.contains_points(mesh, local)
+            result[lanes_of_mesh] = inside.contains_points(mesh, local)
     return result
 
 
@@ -58,8 +58,8 @@ def in_convex_polygon(body: Body, corners: Floats, lanes: int) -> Booleans:
     # Twice the polygon's area, as a fan: a polygon without area holds nothing.
     spokes = corners - corners[:, :1]
     after = np.roll(spokes, -1, axis=1)
-    doubled = spokes[..., 0] * after[..., 1] - spokes[..., 1] * after[..., 0]
-    has_area: Booleans = np.logical_or.reduce(doubled > 0, axis=1)
+    double_area = spokes[..., 0] * after[..., 1] - spokes[..., 1] * after[..., 0]
+    has_area: Booleans = np.logical_or.reduce(double_area > 0, axis=1)
 
     def beside(images: Columns, chosen: Indices, numbers: Indices | int) -> Booleans:
         """Return whether all points are on the inner side of an edge, the same for all lanes or one for each."""
@@ -118,12 +118,12 @@ def surely_in_disc(
     for mesh, every in body.by_mesh(lanes):
         points = mesh.hull.vertices
         for part in rows(len(every), len(points), _CHUNK):
-            chosen = every[part]
-            x, y, _ = _world(body.poses, chosen, points)
-            dx, dy = x - middle[chosen, 0], y - middle[chosen, 1]
+            lanes_here = every[part]
+            x, y, _ = _world(body.poses, lanes_here, points)
+            dx, dy = x - middle[lanes_here, 0], y - middle[lanes_here, 1]
             farthest = np.sqrt(np.max(dx * dx + dy * dy, axis=0))
-            inside[chosen] = farthest < inner[chosen]
-            is_open[chosen] = ~inside[chosen] & (farthest < outer[chosen])
+            inside[lanes_here] = farthest < inner[lanes_here]
+            is_open[lanes_here] = ~inside[lanes_here] & (farthest < outer[lanes_here])
     return inside, is_open
 
 
@@ -217,11 +217,11 @@ def in_body(body: Body, container: Body, lanes: int) -> Booleans:
     result = np.zeros(lanes, dtype=np.bool_)
     for outer, outer_lanes in container.by_mesh(lanes):
         for inner, inner_lanes in body.by_mesh(lanes):
-            chosen = np.intersect1d(outer_lanes, inner_lanes, assume_unique=True)
-            if len(chosen):
-                poses = body.poses.take(chosen), container.poses.take(chosen)
-                held = mesh_in_mesh(inner, poses[0], outer, poses[1])
-                result[chosen] = held
+            lanes_of_pair = np.intersect1d(outer_lanes, inner_lanes, assume_unique=True)
+            if len(lanes_of_pair):
+                poses = body.poses.take(lanes_of_pair), container.poses.take(lanes_of_pair)
+                is_inside = mesh_in_mesh(inner, poses[0], outer, poses[1])
+                result[lanes_of_pair] = is_inside
     return result
 
 
@@ -275,14 +275,14 @@ def _container(dimensions: Floats, position: Floats, rotation: Floats) -> tuple[
 def _all_inside(body: Body, lanes: int, test: _Test) -> Booleans:
     """``test`` on the hull, for convex containers."""
     result = np.zeros(lanes, dtype=np.bool_)
-    for mesh, chosen in body.by_mesh(lanes):
-        whole = _chunked(test, chosen, _BOX_CORNERS)
-        result[chosen[whole]] = True
-        chosen = chosen[~whole]
+    for mesh, lanes_of_mesh in body.by_mesh(lanes):
+        whole = _chunked(test, lanes_of_mesh, _BOX_CORNERS)
+        result[lanes_of_mesh[whole]] = True
+        lanes_of_mesh = lanes_of_mesh[~whole]
         if mesh.is_box:
             continue
-        chosen = chosen[_chunked(test, chosen, extreme_corners(mesh))]
-        result[chosen] = _chunked(test, chosen, mesh.hull.vertices)
+        lanes_of_mesh = lanes_of_mesh[_chunked(test, lanes_of_mesh, extreme_corners(mesh))]
+        result[lanes_of_mesh] = _chunked(test, lanes_of_mesh, mesh.hull.vertices)
     return result
 
 

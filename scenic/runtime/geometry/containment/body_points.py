@@ -29,24 +29,30 @@ def draw_points(body: Body, uniforms: Floats, keys: Floats) -> tuple[Floats, Boo
     """
     lanes = uniforms.shape[1]
     points = np.zeros((lanes, 3))
-    found = np.zeros(lanes, dtype=np.bool_)
-    for mesh, chosen in body.by_mesh(lanes):
-        local = uniforms.T[chosen] - 0.5
-        known = np.ones(len(chosen), dtype=np.bool_) if mesh.is_box else inside.contains_points(mesh, local)
+    has_point = np.zeros(lanes, dtype=np.bool_)
+    for mesh, lanes_of_mesh in body.by_mesh(lanes):
+        local = uniforms.T[lanes_of_mesh] - 0.5
+        is_inside = (
+            np.ones(len(lanes_of_mesh), dtype=np.bool_)
+            if mesh.is_box
+            else inside.contains_points(mesh, local)
+        )
         for attempt in range(TRIES):
-            missing = np.flatnonzero(~known)
+            missing = np.flatnonzero(~is_inside)
             if not len(missing):
                 break
             words = (
-                np.asarray(keys)[chosen[missing]] if len(keys) > 1 else np.broadcast_to(keys, len(missing))
+                np.asarray(keys)[lanes_of_mesh[missing]]
+                if len(keys) > 1
+                else np.broadcast_to(keys, len(missing))
             )
-            own = mix(np.asarray(words, dtype=np.uint64) ^ np.uint64(attempt + 1))
-            fresh = np.stack([open_unit(mix(own + np.uint64(axis))) for axis in range(3)], axis=-1) - 0.5
+            seeds = mix(np.asarray(words, dtype=np.uint64) ^ np.uint64(attempt + 1))
+            fresh = np.stack([open_unit(mix(seeds + np.uint64(axis))) for axis in range(3)], axis=-1) - 0.5
             local[missing] = fresh
-            known[missing] = inside.contains_points(mesh, fresh)
-        points[chosen] = body.poses.take(chosen).to_world(local)
-        found[chosen] = known
-    return points, found
+            is_inside[missing] = inside.contains_points(mesh, fresh)
+        points[lanes_of_mesh] = body.poses.take(lanes_of_mesh).to_world(local)
+        has_point[lanes_of_mesh] = is_inside
+    return points, has_point
 
 
 def distances_to_surface(body: Body, points: Floats, side: Side, threshold: float) -> Floats:
@@ -62,14 +68,14 @@ def nearest_faces(body: Body, points: Floats, side: Side, threshold: float) -> I
 def _nearest(body: Body, points: Floats, side: Side, threshold: float) -> tuple[Floats, Indices]:
     lanes = max(len(body), len(points))
     if side is None:
-        found = to_surface(body, points, lanes)
-        return found.distance, found.number
+        nearest_points = to_surface(body, points, lanes)
+        return nearest_points.distance, nearest_points.number
     distance, face = np.empty(lanes), np.zeros(lanes, dtype=np.intp)
-    for mesh, chosen in body.by_mesh(lanes):
+    for mesh, lanes_of_mesh in body.by_mesh(lanes):
         count = len(mesh.faces)
         step = max(1, CHUNK // count)
-        for first in range(0, len(chosen), step):
-            part = chosen[first : first + step]
+        for first in range(0, len(lanes_of_mesh), step):
+            part = lanes_of_mesh[first : first + step]
             poses = body.poses.take(part)
             start = np.broadcast_to(points, (lanes, 3))[part]
             corners = np.broadcast_to(poses.to_world(mesh.triangles[np.newaxis]), (len(part), count, 3, 3))
@@ -100,11 +106,11 @@ def bounds(body: Body) -> tuple[Floats, Floats]:
     """Corners ``(n | 1, 3)`` of the boxes along the axes of the world around solids, exact up to rounding."""
     lanes = len(body)
     lower, upper = np.empty((lanes, 3)), np.empty((lanes, 3))
-    for mesh, chosen in body.by_mesh(lanes):
+    for mesh, lanes_of_mesh in body.by_mesh(lanes):
         # Which corner of the hull is farthest depends on how the body is turned.
         corners = mesh.outermost
-        for some in rows(len(chosen), len(corners), _CORNERS):
-            part = chosen[some]
+        for some in rows(len(lanes_of_mesh), len(corners), _CORNERS):
+            part = lanes_of_mesh[some]
             world = body.poses.take(part).to_world(corners[np.newaxis])
             lower[part], upper[part] = world.min(axis=1), world.max(axis=1)
     return lower, upper
@@ -135,8 +141,8 @@ def volumes(body: Body) -> Floats:
 def areas(body: Body, side: Side, threshold: float) -> Floats:
     """Areas ``(n | 1,)`` of the faces of a side."""
     result = np.empty(len(body))
-    for mesh, chosen in body.by_mesh(len(body)):
-        for lane in chosen.tolist():
+    for mesh, lanes_of_mesh in body.by_mesh(len(body)):
+        for lane in lanes_of_mesh.tolist():
             poses = body.poses.take(np.array([lane if len(body.poses) > 1 else 0]))
             world = poses.to_world(mesh.triangles[np.newaxis])[0]
             normal = np.cross(world[:, 1] - world[:, 0], world[:, 2] - world[:, 0])
@@ -150,16 +156,16 @@ def areas(body: Body, side: Side, threshold: float) -> Floats:
 def planar_inradii(body: Body) -> Floats:
     """Radii ``(n | 1,)`` of the largest discs about the positions within the solids seen along their own z; 0 where a position is outside."""
     result = np.empty(len(body))
-    for mesh, chosen in body.by_mesh(len(body)):
+    for mesh, lanes_of_mesh in body.by_mesh(len(body)):
         edges, is_inside = mesh.derived(_silhouette)
-        size = body.poses.take(chosen).size[:, np.newaxis, :2]
+        size = body.poses.take(lanes_of_mesh).size[:, np.newaxis, :2]
         start, end = edges[:, 0] * size, edges[:, 1] * size
         along = end - start
         squares = np.maximum((along * along).sum(axis=2), np.finfo(float).tiny)
         share = np.clip(-(start * along).sum(axis=2) / squares, 0, 1)[..., np.newaxis]
         nearest = start + share * along
         gaps = np.sqrt((nearest * nearest).sum(axis=2)).min(axis=1)
-        result[chosen] = gaps if is_inside else 0.0
+        result[lanes_of_mesh] = gaps if is_inside else 0.0
     return result
 
 
@@ -176,12 +182,12 @@ def _silhouette(mesh: Mesh) -> tuple[Floats, bool]:
 def inradii(body: Body) -> Floats:
     """Radii ``(n | 1,)`` of balls about the positions that the solids hold; 0 where the position is outside."""
     result = np.zeros(len(body))
-    for mesh, chosen in body.by_mesh(len(body)):
-        poses = body.poses.take(chosen)
+    for mesh, lanes_of_mesh in body.by_mesh(len(body)):
+        poses = body.poses.take(lanes_of_mesh)
         if mesh.is_box:
-            result[chosen] = poses.size.min(axis=1) / 2
+            result[lanes_of_mesh] = poses.size.min(axis=1) / 2
         elif _holds_origin(mesh):
-            result[chosen] = distances_to_surface(
+            result[lanes_of_mesh] = distances_to_surface(
                 Body((mesh,), None, Poses(np.zeros((1, 3)), np.array([[0.0, 0, 0, 1]]), poses.size)),
                 np.zeros((1, 3)),
                 None,

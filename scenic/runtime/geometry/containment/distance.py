@@ -29,15 +29,15 @@ def to_surface(body: Body, points: Floats, lanes: int, *, within: float = np.inf
     """
     distance, nearest = np.empty(lanes), np.empty((lanes, 3))
     number = np.empty(lanes, dtype=np.intp)
-    for mesh, chosen in body.by_mesh(lanes):
-        poses = body.poses.take(chosen)
-        start = np.broadcast_to(points, (lanes, 3))[chosen]
+    for mesh, lanes_of_mesh in body.by_mesh(lanes):
+        poses = body.poses.take(lanes_of_mesh)
+        start = np.broadcast_to(points, (lanes, 3))[lanes_of_mesh]
         # A frame that turns and moves with the body, but is not stretched, keeps distances.
         rigid = Poses(poses.position, poses.orientation, np.ones((1, 3)))
-        local = np.ascontiguousarray(np.broadcast_to(rigid.to_unit(start), (len(chosen), 3)))
-        found = mesh.derived(nearest_of).find(local, poses.size, within=within)
-        distance[chosen], number[chosen] = found.distance, found.number
-        nearest[chosen] = rigid.to_world(found.point)
+        local = np.ascontiguousarray(np.broadcast_to(rigid.to_unit(start), (len(lanes_of_mesh), 3)))
+        nearest_on_mesh = mesh.derived(nearest_of).find(local, poses.size, within=within)
+        distance[lanes_of_mesh], number[lanes_of_mesh] = nearest_on_mesh.distance, nearest_on_mesh.number
+        nearest[lanes_of_mesh] = rigid.to_world(nearest_on_mesh.point)
     return NearestPoints(distance, nearest, number)
 
 
@@ -58,9 +58,9 @@ def between(first: Body, second: Body, lanes: int) -> Floats:
     result = np.empty(lanes)
     for mesh_a, chosen_a in first.by_mesh(lanes):
         for mesh_b, chosen_b in second.by_mesh(lanes):
-            chosen = np.intersect1d(chosen_a, chosen_b, assume_unique=True)
-            for start in range(0, len(chosen), _ENTRIES):
-                part = chosen[start : start + _ENTRIES]
+            lanes_of_pair = np.intersect1d(chosen_a, chosen_b, assume_unique=True)
+            for start in range(0, len(lanes_of_pair), _ENTRIES):
+                part = lanes_of_pair[start : start + _ENTRIES]
                 poses = first.poses.take(part), second.poses.take(part)
                 result[part] = _between(mesh_a, poses[0], mesh_b, poses[1], len(part))
     return result

@@ -38,8 +38,8 @@ class CellIndex:
         high = boxes[:, 2:].max(axis=0) if len(boxes) else np.zeros(2)
         extent = np.maximum(high - self._low, 1e-9)
         # About so many square bins in all; long thin maps get long thin grids.
-        wanted = min(max(len(boxes) * _BINS_PER_POLYGON, 1.0), _MOST_BINS)
-        edge = np.sqrt(extent[0] * extent[1] / wanted)
+        cell_count = min(max(len(boxes) * _BINS_PER_POLYGON, 1.0), _MOST_BINS)
+        edge = np.sqrt(extent[0] * extent[1] / cell_count)
         edge = max(edge, extent.max() / _MOST_BINS**0.5, 1e-9)
         self._shape = np.maximum(np.ceil(extent / edge).astype(np.int64), 1)
         self._edge = extent / self._shape
@@ -72,8 +72,8 @@ class CellIndex:
         for part in pieces(counts, _PAIRS):
             owner, place = expand(counts[part])
             polygon, point = self._members[starts[part][owner] + place], sound[part][owner]
-            held = shapely.intersects_xy(self._polygons[polygon], x[point], y[point])
-            np.minimum.at(result, point[held], polygon[held])
+            is_inside = shapely.intersects_xy(self._polygons[polygon], x[point], y[point])
+            np.minimum.at(result, point[is_inside], polygon[is_inside])
         return result
 
 

@@ -30,16 +30,16 @@ def shadows(body: Body, lanes: Indices) -> Geometries:
 
     result: Geometries = np.empty(len(lanes), dtype=np.object_)
     part = body.take(lanes) if len(body) > 1 else body
-    for mesh, chosen in part.by_mesh(len(lanes)):
+    for mesh, lanes_of_mesh in part.by_mesh(len(lanes)):
         if mesh.is_convex:
-            result[chosen] = _hulls_of(mesh, part.poses, chosen)
+            result[lanes_of_mesh] = _hulls_of(mesh, part.poses, lanes_of_mesh)
         else:
-            standing = np.broadcast_to(upright(part.poses.take(chosen)), len(chosen))
-            result[chosen[standing]] = _standing(mesh, part.poses, chosen[standing])
-            chosen = chosen[~standing]
-            for some in rows(len(chosen), 3 * len(mesh.faces), _CHUNK):
-                triangles = _triangles(mesh, part.poses, chosen[some])
-                result[chosen[some]] = shapely.union_all(triangles, axis=1)
+            standing = np.broadcast_to(upright(part.poses.take(lanes_of_mesh)), len(lanes_of_mesh))
+            result[lanes_of_mesh[standing]] = _standing(mesh, part.poses, lanes_of_mesh[standing])
+            lanes_of_mesh = lanes_of_mesh[~standing]
+            for some in rows(len(lanes_of_mesh), 3 * len(mesh.faces), _CHUNK):
+                triangles = _triangles(mesh, part.poses, lanes_of_mesh[some])
+                result[lanes_of_mesh[some]] = shapely.union_all(triangles, axis=1)
     return result
 
 
@@ -60,27 +60,29 @@ def shadows_meet(body: Body, lanes: Indices, area: Area) -> Booleans:
     """
     result: Booleans = np.zeros(len(lanes), dtype=np.bool_)
     part = body.take(lanes) if len(body) > 1 else body
-    for mesh, chosen in part.by_mesh(len(lanes)):
+    for mesh, lanes_of_mesh in part.by_mesh(len(lanes)):
         if mesh.is_convex:
-            result[chosen] = area.meets_geometries(_hulls_of(mesh, part.poses, chosen), chosen)
+            result[lanes_of_mesh] = area.meets_geometries(
+                _hulls_of(mesh, part.poses, lanes_of_mesh), lanes_of_mesh
+            )
             continue
-        standing = np.broadcast_to(upright(part.poses.take(chosen)), len(chosen))
-        upright_ones, left = chosen[standing], chosen[~standing]
+        standing = np.broadcast_to(upright(part.poses.take(lanes_of_mesh)), len(lanes_of_mesh))
+        upright_ones, left = lanes_of_mesh[standing], lanes_of_mesh[~standing]
         if len(upright_ones):
             outlines = _standing(mesh, part.poses, upright_ones)
             result[upright_ones] = area.meets_geometries(outlines, upright_ones)
         if len(left):
             left = left[area.meets_geometries(_hulls_of(mesh, part.poses, left), left)]
-        used = mesh.vertices[distinct(mesh.faces)]
-        for some in rows(len(left), len(used), _CHUNK):
-            places = _placed(part.poses, left[some], used)[..., :2]
+        corners = mesh.vertices[distinct(mesh.faces)]
+        for some in rows(len(left), len(corners), _CHUNK):
+            places = _placed(part.poses, left[some], corners)[..., :2]
             result[left[some]] = area.meets_points(places, left[some])
         left = left[~result[left]]
         for some in rows(len(left), 3 * len(mesh.faces), _CHUNK):
             triangles = _triangles(mesh, part.poses, left[some])
             row, face = np.nonzero(triangles != None)  # noqa: E711 - elementwise
-            met = area.meets_geometries(triangles[row, face], left[some][row])
-            result[left[some][row[met]]] = True
+            meets = area.meets_geometries(triangles[row, face], left[some][row])
+            result[left[some][row[meets]]] = True
     return result
 
 
@@ -128,15 +130,15 @@ def cuts(body: Body, lanes: Indices, heights: Floats) -> Geometries:
     levels = np.broadcast_to(heights, len(lanes))
     for mesh, every in part.by_mesh(len(lanes)):
         for some in rows(len(every), len(mesh.faces), _CHUNK):
-            chosen = every[some]
-            world = _placed(part.poses, chosen, mesh.vertices)
-            used = world[:, distinct(mesh.faces), 2]
-            low, high = used.min(axis=1), used.max(axis=1)
-            met = np.flatnonzero((low <= levels[chosen]) & (levels[chosen] <= high))
-            inset = _INSET * np.maximum(1.0, high - low)[met]
-            level = np.clip(levels[chosen[met]], low[met] + inset, high[met] - inset)
-            found = _cut(mesh, world[met], level)
-            result[chosen[met]] = found
+            lanes_of_mesh = every[some]
+            world = _placed(part.poses, lanes_of_mesh, mesh.vertices)
+            heights_of_corners = world[:, distinct(mesh.faces), 2]
+            low, high = heights_of_corners.min(axis=1), heights_of_corners.max(axis=1)
+            crossing = np.flatnonzero((low <= levels[lanes_of_mesh]) & (levels[lanes_of_mesh] <= high))
+            inset = _INSET * np.maximum(1.0, high - low)[crossing]
+            level = np.clip(levels[lanes_of_mesh[crossing]], low[crossing] + inset, high[crossing] - inset)
+            sections = _cut(mesh, world[crossing], level)
+            result[lanes_of_mesh[crossing]] = sections
     return result
 
 
@@ -147,16 +149,16 @@ def _cut(mesh: Mesh, world: Floats, level: Floats) -> Geometries:
     edges, sides = mesh.derived(_edges)
     start, end = world[:, edges[:, 0]], world[:, edges[:, 1]]
     below, above = start[..., 2] < level[:, None], end[..., 2] < level[:, None]
-    crossed = below != above
-    rise = np.where(crossed, end[..., 2] - start[..., 2], 1.0)
+    crosses = below != above
+    rise = np.where(crosses, end[..., 2] - start[..., 2], 1.0)
     share = ((level[:, None] - start[..., 2]) / rise)[..., None]
     points = start[..., :2] + share * (end[..., :2] - start[..., :2])
     if mesh.is_convex:
-        owner, number = np.nonzero(crossed)
-        gathered = shapely.multipoints(points[owner, number], indices=owner)
-        return np.asarray(shapely.convex_hull(gathered), dtype=np.object_)
+        owner, number = np.nonzero(crosses)
+        crossing_points = shapely.multipoints(points[owner, number], indices=owner)
+        return np.asarray(shapely.convex_hull(crossing_points), dtype=np.object_)
     # A face whose corners lie on both sides is cut along a segment between two of its edges.
-    cut = crossed[:, sides]
+    cut = crosses[:, sides]
     owner, face = np.nonzero(cut.any(axis=2))
     order = np.argsort(~cut[owner, face], axis=1, kind="stable")[:, :2]
     ends = points[owner[:, None], sides[face[:, None], order]]

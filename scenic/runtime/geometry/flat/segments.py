@@ -220,6 +220,6 @@ class Lines:
             after = np.concatenate([starts[1:], ends[-1:]])
             places = runs[several].ravel()
             for corner, extreme in ((lower, np.minimum), (upper, np.maximum)):
-                passed = extreme.reduceat(extreme(ends, after), places)[::2]
-                corner[several] = extreme(corner[several], passed)
+                corners_between = extreme.reduceat(extreme(ends, after), places)[::2]
+                corner[several] = extreme(corner[several], corners_between)
         return lower, upper

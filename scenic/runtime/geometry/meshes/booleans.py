@@ -32,8 +32,8 @@ def _combined(solids: Sequence[Mesh], operation: str) -> Mesh | None:
     result = manifold3d.Manifold.batch_boolean(operands, getattr(manifold3d.OpType, operation))
     if result.status() != manifold3d.Error.NoError or result.is_empty():
         return None
-    found = result.to_mesh64()
-    return Mesh(found.vert_properties[:, :3], found.tri_verts)
+    mesh64 = result.to_mesh64()
+    return Mesh(mesh64.vert_properties[:, :3], mesh64.tri_verts)
 
 
 def _manifold(solid: Mesh) -> Any:  # manifold3d has no types

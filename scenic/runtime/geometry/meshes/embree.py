@@ -43,12 +43,12 @@ class RayScene:
                 np.full(count, np.inf, np.float32),
                 *np.zeros((2, count), np.float32),
             )
-        found: dict[str, Any] = self._scene.run(
+        hits: dict[str, Any] = self._scene.run(
             np.ascontiguousarray(origins), np.ascontiguousarray(directions), output=True
         )
-        triangle = found["primID"]
-        distance = np.where(triangle >= 0, found["tfar"], np.float32(np.inf))
-        return Hits(triangle, distance, found["u"], found["v"])
+        triangle = hits["primID"]
+        distance = np.where(triangle >= 0, hits["tfar"], np.float32(np.inf))
+        return Hits(triangle, distance, hits["u"], hits["v"])
 
     def first_triangles(self, origin: Singles, directions: Singles) -> npt.NDArray[np.int32]:
         """The triangle that each ray from one place meets first, -1 for none."""
@@ -57,20 +57,20 @@ class RayScene:
             return np.full(count, -1, np.int32)
         origins = np.empty((count, 3), np.float32)
         origins[:] = origin
-        found: npt.NDArray[np.int32] = self._scene.run(
+        triangles: npt.NDArray[np.int32] = self._scene.run(
             origins, np.ascontiguousarray(directions), query="INTERSECT"
         )
-        return found
+        return triangles
 
     def blocked(self, origins: Singles, directions: Singles, reach: float = 1e30) -> npt.NDArray[np.bool_]:
         """Return whether each ray meets anything within ``reach`` lengths of its direction."""
         count = len(origins)
         if self._empty or not count:
             return np.zeros(count, dtype=bool)
-        found: npt.NDArray[np.int32] = self._scene.run(
+        triangles: npt.NDArray[np.int32] = self._scene.run(
             np.ascontiguousarray(origins),
             np.ascontiguousarray(directions),
             dists=np.full(count, reach, np.float32),
             query="OCCLUDED",
         )
-        return found >= 0
+        return triangles >= 0

@@ -107,8 +107,8 @@ def _planes(corners: Floats, faces: npt.NDArray[np.int64], normals: Floats, offs
     # One face of each plane, of those on both sides of which there is something.
     heights = normals[candidates] @ corners.T - offsets[candidates, None]
     candidates = candidates[(heights.min(axis=1) < -_FLAT) & (heights.max(axis=1) > _FLAT)]
-    rounded = np.round(np.column_stack([normals[candidates], offsets[candidates]]), 6)
-    candidates = candidates[np.unique(rounded, axis=0, return_index=True)[1]]
+    coefficients = np.round(np.column_stack([normals[candidates], offsets[candidates]]), 6)
+    candidates = candidates[np.unique(coefficients, axis=0, return_index=True)[1]]
     away = np.abs(normals[candidates] @ corners[ends].transpose(0, 2, 1) - offsets[candidates, None])
     # Of shape (edges, candidates, 2 ends).
     score = long @ (away.max(axis=2) < _FLAT)

@@ -87,19 +87,19 @@ class FaceGrid:
 
         """
         close = (np.abs(points) <= 0.5 + PADDING + reach).all(axis=1)
-        chosen = np.flatnonzero(close)
-        low = cell_of(points[chosen] - reach[chosen] - PADDING, self.resolution)
-        counts = cell_of(points[chosen] + reach[chosen] + PADDING, self.resolution) - low + 1
+        near = np.flatnonzero(close)
+        low = cell_of(points[near] - reach[near] - PADDING, self.resolution)
+        counts = cell_of(points[near] + reach[near] + PADDING, self.resolution) - low + 1
         owner, index = expand(counts[:, 0] * counts[:, 1] * counts[:, 2])
         ny, nz = counts[owner, 1], counts[owner, 2]
         cell = low[owner] + np.stack([index // (ny * nz), index // nz % ny, index % nz], axis=1)
         number = (cell[:, 0] * self.resolution + cell[:, 1]) * self.resolution + cell[:, 2]
-        return self._faces_in(chosen[owner], number)
+        return self._faces_in(near[owner], number)
 
     def _faces_in(self, query: Indices, cell: Indices) -> tuple[Indices, Indices]:
         counts = self.starts[cell + 1] - self.starts[cell]
-        filled = np.flatnonzero(counts)
-        query, cell, counts = query[filled], cell[filled], counts[filled]
+        occupied = np.flatnonzero(counts)
+        query, cell, counts = query[occupied], cell[occupied], counts[occupied]
         keys = [np.zeros(0, dtype=np.intp)]
         count = int(self.faces.max(initial=0)) + 1
         for part in pieces(counts, _CHUNK):

@@ -82,15 +82,15 @@ def _sorted(lowest: Floats, highest: Floats) -> Indices:
     """The triangles in the order of the leaves: each part is cut evenly along the axis on which it is longest."""
     centre = np.ascontiguousarray((lowest + highest).T)
     extent = float(np.ptp(centre, axis=0).max())
-    scaled = (centre - centre.min(axis=0)) / (extent or 1.0)
+    unit_centre = (centre - centre.min(axis=0)) / (extent or 1.0)
     count = len(centre)
     faces = np.arange(count)
     for level in range(_depth(count)):
         starts = _starts(count, level)
-        placed = scaled[faces]
-        spread = np.maximum.reduceat(placed, starts[:-1]) - np.minimum.reduceat(placed, starts[:-1])
+        places = unit_centre[faces]
+        spread = np.maximum.reduceat(places, starts[:-1]) - np.minimum.reduceat(places, starts[:-1])
         node = np.repeat(np.arange(len(spread)), np.diff(starts))
-        along = placed[np.arange(count), np.argmax(spread, axis=1)[node]]
+        along = places[np.arange(count), np.argmax(spread, axis=1)[node]]
         # Coordinates from 0 to 1, so that one number sorts by node first; stable, so that all processors sort alike.
         faces = faces[np.argsort(2.0 * node + along, kind="stable")]
     return faces

@@ -129,10 +129,10 @@ def contains_lattice(mesh: Mesh, x: Floats, y: Floats, z: Floats) -> Booleans:
     crossings = np.zeros((len(points), levels), dtype=np.intp)
     for part, owner, face in _faces_over(mesh, points):
         height = _heights(mesh.derived(upright_faces).corners[face], points[part][owner])
-        crossed = np.flatnonzero(height > -np.inf)
+        hit_numbers = np.flatnonzero(height > -np.inf)
         # The number of lattice points below the crossing: those see it above them.
-        level = np.searchsorted(z, height[crossed])
-        flat = np.bincount(owner[crossed] * levels + level, minlength=(part.stop - part.start) * levels)
+        level = np.searchsorted(z, height[hit_numbers])
+        flat = np.bincount(owner[hit_numbers] * levels + level, minlength=(part.stop - part.start) * levels)
         crossings[part] += flat.reshape(-1, levels)
     above = np.cumsum(crossings[:, :0:-1], axis=1)[:, ::-1]
     result: Booleans = (above % 2 == 1).reshape(len(x), len(y), len(z))

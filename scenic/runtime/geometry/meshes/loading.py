@@ -195,7 +195,7 @@ def _loaded(data: bytes, file_type: str, file: Path, name: str) -> Any:
     import trimesh
 
     logger = logging.getLogger("trimesh")
-    disabled = logger.disabled
+    was_disabled = logger.disabled
     logger.disabled = True  # what goes wrong is said by the error below
     try:
         if file_type == "obj" and b"-" in data:
@@ -209,17 +209,17 @@ def _loaded(data: bytes, file_type: str, file: Path, name: str) -> Any:
                 process=False,
                 skip_materials=True,
             )
-            loaded = scene.to_mesh()
+            mesh = scene.to_mesh()
     except MeshError:
         raise
     except Exception as error:  # noqa: BLE001  # readers raise whatever their format's parser raises
         reason = str(error).strip() or type(error).__name__
         raise MeshError(f"{name} cannot be read as {file_type}: {reason}") from None
     finally:
-        logger.disabled = disabled
-    if not isinstance(loaded, trimesh.Trimesh):
+        logger.disabled = was_disabled
+    if not isinstance(mesh, trimesh.Trimesh):
         raise MeshError(f"{name} holds no triangles")
-    return loaded
+    return mesh
 
 
 def _beside(file: Path, mesh: str) -> Any:

@@ -177,12 +177,12 @@ class Mesh:
 
         # Interior vertices of flat faces are no corners; qhull's default joins such faces, so that no sliver
         # gives a plane of its own.
-        found = ConvexHull(self.vertices)
-        planes = _different(found.equations)
+        hull = ConvexHull(self.vertices)
+        planes = _different(hull.equations)
         return {
-            "vertices": self.vertices[np.sort(found.vertices)],
+            "vertices": self.vertices[np.sort(hull.vertices)],
             "planes": planes,
-            "volume": np.array(found.volume),
+            "volume": np.array(hull.volume),
         }
 
     @cached_property

@@ -54,10 +54,10 @@ class Nearest:
         size = np.ones((count, 3)) if scale is None else np.broadcast_to(scale, (count, 3))
         if np.isfinite(within):
             # What is just as far counts, so a little more is looked at; the distances found are exact.
-            squared = np.full(count, np.nextafter((within * (1 + 1e-9)) ** 2, np.inf))
+            square_distance = np.full(count, np.nextafter((within * (1 + 1e-9)) ** 2, np.inf))
             nearest, number = np.zeros((count, 3)), np.full(count, -1, dtype=np.intp)
         else:
-            squared, nearest, number = self._dive(points, size)
+            square_distance, nearest, number = self._dive(points, size)
         fronts = [(np.arange(count), np.zeros(count, dtype=np.intp))]
         while fronts:
             entry, node = fronts.pop()
@@ -65,11 +65,11 @@ class Nearest:
                 half = len(entry) // 2
                 fronts.append((entry[half:], node[half:]))
                 entry, node = entry[:half], node[:half]
-            near = self._gap(points[entry], size[entry], node) < squared[entry]
+            near = self._gap(points[entry], size[entry], node) < square_distance[entry]
             entry, node = entry[near], node[near]
             leaves = node >= self._inner
             if leaves.any():
-                self._improve(points, size, entry[leaves], node[leaves], squared, nearest, number)
+                self._improve(points, size, entry[leaves], node[leaves], square_distance, nearest, number)
                 entry, node = entry[~leaves], node[~leaves]
             if len(entry):
                 fronts.append((np.repeat(entry, 2), np.stack([2 * node + 1, 2 * node + 2], axis=1).ravel()))
@@ -85,10 +85,10 @@ class Nearest:
             left, right = 2 * node[go_on] + 1, 2 * node[go_on] + 2
             near, far = (self._gap(points[go_on], size[go_on], side) for side in (left, right))
             node[go_on] = np.where(near <= far, left, right)
-        squared = np.full(len(points), np.inf)
+        square_distance = np.full(len(points), np.inf)
         nearest, number = np.zeros((len(points), 3)), np.zeros(len(points), dtype=np.intp)
-        self._improve(points, size, np.arange(len(points)), node, squared, nearest, number)
-        return squared, nearest, number
+        self._improve(points, size, np.arange(len(points)), node, square_distance, nearest, number)
+        return square_distance, nearest, number
 
     def _gap(self, points: Floats, size: Floats, node: Indices) -> Floats:
         """The squared distances of points from boxes."""
@@ -115,17 +115,17 @@ class Nearest:
         owner, offset = expand(self._tree.starts[leaf + 1] - self._tree.starts[leaf])
         face = self._tree.faces[self._tree.starts[leaf][owner] + offset]
         query = entry[owner]
-        stretched = [self._corners[face, corner] * size[query] for corner in range(3)]
-        offered = nearest_on_triangles(points[query], *stretched)
-        gap = points[query] - offered
+        corners = [self._corners[face, corner] * size[query] for corner in range(3)]
+        candidates = nearest_on_triangles(points[query], *corners)
+        gap = points[query] - candidates
         distance = dot(gap, gap)
         order = np.lexsort((face, distance, query))
-        chosen = order[first_of_each(query[order])]
-        chosen = chosen[distance[chosen] < squared[query[chosen]]]
-        query = query[chosen]
-        squared[query] = distance[chosen]
-        nearest[query] = offered[chosen]
-        number[query] = face[chosen]
+        improvements = order[first_of_each(query[order])]
+        improvements = improvements[distance[improvements] < squared[query[improvements]]]
+        query = query[improvements]
+        squared[query] = distance[improvements]
+        nearest[query] = candidates[improvements]
+        number[query] = face[improvements]
 
 
 def nearest_of(mesh: Mesh) -> Nearest:
@@ -148,15 +148,15 @@ def nearest_on_triangles(points: Floats, a: Floats, b: Floats, c: Floats) -> Flo
     if len(outside):
         p = points[outside]
         best = np.full(len(outside), np.inf)
-        chosen = np.zeros((len(outside), 3))
+        nearest_on_edges = np.zeros((len(outside), 3))
         for first, second in ((a, b), (b, c), (c, a)):
             on_edge = _nearest_on_segments(p, first[outside], second[outside])
             gap = p - on_edge
             distance = dot(gap, gap)
             closer = distance < best
             best = np.where(closer, distance, best)
-            chosen = np.where(closer[:, None], on_edge, chosen)
-        result[outside] = chosen
+            nearest_on_edges = np.where(closer[:, None], on_edge, nearest_on_edges)
+        result[outside] = nearest_on_edges
     return result
 
 

@@ -41,11 +41,11 @@ def half_spaces(mesh: Mesh, poses: Poses) -> Floats | None:
     if not mesh.is_convex or len(mesh.hull.planes) > MOST_PLANES:
         return None
     planes = mesh.hull.planes
-    scaled = planes[np.newaxis, :, :3] / poses.size[:, np.newaxis]
-    length = np.sqrt(dot(scaled, scaled))
-    scaled = scaled / length[..., np.newaxis]
+    normals = planes[np.newaxis, :, :3] / poses.size[:, np.newaxis]
+    length = np.sqrt(dot(normals, normals))
+    normals = normals / length[..., np.newaxis]
     offset = planes[np.newaxis, :, 3] / length
-    x, y, z = scaled[..., 0], scaled[..., 1], scaled[..., 2]
+    x, y, z = normals[..., 0], normals[..., 1], normals[..., 2]
     matrix = poses.matrix[:, np.newaxis]
     normal = np.stack(
         [matrix[..., i, 0] * x + matrix[..., i, 1] * y + matrix[..., i, 2] * z for i in range(3)], axis=-1
@@ -137,16 +137,16 @@ def distances_without_ball(planes: Floats, centre: Floats, radius: Floats, point
     middle = centre[:, np.newaxis] - depth[..., np.newaxis] * planes[..., :3]
     circle = np.sqrt(np.maximum(reach**2 - depth**2, 0.0))
     candidates.append(middle + circle[..., np.newaxis] * _unit(candidates[1] - middle))
-    found = edges(planes)
-    along = found.ends - found.starts
+    segments = edges(planes)
+    along = segments.ends - segments.starts
     square = np.maximum(dot(along, along), 1e-300)
-    foot = np.clip(dot(points[:, np.newaxis] - found.starts, along) / square, 0, 1)
-    candidates.append(found.starts + foot[..., np.newaxis] * along)
-    to_centre = found.starts - centre[:, np.newaxis]
+    foot = np.clip(dot(points[:, np.newaxis] - segments.starts, along) / square, 0, 1)
+    candidates.append(segments.starts + foot[..., np.newaxis] * along)
+    to_centre = segments.starts - centre[:, np.newaxis]
     half, rest = dot(to_centre, along) / square, (dot(to_centre, to_centre) - reach**2) / square
     root = np.sqrt(np.maximum(half**2 - rest, 0.0))
     shares = (-half - root, -half + root, np.zeros_like(half), np.ones_like(half))
-    candidates += [found.starts + np.clip(share, 0, 1)[..., np.newaxis] * along for share in shares]
+    candidates += [segments.starts + np.clip(share, 0, 1)[..., np.newaxis] * along for share in shares]
     every = np.concatenate(candidates, axis=1)
     gap = every - centre[:, np.newaxis]
     outside = np.sqrt(dot(gap, gap)) >= reach - 2 * _SLACK

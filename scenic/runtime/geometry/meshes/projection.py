@@ -50,14 +50,14 @@ def project(
     """
     faces = np.full(lanes, -1, dtype=np.intp)
     travel = np.zeros(lanes)
-    for mesh, chosen in body.by_mesh(lanes):
-        poses = body.poses.take(chosen)
-        start, way = (part if len(part) == 1 else part[chosen] for part in (points, directions))
-        faces[chosen] = _faces_near(mesh, poses, side, threshold, start, len(chosen))
-        left = np.flatnonzero(faces[chosen] < 0)
+    for mesh, lanes_of_mesh in body.by_mesh(lanes):
+        poses = body.poses.take(lanes_of_mesh)
+        start, way = (part if len(part) == 1 else part[lanes_of_mesh] for part in (points, directions))
+        faces[lanes_of_mesh] = _faces_near(mesh, poses, side, threshold, start, len(lanes_of_mesh))
+        left = np.flatnonzero(faces[lanes_of_mesh] < 0)
         if len(left):
-            found = _nearest_hits(mesh, poses, side, threshold, start, way, left)
-            faces[chosen[left]], travel[chosen[left]] = found
+            hits = _nearest_hits(mesh, poses, side, threshold, start, way, left)
+            faces[lanes_of_mesh[left]], travel[lanes_of_mesh[left]] = hits
     return faces, points + travel[:, None] * directions
 
 
@@ -70,14 +70,14 @@ def landing_points(body: Body, faces: Indices, points: Floats, directions: Float
     faces = np.broadcast_to(faces, (lanes,))
     normals = face_normals(body, faces)
     travel = np.zeros(lanes)
-    for mesh, chosen in body.by_mesh(lanes):
-        start, way = (np.broadcast_to(part, (lanes, 3))[chosen] for part in (points, directions))
-        corners = body.poses.take(chosen).to_world(mesh.triangles[np.maximum(faces[chosen], 0)])
-        height = dot(normals[chosen], corners[:, 0] - start)
-        rate = dot(normals[chosen], way)
+    for mesh, lanes_of_mesh in body.by_mesh(lanes):
+        start, way = (np.broadcast_to(part, (lanes, 3))[lanes_of_mesh] for part in (points, directions))
+        corners = body.poses.take(lanes_of_mesh).to_world(mesh.triangles[np.maximum(faces[lanes_of_mesh], 0)])
+        height = dot(normals[lanes_of_mesh], corners[:, 0] - start)
+        rate = dot(normals[lanes_of_mesh], way)
         distance = length(start - nearest_on_triangles(start, corners[:, 0], corners[:, 1], corners[:, 2]))
         moves = (distance > TOLERANCE) & (rate != 0)
-        travel[chosen] = np.where(moves, height / np.where(moves, rate, 1.0), 0.0)
+        travel[lanes_of_mesh] = np.where(moves, height / np.where(moves, rate, 1.0), 0.0)
     return points + travel[:, None] * directions
 
 
@@ -91,10 +91,12 @@ def near_surface(
 ) -> Booleans:
     """The mask ``(lanes,)`` of points ``(lanes | 1, 3)`` within the tolerance of the side."""
     result = np.zeros(lanes, dtype=np.bool_)
-    for mesh, chosen in body.by_mesh(lanes):
-        poses = body.poses.take(chosen)
-        start = points if len(points) == 1 else points[chosen]
-        result[chosen] = _faces_near(mesh, poses, side, threshold, start, len(chosen), tolerance) >= 0
+    for mesh, lanes_of_mesh in body.by_mesh(lanes):
+        poses = body.poses.take(lanes_of_mesh)
+        start = points if len(points) == 1 else points[lanes_of_mesh]
+        result[lanes_of_mesh] = (
+            _faces_near(mesh, poses, side, threshold, start, len(lanes_of_mesh), tolerance) >= 0
+        )
     return result
 
 
@@ -146,12 +148,12 @@ def _nearest_hits(
     chosen: Indices,
 ) -> tuple[Indices, Floats]:
     """For each of the chosen entries the face hit first, or -1, and the signed way there in directions."""
-    taken = poses.take(chosen)
+    poses_here = poses.take(chosen)
     start, way = (part if len(part) == 1 else part[chosen] for part in (points, directions))
-    local = np.broadcast_to(taken.to_unit(start), (len(chosen), 3))
-    course = np.broadcast_to(taken.directions_to_unit(way), (len(chosen), 3))
+    local = np.broadcast_to(poses_here.to_unit(start), (len(chosen), 3))
+    course = np.broadcast_to(poses_here.directions_to_unit(way), (len(chosen), 3))
     faces, travel = np.full(len(chosen), -1, dtype=np.intp), np.zeros(len(chosen))
-    few = _few_faces(mesh, taken, side, threshold)
+    few = _few_faces(mesh, poses_here, side, threshold)
     for part in rows(len(chosen), 1, _CHUNK // _FEW_FACES):
         if few is not None:
             entry, face = _all_pairs(part, few)
@@ -161,7 +163,7 @@ def _nearest_hits(
             entry = moving[line]
         hits, distance = _crossings(mesh, local[entry], course[entry], face)
         entry, face, distance = entry[hits], face[hits], distance[hits]
-        belongs = side_contains(mesh, taken, side, threshold, entry, face)
+        belongs = side_contains(mesh, poses_here, side, threshold, entry, face)
         entry, face, distance = entry[belongs], face[belongs], distance[belongs]
         order = np.lexsort((face, np.abs(distance), entry))
         first = order[first_of_each(entry[order])]

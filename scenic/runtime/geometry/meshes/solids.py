@@ -35,13 +35,13 @@ def proper_volume(mesh: Mesh, *, unify: bool = True, name: str = "the mesh") -> 
     bodies = _bodies(vertices, faces)
     solids = _oriented(bodies, name)
     if unify and len(solids) > 1 and _any_overlap(solids):
-        united = booleans.union(solids)
-        if united is None:
+        union = booleans.union(solids)
+        if union is None:
             raise MeshError(
                 f"the overlapping bodies of {name} could not be united",
                 help="unite the bodies in a mesh editor, or load with `unify=False`",
             )
-        return united
+        return union
     if not bodies.turned:
         return Mesh(vertices, faces)
     return _joined(solids)

@@ -47,18 +47,18 @@ def draw_faces(body: Body, side: Side, threshold: float, uniforms: Floats, lanes
     """
     result = np.full(lanes, -1, dtype=np.intp)
     draws = np.broadcast_to(uniforms, (lanes,))
-    for mesh, chosen in body.by_mesh(lanes):
-        poses = body.poses.take(chosen)
-        kinds, kind_of = _stretches(poses, side, len(chosen))
-        if len(mesh.faces) <= _BLOCK and 4 * len(kinds.size) > len(chosen):
-            result[chosen] = _faces_one_by_one(mesh, kinds, kind_of, threshold, draws[chosen])
+    for mesh, lanes_of_mesh in body.by_mesh(lanes):
+        poses = body.poses.take(lanes_of_mesh)
+        kinds, kind_of = _stretches(poses, side, len(lanes_of_mesh))
+        if len(mesh.faces) <= _BLOCK and 4 * len(kinds.size) > len(lanes_of_mesh):
+            result[lanes_of_mesh] = _faces_one_by_one(mesh, kinds, kind_of, threshold, draws[lanes_of_mesh])
             continue
         totals = _block_areas(mesh, kinds, threshold)
         for kind, members in enumerate(_grouped(kind_of, len(kinds.size))):
             areas = np.cumsum(totals[kind])
             if areas[-1] > 0:
-                result[chosen[members]] = _chosen_faces(
-                    mesh, kinds.of(slice(kind, kind + 1)), threshold, areas, draws[chosen[members]]
+                result[lanes_of_mesh[members]] = _chosen_faces(
+                    mesh, kinds.of(slice(kind, kind + 1)), threshold, areas, draws[lanes_of_mesh[members]]
                 )
     return result
 
@@ -93,9 +93,9 @@ def _chosen_faces(
         faces = slice(start, min(start + _BLOCK, len(mesh.faces)))
         within = np.cumsum(_areas(mesh, faces, kind, threshold)[0])
         rest = targets[members] - (areas[block - 1] if block else 0.0)
-        found = np.searchsorted(within, rest, side="right")
-        found = np.minimum(found, int(np.searchsorted(within, within[-1], side="left")))
-        result[members] = start + found
+        numbers = np.searchsorted(within, rest, side="right")
+        numbers = np.minimum(numbers, int(np.searchsorted(within, within[-1], side="left")))
+        result[members] = start + numbers
     return result
 
 
@@ -192,9 +192,9 @@ def side_contains(
     proper: Booleans = mesh.areas[faces] > 0
     if side is None:
         return proper
-    taken = poses.take(entries)
-    axis = side[1] * taken.matrix[:, side[0], :] + 0.0
-    cofactors = _Stretches(taken.size, axis).cofactors
+    poses_here = poses.take(entries)
+    axis = side[1] * poses_here.matrix[:, side[0], :] + 0.0
+    cofactors = _Stretches(poses_here.size, axis).cofactors
     vectors = mesh.area_vectors[faces]
     # The same products in the same order as in `_areas`, so that the two always agree.
     cx, cy, cz = (cofactors[:, i] for i in range(3))
@@ -211,9 +211,9 @@ def mean_normals(body: Body, side: Side, threshold: float, lanes: int) -> Floats
     (0, 0, 1) where it vanishes (section 9.5 of the specification), or where the side has no faces.
     """
     result = np.empty((lanes, 3))
-    for mesh, chosen in body.by_mesh(lanes):
-        poses = body.poses.take(chosen)
-        kinds, kind_of = _stretches(poses, side, len(chosen))
+    for mesh, lanes_of_mesh in body.by_mesh(lanes):
+        poses = body.poses.take(lanes_of_mesh)
+        kinds, kind_of = _stretches(poses, side, len(lanes_of_mesh))
         sums = np.zeros((len(kinds.size), 3))
         total = np.zeros(len(kinds.size))
         for start in range(0, len(mesh.faces), _BLOCK):
@@ -228,8 +228,8 @@ def mean_normals(body: Body, side: Side, threshold: float, lanes: int) -> Floats
         sums *= kinds.cofactors
         length = np.sqrt(sums[:, 0] * sums[:, 0] + sums[:, 1] * sums[:, 1] + sums[:, 2] * sums[:, 2])
         vanishes = length <= _VERTICAL * total
-        turned = quaternions.rotate(poses.orientation, sums[kind_of])
-        result[chosen] = np.where(vanishes[kind_of, None], (0.0, 0.0, 1.0), turned)
+        world_normals = quaternions.rotate(poses.orientation, sums[kind_of])
+        result[lanes_of_mesh] = np.where(vanishes[kind_of, None], (0.0, 0.0, 1.0), world_normals)
     return result
 
 
@@ -248,10 +248,12 @@ def face_points(body: Body, faces: Indices, first: Floats, second: Floats) -> Fl
     # The square root makes a strip parallel to the edge opposite the first corner as likely as it is long.
     root, along = (np.broadcast_to(part, (lanes,))[:, None] for part in (np.sqrt(first), second))
     result = np.empty((lanes, 3))
-    for mesh, chosen in body.by_mesh(lanes):
-        a, b, c = (mesh.triangles[np.maximum(faces[chosen], 0), corner] for corner in range(3))
-        r, v = root[chosen], along[chosen]
-        result[chosen] = body.poses.take(chosen).to_world((1 - r) * a + r * (1 - v) * b + r * v * c)
+    for mesh, lanes_of_mesh in body.by_mesh(lanes):
+        a, b, c = (mesh.triangles[np.maximum(faces[lanes_of_mesh], 0), corner] for corner in range(3))
+        r, v = root[lanes_of_mesh], along[lanes_of_mesh]
+        result[lanes_of_mesh] = body.poses.take(lanes_of_mesh).to_world(
+            (1 - r) * a + r * (1 - v) * b + r * v * c
+        )
     return result
 
 

@@ -72,21 +72,21 @@ def merge_vertices(vertices: Floats, faces: Indices, *, tolerance: float = 0.0) 
     With a positive ``tolerance`` in metres, vertices connected by steps of at most that length are equal; the
     first of them stays.
     """
-    used = np.zeros(len(vertices), dtype=np.bool_)
-    used[faces] = True
-    kept = np.flatnonzero(used)
-    points = vertices[kept] + 0.0  # turns -0.0 into 0.0, so that the two are equal
+    is_used = np.zeros(len(vertices), dtype=np.bool_)
+    is_used[faces] = True
+    corner_numbers = np.flatnonzero(is_used)
+    points = vertices[corner_numbers] + 0.0  # turns -0.0 into 0.0, so that the two are equal
     group = _close_groups(points, tolerance) if tolerance > 0 else _equal_groups(points)
     # Groups in the order of their first vertices in the file.
     first = first_of_each(group)
     rank = np.argsort(np.argsort(first))
     group = np.searchsorted(distinct(group), group)
     target = np.zeros(len(vertices), dtype=np.intp)
-    target[kept] = rank[group]
-    merged = target[faces]
-    a, b, c = merged.T
+    target[corner_numbers] = rank[group]
+    new_faces = target[faces]
+    a, b, c = new_faces.T
     proper = (a != b) & (b != c) & (a != c)
-    return points[np.sort(first)], merged[proper]
+    return points[np.sort(first)], new_faces[proper]
 
 
 def _equal_groups(points: Floats) -> Indices:

@@ -92,10 +92,10 @@ def _unpacked(bits: npt.NDArray[np.uint8]) -> Booleans:
 
 def _computed(mesh: Mesh) -> Arrays:
     """Compute the arrays that `voxels` stores for a mesh, the cells packed as bits."""
-    touched = np.zeros(RESOLUTION**3, dtype=np.bool_)
+    surface_cells = np.zeros(RESOLUTION**3, dtype=np.bool_)
     for _, cell in touched_cells(mesh.triangles, RESOLUTION):
-        touched[cell] = True
-    cut = touched.reshape(RESOLUTION, RESOLUTION, RESOLUTION)
+        surface_cells[cell] = True
+    cut = surface_cells.reshape(RESOLUTION, RESOLUTION, RESOLUTION)
     axis = (np.arange(RESOLUTION) + 0.5) / RESOLUTION - 0.5
     inside = contains_lattice(mesh, axis, axis, axis)
     solid = inside & ~cut
@@ -160,9 +160,9 @@ def _best_cut(part: Booleans) -> tuple[int, int]:
     longest = int(np.argmax(part.shape))
     best = (part.size, longest, part.shape[longest] // 2)
     for axis in range(3):
-        moved = np.moveaxis(part, axis, 0)
-        before = _volumes_up_to(moved)[:-1]
-        after = _volumes_up_to(moved[::-1])[::-1][1:]
+        slices = np.moveaxis(part, axis, 0)
+        before = _volumes_up_to(slices)[:-1]
+        after = _volumes_up_to(slices[::-1])[::-1][1:]
         if len(before):
             at = int(np.argmin(before + after))
             if before[at] + after[at] < best[0]:
@@ -177,9 +177,9 @@ def _volumes_up_to(part: Booleans) -> npt.NDArray[np.intp]:
     for other in (1, 2):
         shadow = np.logical_or.reduce(part, axis=3 - other)
         width = shadow.shape[1]
-        used = shadow.any(axis=1)
-        low = np.minimum.accumulate(np.where(used, shadow.argmax(axis=1), width))
-        high = np.maximum.accumulate(np.where(used, width - shadow[:, ::-1].argmax(axis=1), 0))
+        is_occupied = shadow.any(axis=1)
+        low = np.minimum.accumulate(np.where(is_occupied, shadow.argmax(axis=1), width))
+        high = np.maximum.accumulate(np.where(is_occupied, width - shadow[:, ::-1].argmax(axis=1), 0))
         volume = volume * np.maximum(high - low, 0)
     return volume
 
@@ -196,16 +196,16 @@ def _interior(mesh: Mesh, inside: Booleans, solid: Booleans, axis: Floats) -> Fl
         points = mesh.triangles.mean(axis=1) - step
         points = points[contains_points(mesh, points)]
         depths = np.ones(len(points))
-    chosen: list[int] = []
+    point_numbers: list[int] = []
     distance = np.full(len(points), 1.0)
-    while len(chosen) < min(INTERIOR_POINTS, len(points)):
+    while len(point_numbers) < min(INTERIOR_POINTS, len(points)):
         best = int(np.argmax(distance * np.sqrt(depths)))
         if distance[best] == 0:
             break
-        chosen.append(best)
+        point_numbers.append(best)
         offset = points - points[best]
         distance = np.minimum(distance, np.sqrt((offset * offset).sum(axis=1)))
-    return np.ascontiguousarray(points[chosen])
+    return np.ascontiguousarray(points[point_numbers])
 
 
 def _depths(solid: Booleans) -> npt.NDArray[np.float64]:
@@ -214,10 +214,10 @@ def _depths(solid: Booleans) -> npt.NDArray[np.float64]:
     left = np.pad(solid, 1)
     while left.any():
         result += left[1:-1, 1:-1, 1:-1]
-        peeled = left.copy()
+        core = left.copy()
         for axis in range(3):
-            peeled &= np.roll(left, 1, axis) & np.roll(left, -1, axis)
-        left = peeled
+            core &= np.roll(left, 1, axis) & np.roll(left, -1, axis)
+        left = core
     return result
 
 

@@ -52,17 +52,17 @@ class Rows:
         most = np.zeros(lanes, dtype=np.intp)
         np.maximum.at(most, self.lane, self.number + 1)
         stride = np.maximum(most // across, 1)[self.lane]
-        kept = np.flatnonzero(self.number % stride == stride // 2)
-        rows = self.where(kept)
+        row_numbers = np.flatnonzero(self.number % stride == stride // 2)
+        rows = self.where(row_numbers)
         stride = np.maximum(rows.count // across, 1)
-        skipped = stride // 2
+        offset = stride // 2
         return Rows(
             rows.lane,
             rows.number,
             rows.altitude,
-            rows.first + skipped * rows.step,
+            rows.first + offset * rows.step,
             rows.step * stride,
-            (rows.count - skipped + stride - 1) // stride,
+            (rows.count - offset + stride - 1) // stride,
         )
 
     def rays(self, most: int) -> Iterator[tuple[Indices, Floats]]:
@@ -99,8 +99,8 @@ def rows_towards(views: Views, target: Extents, distance: Floats) -> Rows:
     lane, number = expand(np.maximum(high - low + 1, 0.0).astype(np.intp))
     altitude = -window[lane, 1] / 2 + (low[lane] + number + 0.5) * tall[lane]
     across = counts[lane, 0]
-    thinned = np.maximum(np.round(across * np.cos(altitude)), 1.0)
-    across = np.where(explicit[lane, 0], across, thinned)
+    columns = np.maximum(np.round(across * np.cos(altitude)), 1.0)
+    across = np.where(explicit[lane, 0], across, columns)
     step = window[lane, 0] / across
     # A target behind the observer may be met by both ends of a row: three turns of it are looked at.
     begin, end = (target.azimuth[lane, side, None] + _TURNS for side in (0, 1))

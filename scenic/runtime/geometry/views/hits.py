@@ -63,21 +63,23 @@ class Placed:
             exact: look at every face that the ray may meet in double precision.
 
         """
-        origins, turned = self.rays(lane, directions)
-        near, far = box_span(origins, turned)
+        origins, local_directions = self.rays(lane, directions)
+        near, far = box_span(origins, local_directions)
         result = np.full(len(lane), np.inf)
         mesh = self.mesh[lane]
         touches = (far >= 0) & (near <= far * (1 + 1e-9) + 1e-12)
         for number, form in enumerate(self.meshes):
-            chosen = np.flatnonzero(touches & (mesh == number))
-            if not len(chosen):
+            rays_of_mesh = np.flatnonzero(touches & (mesh == number))
+            if not len(rays_of_mesh):
                 continue
             if form.is_box:
-                entry = near[chosen]
-                result[chosen] = np.where(entry >= 0, entry, far[chosen])
+                entry = near[rays_of_mesh]
+                result[rays_of_mesh] = np.where(entry >= 0, entry, far[rays_of_mesh])
             else:
                 method = exact_first if exact else _quick_first
-                result[chosen] = method(form, origins[chosen], turned[chosen], near[chosen])
+                result[rays_of_mesh] = method(
+                    form, origins[rays_of_mesh], local_directions[rays_of_mesh], near[rays_of_mesh]
+                )
         return result
 
 
@@ -123,14 +125,14 @@ def _quick_first(mesh: Mesh, origins: Floats, directions: Floats, near: Floats) 
     """The first hits by Embree's faces, `exact_first` where those are in doubt."""
     length = _length(directions)
     # From where they enter the unit box, so that coordinates stay small.
-    shifted = origins + np.maximum(near, 0.0)[:, None] * directions
-    found = mesh.derived(ray_scene).first_hits(
-        shifted.astype(np.float32), (directions / length[:, None]).astype(np.float32)
+    starts = origins + np.maximum(near, 0.0)[:, None] * directions
+    hits = mesh.derived(ray_scene).first_hits(
+        starts.astype(np.float32), (directions / length[:, None]).astype(np.float32)
     )
     result = np.full(len(origins), np.inf)
-    hit = np.flatnonzero(found.triangle >= 0)
+    hit = np.flatnonzero(hits.triangle >= 0)
     crosses, distance = face_crossings(
-        mesh, origins[hit], directions[hit], found.triangle[hit].astype(np.intp)
+        mesh, origins[hit], directions[hit], hits.triangle[hit].astype(np.intp)
     )
     result[hit] = distance
     doubtful = hit[~crosses | (distance < 0)]

@@ -89,13 +89,13 @@ class Obstacles:
         result = np.zeros(len(lane), dtype=np.bool_)
         open_rays = np.arange(len(lane))
         for number, near in enumerate(self.lanes):
-            chosen = open_rays[near[lane[open_rays]]]
-            if not len(chosen):
+            ray_numbers = open_rays[near[lane[open_rays]]]
+            if not len(ray_numbers):
                 continue
-            distance = self.placed(number).first(lane[chosen], directions[chosen], exact=exact)
-            hidden = chosen[distance <= limits[chosen] * (1 + DISTANCE_SLACK) + 1e-300]
-            if len(hidden):
-                result[hidden] = True
+            distance = self.placed(number).first(lane[ray_numbers], directions[ray_numbers], exact=exact)
+            blocked_rays = ray_numbers[distance <= limits[ray_numbers] * (1 + DISTANCE_SLACK) + 1e-300]
+            if len(blocked_rays):
+                result[blocked_rays] = True
                 open_rays = open_rays[~result[open_rays]]
         return result
 

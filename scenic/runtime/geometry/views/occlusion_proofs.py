@@ -53,20 +53,20 @@ def shadowed(placed: Placed, lanes: Indices, directions: Floats, limits: Floats)
     result = np.zeros(count, dtype=np.bool_)
     mesh = placed.mesh[lanes]
     for number, form in enumerate(placed.meshes):
-        chosen = np.flatnonzero(mesh == number)
-        if not len(chosen):
+        lanes_of_mesh = np.flatnonzero(mesh == number)
+        if not len(lanes_of_mesh):
             continue
-        outside = ~_inside(form, placed.origin[lanes[chosen]])
-        chosen = chosen[outside]
-        pick = (chosen[:, None] * rays + np.arange(rays)).ravel()
+        outside = ~_inside(form, placed.origin[lanes[lanes_of_mesh]])
+        lanes_of_mesh = lanes_of_mesh[outside]
+        pick = (lanes_of_mesh[:, None] * rays + np.arange(rays)).ravel()
         if form.is_convex:
-            met = placed.first(owner[pick], flat[pick], exact=True) <= most[pick]
-            result[chosen] = met.reshape(-1, rays).all(axis=1)
+            blocks = placed.first(owner[pick], flat[pick], exact=True) <= most[pick]
+            result[lanes_of_mesh] = blocks.reshape(-1, rays).all(axis=1)
             continue
-        origins, turned = placed.rays(owner[pick], flat[pick])
+        origins, local_directions = placed.rays(owner[pick], flat[pick])
         for low, high in form.derived(inner_boxes):
-            met = _meets_box(origins, turned, low, high, most[pick])
-            result[chosen] |= met.reshape(-1, rays).all(axis=1)
+            blocks = _meets_box(origins, local_directions, low, high, most[pick])
+            result[lanes_of_mesh] |= blocks.reshape(-1, rays).all(axis=1)
     return result
 
 

@@ -76,10 +76,10 @@ def sees_point(view: View, point: Triple, occluders: Iterable[Placed]) -> bool |
         return inside
     open_question = False
     for occluder in occluders:
-        blocked = _blocks(occluder, view.camera, point)
-        if blocked:
+        is_blocked = _blocks(occluder, view.camera, point)
+        if is_blocked:
             return False
-        open_question |= blocked is None
+        open_question |= is_blocked is None
     return None if open_question else True
 
 

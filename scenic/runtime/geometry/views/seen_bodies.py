@@ -97,18 +97,18 @@ def bounded(views: Views, target: Body, occluders: Sequence[Occluder], lanes: In
     """The decisions by bounds and the middle of the target; the views have a row for each of the lanes."""
     poses = target.poses.take(lanes)
     position = np.broadcast_to(poses.position, (len(lanes), 3))
-    placed = place(target, views, lanes)
-    seen = inside_body(placed)
-    central = np.flatnonzero(~seen & views.contain(position) & _holds_centre(placed))
+    placement = place(target, views, lanes)
+    is_seen = inside_body(placement)
+    central = np.flatnonzero(~is_seen & views.contain(position) & _holds_centre(placement))
     if len(central):
-        hidden = hidden_points(views.take(central), position[central], occluders, lanes[central])
-        seen[central] = ~hidden
-    apart = box_distance(placed.origin, poses.size)
-    left = np.flatnonzero(~seen & (apart <= views.distance * (1 + DISTANCE_SLACK)))
+        is_hidden = hidden_points(views.take(central), position[central], occluders, lanes[central])
+        is_seen[central] = ~is_hidden
+    apart = box_distance(placement.origin, poses.size)
+    left = np.flatnonzero(~is_seen & (apart <= views.distance * (1 + DISTANCE_SLACK)))
     directions = extents(box_corners(views.take(left), poses.take(left)))
     meets = np.flatnonzero(directions.meet(views.window[left]))
     directions = Extents(directions.azimuth[meets], directions.around[meets], directions.altitude[meets])
-    return Bounds(seen, left[meets], directions)
+    return Bounds(is_seen, left[meets], directions)
 
 
 def inside_body(placed: Placed) -> Booleans:
@@ -156,19 +156,19 @@ class RaySearch:
 
     def found(self) -> Booleans:
         """Return whether there is such a ray among those of the view's grid, ``(n,)``."""
-        seen = np.zeros(self._count, dtype=np.bool_)
+        is_seen = np.zeros(self._count, dtype=np.bool_)
         left = ~boxes_hidden(self._corners, self._obstacles)
         for across in _STAGES:
             totals = self._rows.totals(self._count)
             few = left & (totals <= 4 * across * across)
-            self._cast(self._rows, few, seen)
+            self._cast(self._rows, few, is_seen)
             left &= ~few
-            self._cast(self._rows.thinned(across, self._count), left, seen)
-            left &= ~seen
+            self._cast(self._rows.thinned(across, self._count), left, is_seen)
+            left &= ~is_seen
             if not left.any():
-                return seen
-        self._cast(self._rows, left, seen)
-        return seen
+                return is_seen
+        self._cast(self._rows, left, is_seen)
+        return is_seen
 
     def _cast(self, rows: Rows, wanted: Booleans, seen: Booleans) -> None:
         """Cast the rays of the wanted lanes and mark those where one gets through."""
@@ -180,8 +180,8 @@ class RaySearch:
             # One ray for each lane is enough; only where it fails the exact test, the next is looked at.
             while len(through):
                 first = through[first_of_each(lane[through])]
-                passed = self._through(lane[first], directions[first], exact=True)
-                seen[lane[first[passed]]] = True
+                passes = self._through(lane[first], directions[first], exact=True)
+                seen[lane[first[passes]]] = True
                 through = through[~seen[lane[through]] & ~np.isin(through, first)]
 
     def _through(self, lane: Indices, directions: Floats, *, exact: bool = False) -> Indices:

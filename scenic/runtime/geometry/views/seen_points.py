@@ -21,10 +21,12 @@ def sees_points(views: Views, points: Floats, occluders: Sequence[Occluder], lan
     """
     result = np.zeros(lanes, dtype=np.bool_)
     inside = np.broadcast_to(views.contain(points), (lanes,))
-    chosen = np.flatnonzero(inside)
-    if len(chosen):
-        spread = np.broadcast_to(points, (lanes, 3))[chosen]
-        result[chosen] = ~hidden_points(views.spread(lanes).take(chosen), spread, occluders, chosen)
+    lanes_inside = np.flatnonzero(inside)
+    if len(lanes_inside):
+        spread = np.broadcast_to(points, (lanes, 3))[lanes_inside]
+        result[lanes_inside] = ~hidden_points(
+            views.spread(lanes).take(lanes_inside), spread, occluders, lanes_inside
+        )
     return result
 
 

@@ -171,10 +171,13 @@ class _Division:
         corners = cells.corners()
         limits = np.broadcast_to(nearest[:, None], (len(nearest), 4))
         for number, near in enumerate(self._obstacles.lanes):
-            chosen = np.flatnonzero(near[cells.lane] & ~result)
-            if len(chosen):
-                result[chosen] = shadowed(
-                    self._obstacles.placed(number), cells.lane[chosen], corners[chosen], limits[chosen]
+            cell_numbers = np.flatnonzero(near[cells.lane] & ~result)
+            if len(cell_numbers):
+                result[cell_numbers] = shadowed(
+                    self._obstacles.placed(number),
+                    cells.lane[cell_numbers],
+                    corners[cell_numbers],
+                    limits[cell_numbers],
                 )
         return result
 
@@ -214,8 +217,8 @@ def _cover(placed: Placed, target: Body, views: Views, lanes: Indices) -> tuple[
     """Boxes that hold the target: corners in the view's frame ``(n, k, 8, 3)`` and distances ``(n, k)``, metres."""
     covers = [mesh.derived(voxels).cover for mesh in placed.meshes]
     width = max(len(cover) for cover in covers)
-    padded = np.stack([cover[np.minimum(np.arange(width), len(cover) - 1)] for cover in covers])
-    boxes = padded[placed.mesh]  # (n, k, 2, 3)
+    boxes_of_meshes = np.stack([cover[np.minimum(np.arange(width), len(cover) - 1)] for cover in covers])
+    boxes = boxes_of_meshes[placed.mesh]  # (n, k, 2, 3)
     low, high = boxes[:, :, 0], boxes[:, :, 1]
     poses = target.poses.take(lanes)
     local = low[:, :, None] + (CORNERS + 0.5) * (high - low)[:, :, None]

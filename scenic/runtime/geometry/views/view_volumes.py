@@ -143,5 +143,5 @@ def view_mesh(horizontal: float, vertical: float) -> Mesh:
         borders += [number[::-1, 0], number[:, -1]]
     faces += [np.stack([np.full(len(line) - 1, apex), line[:-1], line[1:]], axis=-1) for line in borders]
     points = np.concatenate([patch.reshape(-1, 3), np.zeros((1, 3))])
-    vertices, merged = merge_vertices(points, np.concatenate(faces))
-    return Mesh(vertices, merged)
+    vertices, new_faces = merge_vertices(points, np.concatenate(faces))
+    return Mesh(vertices, new_faces)
