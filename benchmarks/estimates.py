@@ -27,7 +27,7 @@ from scenic.runtime.temporal.robustness import joint_margin
 from scenic.statistics.intervals import exact_interval
 from scenic.statistics.sequences import is_checked, log_wealth, sequence_interval
 from scenic.statistics.sequential_test import BoundTest
-from scenic.statistics.splitting import Move, Outcome, Splitting, repeated_interval, repeated_probability
+from scenic.statistics.splitting import Move, Splitting, SplittingRun, repeated_interval, repeated_probability
 
 Floats = NDArray[np.float64]
 
@@ -172,7 +172,7 @@ def split(problem: Callable[[Floats], Floats], dimension: int, seed: int) -> tup
     while moves:
         points = _moved(moves, dimension, generator)
         outcomes = [
-            Outcome(tuple(point), value)
+            SplittingRun(tuple(point), value)
             for point, value in zip(points.tolist(), joint(points, problem).tolist(), strict=True)
         ]
         try:

@@ -34,7 +34,7 @@ class Contradiction:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Verdict:
+class SolverVerdict:
     """The answer of the solver about a set of conditions."""
 
     contradictions: tuple[Contradiction, ...]
@@ -42,7 +42,7 @@ class Verdict:
     encoding: "Encoding"
 
 
-def judge(conditions: Sequence[Fact]) -> Verdict:
+def judge(conditions: Sequence[Fact]) -> SolverVerdict:
     """Find the contradictions among conditions, and those that hold in every scene.
 
     Conditions that are impossible by themselves are reported first and alone; then, as long as the rest cannot hold
@@ -81,7 +81,7 @@ def judge(conditions: Sequence[Fact]) -> Verdict:
     tautologies = tuple(
         conditions[number] for number in possible if questions.refutes(~formulas[number], support_numbers)
     )
-    return Verdict(tuple(contradictions), tautologies, encoding)
+    return SolverVerdict(tuple(contradictions), tautologies, encoding)
 
 
 class Encoding:

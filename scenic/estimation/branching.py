@@ -13,9 +13,9 @@ from scenic.falsification.lineages import Ancestry, Lineage, LineageStep
 from scenic.statistics.intervals import Interval
 from scenic.statistics.splitting import (
     Move,
-    Outcome,
     Repetition,
     Splitting,
+    SplittingRun,
     repeated_interval,
     repeated_probability,
 )
@@ -109,7 +109,7 @@ def split(
             value = None if row["values"] is None else _distance(row, threshold)
             step = LineageStep(row["run"], move.step, move.share)
             point = Lineage(row["run"]) if move.parent is None else move.parent.child(step)
-            outcomes.append(Outcome(point, value))
+            outcomes.append(SplittingRun(point, value))
             yield row
         if len(outcomes) < len(moves):
             return

@@ -24,7 +24,7 @@ import numpy as np
 from scenic.dataclass import dataclass
 from scenic.statistics.intervals import Interval
 
-__all__ = ["Move", "Outcome", "Repetition", "Splitting", "repeated_interval", "repeated_probability"]
+__all__ = ["Move", "Repetition", "Splitting", "SplittingRun", "repeated_interval", "repeated_probability"]
 
 REPETITIONS: Final = 5
 """Number of repetitions, from whose spread the interval is made; fewer if the budget is small."""
@@ -105,7 +105,7 @@ class Move(Generic[_Point]):
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome(Generic[_Point]):
+class SplittingRun(Generic[_Point]):
     """A run that was made: its point, and its value, 0 or less for a failure; ``None`` where the run is not one of the law."""
 
     point: _Point
@@ -154,7 +154,7 @@ class _Member(Generic[_Point]):
     ancestor: int
 
 
-_Making = Generator[list[Move[_Point]], list[Outcome[_Point]], None]
+_Making = Generator[list[Move[_Point]], list[SplittingRun[_Point]], None]
 
 
 class Splitting(Generic[_Point]):

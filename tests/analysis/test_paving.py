@@ -11,7 +11,7 @@ from scipy import stats
 from scenic.analysis.boxes import Boxes
 from scenic.analysis.paving import RARE, pave_by_trial, share_that_may_hold
 from scenic.graph.domain import Domain
-from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.pending import SceneTask
 from tests.amounts import amount
 from tests.runtime.programs import scenario
 
@@ -133,7 +133,7 @@ def test_nothing_that_holds_is_lost() -> None:
         graph, unpruned = program.outline.graph, whole(program)
         axes = [graph.address(node) for node in graph.axes]
         for scene in unpruned.sample(amount(2, 4), seed=3, max_attempts=400_000):
-            source = unpruned._sampler.engine.source(Task(scene.seed, scene.k), scene.attempts - 1)
+            source = unpruned._sampler.engine.source(SceneTask(scene.seed, scene.k), scene.attempts - 1)
             point = source.uniforms(np.array(axes, dtype=np.uint64))[:, 0]
             assert program.domain.contains(point[np.newaxis]).all()
 

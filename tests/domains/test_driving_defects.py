@@ -9,7 +9,7 @@ import pytest
 import shapely
 
 import scenic
-from scenic.domains.driving.planning import Plan
+from scenic.domains.driving.planning import MotionPlan
 from scenic.domains.driving.roads import Network, VehicleType
 from tests.maps import RoadText, cross, lane, lanes, line, map_text, piece, straight
 
@@ -120,13 +120,13 @@ def test_a_lane_change_goes_on_into_the_intersection_once(
     """D133."""
     (tmp_path / "map.xodr").write_text(cross(arm=60, half=15))
     chosen: list[str] = []
-    original = Plan.choose
+    original = MotionPlan.choose
 
-    def noting(self: Plan, choice: Any) -> None:
+    def noting(self: MotionPlan, choice: Any) -> None:
         chosen.append(choice.startLane.uid)
         original(self, choice)
 
-    monkeypatch.setattr(Plan, "choose", noting)
+    monkeypatch.setattr(MotionPlan, "choose", noting)
     text = (
         "param map = localPath('map.xodr')\nmodel scenic.simulators.newtonian.driving_model\n"
         "own = network.laneAt((-40, -1.75))\n"

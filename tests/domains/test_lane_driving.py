@@ -10,7 +10,7 @@ import shapely
 
 import scenic
 from benchmarks.motion import Course
-from scenic.domains.driving.planning import Plan
+from scenic.domains.driving.planning import MotionPlan
 from scenic.domains.driving.roads import Network
 from scenic.language.errors import InvalidScenarioError
 from tests.maps import RoadText, cross, lane, lanes, line, map_text, piece, straight, two_way
@@ -72,7 +72,7 @@ def test_a_lane_that_closes_within_a_road_leads_nowhere(tmp_path: Path) -> None:
     network = Network.fromFile(tmp_path / "pocket.xodr")
     pocket = network.laneAt((5, -5.25))
     assert pocket.centerline.length < 45
-    assert not Plan(network, pocket).choices
+    assert not MotionPlan(network, pocket).choices
 
 
 def test_a_behavior_takes_over_the_steering_and_braking_of_the_one_before(folder: Path) -> None:
@@ -188,7 +188,7 @@ def test_paths_do_not_bend_sharply_where_long_lanes_meet(tmp_path: Path) -> None
         one_after_the_other(RoadText("1", 80, line(0, 0, 0, 80)), RoadText("2", 60, bend))
     )
     network = Network.fromFile(tmp_path / "two.xodr")
-    plan = Plan(network, network.laneAt((20, -1.75)))
+    plan = MotionPlan(network, network.laneAt((20, -1.75)))
     plan.choose(plan.choices[0])
     assert plan.path.length > 100
     steps = np.diff(plan.path.along)

@@ -11,9 +11,9 @@ from scipy.special import ndtr, ndtri
 
 from scenic.statistics.splitting import (
     Move,
-    Outcome,
     Repetition,
     Splitting,
+    SplittingRun,
     repeated_interval,
     repeated_probability,
 )
@@ -33,7 +33,7 @@ def solved(
         moves = next(making)
         while True:
             points = [moved(move, dimension, generator) for move in moves]
-            moves = making.send([Outcome(point, problem(point)) for point in points])
+            moves = making.send([SplittingRun(point, problem(point)) for point in points])
     except StopIteration:
         assert sum(item.runs for item in [splitting.pilot, *splitting.repetitions]) <= budget
         return splitting

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from scenic.analysis.finite.decomposing import Decomposer
 from scenic.analysis.finite.mixed import Possible
-from scenic.analysis.finite.network import Constraint, Problem
+from scenic.analysis.finite.network import Constraint, FiniteProblem
 from scenic.analysis.finite.solving import Component, Drawn, solve
 from scenic.analysis.finite.tables import Table, Tabulator, seeds_of_calls
 from scenic.analysis.finite.variables import Variable, variables_of
@@ -57,7 +57,7 @@ class Decision:
     settled: frozenset[int] = frozenset()
     left: tuple[int, ...] = ()
     impossible: tuple[int, ...] = ()
-    problem: Problem | None = None
+    problem: FiniteProblem | None = None
     reasons: Mapping[int, str] = field(default_factory=dict)
 
 
@@ -96,7 +96,7 @@ def decide(
             builder.add(piece)
         elif always or _rejects([piece.number], met):
             builder.add_possible(piece)
-    problem = Problem(
+    problem = FiniteProblem(
         tuple(variable.weights for variable in builder.order)
         + tuple(np.ones(size) for size in builder.sizes[len(builder.order) :]),
         len(builder.order),
@@ -272,7 +272,7 @@ def _part(drawn: Drawn, order: Sequence[Variable]) -> Finite:
     )
 
 
-def _core(problem: Problem, component: Component) -> tuple[int, ...]:
+def _core(problem: FiniteProblem, component: Component) -> tuple[int, ...]:
     """A minimal set of checks that cannot hold together, of a component without solutions."""
     left = list(dict.fromkeys(constraint.check for constraint in component.constraints))
     if len(left) > _MOST_EXPLAINED:
@@ -280,7 +280,7 @@ def _core(problem: Problem, component: Component) -> tuple[int, ...]:
     for check in list(left):
         rest = [other for other in left if other != check]
         constraints = tuple(one for one in component.constraints if one.check in rest)
-        if any(one.share == 0 for one in solve(Problem(problem.weights, problem.draws, constraints))):
+        if any(one.share == 0 for one in solve(FiniteProblem(problem.weights, problem.draws, constraints))):
             left = rest
     return tuple(left)
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from scenic.analysis.finite.deciding import Decision
 from scenic.analysis.finite.elimination import eliminate, ordered
-from scenic.analysis.finite.network import Problem, merged
+from scenic.analysis.finite.network import FiniteProblem, merged
 from scenic.analysis.finite.solving import Component, solve
 from scenic.analysis.finite.tables import Mask
 from scenic.dataclass import dataclass
@@ -110,7 +110,7 @@ def findings(
     problem = decision.problem
     if problem is None:
         return ()
-    counting = Problem(
+    counting = FiniteProblem(
         tuple((weights > 0).astype(np.float64) for weights in problem.weights),
         problem.draws,
         problem.constraints,

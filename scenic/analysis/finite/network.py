@@ -9,7 +9,7 @@ from scenic.analysis.finite.tables import Mask, Table
 from scenic.dataclass import dataclass
 from scenic.graph.bounds import Floats
 
-__all__ = ["Constraint", "Problem", "Reduced", "aligned", "components", "consistent", "merged"]
+__all__ = ["Constraint", "FiniteProblem", "Reduced", "aligned", "components", "consistent", "merged"]
 
 ROUNDS: Final = 64
 """Passes over the tables that strike out values, at most."""
@@ -37,7 +37,7 @@ class Constraint:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Problem:
+class FiniteProblem:
     """Variables with weights of their values, and constraints.
 
     Attributes:
@@ -133,7 +133,9 @@ class Reduced:
 
     """
 
-    def __init__(self, problem: Problem, constraints: Sequence[Constraint], domains: dict[int, Mask]) -> None:
+    def __init__(
+        self, problem: FiniteProblem, constraints: Sequence[Constraint], domains: dict[int, Mask]
+    ) -> None:
         self.values = {variable: np.flatnonzero(mask) for variable, mask in domains.items()}
         self.sizes = {variable: len(values) for variable, values in self.values.items()}
         self.weights = {

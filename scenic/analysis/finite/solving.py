@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scenic.analysis.finite.differing import bounded
 from scenic.analysis.finite.elimination import eliminate, ordered
 from scenic.analysis.finite.listing import solutions
-from scenic.analysis.finite.network import Constraint, Problem, Reduced, components, consistent, merged
+from scenic.analysis.finite.network import Constraint, FiniteProblem, Reduced, components, consistent, merged
 from scenic.analysis.finite.occupying import Exclusive, exclusives, occupied
 from scenic.analysis.finite.tables import Mask
 from scenic.dataclass import dataclass
@@ -76,12 +76,12 @@ class Component:
     solutions: int | None = None
 
 
-def solve(problem: Problem) -> list[Component]:
+def solve(problem: FiniteProblem) -> list[Component]:
     """The components of a problem, each with a way to draw it."""
     return [_solved(problem, group) for group in components(problem.constraints)]
 
 
-def _solved(problem: Problem, constraints: Sequence[Constraint]) -> Component:
+def _solved(problem: FiniteProblem, constraints: Sequence[Constraint]) -> Component:
     scope = sorted({variable for constraint in constraints for variable in constraint.scope})
     domains: dict[int, Mask] = {variable: problem.weights[variable] > 0 for variable in scope}
     draws = tuple(variable for variable in scope if variable < problem.draws)

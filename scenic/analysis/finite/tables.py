@@ -21,7 +21,7 @@ from scenic.language.errors import ScenicError
 from scenic.runtime.python.opaque import OpaqueCode
 from scenic.runtime.python.purity import global_names, is_pure
 from scenic.runtime.python.samples import mention, reachable
-from scenic.runtime.sampling.checks import Verdict
+from scenic.runtime.sampling.checks import CheckVerdict
 
 __all__ = ["LARGEST", "Likeness", "Mask", "Table", "Tabulator", "seeds_of_calls"]
 
@@ -90,7 +90,7 @@ class Tabulator:
         scope: Sequence[Variable],
         nodes: Sequence[Node],
         every: Sequence[Node],
-        test: Callable[[Batch], Verdict],
+        test: Callable[[Batch], CheckVerdict],
         kind: str,
     ) -> Mask | None:
         """The combinations ``(sizes of the scope)`` that pass a check; ``None`` where there are too many, or one cannot be decided (`reason`).
@@ -125,7 +125,7 @@ class Tabulator:
             )
         return self._known[key]
 
-    def _made(self, scope: Sequence[Variable], test: Callable[[Batch], Verdict]) -> Mask | None:
+    def _made(self, scope: Sequence[Variable], test: Callable[[Batch], CheckVerdict]) -> Mask | None:
         sizes = tuple(variable.size for variable in scope)
         count = int(np.prod(sizes, dtype=np.int64))
         result = np.empty(count, dtype=np.bool_)

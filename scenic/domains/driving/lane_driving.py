@@ -15,7 +15,7 @@ from scenic.domains.driving.elements import Lane, LaneSection
 from scenic.domains.driving.following import Driver
 from scenic.domains.driving.kinds import ManeuverType
 from scenic.domains.driving.paths import Path
-from scenic.domains.driving.planning import Plan, path_of_lines
+from scenic.domains.driving.planning import MotionPlan, path_of_lines
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import Route
 from scenic.language.errors import InvalidScenarioError
@@ -102,7 +102,7 @@ class LaneDriver(Driver):
         super().__init__(agent, comfort, gap)
         self._target = target
         self._lane = lane
-        self._plan: Plan
+        self._plan: MotionPlan
         self._due = 0.0
         self._joining_time = 0.0
         self.joining = 0.0
@@ -124,7 +124,7 @@ class LaneDriver(Driver):
             self._is_joined = duration == 0.0
         else:
             self._is_joined = False
-            self._plan = Plan(agent.roadNetwork, lane, backward=self._backward, tightest=self.tightest)
+            self._plan = MotionPlan(agent.roadNetwork, lane, backward=self._backward, tightest=self.tightest)
             self._near = metres_along(lane.line[::-1] if self._backward else lane.line, self._place())
         self._path = Path()
         self._joining_time = duration

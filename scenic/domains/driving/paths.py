@@ -24,7 +24,7 @@ from scenic.domains.driving.path_smoothing import (
     smoothed,
 )
 
-__all__ = ["Path", "PathPieces", "Piece", "is_long", "piece_along"]
+__all__ = ["Path", "PathPiece", "PathPieces", "is_long", "piece_along"]
 
 Floats = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ _SHARED: Final = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class PathPiece:
     """A part of a path: points with the direction and curvature of the curve.
 
     Attributes:
@@ -65,7 +65,7 @@ def _length(line: Floats) -> float:
 
 def piece_along(
     points: Floats, lanes: Sequence[tuple[int, Any]] = (), *, cut: tuple[int, int] = (0, 0)
-) -> Piece:
+) -> PathPiece:
     """The piece along points of a smooth curve.
 
     Args:
@@ -77,7 +77,7 @@ def piece_along(
     steps = headings_of(points)
     headings = np.concatenate([steps[:1], (steps[:-1] + steps[1:]) / 2, steps[-1:]])
     remaining = slice(cut[0], len(points) - cut[1])
-    return Piece(
+    return PathPiece(
         points[remaining],
         headings[remaining],
         curvatures_of(points)[remaining],
@@ -97,7 +97,7 @@ class PathPieces:
     def __init__(self, *, backward: bool = False, tightest: float = TIGHTEST) -> None:
         self._backward, self._tightest = backward, tightest
         self._curves: dict[str, tuple[Floats, Floats]] = {}
-        self._pieces: dict[Any, Piece] = {}
+        self._pieces: dict[Any, PathPiece] = {}
 
     def _line(self, lane: Lane) -> Floats:
         line = line_to_drive(lane)
@@ -111,15 +111,15 @@ class PathPieces:
             curve = self._curves[lane.uid] = points, smoothed(points, tightest=self._tightest)
         return curve
 
-    def start(self, lane: Lane) -> Piece:
+    def start(self, lane: Lane) -> PathPiece:
         """The first half of a long lane."""
         return self._known(("start", lane.uid), lambda: self._half(lane, first=True))
 
-    def end(self, lane: Lane) -> Piece:
+    def end(self, lane: Lane) -> PathPiece:
         """The second half of a long lane."""
         return self._known(("end", lane.uid), lambda: self._half(lane, first=False))
 
-    def between(self, lanes: Sequence[Lane], *, opens: bool, closes: bool) -> Piece:
+    def between(self, lanes: Sequence[Lane], *, opens: bool, closes: bool) -> PathPiece:
         """The piece along several lanes.
 
         Args:
@@ -131,20 +131,20 @@ class PathPieces:
         key = (opens, closes, *(lane.uid for lane in lanes))
         return self._known(key, lambda: self._through(lanes, opens=opens, closes=closes))
 
-    def _known(self, key: object, make: Any) -> Piece:
+    def _known(self, key: object, make: Any) -> PathPiece:
         piece = self._pieces.get(key)
         if piece is None:
             piece = self._pieces[key] = make()
         return piece
 
-    def _half(self, lane: Lane, *, first: bool) -> Piece:
+    def _half(self, lane: Lane, *, first: bool) -> PathPiece:
         _, curve = self._curve(lane)
         middle = len(curve) // 2
         if first:
             return piece_along(curve[: middle + 1], [(0, lane)], cut=(0, 1))
         return piece_along(curve[middle - 1 :], [(0, lane)], cut=(1, 0))
 
-    def _through(self, lanes: Sequence[Lane], *, opens: bool, closes: bool) -> Piece:
+    def _through(self, lanes: Sequence[Lane], *, opens: bool, closes: bool) -> PathPiece:
         first = last = None
         before = after = np.empty((0, 2))
         inner = list(lanes)
@@ -194,7 +194,7 @@ class Path:
 
     __slots__ = ("_x", "_y", "along", "bends", "curvatures", "headings", "lanes")
 
-    def __init__(self, piece: Piece | None = None) -> None:
+    def __init__(self, piece: PathPiece | None = None) -> None:
         self._x: list[float] = []
         self._y: list[float] = []
         self.along: list[float] = []
@@ -210,7 +210,7 @@ class Path:
         """Metres from the first point to the last one."""
         return self.along[-1] if self.along else 0.0
 
-    def extend(self, piece: Piece) -> None:
+    def extend(self, piece: PathPiece) -> None:
         """Add a piece, which begins where the path ends."""
         points = piece.points
         if not len(points):

@@ -13,7 +13,7 @@ from scenic.domains.driving.path_smoothing import TIGHTEST, resampled, smoothed
 from scenic.domains.driving.paths import Path, PathPieces, is_long, piece_along
 from scenic.domains.driving.speed_profiles import Comfort, speeds_along, speeds_in_bends
 
-__all__ = ["Plan", "join", "path_of_lines", "speeds_of"]
+__all__ = ["MotionPlan", "join", "path_of_lines", "speeds_of"]
 
 Floats = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ _SHARPEST: Final = 0.2
 """Curvature (1/m) of curves by which a car joins a path."""
 
 
-class Plan:
+class MotionPlan:
     """The way ahead of a car: along a lane, and through the maneuvers that are chosen.
 
     Args:

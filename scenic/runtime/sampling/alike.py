@@ -19,7 +19,7 @@ from scenic.runtime.sampling.checks import CollisionCheck, ObjectNodes
 from scenic.runtime.sampling.halving import Joint
 from scenic.runtime.shapes.shapes import Shape
 
-__all__ = ["Aliased", "Group", "Kind", "kinds_of"]
+__all__ = ["Aliased", "Group", "GroupKind", "kinds_of"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,7 +41,7 @@ class Group:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Kind:
+class GroupKind:
     """Groups that are alike, evaluated by the nodes of the first.
 
     Attributes:
@@ -125,7 +125,7 @@ class Aliased:
             yield lanes, self._source.take(lanes), self._table[rows, number]
 
 
-def kinds_of(groups: Sequence[Group], graph: Graph, domain: Domain) -> list[Kind]:
+def kinds_of(groups: Sequence[Group], graph: Graph, domain: Domain) -> list[GroupKind]:
     """The kinds of groups, in the order of the first group of each."""
     narrowing = domain.narrowing()
     kinds: dict[Hashable, list[tuple[int, _Form]]] = {}
@@ -199,7 +199,7 @@ def _narrowed(
 
 def _kind(
     groups: Sequence[Group], members: Sequence[tuple[int, _Form]], graph: Graph, domain: Domain
-) -> Kind:
+) -> GroupKind:
     first, form = members[0]
     axes = np.array([graph.axes[node] for node in form.nodes if node.is_axis], dtype=np.intp)
     part_of_domain, new_addresses = domain.along(axes)
@@ -216,7 +216,7 @@ def _kind(
         table[address] = [int(box_places[each.parts[place]][0]) for _, each in members]
     addresses = np.array(sorted(table), dtype=np.uint64)
     groups_of_members = [groups[number] for number, _ in members]
-    return Kind(
+    return GroupKind(
         np.array([number for number, _ in members], dtype=np.intp),
         groups[first].joints,
         groups[first].objects,

@@ -17,7 +17,7 @@ from scenic.graph.batch import Batch
 from scenic.graph.draws import Lanes, attempt_keys
 from scenic.graph.node import Node
 from scenic.runtime.geometry.ragged import expand
-from scenic.runtime.sampling.alike import Aliased, Group, Kind, kinds_of
+from scenic.runtime.sampling.alike import Aliased, Group, GroupKind, kinds_of
 from scenic.runtime.sampling.blocks import Reads
 from scenic.runtime.sampling.checks import Check, CollisionCheck, Mask
 from scenic.runtime.sampling.engine import Engine, Plan
@@ -64,7 +64,7 @@ class Apart:
 
     first: int
     draws: tuple[frozenset[int], ...]
-    kinds: tuple[Kind, ...]
+    kinds: tuple[GroupKind, ...]
     kind: NDArray[np.intp]
     may_meet: NDArray[np.bool_]
     number: int
@@ -137,7 +137,7 @@ def separated(engine: Engine, plan: Plan, reads: Reads, leaf: int) -> Apart | No
 
 
 def _chance_to_collide(
-    engine: Engine, kinds: Sequence[Kind], groups: int, may_meet: NDArray[np.bool_]
+    engine: Engine, kinds: Sequence[GroupKind], groups: int, may_meet: NDArray[np.bool_]
 ) -> float:
     """Return the share of pairs of bodies of different groups that collide though they must not, by candidates for some groups."""
     bodies = Bodies()
@@ -196,7 +196,7 @@ def _groups(
     ]
 
 
-def _passes(engine: Engine, kind: Kind) -> bool:
+def _passes(engine: Engine, kind: GroupKind) -> bool:
     """Return whether some candidate for the first group of a kind passes its checks."""
     pending = engine.pending([(0, k) for k in range(TRIED)])
     scenes, zero = np.arange(TRIED), np.zeros(TRIED, dtype=np.intp)
@@ -205,7 +205,7 @@ def _passes(engine: Engine, kind: Kind) -> bool:
 
 def attempts_at_kind(
     engine: Engine,
-    kind: Kind,
+    kind: GroupKind,
     pending: Pending,
     scenes: NDArray[np.intp],
     member: NDArray[np.intp],
@@ -232,7 +232,7 @@ def attempts_at_kind(
 
 def _batch(
     engine: Engine,
-    kind: Kind,
+    kind: GroupKind,
     pending: Pending,
     scenes: NDArray[np.intp],
     member: NDArray[np.intp],
@@ -245,7 +245,7 @@ def _batch(
     return engine.batch(source, domain=kind.domain)
 
 
-def _nodes(kind: Kind) -> list[Node]:
+def _nodes(kind: GroupKind) -> list[Node]:
     """The nodes of the bodies of a kind."""
     return [node for item in kind.objects for node in item.all]
 

@@ -29,7 +29,7 @@ from scenic.graph.node import Node
 from scenic.runtime.sampling.blocks import Reads, blocks, merged, pieces
 from scenic.runtime.sampling.checks import Check, CollisionCheck
 from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, FinishedLanes
-from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.pending import SceneTask
 from scenic.runtime.sampling.report import CORRELATED, Approximation, Exhausted
 
 __all__ = ["approximated"]
@@ -122,7 +122,7 @@ def approximated(
         try:
             lanes_of_group = sampler.group(seed, group, lanes)
         except _GaveUpError:
-            report = engine.report(Task(seed, numbers.start), 200)
+            report = engine.report(SceneTask(seed, numbers.start), 200)
             yield from (Exhausted(seed, k, max_attempts, "attempts", report) for k in numbers)
             continue
         yield from ((lanes_of_group, k - group * lanes) for k in numbers)

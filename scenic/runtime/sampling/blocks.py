@@ -8,7 +8,7 @@ from scenic.graph.domain import Domain
 from scenic.graph.node import Graph, Node
 from scenic.runtime.sampling.checks import Check, CollisionCheck
 
-__all__ = ["Piece", "Reads", "blocks", "merged", "pieces"]
+__all__ = ["CheckPiece", "Reads", "blocks", "merged", "pieces"]
 
 
 class Reads:
@@ -56,7 +56,7 @@ class Reads:
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class CheckPiece:
     """A check, or the pairs of a check of collisions that read the same draws.
 
     Attributes:
@@ -73,10 +73,10 @@ class Piece:
     pairs: tuple[int, ...] = ()
 
 
-def pieces(reads: Reads, checks: Sequence[Check]) -> tuple[list[Piece], list[frozenset[int]]]:
+def pieces(reads: Reads, checks: Sequence[Check]) -> tuple[list[CheckPiece], list[frozenset[int]]]:
     """The pieces of checks, and sets of draws in the order in which they are best made: those of objects come first."""
     units: list[frozenset[int]] = []
-    result: list[Piece] = []
+    result: list[CheckPiece] = []
     for number, check in enumerate(checks):
         if isinstance(check, CollisionCheck):
             below = [reads.of(item.all) for item in check.objects]
@@ -85,28 +85,28 @@ def pieces(reads: Reads, checks: Sequence[Check]) -> tuple[list[Piece], list[fro
             for pair, (one, other) in enumerate(check.pairs.tolist()):
                 owners.setdefault(below[one] | below[other], []).append(pair)
             result += [
-                Piece(check.of_pairs(check.pairs[pairs]), read, number, tuple(pairs))
+                CheckPiece(check.of_pairs(check.pairs[pairs]), read, number, tuple(pairs))
                 for read, pairs in owners.items()
             ]
         else:
             units.append(reads.of(check.nodes))
-            result.append(Piece(check, units[-1], number))
+            result.append(CheckPiece(check, units[-1], number))
     return result, units
 
 
-def coarse_pieces(reads: Reads, checks: Sequence[Check]) -> tuple[list[Piece], list[frozenset[int]]]:
+def coarse_pieces(reads: Reads, checks: Sequence[Check]) -> tuple[list[CheckPiece], list[frozenset[int]]]:
     """The checks as pieces, all pairs of a check of collisions as one, and sets of draws; those of objects come first."""
     units: list[frozenset[int]] = []
-    result: list[Piece] = []
+    result: list[CheckPiece] = []
     for number, check in enumerate(checks):
         if isinstance(check, CollisionCheck):
             below = [reads.of(item.all) for item in check.objects]
             units = [*below, *units]
             whole = frozenset[int]().union(*below)
-            result.append(Piece(check, whole, number, tuple(range(len(check.pairs)))))
+            result.append(CheckPiece(check, whole, number, tuple(range(len(check.pairs)))))
         else:
             units.append(reads.of(check.nodes))
-            result.append(Piece(check, units[-1], number))
+            result.append(CheckPiece(check, units[-1], number))
     return result, units
 
 

@@ -27,7 +27,7 @@ BUILT_IN = 0
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class CheckVerdict:
     """The verdict of a check on each lane: does it hold, and did evaluating it fail (shape ``(n,)`` each).
 
     In lanes that failed, ``holds`` means nothing. ``failed`` is ``None`` where none did.
@@ -41,10 +41,10 @@ class Verdict:
         """Lanes that it does not reject."""
         return self.holds if self.failed is None else self.holds | self.failed
 
-    def unless(self, inactive: Mask) -> "Verdict":
+    def unless(self, inactive: Mask) -> "CheckVerdict":
         """The verdict of a soft requirement, which passes lanes where it is not active."""
         failed = None if self.failed is None else self.failed & ~inactive
-        return Verdict(self.holds | inactive, failed)
+        return CheckVerdict(self.holds | inactive, failed)
 
 
 class Check(Protocol):
@@ -66,7 +66,7 @@ class Check(Protocol):
     def nodes(self) -> Sequence[Node]:
         """The nodes whose values it needs."""
 
-    def test(self, batch: Batch) -> Verdict:
+    def test(self, batch: Batch) -> CheckVerdict:
         """Judge every lane of the batch."""
 
     def parts(self, batch: Batch) -> Sequence["Part"]:
@@ -132,14 +132,14 @@ class NodeCheck:
     def nodes(self) -> Sequence[Node]:
         return [self.node]
 
-    def test(self, batch: Batch) -> Verdict:
+    def test(self, batch: Batch) -> CheckVerdict:
         holds = np.array(batch.full(self.node), dtype=np.bool_)
         status = batch.status(self.node)
         if status is None:
-            return Verdict(holds)
+            return CheckVerdict(holds)
         holds &= status != REJECTED
         failed = status == FAULT
-        return Verdict(holds, failed if failed.any() else None)
+        return CheckVerdict(holds, failed if failed.any() else None)
 
     def parts(self, batch: Batch) -> Sequence[Part]:
         return _only_part(self, batch, self.note, _any_rejected(batch, [self.node]))
@@ -164,12 +164,12 @@ class DrawingCheck:
     def nodes(self) -> Sequence[Node]:
         return [self.node]
 
-    def test(self, batch: Batch) -> Verdict:
+    def test(self, batch: Batch) -> CheckVerdict:
         status = batch.status(self.node)
         if status is None:
-            return Verdict(np.ones(len(batch), dtype=np.bool_))
+            return CheckVerdict(np.ones(len(batch), dtype=np.bool_))
         failed = status == FAULT
-        return Verdict(status == OK, failed if failed.any() else None)
+        return CheckVerdict(status == OK, failed if failed.any() else None)
 
     def parts(self, batch: Batch) -> Sequence[Part]:
         (part,) = _only_part(self, batch)
@@ -280,7 +280,7 @@ class CollisionCheck:
     def nodes(self) -> Sequence[Node]:
         return [node for item in self.objects for node in item.all]
 
-    def test(self, batch: Batch) -> Verdict:
+    def test(self, batch: Batch) -> CheckVerdict:
         if self._collider is None:
             self._collider = Collider([item.body(batch) for item in self.objects], self.pairs)
         moving = [item for item in self.objects if not item.is_fixed]
@@ -289,7 +289,7 @@ class CollisionCheck:
             cast = _crowd(batch, moving)
         else:
             cast = [item.body(batch) for item in self.objects]
-        return Verdict(self._collider.test(cast, len(batch)).free)
+        return CheckVerdict(self._collider.test(cast, len(batch)).free)
 
     def parts(self, batch: Batch) -> Sequence[Part]:
         bodies = [item.body(batch) for item in self.objects]

@@ -27,9 +27,9 @@ from scenic.graph.node import Graph, Node
 from scenic.graph.schedule import Scheduler
 from scenic.language.errors import Located, RejectionException, ScenicError
 from scenic.runtime.geometry.ragged import expand, first_of_each
-from scenic.runtime.sampling.checks import Check, Mask, Verdict, joined
+from scenic.runtime.sampling.checks import Check, CheckVerdict, Mask, joined
 from scenic.runtime.sampling.pace import Pace
-from scenic.runtime.sampling.pending import Pending, Task, soft_address
+from scenic.runtime.sampling.pending import Pending, SceneTask, soft_address
 from scenic.runtime.sampling.profiling import Meter, Profile
 from scenic.runtime.sampling.report import Approximation, Exhausted, RejectionReport, rejection_rows
 from scenic.runtime.sampling.stages import Stage, Stages
@@ -125,9 +125,9 @@ class FinishedLanes:
     approximation: Approximation | None = None
     shared: dict[object, Any] = field(default_factory=dict)
 
-    def task(self, lane: int) -> Task:
+    def task(self, lane: int) -> SceneTask:
         """The scene's seed and number."""
-        return Task(self.seeds[lane], self.numbers[lane])
+        return SceneTask(self.seeds[lane], self.numbers[lane])
 
     def again(self, lane: int) -> Batch:
         """A batch of that lane alone."""
@@ -219,7 +219,7 @@ class Engine:
         depends on it is left out. A problem is left to the first round, which raises it if scenes are wanted.
         """
         scheduler, checks, outputs = self._scheduler, self.plan.checks, self.plan.outputs
-        keys = _attempts(Task(0, 0), np.arange(_REHEARSED_LANES, dtype=np.int64)).keys
+        keys = _attempts(SceneTask(0, 0), np.arange(_REHEARSED_LANES, dtype=np.int64)).keys
         start_time = time.thread_time()
         batch = self.batch(Counter(keys))
         nodes = (*outputs, *(node for check in checks for node in check.nodes))
@@ -245,7 +245,7 @@ class Engine:
             self.rehearsed = len(batch)
             self._pace.add(len(keys), len(batch), time.thread_time() - middle_time)
 
-    def _note(self, index: int, verdict: Verdict) -> None:
+    def _note(self, index: int, verdict: CheckVerdict) -> None:
         self.met[index] = verdict.holds if verdict.failed is None else verdict.holds & ~verdict.failed
 
     def scenes(
@@ -457,7 +457,7 @@ class Engine:
         return chosen.scenes * chosen.ahead
 
     def replay(
-        self, source: Source, task: Task, attempts: int, kind: Callable[..., Batch] = Batch
+        self, source: Source, task: SceneTask, attempts: int, kind: Callable[..., Batch] = Batch
     ) -> Accepted:
         """The scene of given draws, one lane of points of the cube; no check is made again.
 
@@ -489,7 +489,7 @@ class Engine:
         self, seeds: Sequence[int], numbers: Sequence[int], attempts: Sequence[int], batch: Batch
     ) -> FinishedLanes:
         def alone(lane: int) -> Batch:
-            return self._alone(Task(seeds[lane], numbers[lane]), attempts[lane] - 1)
+            return self._alone(SceneTask(seeds[lane], numbers[lane]), attempts[lane] - 1)
 
         return FinishedLanes(seeds, numbers, attempts, batch, alone)
 
@@ -508,7 +508,7 @@ class Engine:
 
     def rehearsal(self) -> int:
         """Number of the candidates of a rehearsal that meet every requirement."""
-        keys = _attempts(Task(0, 0), np.arange(_REHEARSED_LANES, dtype=np.int64)).keys
+        keys = _attempts(SceneTask(0, 0), np.arange(_REHEARSED_LANES, dtype=np.int64)).keys
         batch = self.batch(Counter(keys))
         *stages, _ = self._stages.order(len(batch))
         failures = self._judge(batch, stages, None)
@@ -558,7 +558,7 @@ class Engine:
 
     def given_up(self, seed: int, k: int, attempts: int) -> Exhausted:
         """The report on a scene that was not found among a number of candidates."""
-        return Exhausted(seed, k, attempts, "attempts", self.report(Task(seed, k), attempts))
+        return Exhausted(seed, k, attempts, "attempts", self.report(SceneTask(seed, k), attempts))
 
     def batch(self, source: Source, *, grouped: bool = True, domain: Domain | None = None) -> Batch:
         """A batch of lanes whose draws come from a source, in the plan's domain unless another one is given."""
@@ -628,14 +628,14 @@ class Engine:
 
     # Scenes, errors, reports
 
-    def _alone(self, task: Task, attempt: int) -> Batch:
+    def _alone(self, task: SceneTask, attempt: int) -> Batch:
         return self.batch(self.source(task, attempt), grouped=False)
 
-    def source(self, task: Task, attempt: int) -> Source:
+    def source(self, task: SceneTask, attempt: int) -> Source:
         """The random numbers of one attempt at a scene."""
         return self._source(Lanes.of(task.seed, task.k, attempt))
 
-    def _error(self, check: Check, task: Task, attempt: int) -> CandidateError:
+    def _error(self, check: Check, task: SceneTask, attempt: int) -> CandidateError:
         """The error of a lane, found by evaluating it alone."""
         batch = self._alone(task, attempt)
         check.test(batch)
@@ -656,7 +656,7 @@ class Engine:
                 task.seed, task.k, attempts, reason, self.report(task, attempts)
             )
 
-    def report(self, task: Task, attempts: int) -> RejectionReport:
+    def report(self, task: SceneTask, attempts: int) -> RejectionReport:
         """Each check's share in the rejections among the first attempts at a scene.
 
         Every check is evaluated on every candidate, so the figures are facts of the program and not of the order in
@@ -675,7 +675,7 @@ class Engine:
         return RejectionReport(count, rejection_rows(list(map(joined, zip(*batches, strict=True)))))
 
 
-def _attempts(task: Task, numbers: NDArray[np.int64]) -> Lanes:
+def _attempts(task: SceneTask, numbers: NDArray[np.int64]) -> Lanes:
     """Lanes of some attempts at a scene."""
     seeds = np.repeat(seed_word(task.seed), len(numbers))
     scenes = np.repeat(np.int64(task.k), len(numbers))

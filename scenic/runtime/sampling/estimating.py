@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from scenic.dataclass import dataclass
 from scenic.language.spans import Span
 from scenic.runtime.sampling.engine import Engine
-from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.pending import SceneTask
 
 __all__ = ["ComponentEstimate", "RequirementEstimate", "estimate"]
 
@@ -71,7 +71,7 @@ def _estimated(engine: Engine, seed: int, most: int) -> ComponentEstimate:
         acceptances += engine.trial([(seed, k) for k in range(attempts, attempts + count)])
         attempts += count
     share = acceptances / attempts
-    report = engine.report(Task(seed, 0), min(_REPORTED, most))
+    report = engine.report(SceneTask(seed, 0), min(_REPORTED, most))
     rows = [
         RequirementEstimate(
             row.label,

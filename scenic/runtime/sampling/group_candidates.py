@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenic.runtime.geometry.ragged import distinct, expand
-from scenic.runtime.sampling.alike import Kind
+from scenic.runtime.sampling.alike import GroupKind
 from scenic.runtime.sampling.apart import Apart, attempts_at_kind
 from scenic.runtime.sampling.engine import Engine
 from scenic.runtime.sampling.meeting import Bodies
@@ -199,7 +199,7 @@ class GroupCandidates:
 
     def _judge(self, number: int, scenes: Indices, leaves: Indices, attempts: Numbers) -> Indices:
         """Keep the attempts at groups of a kind that pass their checks as candidates; returns their numbers among the attempts."""
-        kind: Kind = self._apart.kinds[number]
+        kind: GroupKind = self._apart.kinds[number]
         member = self._member[leaves]
         batch = attempts_at_kind(self._engine, kind, self._pending, scenes, member, attempts)
         good = batch.rows.copy()

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from scenic.dataclass import dataclass
 from scenic.graph.batch import Batch
 from scenic.graph.node import Graph
-from scenic.runtime.sampling.blocks import Piece, Reads, blocks, coarse_pieces, merged, pieces
+from scenic.runtime.sampling.blocks import CheckPiece, Reads, blocks, coarse_pieces, merged, pieces
 from scenic.runtime.sampling.checks import Check, CollisionCheck
 from scenic.runtime.sampling.engine import Engine, Plan
 
@@ -239,7 +239,7 @@ class _Outline:
     """The blocks of a division, the checks within and between them, and estimates of how often these hold."""
 
     def __init__(
-        self, sets: Sequence[frozenset[int]], found: Sequence[Piece], holds: NDArray[np.bool_]
+        self, sets: Sequence[frozenset[int]], found: Sequence[CheckPiece], holds: NDArray[np.bool_]
     ) -> None:
         self.sets = sets
         self.found = found
@@ -302,7 +302,9 @@ def _tree(plan: Plan, outlined: _Outline, leaf: int, always: bool) -> Tree:
     return tree(0, len(outlined.sets), leaf, int(cuts[0, len(outlined.sets)]))
 
 
-def _joints(own: Sequence[Piece], numbers: Sequence[int], soft_places: dict[int, int]) -> tuple[Joint, ...]:
+def _joints(
+    own: Sequence[CheckPiece], numbers: Sequence[int], soft_places: dict[int, int]
+) -> tuple[Joint, ...]:
     """The checks of pieces, with pairs of one check together again."""
     together: dict[int, list[Check]] = {}
     for piece in own:

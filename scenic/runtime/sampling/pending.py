@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scenic.graph.draws import Counter, Words, address, scene_keys, seed_words
 
 
-class Task(NamedTuple):
+class SceneTask(NamedTuple):
     """The task to find a scene: scene ``k`` of a seed."""
 
     seed: int
@@ -56,9 +56,9 @@ class Pending:
     def __len__(self) -> int:
         return len(self.number)
 
-    def task(self, row: int) -> Task:
+    def task(self, row: int) -> SceneTask:
         """The scene's seed and number."""
-        return Task(self.given[row], int(self.k[row]))
+        return SceneTask(self.given[row], int(self.k[row]))
 
     def add(self, tasks: Sequence[tuple[int, int]]) -> None:
         """Look for more scenes, of seeds and numbers in their runs."""
@@ -88,4 +88,4 @@ class Pending:
             setattr(self, name, getattr(self, name)[left])
 
 
-__all__ = ["Pending", "Task", "soft_address"]
+__all__ = ["Pending", "SceneTask", "soft_address"]

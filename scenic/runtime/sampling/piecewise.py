@@ -26,7 +26,7 @@ from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Fin
 from scenic.runtime.sampling.halving import Tree
 from scenic.runtime.sampling.joining import Joined, join
 from scenic.runtime.sampling.pairing import pair
-from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.pending import SceneTask
 from scenic.runtime.sampling.profiling import Meter, Profile
 from scenic.runtime.sampling.report import Approximation, Exhausted, joined
 
@@ -242,7 +242,7 @@ class PiecewiseEngine:
                 return
             if isinstance(result, Exhausted):
                 # All requirements are told of, not only those of the component.
-                report = self._whole.report(Task(result.seed, result.k), result.attempts)
+                report = self._whole.report(SceneTask(result.seed, result.k), result.attempts)
                 block.missing.setdefault(row, replace(result, report=report))
             else:
                 lanes, lane = result

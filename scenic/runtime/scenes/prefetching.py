@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from typing import Final
 
-from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.pending import SceneTask
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scene import Scene
 
@@ -29,7 +29,7 @@ class Foreseen:
 
     """
 
-    def __init__(self, find: Callable[[Iterable[Task], int, bool], Found]) -> None:
+    def __init__(self, find: Callable[[Iterable[SceneTask], int, bool], Found]) -> None:
         self._find = find
         self._lock = threading.Lock()
         self._limit = 0
@@ -46,7 +46,7 @@ class Foreseen:
         """The scene of a seed that was drawn just now; raises what goes wrong in sampling it."""
         if not self._lock.acquire(blocking=False):
             # Another thread samples, or the program's own function has asked for a scene in the middle of another one.
-            return next(self._find([Task(seed, 0)], limit, False))
+            return next(self._find([SceneTask(seed, 0)], limit, False))
         try:
             if self._stream is None or limit != self._limit or self._next_seed() != seed:
                 self._begin(seed, limit)
@@ -77,15 +77,15 @@ class Foreseen:
             self._peeked.append(seed)
         return self._expected[0]
 
-    def _tasks(self) -> Iterator[Task]:
+    def _tasks(self) -> Iterator[SceneTask]:
         expected, peeked, seeds = self._expected, self._peeked, self._seeds
         while True:
             if peeked:
-                yield Task(peeked.popleft(), 0)
+                yield SceneTask(peeked.popleft(), 0)
             else:
                 seed = next(seeds)
                 expected.append(seed)
-                yield Task(seed, 0)
+                yield SceneTask(seed, 0)
 
 
 def seeds_after(state: tuple[object, ...]) -> Iterator[int]:

@@ -16,7 +16,7 @@ from scenic.runtime.sampling.checks import NodeCheck
 from scenic.runtime.sampling.components import Components, components_of, crowd_of, divided
 from scenic.runtime.sampling.engine import Accepted, CandidateError, Engine, Plan
 from scenic.runtime.sampling.halving import SELDOM
-from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.pending import SceneTask
 from scenic.runtime.sampling.piecewise import PiecewiseEngine
 from scenic.runtime.sampling.planning import Outline
 from scenic.runtime.sampling.point_set_draws import driven
@@ -277,7 +277,7 @@ class Sampler:
     def _not_found(self, tasks: Iterable[tuple[int, int]]) -> Iterator[Exhausted]:
         report = None
         for seed, k in tasks:
-            report = report or self.engine.report(Task(seed, k), PROOF_CANDIDATES)
+            report = report or self.engine.report(SceneTask(seed, k), PROOF_CANDIDATES)
             yield Exhausted(seed, k, 0, "impossible", report)
 
     def _limit(self, wanted: int | None, source: PointSet | None) -> int:

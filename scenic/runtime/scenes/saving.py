@@ -17,7 +17,7 @@ from scenic.graph.draws import Counter, Points, Source
 from scenic.graph.node import Graph, Node
 from scenic.language.errors import SerializationError
 from scenic.runtime.sampling.engine import FinishedLanes
-from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.pending import SceneTask
 
 FORMAT: Final = "scenic scene"
 VERSION: Final = 2
@@ -32,7 +32,7 @@ class SavedScene:
     """
 
     program: str
-    task: Task
+    task: SceneTask
     attempts: int
     numbers: Mapping[int, float]
     words: Mapping[int, int]
@@ -69,7 +69,7 @@ class SavedScene:
                 raise _broken("a draw lies outside of the unit interval")
             return cls(
                 str(content["program"]),
-                Task(int(content["seed"]), int(content["scene"])),
+                SceneTask(int(content["seed"]), int(content["scene"])),
                 int(content["attempts"]),
                 numbers,
                 {int(name, 16): int(word, 16) for name, word in content["words"].items()},

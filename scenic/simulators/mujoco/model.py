@@ -21,7 +21,7 @@ from scenic.simulators.commands import model_of
 from scenic.simulators.mujoco.jointed import attach
 from scenic.simulators.mujoco.library import library
 
-__all__ = ["MODELS", "Builder", "Part", "wheelbase", "wheels"]
+__all__ = ["MODELS", "Builder", "ModelPart", "wheelbase", "wheels"]
 
 MODELS: Final = (
     "point",
@@ -55,7 +55,7 @@ _COLOR: Final = (0.6, 0.62, 0.66)
 
 
 @dataclass(slots=True)
-class Part:
+class ModelPart:
     """An object of the model.
 
     Attributes:
@@ -127,7 +127,7 @@ class Builder:
             option.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
         self.spec.visual.headlight.ambient = [0.5, 0.5, 0.5]
         self.spec.worldbody.add_light(pos=[0, 0, 20], dir=[0.3, 0.2, -1.0], castshadow=True)
-        self.parts: list[Part] = []
+        self.parts: list[ModelPart] = []
         self.cameras: dict[tuple[int, str], str] = {}
         """Names of cameras in the model, by the identity of their owner and their own name."""
         self._meshes: dict[tuple[int, tuple[float, ...]], tuple[Any, str]] = {}
@@ -143,14 +143,14 @@ class Builder:
             rgba=[0.80, 0.81, 0.83, 1],
         )
 
-    def add(self, thing: Any) -> Part:
+    def add(self, thing: Any) -> ModelPart:
         """An object; raises `SimulationCreationError` for one that cannot be made."""
         model = model_of(thing)
         if model not in MODELS:
             raise SimulationCreationError(
                 f"MuJoCo has no dynamics {model!r}", help=f"use one of {', '.join(MODELS)}"
             )
-        part = Part(thing, "free" if model == "point" else model, f"object {len(self.parts)}", 0.0)
+        part = ModelPart(thing, "free" if model == "point" else model, f"object {len(self.parts)}", 0.0)
         if model in ("articulated", "link"):
             if model == "articulated":
                 attach(self.spec, thing, f"{part.name} ")
@@ -201,7 +201,7 @@ class Builder:
     def _form(
         self,
         body: Any,
-        part: Part,
+        part: ModelPart,
         options: dict[str, Any],
         *,
         bottom: float = 0.0,
@@ -234,7 +234,7 @@ class Builder:
             [{"type": kinds.mjGEOM_MESH, "meshname": name} for name in meshes],
         )
 
-    def _whole(self, body: Any, part: Part, whole: dict[str, Any], pieces: list[dict[str, Any]]) -> Any:
+    def _whole(self, body: Any, part: ModelPart, whole: dict[str, Any], pieces: list[dict[str, Any]]) -> Any:
         """A geom that is seen and has the inertia; its pieces touch others in its place, if there are any."""
         if not pieces or not getattr(part.thing, "collides", True):
             return body.add_geom(name=part.name, **whole)
@@ -297,7 +297,7 @@ class Builder:
 
     # What moves by itself
 
-    def _robot(self, body: Any, part: Part, weight: dict[str, float]) -> None:
+    def _robot(self, body: Any, part: ModelPart, weight: dict[str, float]) -> None:
         """A body on two driven wheels and two frictionless casters, all within the object's box."""
         thing, mujoco = part.thing, self._mj
         width, length, height = float(thing.width), float(thing.length), float(thing.height)
@@ -336,7 +336,7 @@ class Builder:
     def _wheel(
         self,
         holder: Any,
-        part: Part,
+        part: ModelPart,
         name: str,
         place: tuple[float, float, float],
         thickness: float,
@@ -361,7 +361,7 @@ class Builder:
         motor = self.spec.add_actuator(name=full, target=full, trntype=kinds.mjtTrn.mjTRN_JOINT)
         motor.set_to_velocity(kv=drive)
 
-    def _car(self, body: Any, part: Part, weight: dict[str, float]) -> None:
+    def _car(self, body: Any, part: ModelPart, weight: dict[str, float]) -> None:
         """A body on four driven wheels, of which the front ones are steered."""
         thing = part.thing
         width, length, height = float(thing.width), float(thing.length), float(thing.height)
@@ -396,7 +396,7 @@ class Builder:
             else:
                 self._wheel(body, part, name, place, thickness, mass, drive=drive)
 
-    def _steering(self, body: Any, part: Part, name: str, place: tuple[float, float, float]) -> Any:
+    def _steering(self, body: Any, part: ModelPart, name: str, place: tuple[float, float, float]) -> Any:
         """The body that holds a steered wheel, with the drive that turns it."""
         kinds, full = self._mj, f"{part.name} {name} steering"
         holder = body.add_body(name=full, pos=list(place))
@@ -414,7 +414,7 @@ class Builder:
         servo.set_to_position(kp=5 * part.mass * wheelbase(part.thing) * part.radius, dampratio=1.0)
         return holder
 
-    def _guide(self, body: Any, part: Part) -> None:
+    def _guide(self, body: Any, part: ModelPart) -> None:
         """A floating body, welded to a frame that moves by commands."""
         body.gravcomp = 1.0
         name = f"{part.name} guide"
@@ -423,7 +423,7 @@ class Builder:
         )
         self._weld(name, part.name, name, active=True)
 
-    def _possible_grip(self, gripper: Part, other: Part) -> None:
+    def _possible_grip(self, gripper: ModelPart, other: ModelPart) -> None:
         if other.moves:
             self._weld(grip_name(gripper, other), gripper.name, other.name, active=False)
 
@@ -460,7 +460,7 @@ class Builder:
         )
 
 
-def grip_name(gripper: Part, other: Part) -> str:
+def grip_name(gripper: ModelPart, other: ModelPart) -> str:
     """The name of the weld by which a gripper holds another body."""
     return f"{gripper.name} holds {other.name}"
 

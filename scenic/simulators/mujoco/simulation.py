@@ -16,7 +16,7 @@ from scenic.simulators.mujoco.articulated import description_of, middle_of
 from scenic.simulators.mujoco.images import Images
 from scenic.simulators.mujoco.jointed import Jointed
 from scenic.simulators.mujoco.library import library, quietly
-from scenic.simulators.mujoco.model import Builder, Part, grip_name, wheelbase, wheels
+from scenic.simulators.mujoco.model import Builder, ModelPart, grip_name, wheelbase, wheels
 from scenic.simulators.simulation import Simulation
 
 __all__ = ["MujocoSimulation"]
@@ -58,7 +58,7 @@ class MujocoSimulation(Simulation):
         self._gravity = gravity
         self._ground = ground
         self._images = Images(images)
-        self._parts: dict[int, Part] = {}
+        self._parts: dict[int, ModelPart] = {}
         self._jointed: dict[int, Jointed] = {}
         """Things with joints, by the identity of their objects."""
         self._touches: dict[int, list[Vector]] = {}
@@ -115,7 +115,7 @@ class MujocoSimulation(Simulation):
                 "a mass must not be vanishingly small",
             ) from error
 
-    def _start(self, part: Part) -> None:
+    def _start(self, part: ModelPart) -> None:
         """Give a new body its velocity and first command."""
         if part.model == "articulated":
             self._jointed[id(part.thing)].start()
@@ -150,7 +150,7 @@ class MujocoSimulation(Simulation):
                 wheel = self.model.joint(f"{part.name} {side}").dofadr[0]
                 self.data.qvel[wheel] = forward / part.radius
 
-    def _joint(self, part: Part) -> tuple[int, int]:
+    def _joint(self, part: ModelPart) -> tuple[int, int]:
         """Return the indices at which the state of a body's free joint begins, in ``qpos`` and in ``qvel``."""
         body = self.model.body(part.name).id
         joint = self.model.body_jntadr[body]
@@ -202,7 +202,7 @@ class MujocoSimulation(Simulation):
         weld.data[6:10] = between
         self.data.eq_active[weld.id] = True
 
-    def _geoms(self, part: Part) -> list[int]:
+    def _geoms(self, part: ModelPart) -> list[int]:
         """Numbers of the geoms with which a part touches others."""
         return [int(self.model.geom(name).id) for name in part.geoms or [part.name]]
 
@@ -217,7 +217,7 @@ class MujocoSimulation(Simulation):
         for number in self._grips(self._parts[id(gripper)]):
             self.data.eq_active[number] = False
 
-    def _grips(self, hand: Part) -> list[int]:
+    def _grips(self, hand: ModelPart) -> list[int]:
         """Numbers of the welds by which a gripper may hold others."""
         names = (
             grip_name(hand, other) for other in self._parts.values() if other.moves and other is not hand
@@ -264,7 +264,7 @@ class MujocoSimulation(Simulation):
             torque = [command.get(f"t{axis}", 0.0) for axis in "xyz"]
             self.data.body(part.name).xfrc_applied[:] = force + torque
 
-    def _steer(self, parts: list[Part]) -> None:
+    def _steer(self, parts: list[ModelPart]) -> None:
         """Update the commands of guided and flying bodies for the next step of the physics."""
         step = self.model.opt.timestep
         for part in parts:
@@ -279,7 +279,7 @@ class MujocoSimulation(Simulation):
                 command["yaw"] += command["turn"] * step
                 self._fly(part)
 
-    def _drive(self, part: Part, step: float) -> None:
+    def _drive(self, part: ModelPart, step: float) -> None:
         """Let the wheels of a car roll, each along its own circle about the centre of the curve (R. Ackermann's steering)."""
         command, base = part.command, wheelbase(part.thing)
         before = command["speed"]
@@ -295,7 +295,7 @@ class MujocoSimulation(Simulation):
                     along, across
                 )
 
-    def _feel(self, parts: list[Part]) -> None:
+    def _feel(self, parts: list[ModelPart]) -> None:
         """Note where others touch the sides of these bodies."""
         if not parts:
             return
@@ -314,7 +314,7 @@ class MujocoSimulation(Simulation):
         for axis in "xyz":
             command[f"v{axis}"] += command.get(f"a{axis}", 0.0) * step
 
-    def _fly(self, part: Part) -> None:
+    def _fly(self, part: ModelPart) -> None:
         """Thrust along the own up axis, drag, and a torque towards the attitude that is wanted."""
         mujoco, data, command = library(), self.data, part.command
         position, velocity = self._joint(part)
@@ -405,7 +405,7 @@ class MujocoSimulation(Simulation):
             values["touches"] = tuple(self._touches.get(id(obj), ()))
         return {name: values[name] if name in values else attributes[name] for name in properties}
 
-    def _jointed_properties(self, part: Part, properties: Any) -> Mapping[str, Any]:
+    def _jointed_properties(self, part: ModelPart, properties: Any) -> Mapping[str, Any]:
         """Read the state of a thing with joints, or of one of its links."""
         attributes = part.thing.__dict__
         values: dict[str, Any] = {}
@@ -441,7 +441,7 @@ class MujocoSimulation(Simulation):
         }
         return tuple(part.thing for part in self._parts.values() if body_numbers & self._bodies(part))
 
-    def _bodies(self, part: Part) -> set[int]:
+    def _bodies(self, part: ModelPart) -> set[int]:
         """Numbers of the bodies of the model that are an object; none for things with joints and their links."""
         if part.model in ("articulated", "link"):
             return set()

@@ -7,7 +7,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scenic.analysis.finite.network import Constraint, Problem, Reduced
+from scenic.analysis.finite.network import Constraint, FiniteProblem, Reduced
 from scenic.analysis.finite.occupying import Occupied, exclusives, occupied
 from scenic.analysis.finite.tables import Table
 
@@ -23,7 +23,7 @@ def constraint(sizes: Sequence[int], scope: tuple[int, ...], holds: Callable[...
 
 
 @st.composite
-def problems(draw: st.DrawFn) -> Problem:
+def problems(draw: st.DrawFn) -> FiniteProblem:
     """Three things at places that differ, or at places and times that differ as pairs, with sizes, and more that binds them."""
     places = draw(st.integers(3, 5))
     times = draw(st.sampled_from([1, 2]))
@@ -46,7 +46,7 @@ def problems(draw: st.DrawFn) -> Problem:
         constraints.append(
             Constraint((Table(scope, np.array(entries).reshape(shape) | np.eye(*shape, dtype=bool)),), 1)
         )
-    return Problem(tuple(each / each.sum() for each in weights), 6, tuple(constraints))
+    return FiniteProblem(tuple(each / each.sum() for each in weights), 6, tuple(constraints))
 
 
 def allows(constraints: Sequence[Constraint], row: dict[int, int]) -> bool:
@@ -57,7 +57,7 @@ def allows(constraints: Sequence[Constraint], row: dict[int, int]) -> bool:
     )
 
 
-def expected(problem: Problem, found: Occupied) -> dict[tuple[int, ...], float]:
+def expected(problem: FiniteProblem, found: Occupied) -> dict[tuple[int, ...], float]:
     """The weights of the combinations that the met constraints allow."""
     values = [range(len(problem.weights[variable])) for variable in found.variables]
     result = {}
@@ -69,7 +69,7 @@ def expected(problem: Problem, found: Occupied) -> dict[tuple[int, ...], float]:
 
 
 @given(problems())
-def test_the_law_is_that_of_enumeration(problem: Problem) -> None:
+def test_the_law_is_that_of_enumeration(problem: FiniteProblem) -> None:
     scope = sorted({variable for one in problem.constraints for variable in one.scope})
     reduced = Reduced(
         problem, problem.constraints, {variable: problem.weights[variable] > 0 for variable in scope}
@@ -99,7 +99,7 @@ def test_things_that_stand_together_are_joined_and_all_is_met() -> None:
         for i, j in combinations(range(6), 2)
     ]
     constraints += [constraint(sizes, (i, i + 1), lambda a, b: a < b) for i in (0, 2, 4)]
-    problem = Problem(tuple(np.full(size, 1 / size) for size in sizes), 12, tuple(constraints))
+    problem = FiniteProblem(tuple(np.full(size, 1 / size) for size in sizes), 12, tuple(constraints))
     reduced = Reduced(problem, constraints, {v: problem.weights[v] > 0 for v in range(12)})
     (found,) = (each for each in (occupied(reduced, one) for one in exclusives(reduced)) if each is not None)
     assert len(found.met) == len(constraints)

@@ -19,7 +19,7 @@ from scenic.failures import diagnose
 from scenic.language.errors import InvalidScenarioError, RejectionException
 from scenic.runtime.instances.objects import Point
 from scenic.runtime.sampling.engine import CandidateError
-from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.pending import SceneTask
 from scenic.runtime.sampling.piecewise import PiecewiseEngine
 from scenic.runtime.values.values import as_node
 from tests.recorded import FOLDER, hold, shown, unusual
@@ -147,7 +147,7 @@ def faults(scenario: scenic.Scenario) -> dict[int, str | Refusal]:
     """Diagnostics of the attempts that fail in the first candidate, each evaluated alone: a program reports the first alone."""
     engine = scenario._sampler.engine
     whole = engine._whole if isinstance(engine, PiecewiseEngine) else engine
-    batch = whole._alone(Task(SEED, 0), 0)
+    batch = whole._alone(SceneTask(SEED, 0), 0)
     check: Any = SimpleNamespace(label="parameters", span=None, filename=None)
     found: dict[int, str | Refusal] = {}
     for number, value in scenario.params["answers"].items():

@@ -19,7 +19,7 @@ from scenic.language.errors import (
     ScenicTypeError,
 )
 from scenic.runtime.sampling.engine import _attempts
-from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.pending import SceneTask
 from scenic.runtime.scenes.scenario import Scenario
 from scenic.runtime.values.values import as_node
 from tests.runtime.programs import FALSE_ALARM, draws, failure, fingerprint, place, scenario
@@ -543,7 +543,7 @@ OVERFLOWING = [
 def attempts_of(program: Scenario) -> Batch:
     """A batch of the first attempts at a scene."""
     return program._sampler.engine.batch(
-        program._sampler.engine._source(_attempts(Task(1, 0), np.arange(40, dtype=np.int64)))
+        program._sampler.engine._source(_attempts(SceneTask(1, 0), np.arange(40, dtype=np.int64)))
     )
 
 

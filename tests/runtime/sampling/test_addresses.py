@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from scenic.runtime.sampling.engine import Engine
-from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.pending import SceneTask
 from scenic.runtime.sampling.piecewise import PiecewiseEngine
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.scenario import Scenario
@@ -92,7 +92,7 @@ def test_company_changes_no_bit(number: int) -> None:
         single: Engine | PiecewiseEngine = Engine(plan, grouped=False)
         if isinstance(finder := program._sampler._finder, PiecewiseEngine):
             single = PiecewiseEngine(Engine(plan, grouped=False), finder._components)
-        tasks = [Task(3, k) for k in range(FEW)]
+        tasks = [SceneTask(3, k) for k in range(FEW)]
         attempts = [
             result.attempts if isinstance(result, Exhausted) else result[0].attempts[result[1]]
             for result in single.scenes(tasks, max_attempts=300, lanes=16)

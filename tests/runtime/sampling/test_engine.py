@@ -15,7 +15,7 @@ from scenic.graph.operation import FAULT, OK, REJECTED
 from scenic.language.errors import RejectionException, SamplingError
 from scenic.runtime.sampling.checks import NodeCheck
 from scenic.runtime.sampling.engine import BATCH_BYTES, BODY_BYTES, DEFAULT_LANES, Engine
-from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.pending import SceneTask
 from scenic.runtime.sampling.report import Exhausted
 from scenic.runtime.scenes.sampler import DEFAULT_ATTEMPTS
 from tests.amounts import LONG
@@ -495,12 +495,12 @@ def test_reports_do_not_depend_on_how_many_lanes_there_are() -> None:
         "x = Range(0, 1)\ny = Range(0, 1)\ndef same(v): return v\nrequire same(x) > 2\nrequire same(y) > 0.5\n"
     )
     engine = program._sampler.engine
-    report = engine.report(Task(3, 0), 500)
+    report = engine.report(SceneTask(3, 0), 500)
     first, second = (row.rejected for row in report.rows)
     assert first == 1
     assert 0.4 < second < 0.6
     engine._pace.most = 64
-    assert engine.report(Task(3, 0), 500) == report
+    assert engine.report(SceneTask(3, 0), 500) == report
 
 
 def test_reports_are_of_the_candidates_that_were_tried() -> None:
@@ -519,7 +519,7 @@ def test_reports_are_of_the_candidates_that_were_tried() -> None:
         assert len(set(tried)) == 40
         assert reported == tried
         seen.clear()
-        engine.report(Task(seed, k), 12)
+        engine.report(SceneTask(seed, k), 12)
         assert seen == tried[:12]
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from scenic.graph.draws import Counter, scene_keys, seed_word
 from scenic.runtime.sampling.pace import Pace
-from scenic.runtime.sampling.pending import Pending, Task, soft_address
+from scenic.runtime.sampling.pending import Pending, SceneTask, soft_address
 
 CHANCES = np.array([0.1, 0.5, 0.9])
 
@@ -43,7 +43,7 @@ def test_rows_stay_together() -> None:
         assert pending.attempts.tolist() == [tried[number] for number in alive]
         for row, number in enumerate(alive):
             seed, k = tasks[number]
-            assert pending.task(row) == Task(seed, k)
+            assert pending.task(row) == SceneTask(seed, k)
             assert pending.seed[row] == seed_word(seed)
             (key,) = scene_keys(pending.seed[row : row + 1], np.array([k], dtype=np.int64))
             assert pending.key[row] == key

@@ -12,7 +12,7 @@ import pytest
 from scenic.graph.node import Graph, Node, axis
 from scenic.graph.schedule import Scheduler
 from scenic.runtime.sampling.pace import Pace, Round
-from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.pending import SceneTask
 from scenic.runtime.sampling.stages import Stages
 from scenic.runtime.scenes.prefetching import SEED_BITS, Foreseen
 from tests.graph.programs import make
@@ -28,7 +28,7 @@ class Finding:
         self.more: list[bool] = []
         self._ahead = ahead
 
-    def __call__(self, tasks: Iterable[Task], limit: int, more: bool) -> Iterator[Any]:
+    def __call__(self, tasks: Iterable[SceneTask], limit: int, more: bool) -> Iterator[Any]:
         seeds: list[int] = []
         self.more.append(more)
         self.begun.append((limit, seeds))

@@ -67,7 +67,7 @@ def _sees(views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indi
 
 
 @dataclass(frozen=True)
-class Bounds:
+class SightBounds:
     """Facts that are known before rays are cast.
 
     Attributes:
@@ -93,7 +93,7 @@ class Bounds:
         return place(target, views, chosen), obstacles, box_corners(views, poses)
 
 
-def bounded(views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indices) -> Bounds:
+def bounded(views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indices) -> SightBounds:
     """The decisions by bounds and the middle of the target; the views have a row for each of the lanes."""
     poses = target.poses.take(lanes)
     position = np.broadcast_to(poses.position, (len(lanes), 3))
@@ -108,7 +108,7 @@ def bounded(views: Views, target: Body, occluders: Sequence[Occluder], lanes: In
     directions = extents(box_corners(views.take(left), poses.take(left)))
     meets = np.flatnonzero(directions.meet(views.window[left]))
     directions = Extents(directions.azimuth[meets], directions.around[meets], directions.altitude[meets])
-    return Bounds(is_seen, left[meets], directions)
+    return SightBounds(is_seen, left[meets], directions)
 
 
 def inside_body(placed: Placed) -> Booleans:
@@ -142,7 +142,7 @@ class RaySearch:
     """The search for a ray that meets the target and nothing before it, in some lanes."""
 
     def __init__(
-        self, views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indices, bounds: Bounds
+        self, views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indices, bounds: SightBounds
     ) -> None:
         self._views = views.take(bounds.left)
         self._count = len(bounds.left)

@@ -24,7 +24,7 @@ from scenic.runtime.geometry.views.hits import Placed
 from scenic.runtime.geometry.views.observers import CORNERS, DISTANCE_SLACK, Extents, Views
 from scenic.runtime.geometry.views.obstacles import Occluder
 from scenic.runtime.geometry.views.occlusion_proofs import boxes_hidden, shadowed
-from scenic.runtime.geometry.views.seen_bodies import Bounds, bounded
+from scenic.runtime.geometry.views.seen_bodies import SightBounds, bounded
 
 _LANES: Final = 64
 """Lanes looked at together."""
@@ -121,7 +121,7 @@ class _Division:
     """The division of the windows of some lanes."""
 
     def __init__(
-        self, views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indices, bounds: Bounds
+        self, views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indices, bounds: SightBounds
     ) -> None:
         self._views = views.take(bounds.left)
         self._count = len(bounds.left)
