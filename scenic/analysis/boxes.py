@@ -22,15 +22,15 @@ class Boxes:
         return len(self.lower)
 
     def volume(self, axes: NDArray[Any]) -> float:
-        """The volume of all of them together, along some axes only."""
+        """Return the volume of all of them together, along some axes only."""
         return float(self.volumes(axes).sum())
 
     def taken(self, rows: NDArray[np.intp]) -> "Boxes":
-        """Some of the boxes."""
+        """Return some of the boxes."""
         return Boxes(self.lower[rows], self.upper[rows])
 
     def volumes(self, axes: NDArray[Any]) -> Floats:
-        """The volume of each, along some axes only, ``(m,)``."""
+        """Return the volume of each, along some axes only, ``(m,)``."""
         return np.asarray((self.upper - self.lower)[:, axes].prod(axis=1))
 
     @staticmethod

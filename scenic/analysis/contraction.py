@@ -109,7 +109,7 @@ class Pruning:
 
 
 def prune(graph: Graph, conditions: Sequence[Fact]) -> Domain:
-    """The part of the cube in which the conditions can hold; the whole cube where they cannot hold at all."""
+    """Return the part of the cube in which the conditions can hold; the whole cube where they cannot hold at all."""
     return contract(graph, conditions).domain
 
 
@@ -138,7 +138,7 @@ def contract(
 
 
 def surviving(graph: Graph, condition: Fact, boxes: Boxes) -> Mask:
-    """The boxes ``(m,)`` in which a condition may hold, as far as bounds show."""
+    """Return the boxes ``(m,)`` in which a condition may hold, as far as bounds show."""
     _, alive = _Network(graph, [condition])._narrow(boxes)
     mask = np.zeros(len(boxes), dtype=np.bool_)
     mask[alive] = True
@@ -229,7 +229,7 @@ def independent(conditions: Sequence[Fact]) -> list[list[Fact]]:
 
 
 def _product(hull: Boxes, pavings: Sequence[Boxes]) -> Domain:
-    """The part of the cube that lies in all pavings; a paving that is hardly smaller than its hull is replaced by the hull."""
+    """Return the part of the cube that lies in all pavings; a paving that is hardly smaller than its hull is replaced by the hull."""
     lower, upper = hull.lower.copy(), hull.upper.copy()
     unions: list[tuple[Mask, Boxes]] = []
     left = 1.0
@@ -255,7 +255,7 @@ def _product(hull: Boxes, pavings: Sequence[Boxes]) -> Domain:
 
 
 def _impossible_alone(graph: Graph, conditions: Sequence[Fact]) -> tuple[Fact, ...]:
-    """The conditions that are impossible by themselves, or all of them where it takes several."""
+    """Return the conditions that are impossible by themselves, or all of them where it takes several."""
     whole = Domain.whole(graph.dimension)
     alone = []
     for condition in conditions:
@@ -277,7 +277,7 @@ def _moved(before: Boxes, after: Boxes, alive: Mask) -> bool:
 
 
 def nodes_below(conditions: Sequence[Node]) -> list[Node]:
-    """The nodes below some conditions that readings of bounds look at, operands first."""
+    """Return the nodes below some conditions that readings of bounds look at, operands first."""
     order: dict[Node, None] = {}
     stack = [(node, 0) for node in reversed(conditions)]
     while stack:
@@ -294,7 +294,7 @@ def nodes_below(conditions: Sequence[Node]) -> list[Node]:
 
 
 def _evaluated(conditions: Sequence[Node]) -> set[Node]:
-    """The nodes that are evaluated wherever the conditions are: what has no value there has no solution."""
+    """Return the nodes that are evaluated wherever the conditions are: what has no value there has no solution."""
     found, stack = set(conditions), list(conditions)
     while stack:
         node = stack.pop()
@@ -333,11 +333,11 @@ class _Network:
                 self._cuts[self.axes[axis]] = cuts
 
     def contract(self, boxes: Boxes, first: int = FIRST_ROUNDS) -> Boxes:
-        """The boxes narrowed, in more than ``first`` passes at least; those that hold no solution are left out."""
+        """Return the boxes narrowed, in more than ``first`` passes at least; those that hold no solution are left out."""
         return self._narrow(boxes, first)[0]
 
     def _narrow(self, boxes: Boxes, first: int = 0) -> tuple[Boxes, NDArray[np.intp]]:
-        """The boxes narrowed as `contract` does, and which of them are left."""
+        """Return the boxes narrowed as `contract` does, and which of them are left."""
         cost = max(1, len(self.inner)) * (FIXED + len(boxes))
         rounds = max(FIRST_ROUNDS, min(ROUNDS, self._work // cost))
         state = _State(self, boxes)
@@ -356,7 +356,7 @@ class _Network:
         return boxes.taken(alive), alive
 
     def once(self, boxes: Boxes) -> Boxes:
-        """The boxes narrowed as long as that helps."""
+        """Return the boxes narrowed as long as that helps."""
         return self.contract(boxes, first=0)
 
     def pave(self, boxes: Boxes) -> Boxes:
@@ -527,7 +527,7 @@ class _State:
         self._bounds[node] = new
 
     def boxes(self, before: Boxes) -> Boxes:
-        """The boxes as the bounds of the axes now are."""
+        """Return the boxes as the bounds of the axes now are."""
         lower, upper = before.lower.copy(), before.upper.copy()
         for node, axis in self._network.axes.items():
             lower[:, axis], upper[:, axis] = self._bounds[node].lower, self._bounds[node].upper

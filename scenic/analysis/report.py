@@ -121,7 +121,7 @@ def _by_intervals(graph: Graph, conditions: Sequence[Fact]) -> tuple[Fact, ...]:
 
 
 def _contradiction(item: Contradiction, nodes: Sequence[Node] = ()) -> Diagnostic:
-    """A contradiction as a diagnostic; ``nodes`` are those that the solver has read."""
+    """Return a contradiction as a diagnostic; ``nodes`` are those that the solver has read."""
     *others, last = item.conditions
     subject = f"'{last.label}', which the language requires," if last.built_in else "this requirement"
     if others:
@@ -175,7 +175,7 @@ def _words(support: Support, nodes: Sequence[Node]) -> tuple[str, str]:
 
 
 def _options(choice: Node, nodes: Sequence[Node]) -> list[str]:
-    """The values that a choice among fixed numbers picks from."""
+    """Return the values that a choice among fixed numbers picks from."""
     for node in nodes:
         if node.operation is TABLE["look-up"] and node.operands[0] is choice and node.kind.is_number:
             return [f"{value:.12g}" for value in node.payload.column.tolist()]

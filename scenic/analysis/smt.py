@@ -113,11 +113,11 @@ class Encoding:
         return (node.operation.name, node.payload, *(id(keys[operand]) for operand in node.operands))
 
     def term(self, node: Node) -> Term:
-        """The term of a node; ``None`` for Python objects of which nothing is known."""
+        """Return the term of a node; ``None`` for Python objects of which nothing is known."""
         return self._terms_of[node]
 
     def truth(self, node: Node) -> Term:
-        """The term of a condition; an unconstrained term if the condition is not a boolean node."""
+        """Return the term of a condition; an unconstrained term if the condition is not a boolean node."""
         term = self._terms_of[node]
         return term if node.kind is Kind.BOOLEAN else self.terms.fresh(Kind.BOOLEAN)
 

@@ -118,7 +118,7 @@ def places_of(position: Node, graph: Graph, domain: Domain) -> tuple[Floats, Flo
 
 
 def options_of(choice: Node, nodes: Sequence[Node]) -> tuple[str, ...]:
-    """The fixed values that a choice picks from, as text; empty where it is none, or they are not fixed."""
+    """Return the fixed values that a choice picks from, as text; empty where it is none, or they are not fixed."""
     if choice.operation is not TABLE["choice"]:
         return ()
     for node in nodes:
@@ -133,7 +133,7 @@ def options_of(choice: Node, nodes: Sequence[Node]) -> tuple[str, ...]:
 
 
 def _options_left(choice: Node, graph: Graph, domain: Domain) -> tuple[int, ...]:
-    """The options that some box of each part of a domain holds."""
+    """Return the options that some box of each part of a domain holds."""
     axis = graph.axes[choice.operands[0]]
     left: set[int] | None = None
     ranges = [(part.lower[:, axis], part.upper[:, axis]) for part in domain.parts]

@@ -52,20 +52,20 @@ class SolverTerms:
         self._count = 0
 
     def real(self, value: float) -> Term:
-        """The exact rational value of a finite float or integer."""
+        """Return the exact rational value of a finite float or integer."""
         fraction = Fraction(value)
         return self._z3.RealVal(f"{fraction.numerator}/{fraction.denominator}", self.context)
 
     def truth(self, value: bool) -> Term:
-        """A fixed truth value."""
+        """Return a fixed truth value."""
         return self._z3.BoolVal(value, self.context)
 
     def number(self, term: Term) -> Term:
-        """A truth value as 0 or 1; a number unchanged."""
+        """Return a truth value as 0 or 1; a number unchanged."""
         return self.either(term, self.real(1), self.real(0)) if self._z3.is_bool(term) else term
 
     def constant(self, term: Term) -> float | None:
-        """The value of a term that is a fixed number, unless no float is as large."""
+        """Return the value of a term that is a fixed number, unless no float is as large."""
         simple = self._z3.simplify(term)
         if not self._z3.is_rational_value(simple):
             return None
@@ -79,7 +79,7 @@ class SolverTerms:
         return self._z3.If(condition, then, otherwise, self.context)
 
     def fresh(self, kind: Kind) -> Term:
-        """A term about which nothing is known; ``None`` for Python objects."""
+        """Return a term about which nothing is known; ``None`` for Python objects."""
         if kind.is_boxed:
             return None
         if kind.trailing:
@@ -93,7 +93,7 @@ class SolverTerms:
         return self._z3.Real(name, self.context)
 
     def integer_part(self, term: Term) -> Term:
-        """The floor of a real term."""
+        """Return the floor of a real term."""
         return self._z3.ToReal(self._z3.ToInt(term))
 
     def define(self, condition: Term) -> None:
@@ -135,7 +135,7 @@ class Questions:
         return int(statistics.get_key_value("rlimit count")) if "rlimit count" in statistics.keys() else 0  # noqa: SIM118 - z3's object has no `in`
 
     def contradiction(self, members: Sequence[int]) -> tuple[int, ...] | None:
-        """A smallest-possible part of ``members`` that cannot hold together: taking any of it away would mend it.
+        """Return a smallest-possible part of ``members`` that cannot hold together: taking any of it away would mend it.
 
         ``None`` where they can, or nothing was decided. Earlier members are taken away first.
         """

@@ -78,7 +78,7 @@ class Rare:
         return repeated_probability(self._finished)
 
     def interval(self, confidence: float) -> Interval:
-        """The interval of the probability, where it is known."""
+        """Return the interval of the probability, where it is known."""
         return repeated_interval(self._finished, confidence)
 
 
@@ -128,7 +128,7 @@ def _distance(row: _Row, threshold: float) -> float:
 
 
 def rare_of(rows: Sequence[_Row], seed: int, budget: int, threshold: float) -> Rare:
-    """The outcome of a splitting whose rows are known."""
+    """Return the outcome of a splitting whose rows are known."""
     splitting: Splitting[Lineage] = Splitting(seed, budget)
     for _ in split(splitting, lambda first, moves: islice(rows, first, first + len(moves)), threshold):
         pass

@@ -42,7 +42,7 @@ class Asked:
     test: BoundTest | None = None
 
     def to_data(self) -> dict[str, Any]:
-        """The same as plain data."""
+        """Return the same as plain data."""
         test = self.test
         bound = None if test is None else [test.bound, test.good, test.confidence, test.power]
         return {
@@ -126,7 +126,7 @@ class Tally:
         self.flat += outcome["robustness"] is not None and math.isinf(float(outcome["robustness"]))
 
     def interval(self, confidence: float, *, at_any_time: bool) -> Interval:
-        """The interval of the probability; ``at_any_time`` where the number of runs was not fixed in advance."""
+        """Return the interval of the probability; ``at_any_time`` where the number of runs was not fixed in advance."""
         if self.runs == 0:
             return Interval(0.0, 1.0)
         method = sequence_interval if at_any_time else exact_interval

@@ -62,7 +62,7 @@ class Guide:
         return float(self.proposal.weights(point[np.newaxis])[0])
 
     def to_data(self) -> dict[str, Any]:
-        """The same as plain data."""
+        """Return the same as plain data."""
         return {
             "addresses": [f"{item:016x}" for item in self.addresses],
             "means": self.proposal.means.tolist(),
@@ -72,7 +72,7 @@ class Guide:
 
 
 def guide_of(folder: Path, program: str) -> Guide:
-    """The guide that follows the search in a folder, which must be of the program with this digest; raises `FollowError`."""
+    """Return the guide that follows the search in a folder, which must be of the program with this digest; raises `FollowError`."""
     from scipy.special import ndtri
 
     manifest = manifest_of(folder)
@@ -139,7 +139,7 @@ class Weighted:
         return min(1.0, float(self.failed.sum()) / whole)
 
     def interval(self, confidence: float) -> Interval:
-        """The interval of the probability; of a quotient from the intervals of both its parts (Bonferroni)."""
+        """Return the interval of the probability; of a quotient from the intervals of both its parts (Bonferroni)."""
         if not self.is_known:
             return Interval(0.0, 1.0)
         if not self._is_conditional:
@@ -151,7 +151,7 @@ class Weighted:
 
 
 def weighted_of(rows: Sequence[Mapping[str, Any]]) -> Weighted:
-    """The weights of rows of importance sampling; runs that failed count as counterexamples, so that nothing is hidden."""
+    """Return the weights of rows of importance sampling; runs that failed count as counterexamples, so that nothing is hidden."""
     failed = [row["weight"] for row in rows if row["status"] in ("counterexample", "failed")]
     valid = [row["weight"] for row in rows if row["status"] != "rejected"]
     return Weighted(np.array(failed), np.array(valid), len(rows))

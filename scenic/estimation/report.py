@@ -68,7 +68,7 @@ def _row(label: str, result: Estimate, tally: Tally) -> tuple[str, ...]:
 
 
 def _marked(line: str) -> str:
-    """A sentence as HTML."""
+    """Return a sentence as HTML."""
     return re.sub("`([^`]*)`", r"<code>\1</code>", html.escape(line[:1].upper() + line[1:]))
 
 
@@ -96,7 +96,7 @@ def _section(result: Estimate) -> list[str]:
 
 
 def settings_plot(results: Mapping[str, Estimate]) -> str:
-    """The probability and its interval for each setting, as SVG."""
+    """Return the probability and its interval for each setting, as SVG."""
     estimates = {label: item for label, item in results.items() if not math.isnan(item.probability)}
     if not estimates:
         return ""
@@ -187,7 +187,7 @@ def interval_plot(result: Estimate) -> str:
 
 
 def levels_plot(rare: Rare) -> str:
-    """The probability of each level, on a logarithmic axis, by the value of the level, for each repetition, as SVG."""
+    """Return the probability of each level, on a logarithmic axis, by the value of the level, for each repetition, as SVG."""
     courses = []
     for item in rare.repetitions:
         if item.log_probability is None:

@@ -30,7 +30,7 @@ def requirement_labels(scenario: "Scenario") -> dict[str, int | None]:
 
 
 def _named(scenario: "Scenario", names: Sequence[str]) -> tuple[Objective, ...]:
-    """The objectives for some requirements, by label or as ``line 3``; for all of them together if none is named.
+    """Return the objectives for some requirements, by label or as ``line 3``; for all of them together if none is named.
 
     Raises `EstimateError` for a name that no part of the program can have.
     """
@@ -48,7 +48,7 @@ def _named(scenario: "Scenario", names: Sequence[str]) -> tuple[Objective, ...]:
 def goals_of(
     scenario: "Scenario", names: str | Sequence[str], objective: object = None, minimize: str | None = None
 ) -> tuple[Objective, ...]:
-    """The goals that make a run a counterexample: an objective and an expression, or else requirements.
+    """Return the goals that make a run a counterexample: an objective and an expression, or else requirements.
 
     These are named by label or as ``line 3``; without names all count.
 

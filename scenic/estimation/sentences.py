@@ -30,18 +30,18 @@ def counted(number: int, thing: str) -> str:
 
 
 def percent(confidence: float) -> str:
-    """A confidence in percent."""
+    """Return a confidence in percent."""
     return f"{100 * confidence:.4g}%"
 
 
 def described(probability: float, interval: Interval, confidence: float) -> str:
-    """A probability with its interval."""
+    """Return a probability with its interval."""
     words = f"{percent(confidence)} interval {interval}"
     return f"unknown ({words})" if math.isnan(probability) else f"{probability:.3g} ({words})"
 
 
 def method_words(estimate: Estimate) -> str:
-    """The way in which the interval is made."""
+    """Return the way in which the interval is made."""
     if estimate.rare is not None and estimate.rare.is_known:
         return f"from the spread of {len(estimate.rare.logarithms)} repetitions (t interval of the logarithm; approximate)"
     if estimate.weighted is not None:
@@ -172,7 +172,7 @@ def _about_weights(estimate: Estimate) -> list[str]:
 
 
 def comparison_words(estimate: Estimate) -> list[str]:
-    """The comparison with another program, if there is one."""
+    """Return the comparison with another program, if there is one."""
     pairs = estimate.comparison
     if pairs is None:
         return []

@@ -27,12 +27,12 @@ class Color:
 
 
 def colors(snapshot: Snapshot) -> tuple[Color, ...]:
-    """The colours that are written out as numbers, in order of place."""
+    """Return the colours that are written out as numbers, in order of place."""
     return tuple(sorted(_find(snapshot), key=lambda each: each.span))
 
 
 def presentation(red: float, green: float, blue: float, opacity: float) -> str:
-    """The text of a colour."""
+    """Return the text of a colour."""
     parts = [red, green, blue] if opacity == 1 else [red, green, blue, opacity]
     return "(" + ", ".join(f"{round(part, 3):g}" for part in parts) + ")"
 

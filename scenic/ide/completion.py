@@ -107,7 +107,7 @@ def must_follow(snapshot: Snapshot, line: int, column: int) -> bool:
 
 
 def document(project: Project, snapshot: Snapshot | None, key: tuple[str, ...]) -> str | None:
-    """The documentation of a possibility, in Markdown."""
+    """Return the documentation of a possibility, in Markdown."""
     match key:
         case ("specifier", name):
             return documentation.of_specifier(SPECIFIERS[name]) if name in SPECIFIERS else None
@@ -150,7 +150,7 @@ def _is_in_open_string(snapshot: Snapshot, line: int, column: int) -> bool:
 
 
 def _open_string(snapshot: Snapshot, line: int, column: int) -> str | None:
-    """The beginning of the string that a place is in, if it is in one."""
+    """Return the beginning of the string that a place is in, if it is in one."""
     tokens, byte = snapshot.tokens, snapshot.source.byte(line, column)
     for index in range(snapshot.tokens_of_line(line).stop - 1, -1, -1):
         if tokens.end_lines[index] < line:
@@ -183,7 +183,7 @@ def _open_string(snapshot: Snapshot, line: int, column: int) -> str | None:
 
 
 def _files(snapshot: Snapshot, line: int, column: int, text: str) -> Completions:
-    """The files that a string may name, if it is one that names a file."""
+    """Return the files that a string may name, if it is one that names a file."""
     quote = re.match(r"[A-Za-z]{0,2}(['\"])", text)
     before = snapshot.source.line(line)[: column - len(text)].rstrip()
     call_match = re.search(r"\b(localPath|fromFile)\s*\($", before)
@@ -309,7 +309,7 @@ def _of_kind(
 
 
 def _parameters(project: Project, module: Module, before: tuple[str, ...]) -> Iterator[Completion]:
-    """The parameters that a program may set: those that its modules set or that it reads."""
+    """Yield the parameters that a program may set: those that its modules set or that it reads."""
     read = (
         node.attr
         for node in walk(module.tree)
@@ -337,7 +337,7 @@ def _places(snapshot: Snapshot, line: int) -> frozenset[Place]:
 
 
 def _headers(snapshot: Snapshot, line: int) -> Iterator[str]:
-    """The lines above a line that are indented less, the innermost first."""
+    """Yield the lines above a line that are indented less, the innermost first."""
     content = snapshot.source.line(line)
     level = len(content) - len(content.lstrip())
     for number in range(line - 1, 0, -1):
@@ -531,7 +531,7 @@ def _properties(
 
 
 def _inherited(project: Project, snapshot: Snapshot, line: int, column: int) -> Iterator[Completion]:
-    """The properties that a class may give other defaults, where it may define a property.
+    """Yield the properties that a class may give other defaults, where it may define a property.
 
     Of a class without a body there is nothing in the tree: its bases are read off its header.
     """
@@ -558,7 +558,7 @@ def _inherited(project: Project, snapshot: Snapshot, line: int, column: int) -> 
 
 
 def _property(snapshot: Snapshot, member: Member, text: str, *, after: str = "") -> Completion:
-    """A property that is given a value: ``text``, then the value; ``after`` is what a client without snippets adds."""
+    """Return a property that is given a value: ``text``, then the value; ``after`` is what a client without snippets adds."""
     own = member.symbol is not None
     key = ("member", snapshot.filename, member.owner, member.name) if own else ("property", member.name)
     detail = member.type or (f"default: {member.default}" if member.default else member.owner)
@@ -573,7 +573,7 @@ def _escaped(text: str) -> str:
 
 
 def _modules(project: Project, snapshot: Snapshot, before: tuple[str, ...]) -> Iterator[Completion]:
-    """The modules whose names can continue the text here."""
+    """Yield the modules whose names can continue the text here."""
     words = [word for word in before[1:] if word != ","]
     parts: list[str] = []
     while len(words) >= 2 and words[-1] == ".":

@@ -100,7 +100,7 @@ _NOWHERE: Final = Continuations((), frozenset(), frozenset(), ())
 
 
 def continuations(text: str, line: int, column: int) -> Continuations:
-    """The possible continuations at ``line`` (from 1) and ``column`` (in characters from 0); a word begun there is not looked at.
+    """Return the possible continuations at ``line`` (from 1) and ``column`` (in characters from 0); a word begun there is not looked at.
 
     Nothing in strings and comments, and after a mistake in the same statement. Runs nothing of the program.
     """
@@ -140,7 +140,7 @@ def _find(wanted: Wanted) -> Iterator[Continuation]:
 
 
 def _beginning(wanted: Wanted, phrase: _Phrase) -> frozenset[str]:
-    """The words with which a phrase of this kind may begin here."""
+    """Return the words with which a phrase of this kind may begin here."""
     match phrase.kind:
         case PhraseKind.SPECIFIER:
             return wanted.begins("a specifier")

@@ -58,7 +58,7 @@ def _word(line: str) -> str:
 
 
 def _indentation(line: str) -> int:
-    """The width of the blanks that a line begins with, as the lexer counts them."""
+    """Return the width of the blanks that a line begins with, as the lexer counts them."""
     return len(line.expandtabs(8)) - len(line.expandtabs(8).lstrip())
 
 

@@ -27,7 +27,7 @@ _MOST_MEMBERS: Final = 30
 
 
 def describe(project: Project, symbol: Symbol) -> str:
-    """The description of a symbol: its signature, its documentation, and its origin."""
+    """Return the description of a symbol: its signature, its documentation, and its origin."""
     if symbol.is_builtin:
         language_text = documentation.of_name(symbol.name) or documentation.of_property(symbol.name)
         if language_text is not None:
@@ -58,7 +58,7 @@ def describe(project: Project, symbol: Symbol) -> str:
 
 
 def header(project: Project, symbol: Symbol) -> str:
-    """A line that describes a symbol."""
+    """Return a line that describes a symbol."""
     word = _WORDS.get(symbol.kind)
     if symbol.kind is SymbolKind.MODULE:
         return f"module {symbol.name}"
@@ -85,13 +85,13 @@ def of_python(name: str) -> str | None:
 
 
 def _of_module(project: Project, symbol: Symbol) -> str | None:
-    """The docstring of a module."""
+    """Return the docstring of a module."""
     module = None if symbol.filename is None else project.module(symbol.filename)
     return None if module is None else ast.get_docstring(module.tree)
 
 
 def _text(symbol: Symbol) -> str:
-    """The definition as it is written, if that is one short line."""
+    """Return the definition as it is written, if that is one short line."""
     assert symbol.module is not None
     assert symbol.extent is not None
     extent = symbol.extent
@@ -102,7 +102,7 @@ def _text(symbol: Symbol) -> str:
 
 
 def _members(project: Project, symbol: Symbol) -> list[str]:
-    """The properties of a class that it does not inherit from the language, with their defaults."""
+    """Return the properties of a class that it does not inherit from the language, with their defaults."""
     cls = Classes(project).of_symbol(symbol)
     own = [each for each in cls.properties.values() if each.symbol is not None] if cls is not None else []
     lines = [f"- `{each.name}`: {each.default}" for each in own[:_MOST_MEMBERS]]

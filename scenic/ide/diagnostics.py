@@ -30,7 +30,7 @@ def found_in(
     stamp: object = None,
     go_on: Callable[[], None] = lambda: None,
 ) -> tuple[Diagnostic, ...]:
-    """The findings in a snapshot that the rules leave; the snapshot keeps all findings as long as ``stamp`` is the same.
+    """Return the findings in a snapshot that the rules leave; the snapshot keeps all findings as long as ``stamp`` is the same.
 
     ``stamp`` stands for the state of all other files. ``go_on`` is called between steps, and may raise
     `Cancelled` to stop.

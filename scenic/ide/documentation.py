@@ -33,7 +33,7 @@ _REFUSED = "*This version does not build it yet.*"
 
 
 def of_operator(operator: Operator) -> str:
-    """An operator: its forms, what it does, its operands."""
+    """Return an operator: its forms, what it does, its operands."""
     return _page(
         operator.forms,
         operator.documentation,
@@ -43,7 +43,7 @@ def of_operator(operator: Operator) -> str:
 
 
 def of_specifier(specifier: SpecifierDeclaration) -> str:
-    """A specifier: its forms, what it does, its operands, and what it specifies."""
+    """Return a specifier: its forms, what it does, its operands, and what it specifies."""
     points = _operands(specifier.operands)
     for given in specifier.specifies:
         condition = f", if {given.when}" if given.when else ""
@@ -53,12 +53,12 @@ def of_specifier(specifier: SpecifierDeclaration) -> str:
 
 
 def of_statement(statement: Statement) -> str:
-    """A statement: its forms and what it does."""
+    """Return a statement: its forms and what it does."""
     return _page(statement.forms, statement.documentation, (), available=statement.available)
 
 
 def of_temporal(name: str) -> str | None:
-    """A temporal operator."""
+    """Return a temporal operator."""
     operator = TEMPORAL_OPERATORS.get(name)
     if operator is None:
         return None
@@ -85,7 +85,7 @@ def of_name(name: str) -> str | None:
 
 
 def of_property(name: str) -> str | None:
-    """A property or derived attribute of the built-in classes, as the most derived class has it."""
+    """Return a property or derived attribute of the built-in classes, as the most derived class has it."""
     for cls in reversed(list(CLASSES)):
         declaration = properties_of(cls).get(name)
         if declaration is not None:
@@ -100,7 +100,7 @@ def of_property(name: str) -> str | None:
 
 
 def of_keyword(word: str) -> str | None:
-    """A keyword, in general: its own meaning, or the elements of the language that begin with it or hold it."""
+    """Return a keyword, in general: its own meaning, or the elements of the language that begin with it or hold it."""
     for table in (HARD_KEYWORDS, MEANINGS, PYTHON_KEYWORDS):
         if word in table:
             return _page((word,), table[word], ())

@@ -43,7 +43,7 @@ class Fold:
 
 
 def folds(snapshot: Snapshot) -> tuple[Fold, ...]:
-    """All that can be folded, in order; no two begin and end on the same lines."""
+    """Return all that can be folded, in order; no two begin and end on the same lines."""
     tokens = snapshot.tokens
     fold_by_lines: dict[tuple[int, int], Fold] = {}
     for fold in (

@@ -114,7 +114,7 @@ def _statements_around(tree: ast.Module, first: int, last: int) -> tuple[int, in
 
 
 def _edited(text: str, edits: Sequence[Edit]) -> str:
-    """A text after edits that are in order and do not overlap."""
+    """Return a text after edits that are in order and do not overlap."""
     lines = text.split("\n")
     starts = [0]
     for line in lines:
@@ -179,7 +179,7 @@ def _said(line: str) -> str:
 
 
 def format_text(text: str) -> str | None:
-    r"""A program in the usual style; ``None`` if it has mistakes of syntax. ``text`` has ``\n`` at each line end."""
+    r"""Return a program in the usual style; ``None`` if it has mistakes of syntax. ``text`` has ``\n`` at each line end."""
     return _formatted(Snapshot(text, "<text>"))
 
 
@@ -202,7 +202,7 @@ def _formatted(snapshot: Snapshot) -> str | None:
 
 
 def _parts(snapshot: Snapshot, line: _Line) -> list[list[Lexeme]]:
-    """The statements and headers on a logical line; none if it takes several lines, which stay as they are."""
+    """Return the statements and headers on a logical line; none if it takes several lines, which stay as they are."""
     if line.first != line.last:
         return []
     tokens, starts = snapshot.tokens, _starts_of_statements(snapshot)
@@ -217,7 +217,7 @@ def _parts(snapshot: Snapshot, line: _Line) -> list[list[Lexeme]]:
 
 
 def _needless_commas(part: Sequence[Lexeme]) -> Iterator[int]:
-    """The tokens of commas before a closing bracket that mean nothing, as those after single elements of tuples do."""
+    """Yield the tokens of commas before a closing bracket that mean nothing, as those after single elements of tuples do."""
     commas = [0]
     for before, lexeme in pairwise(part):
         if before.text in ("(", "[", "{"):
@@ -229,7 +229,7 @@ def _needless_commas(part: Sequence[Lexeme]) -> Iterator[int]:
 
 
 def _lines_of_misread(snapshot: Snapshot) -> Container[int]:
-    """The lines with annotated variables that would become properties or guards on lines of their own."""
+    """Return the lines with annotated variables that would become properties or guards on lines of their own."""
     return frozenset(
         node.lineno
         for node, scope in snapshot.resolution.by_class.get(ast.AnnAssign, ())
@@ -247,7 +247,7 @@ def _starts_of_statements(snapshot: Snapshot) -> Container[tuple[int, int]]:
 
 
 def _needless(snapshot: Snapshot, parts: Sequence[list[list[Lexeme]]]) -> frozenset[int]:
-    """The tokens of commas and parentheses without which the statements of the top level are read as before."""
+    """Return the tokens of commas and parentheses without which the statements of the top level are read as before."""
     candidates: list[tuple[int, ...]] = []
     for part in (part for of_line in parts for part in of_line):
         candidates += [(token,) for token in _needless_commas(part)]
@@ -280,7 +280,7 @@ def _is_read_alike(
 
 
 def _groups(tree: ast.Module) -> Iterator[tuple[int, int, list[ast.stmt]]]:
-    """The statements of the top level that share lines: their first and their last line."""
+    """Yield the statements of the top level that share lines: their first and their last line."""
     first = last = 0
     group: list[ast.stmt] = []
     for node in tree.body:
@@ -297,7 +297,7 @@ def _groups(tree: ast.Module) -> Iterator[tuple[int, int, list[ast.stmt]]]:
 
 
 def _logical_lines(tokens: Tokens) -> list[_Line]:
-    """The logical lines of a text with their comments."""
+    """Return the logical lines of a text with their comments."""
     lines: list[_Line] = []
     comments = deque(tokens.comments)
     depth = 0
@@ -439,7 +439,7 @@ def _width(line: str) -> int:
 
 
 def _lines_in_strings(tokens: Tokens) -> Iterator[int]:
-    """The lines that begin inside a string."""
+    """Yield the lines that begin inside a string."""
     for kind, first, last in zip(tokens.kinds, tokens.lines, tokens.end_lines, strict=True):
         if kind in (STRING, FSTRING_MIDDLE):
             yield from range(first + 1, last + 1)

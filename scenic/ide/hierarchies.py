@@ -55,13 +55,13 @@ class CallSite:
 
 
 def callable_at(project: Project, filename: str, line: int, column: int) -> Symbol | None:
-    """The function, behavior, monitor, scenario or class that the name at a place means."""
+    """Return the function, behavior, monitor, scenario or class that the name at a place means."""
     symbol = symbol_at(project, filename, line, column)
     return symbol if symbol is not None and symbol.kind in _CALLABLE and not symbol.is_builtin else None
 
 
 def class_at(project: Project, filename: str, line: int, column: int) -> Symbol | None:
-    """The class that the name at a place means, if a file defines it."""
+    """Return the class that the name at a place means, if a file defines it."""
     symbol = symbol_at(project, filename, line, column)
     return (
         symbol if symbol is not None and symbol.kind is SymbolKind.CLASS and not symbol.is_builtin else None
@@ -69,7 +69,7 @@ def class_at(project: Project, filename: str, line: int, column: int) -> Symbol 
 
 
 def callers(project: Project, symbol: Symbol) -> tuple[CallSite, ...]:
-    """The callers of a function, each once. Code outside of functions is its module."""
+    """Return the callers of a function, each once. Code outside of functions is its module."""
     spans_of_caller: dict[Symbol, list[Span]] = {}
     for place in references(project, symbol):
         module = project.module(place.filename)
@@ -105,18 +105,18 @@ def callees(project: Project, symbol: Symbol) -> tuple[CallSite, ...]:
 
 
 def supertypes(project: Project, symbol: Symbol) -> tuple[Symbol, ...]:
-    """The classes that a class names as its bases, as far as files define them."""
+    """Return the classes that a class names as its bases, as far as files define them."""
     cls = Classes(project).of_symbol(symbol)
     return () if cls is None else tuple(base for base in cls.bases if not base.is_builtin)
 
 
 def subtypes(project: Project, symbol: Symbol) -> tuple[Symbol, ...]:
-    """The classes of the workspace that name a class as a base."""
+    """Return the classes of the workspace that name a class as a base."""
     return subclasses(project, symbol, deep=False)
 
 
 def _calls(node: ast.AST) -> Iterator[ast.expr]:
-    """The functions that are called in a definition itself, and the classes of which it makes instances."""
+    """Yield the functions that are called in a definition itself, and the classes of which it makes instances."""
     pending = [node]
     while pending:
         part = pending.pop()
@@ -165,7 +165,7 @@ def _around(module: Module, span: Span) -> Symbol:
 
 
 def module_symbol(module: Module) -> Symbol:
-    """A module as the caller of what is called in it outside of definitions."""
+    """Return a module as the caller of what is called in it outside of definitions."""
     name = module.filename.replace("\\", "/").rpartition("/")[2]
     whole = Span(1, 0, len(module.source.lines), len(module.source.lines[-1]))
     return Symbol(

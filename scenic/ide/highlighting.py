@@ -92,7 +92,7 @@ def _runs(form: Form) -> Iterator[_Run]:
 
 
 def _starts_of_statements() -> tuple[Mapping[str, set[str]], set[tuple[str, ...]]]:
-    """The words that begin statements, by what follows them, and runs of several words."""
+    """Return the words that begin statements, by what follows them, and runs of several words."""
     starts: dict[str, set[str]] = {
         kind: set() for kind in ("statement", "whole", "block", "header", "definition")
     }
@@ -170,7 +170,7 @@ def _begins_with_name(row: Row) -> bool:
 
 
 def _leading(row: Row) -> tuple[str, ...]:
-    """The words that a statement begins with."""
+    """Return the words that a statement begins with."""
     words: list[str] = []
     for item in row:
         if not isinstance(item, Written) or not item.text.isidentifier():
@@ -180,7 +180,7 @@ def _leading(row: Row) -> tuple[str, ...]:
 
 
 def _single(runs: Iterable[_Run], *, before: bool | None = None, after: bool) -> frozenset[str]:
-    """The soft keywords that stand alone, with an operand after them or not, and before them if that matters."""
+    """Return the soft keywords that stand alone, with an operand after them or not, and before them if that matters."""
     return frozenset(
         run.words[0]
         for run in runs
@@ -192,7 +192,7 @@ def _single(runs: Iterable[_Run], *, before: bool | None = None, after: bool) ->
 
 
 def _units() -> frozenset[str]:
-    """The words that durations end with."""
+    """Return the words that durations end with."""
     return frozenset(word for each in RULES["duration"].alternatives for word in words_of(each.row))
 
 
@@ -231,7 +231,7 @@ class Pattern:
 
 
 def any_of(words: Collection[str]) -> str:
-    """A regular expression for one of several words, the longer ones first."""
+    """Return a regular expression for one of several words, the longer ones first."""
     return (
         "(?:" + "|".join(re.escape(word) for word in sorted(words, key=lambda word: (-len(word), word))) + ")"
     )

@@ -66,7 +66,7 @@ def hover(
 
 
 def _of_parameter(project: Project, snapshot: Snapshot, name: str, span: Span) -> Hover | None:
-    """A global parameter with the values that it is given."""
+    """Return a global parameter with the values that it is given."""
     module = project.module(snapshot.filename)
     found = [] if module is None else [each for each in settings(project, module) if each.name == name]
     if not found:

@@ -144,7 +144,7 @@ def _module_name(project: Project, filename: str, importer: str) -> str | None:
 
 
 def _import(snapshot: Snapshot, module: str, name: str) -> Edit:
-    """The edit that imports a name: by an import of the module that is there already, or on a line of its own."""
+    """Return the edit that imports a name: by an import of the module that is there already, or on a line of its own."""
     imports = _imports(snapshot.tree.body)
     for node in imports:
         if isinstance(node, ast.ImportFrom) and not node.level and node.module == module:
@@ -156,7 +156,7 @@ def _import(snapshot: Snapshot, module: str, name: str) -> Edit:
 
 
 def _on_own_line(snapshot: Snapshot, statement: str) -> Edit:
-    """The edit that adds an import after those that are there."""
+    """Return the edit that adds an import after those that are there."""
     imports = _imports(snapshot.tree.body)
     line = 1
     body = snapshot.tree.body

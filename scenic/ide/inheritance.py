@@ -25,7 +25,7 @@ class Family:
 
 
 def family(project: Project, symbol: Symbol) -> Family:
-    """The family of a symbol."""
+    """Return the family of a symbol."""
     owner = owner_of(symbol) if symbol.kind in _MEMBERS else None
     if owner is None:
         return Family((symbol,))
@@ -96,7 +96,7 @@ def is_derived(project: Project, symbol: Symbol, base: Symbol, *, deep: bool) ->
 
 
 def owner_of(symbol: Symbol) -> Symbol | None:
-    """The class that a member is defined in."""
+    """Return the class that a member is defined in."""
     module: Any = symbol.module
     if module is None:
         return None

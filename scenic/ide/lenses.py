@@ -22,7 +22,7 @@ class Lens:
 
 
 def lenses(snapshot: Snapshot) -> tuple[Lens, ...]:
-    """The commands of a document; none in a text that makes no objects."""
+    """Return the commands of a document; none in a text that makes no objects."""
     return snapshot.derived("lenses", lambda: tuple(_find(snapshot)))
 
 

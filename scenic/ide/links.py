@@ -29,7 +29,7 @@ class Link:
 
 
 def links(project: Project, snapshot: Snapshot) -> tuple[Link, ...]:
-    """The files that a document names, in order of place, as far as they exist. Runs nothing to find them."""
+    """Return the files that a document names, in order of place, as far as they exist. Runs nothing to find them."""
     folder = os.path.dirname(snapshot.filename)
     if not os.path.isabs(snapshot.filename):
         return ()
@@ -43,7 +43,7 @@ def links(project: Project, snapshot: Snapshot) -> tuple[Link, ...]:
 
 
 def _modules(project: Project, snapshot: Snapshot) -> Iterator[Link]:
-    """The modules that are imported: each word of a dotted name leads to its own part of it."""
+    """Yield the modules that are imported: each word of a dotted name leads to its own part of it."""
     module = project.module(snapshot.filename)
     model = None if module is None else Model(module, project)
     for each in () if module is None else occurrences(module):

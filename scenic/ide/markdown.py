@@ -12,5 +12,5 @@ def is_markdown(name: str, language: str = "") -> bool:
 
 
 def format_blocks(text: str) -> str:
-    """A Markdown text with its programs in the usual style; those with mistakes of syntax stay as they are."""
+    """Return a Markdown text with its programs in the usual style; those with mistakes of syntax stay as they are."""
     return with_blocks(text, format_text)

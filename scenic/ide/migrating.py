@@ -17,6 +17,6 @@ def is_old(found: Sequence[Diagnostic]) -> bool:
 
 
 def migrated(snapshot: Snapshot, project: Project) -> Edit | None:
-    """The conversion of a document as one edit; ``None`` if nothing changes."""
+    """Return the conversion of a document as one edit; ``None`` if nothing changes."""
     converted = Converter(project.finder.roots).convert(snapshot.text, snapshot.filename)
     return difference(snapshot.text, converted.text)

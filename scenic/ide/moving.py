@@ -91,7 +91,7 @@ def _after(filename: str | None, old: str, new: str) -> str | None:
 
 
 def _without(filename: str, name: str) -> str | None:
-    """The folder that a dotted name begins in, if it leads to this file."""
+    """Return the folder that a dotted name begins in, if it leads to this file."""
     folder, last = os.path.split(filename)
     parts = name.split(".")
     if not last.startswith("__init__.") and not os.path.isdir(filename):

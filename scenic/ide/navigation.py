@@ -96,7 +96,7 @@ def definitions(project: Project, snapshot: Snapshot, line: int, column: int) ->
 
 
 def _provided(snapshot: Snapshot, line: int, column: int) -> tuple[Target, ...]:
-    """The declaration of what the language provides, which documents it."""
+    """Return the declaration of what the language provides, which documents it."""
     index = snapshot.token_at(line, column)
     if index is None or not snapshot.is_word(index):
         return ()
@@ -386,7 +386,7 @@ def _alias(module: Module, found: Occurrence) -> Binding | None:
 
 
 def _same(project: Project, module: Module, found: Occurrence, *related: Symbol) -> Sequence[Occurrence]:
-    """The words of a module that mean the same as one of them, or one of ``related``.
+    """Return the words of a module that mean the same as one of them, or one of ``related``.
 
     Without a meaning, those that are the same.
     """

@@ -26,7 +26,7 @@ class Setting:
 
 
 def settings(project: Project, module: Module) -> Iterator[Setting]:
-    """The settings of a module, then those of the Scenic modules that it imports, however far."""
+    """Yield the settings of a module, then those of the Scenic modules that it imports, however far."""
     files_done = {module.filename}
     modules = [module]
     for each in modules:
@@ -42,7 +42,7 @@ def settings(project: Project, module: Module) -> Iterator[Setting]:
 
 
 def parameter_at(snapshot: Snapshot, line: int, column: int) -> tuple[str, Span] | None:
-    """The parameter that is read at a place (``globalParameters.speed``), and its name's place."""
+    """Return the parameter that is read at a place (``globalParameters.speed``), and its name's place."""
     node = snapshot.path_to(line, column)[-1]
     index = snapshot.token_at(line, column)
     if not isinstance(node, ast.Attribute) or not isinstance(node.value, ast.Name) or index is None:
@@ -61,7 +61,7 @@ def _nodes(module: Module) -> Iterator[ast.AST]:
 
 
 def _imported(project: Project, module: Module, node: ast.AST) -> Iterator[str]:
-    """The files of the modules that a statement imports."""
+    """Yield the files of the modules that a statement imports."""
     level = node.level if isinstance(node, ast.ImportFrom) else 0
     names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
     if isinstance(node, scenic.Model):

@@ -57,7 +57,7 @@ class Completions:
 
 
 def kind_of_symbol(symbol: Symbol) -> CompletionKind:
-    """The kind under which a symbol of the project is offered."""
+    """Return the kind under which a symbol of the project is offered."""
     return {
         SymbolKind.CLASS: CompletionKind.CLASS,
         SymbolKind.FUNCTION: CompletionKind.FUNCTION,

@@ -105,7 +105,7 @@ def inline_variable(snapshot: Snapshot, line: int, column: int) -> Refactoring |
 
 
 def _path_of(snapshot: Snapshot, span: Span) -> list[ast.AST]:
-    """The nodes around an expression that stands exactly at a span, that expression last."""
+    """Return the nodes around an expression that stands exactly at a span, that expression last."""
     path: list[ast.AST] = [snapshot.tree]
     while True:
         if isinstance(path[-1], ast.expr) and snapshot.source.span(path[-1]) == span:

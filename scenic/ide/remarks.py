@@ -73,7 +73,7 @@ def shares(snapshot: Snapshot, remarks: Remarks) -> tuple[Share, ...]:
 
 
 def _requirements(snapshot: Snapshot, scenario: str | None) -> Iterator[scenic.Require]:
-    """The requirements of the scenes that were looked for: those in time reject simulations."""
+    """Yield the requirements of the scenes that were looked for: those in time reject simulations."""
     statements: list[ast.stmt] = list(snapshot.tree.body)
     for node in snapshot.tree.body:
         if isinstance(node, scenic.ScenarioDef) and node.name == scenario:
@@ -86,7 +86,7 @@ def _requirements(snapshot: Snapshot, scenario: str | None) -> Iterator[scenic.R
 
 
 def ranges(snapshot: Snapshot, remarks: Remarks) -> tuple[Range, ...]:
-    """The ranges of the random values of a program of which narrowing removes a part."""
+    """Return the ranges of the random values of a program of which narrowing removes a part."""
     if remarks.text != snapshot.text:
         return ()
     calls = {span_of(snapshot, node) for node in walk(snapshot.tree) if isinstance(node, ast.Call)}

@@ -76,7 +76,7 @@ def repair_all(
 
 
 def difference(text: str, changed: str) -> Edit | None:
-    """The edit of one part that makes one text of another; ``None`` if they are the same."""
+    """Return the edit of one part that makes one text of another; ``None`` if they are the same."""
     if text == changed:
         return None
     before = _common(text, changed)
@@ -86,7 +86,7 @@ def difference(text: str, changed: str) -> Edit | None:
 
 
 def _common(one: str, other: str) -> int:
-    """The length of the common beginning."""
+    """Return the length of the common beginning."""
     differ = (index for index, (left, right) in enumerate(zip(one, other, strict=False)) if left != right)
     return next(differ, min(len(one), len(other)))
 

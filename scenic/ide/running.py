@@ -47,7 +47,7 @@ def sample_page(
     count: int = 1,
     go_on: Callable[[], None] = lambda: None,
 ) -> str:
-    """A page that shows scenes of a program. **Runs the program.**
+    """Return a page that shows scenes of a program. **Runs the program.**
 
     ``text`` is the program as it stands in the editor, ``filename`` where it belongs: modules are found beside it.
     ``go_on`` is called now and then, and may raise to give up. Raises `RunError` if there is no scene to show.
@@ -65,7 +65,7 @@ def simulation_page(
     steps: int = 100,
     go_on: Callable[[], None] = lambda: None,
 ) -> str:
-    """A page that plays a simulation of the program in a file. **Runs the program**, as it stands on the disk.
+    """Return a page that plays a simulation of the program in a file. **Runs the program**, as it stands on the disk.
 
     The rest is as for `sample_page`.
     """
@@ -97,7 +97,7 @@ def _chosen(scenario: str | None) -> list[str]:
 
 
 def _run(arguments: list[str], text: str, folder: str, view: str | None, go_on: Callable[[], None]) -> str:
-    """The page that a command writes, to standard output or to the file ``view``."""
+    """Return the page that a command writes, to standard output or to the file ``view``."""
     # -P: a module in the present folder must not take the place of one of ours.
     command = [sys.executable, "-P", "-m", "scenic.cli.main", *arguments]
     with (

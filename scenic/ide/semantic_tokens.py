@@ -112,7 +112,7 @@ _What = tuple[str, frozenset[str]]
 def semantic_tokens(
     snapshot: Snapshot, project: Project | None = None, *, stamp: object = None
 ) -> tuple[SemanticToken, ...]:
-    """All tokens of a document that can be coloured, in order; none goes over a line end, and none overlap.
+    """Return all tokens of a document that can be coloured, in order; none goes over a line end, and none overlap.
 
     ``project`` knows what imported names are; ``stamp`` stands for its state.
     """

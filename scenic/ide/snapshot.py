@@ -76,7 +76,7 @@ class Snapshot:
         return self._once("resolution", self._resolve)
 
     def derived(self, key: str, make: Callable[[], _T], *, stamp: object = None) -> _T:
-        """A value that a feature derives from this version, computed on first use and kept.
+        """Return a value that a feature derives from this version, computed on first use and kept.
 
         It is made anew when ``stamp``, which stands for whatever else it depends on, is another one than last time.
         """
@@ -106,7 +106,7 @@ class Snapshot:
         return token
 
     def tokens_of_line(self, line: int) -> range:
-        """The tokens that begin on a line."""
+        """Return the tokens that begin on a line."""
         lines = self.tokens.lines
         return range(bisect_left(lines, line), bisect_right(lines, line))
 
@@ -162,7 +162,7 @@ class Snapshot:
         return scope
 
     def _blocks_after(self, node: ast.AST, line: int, column: int) -> Iterator[ast.AST]:
-        """The blocks within a node that end before a place, though its line is indented as one of theirs."""
+        """Yield the blocks within a node that end before a place, though its line is indented as one of theirs."""
         content = self.source.line(line)[:column]
         indentation = len(content) - len(content.lstrip())
         while True:
@@ -221,14 +221,14 @@ class PythonSnapshot(Snapshot):
 
 
 def _scope_of_default(cls: Scope) -> Scope:
-    """The scope of the default of a property of a class."""
+    """Return the scope of the default of a property of a class."""
     scope = Scope(ScopeKind.PROPERTY, cls.name, cls.node, cls)
     scope.bindings["self"] = Binding("self", scope, [cls.node], {BindingKind.SELF})
     return scope
 
 
 def _placed(node: ast.AST) -> Iterator[ast.AST]:
-    """The children of a node that have places; for those that have none, their children."""
+    """Yield the children of a node that have places; for those that have none, their children."""
     stack = parts(node)[::-1]
     while stack:
         child = stack.pop()

@@ -54,7 +54,7 @@ class Lexeme(NamedTuple):
 
 
 def lexemes(snapshot: Snapshot, begin: int, end: int) -> list[Lexeme]:
-    """The tokens from ``begin`` on and before ``end``, without layout."""
+    """Return the tokens from ``begin`` on and before ``end``, without layout."""
     tokens, names = snapshot.tokens, _places_of_names(snapshot)
     result: list[Lexeme] = []
     first_token = depth = 0
@@ -96,7 +96,7 @@ def _places_of_names(snapshot: Snapshot) -> Container[tuple[int, int]]:
 
 
 def _source(snapshot: Snapshot, first: int, last: int) -> str:
-    """The text from one token to another one, as it stands."""
+    """Return the text from one token to another one, as it stands."""
     start, end = snapshot.span_of_token(first), snapshot.span_of_token(last)
     lines = list(snapshot.source.lines[start.line - 1 : end.end_line])
     lines[-1] = lines[-1][: end.end_column]
@@ -105,7 +105,7 @@ def _source(snapshot: Snapshot, first: int, last: int) -> str:
 
 
 def text_of(snapshot: Snapshot, begin: int, end: int) -> str:
-    """The tokens from ``begin`` on and before ``end`` on one line."""
+    """Return the tokens from ``begin`` on and before ``end`` on one line."""
     return spaced(lexemes(snapshot, begin, end))
 
 
@@ -127,7 +127,7 @@ class _Bracket:
 
 
 def spaced(line: Sequence[Lexeme]) -> str:
-    """A line with blanks as the usual style has them, and with strings in double quotes where that is as short."""
+    """Return a line with blanks as the usual style has them, and with strings in double quotes where that is as short."""
     parts: list[str] = []
     brackets = [_Bracket("")]
     before: Lexeme | None = None
@@ -212,7 +212,7 @@ def _quoted(text: str) -> str:
 
 
 def needless_pairs(line: Sequence[Lexeme]) -> Iterator[tuple[Lexeme, Lexeme]]:
-    """The parentheses of a line that may be needless, outer ones first, and show nothing about operators.
+    """Yield the parentheses of a line that may be needless, outer ones first, and show nothing about operators.
 
     Each pair is judged as if those before it were gone. Whether the line is read as before without it is another question.
     """
@@ -256,7 +256,7 @@ def _closing(line: Sequence[Lexeme], place: int) -> int | None:
 
 
 def _at_top(line: Sequence[Lexeme]) -> Iterator[Lexeme]:
-    """The tokens that are in no further brackets."""
+    """Yield the tokens that are in no further brackets."""
     depth = 0
     for lexeme in line:
         depth -= lexeme.text in _CLOSERS

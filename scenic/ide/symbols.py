@@ -70,7 +70,7 @@ def matches(name: str, query: str) -> bool:
 def _of_block(
     snapshot: Snapshot, statements: Sequence[ast.stmt], depth: int, *, in_class: bool = False
 ) -> Iterator[OutlineSymbol]:
-    """The definitions in a block and in the blocks within it, with up to ``depth`` levels of definitions in them."""
+    """Yield the definitions in a block and in the blocks within it, with up to ``depth`` levels of definitions in them."""
     if not depth:
         return
     names: set[str] = set()
@@ -86,7 +86,7 @@ def _of_block(
 
 
 def _blocks_of(node: object) -> list[ast.stmt] | None:
-    """The statements within a statement that does not define anything; ``None`` for one that does."""
+    """Return the statements within a statement that does not define anything; ``None`` for one that does."""
     if isinstance(node, _DEFINING):
         return None
     inner: list[ast.stmt] = []
@@ -184,7 +184,7 @@ def _names(target: ast.expr) -> Iterator[ast.Name]:
 
 
 def _signature(snapshot: Snapshot, node: Any) -> str:
-    """The parameters of a definition as they are written, on one line."""
+    """Return the parameters of a definition as they are written, on one line."""
     tokens = snapshot.tokens
     begin = _token_at(snapshot, node.lineno, node.col_offset)
     if begin == len(tokens.texts) or (tokens.lines[begin], tokens.columns[begin]) != position(node):
@@ -211,7 +211,7 @@ def _token_at(snapshot: Snapshot, line: int, column: int) -> int:
 
 
 def _text(snapshot: Snapshot, node: ast.expr) -> str:
-    """An expression on one line; a long one is cut."""
+    """Return an expression on one line; a long one is cut."""
     begin = _token_at(snapshot, node.lineno, node.col_offset)
     end = _token_at(snapshot, node.end_lineno or 0, node.end_col_offset or 0)
     text = text_of(snapshot, begin, end)

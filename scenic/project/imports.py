@@ -62,11 +62,11 @@ class Imports:
         return {alias: node for node in self._froms for alias in node.names}
 
     def found(self, node: ast.ImportFrom | scenic.Model) -> FoundModule:
-        """The module that a statement names."""
+        """Return the module that a statement names."""
         return self._project.found_by(node, self._source.filename)
 
     def modules(self, statement: ast.Import | ast.ImportFrom | scenic.Model) -> tuple[FoundModule, ...]:
-        """The modules that a statement runs."""
+        """Return the modules that a statement runs."""
         importer = self._source.filename
         if isinstance(statement, ast.Import):
             return tuple(self._project.find(alias.name, importer=importer) for alias in statement.names)
@@ -77,7 +77,7 @@ class Imports:
         return (found, *(each for each in inner if isinstance(each, FoundModule)))
 
     def member(self, alias: ast.alias) -> Exported | FoundModule | None:
-        """The definition that ``from m import name`` brings."""
+        """Return the definition that ``from m import name`` brings."""
         return self._names.imported(alias) if alias in self._statements else None
 
     def is_missing(self, alias: ast.alias) -> bool:
@@ -156,7 +156,7 @@ class Imports:
         )
 
     def _elsewhere(self, found: FoundModule, node: scenic.Model, place: Span) -> Diagnostic:
-        """A world model that may be installed where the program runs: its names are unknown, all else can be checked."""
+        """Return a world model that may be installed where the program runs: its names are unknown, all else can be checked."""
         return Diagnostic(
             "SC406",
             f"the world model `{node.name}` is not here, so that its names are not checked and nothing can be sampled",
@@ -329,7 +329,7 @@ def _judgement(found: FoundModule, node: object, level: int) -> tuple[Severity |
 
 
 def _shown(folder: str, own: str) -> str:
-    """A folder as seen from the program, if it is near."""
+    """Return a folder as seen from the program, if it is near."""
     try:
         relative = os.path.relpath(folder, own)
     except ValueError:  # on another drive

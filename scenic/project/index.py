@@ -130,7 +130,7 @@ class Project:
         return has_changes
 
     def state_beside(self, filename: str) -> object:
-        """A value that equals another such state as long as no module but the one in this file has changed."""
+        """Return a value that equals another such state as long as no module but the one in this file has changed."""
         own = os.path.abspath(filename)
         return self._files, tuple(module for name, module in sorted(self._opened.items()) if name != own)
 
@@ -140,7 +140,7 @@ class Project:
         self.derived = {}
 
     def module(self, filename: str) -> Module | None:
-        """The module in a file; ``None`` if it cannot be read, or is too large to look into."""
+        """Return the module in a file; ``None`` if it cannot be read, or is too large to look into."""
         absolute_path = self._absolute.get(filename)
         if absolute_path is None:
             absolute_path = self._absolute[filename] = os.path.abspath(filename)
@@ -164,7 +164,7 @@ class Project:
             return _Entry(stamp, None)
 
     def files(self) -> Iterator[str]:
-        """The Scenic and Python files of the workspace, and those that are open; no hidden folders."""
+        """Yield the Scenic and Python files of the workspace, and those that are open; no hidden folders."""
         open_files = set(self._opened)
         yield from sorted(open_files)
         for root in self.finder.roots:
@@ -185,11 +185,11 @@ class Project:
     # Modules
 
     def find(self, name: str, *, importer: str, level: int = 0) -> FoundModule:
-        """The module that an import in a file means; ``level`` counts the dots before the name."""
+        """Return the module that an import in a file means; ``level`` counts the dots before the name."""
         return self.finder.find(name, importer=importer, level=level)
 
     def found_module(self, found: FoundModule) -> Module | None:
-        """The module that was found, if it can be looked into."""
+        """Return the module that was found, if it can be looked into."""
         if found.filename is None or found.kind not in (ModuleKind.SCENIC, ModuleKind.PYTHON):
             return None
         return self.module(found.filename)
@@ -277,7 +277,7 @@ class Project:
         return current is module
 
     def _imported(self, module: Module) -> Iterator[Module]:
-        """The Scenic modules that a module imports."""
+        """Yield the Scenic modules that a module imports."""
         for level, name in _imports(module):
             found = self.find(name, importer=module.filename, level=level)
             if found.kind is ModuleKind.SCENIC:
@@ -286,7 +286,7 @@ class Project:
                     yield other
 
     def found_by(self, node: ast.ImportFrom | scenic.Model, importer: str) -> FoundModule:
-        """The module that ``from m import ...`` or ``model m`` means."""
+        """Return the module that ``from m import ...`` or ``model m`` means."""
         if isinstance(node, scenic.Model):
             return self.find(node.name, importer=importer)
         return self.find(node.module or "", importer=importer, level=node.level)
@@ -294,7 +294,7 @@ class Project:
     def member(
         self, found: FoundModule, name: str, *, importer: str, level: int = 0
     ) -> Exported | FoundModule | None:
-        """The meaning of ``from m import name``: a name of the module, else a module in it; ``None`` if it has neither."""
+        """Return the meaning of ``from m import name``: a name of the module, else a module in it; ``None`` if it has neither."""
         exported = self.exports_of(found).names.get(name)
         if exported is not None and not self._is_own_module(exported, found):
             return exported

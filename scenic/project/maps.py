@@ -42,7 +42,7 @@ def map_findings(tree: ast.Module, source: Source) -> Iterator[Diagnostic]:
 
 
 def _local_path(value: ast.expr) -> str | None:
-    """The text in ``localPath('...')``; ``None`` of other values."""
+    """Return the text in ``localPath('...')``; ``None`` of other values."""
     match value:
         case ast.Call(func=ast.Name(id="localPath"), args=[ast.Constant(value=str() as text)]) if (
             "\0" not in text

@@ -78,7 +78,7 @@ class Location:
 
 
 def occurrences(module: Module) -> Sequence[Occurrence]:
-    """All words of a module that name something, in order of place."""
+    """Return all words of a module that name something, in order of place."""
     resolution = module.resolution
 
     def find() -> tuple[Occurrence, ...]:
@@ -94,7 +94,7 @@ def _in_order(found: Iterator[Occurrence]) -> tuple[Occurrence, ...]:
 def _occurrences(
     module: Module, part: ast.AST, references: Container[ast.AST], bindings: Mapping[ast.AST, Binding]
 ) -> Iterator[Occurrence]:
-    """The words of a part of a module that name something."""
+    """Yield the words of a part of a module that name something."""
     for node in walk(part):
         if isinstance(node, ast.Name):
             if node in references:
@@ -189,7 +189,7 @@ def _first_line(node: ast.stmt) -> int:
 
 
 def symbol_at(project: Project, filename: str, line: int, column: int) -> Symbol | None:
-    """The symbol that the word at a place means."""
+    """Return the symbol that the word at a place means."""
     module = project.module(filename)
     found = None if module is None else occurrence_at(module, line, column)
     return None if module is None or found is None else symbol_of(Model(module, project), found)
@@ -202,7 +202,7 @@ def definition(project: Project, filename: str, line: int, column: int) -> Symbo
 
 
 def symbol_of(model: Model, occurrence: Occurrence) -> Symbol | None:
-    """The symbol that a word of a module means."""
+    """Return the symbol that a word of a module means."""
     node: Any = occurrence.node
     match node:
         case ast.Name():
@@ -233,7 +233,7 @@ def _bound(model: Model, node: ast.AST) -> Symbol | None:
 
 
 def _module(model: Model, name: str, index: int, level: int) -> Symbol | None:
-    """The module that the beginning of a dotted name means."""
+    """Return the module that the beginning of a dotted name means."""
     found = model.modules.find(
         ".".join(name.split(".")[: index + 1]), importer=model.module.filename, level=level
     )
@@ -262,7 +262,7 @@ def _alias(model: Model, alias: ast.alias, occurrence: Occurrence) -> Symbol | N
 
 
 def _property(model: Model, node: scenic.SpecifierPhrase) -> Symbol | None:
-    """The property after ``with``: that of the class which is made."""
+    """Return the property after ``with``: that of the class which is made."""
     owner = model.module.owner_of_specifier.get(node)
     if not isinstance(owner, scenic.New):
         return None
@@ -284,7 +284,7 @@ def _own_property(model: Model, node: scenic.PropertyDef) -> Symbol | None:
 
 
 def _keyword(model: Model, node: ast.keyword) -> Symbol | None:
-    """The parameter that an argument by name is given to."""
+    """Return the parameter that an argument by name is given to."""
     call = model.module.call_of.get(node)
     callee = None if call is None else model.meaning(call.func)
     if callee is not None and callee.kind is SymbolKind.CLASS:
@@ -299,7 +299,7 @@ def _keyword(model: Model, node: ast.keyword) -> Symbol | None:
 
 
 def call_signature(model: Model, call: ast.Call) -> Signature | None:
-    """The signature of the function that a call calls."""
+    """Return the signature of the function that a call calls."""
     callee = model.meaning(call.func)
     return None if callee is None else signature_of(model.modules, callee)
 

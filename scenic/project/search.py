@@ -65,7 +65,7 @@ class Finder:
         return any(folder in self._stamps and self._stamps[folder] != _stamp(folder) for folder in folders)
 
     def find(self, name: str, *, importer: str, level: int = 0) -> FoundModule:
-        """The module that ``name`` means in the file ``importer``; ``level`` counts the dots before it."""
+        """Return the module that ``name`` means in the file ``importer``; ``level`` counts the dots before it."""
         folder = self._folder_of.get(importer)
         if folder is None:
             folder = self._folder_of[importer] = os.path.dirname(os.path.abspath(importer))
@@ -150,7 +150,7 @@ class Finder:
         return FoundModule(name, ModuleKind.MISSING, None, tuple(homes), beginning, within, near)
 
     def _beside(self, folder: str) -> tuple[str, ...]:
-        """A folder, and those above it up to the innermost root that holds it.
+        """Return a folder, and those above it up to the innermost root that holds it.
 
         Where that is a package, up to the one that holds the outermost package: what imports the package will find that.
         """
@@ -249,7 +249,7 @@ class Finder:
 
 
 def _hooked(package: str) -> str | None:
-    """The folder of a package that is installed so that Python finds it by a hook and not on its path.
+    """Return the folder of a package that is installed so that Python finds it by a hook and not on its path.
 
     Looking for a module that lies in no package runs nothing of it.
     """

@@ -40,7 +40,7 @@ def texture_findings(tree: ast.Module, source: Source) -> Iterator[Diagnostic]:
 
 
 def _texture(node: ast.AST) -> ast.expr | None:
-    """The value that a specifier or class gives to the property ``texture``."""
+    """Return the value that a specifier or class gives to the property ``texture``."""
     match node:
         case scenic.SpecifierPhrase(property="texture", operands=[ast.expr() as value, *_]):
             return value
@@ -67,7 +67,7 @@ def _names(value: ast.expr | None) -> Iterator[tuple[str, ast.expr]]:
 
 
 def _advice(path: str) -> str:
-    """A hint at the images in the folder of one that is missing."""
+    """Return a hint at the images in the folder of one that is missing."""
     folder, file_name = os.path.split(path)
     try:
         names = sorted(name for name in os.listdir(folder) if name.lower().endswith(SUFFIXES))

@@ -40,7 +40,7 @@ class PairedComparison:
         return (self.first_only - self.second_only) / self.pairs if self.pairs else 0.0
 
     def interval(self, confidence: float) -> Interval:
-        """The interval of the difference, without 0 exactly where McNemar's p value is at most 0.8 times ``1 - confidence``.
+        """Return the interval of the difference, without 0 exactly where McNemar's p value is at most 0.8 times ``1 - confidence``.
 
         The difference is the share of unequal cases, times the share of the first among them less that of the second. Both have exact
         intervals (Clopper and Pearson, 1934), the second given the number of unequal cases, as in McNemar's test; together they miss with at

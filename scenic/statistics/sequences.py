@@ -20,7 +20,7 @@ _FINE: Final = 6
 
 
 def log_wealth(violations: int, runs: int, probability: float) -> float:
-    """The logarithm of what a bet against ``probability`` has become; it starts at 0."""
+    """Return the logarithm of what a bet against ``probability`` has become; it starts at 0."""
     held = runs - violations
     mixture = _log_beta(violations + _PRIOR, held + _PRIOR) - _log_beta(_PRIOR, _PRIOR)
     if (violations and probability <= 0) or (held and probability >= 1):

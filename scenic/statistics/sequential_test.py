@@ -47,7 +47,7 @@ class BoundTest:
     power: float
 
     def evidence(self, violations: int, runs: int) -> float:
-        """The logarithm of the ratio of the likelihoods of ``good`` and ``bound``."""
+        """Return the logarithm of the ratio of the likelihoods of ``good`` and ``bound``."""
         failing, holding = self._increments
         return violations * failing + (runs - violations) * holding
 
@@ -96,7 +96,7 @@ class BoundTest:
 
 @lru_cache(maxsize=64)
 def _lower_threshold(bound: float, good: float, confidence: float, power: float) -> float:
-    """The evidence at which the answer is "more": the highest one tried at which both errors are as promised."""
+    """Return the evidence at which the answer is "more": the highest one tried at which both errors are as promised."""
     upper, wanted = -math.log1p(-confidence), 1 - power
     best = lower = math.log(wanted)
     scale = max(1.0, _SMALL / bound)

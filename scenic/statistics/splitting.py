@@ -341,7 +341,7 @@ class Splitting(Generic[_Point]):
 
 
 def _next_level(populations: Sequence[Sequence[_Member[_Point]]], size: int) -> float:
-    """The value of the tenth of all members, but so that none of the repetitions dies out."""
+    """Return the value of the tenth of all members, but so that none of the repetitions dies out."""
     together = sorted(member.value for members in populations for member in members)
     level = together[max(1, int(_KEPT * len(together))) - 1]
     least = max(1, int(_SURVIVING * size)) - 1
@@ -418,7 +418,7 @@ class _Kernel:
 
 
 def repeated_probability(repetitions: Sequence[Repetition]) -> float:
-    """The probability by finished repetitions with the same levels: the product of their mean shares.
+    """Return the probability by finished repetitions with the same levels: the product of their mean shares.
 
     Each share counts with the members of all repetitions, so that this varies by a third less than the mean of the repetitions' products.
     As these products, the mean shares are unbiased up to one over the size of a population.
@@ -428,7 +428,7 @@ def repeated_probability(repetitions: Sequence[Repetition]) -> float:
 
 
 def repeated_interval(repetitions: Sequence[Repetition], confidence: float) -> Interval:
-    """A t interval of the logarithm of the probability, from two finished repetitions or more; approximate.
+    """Return a t interval of the logarithm of the probability, from two finished repetitions or more; approximate.
 
     The logarithms of repetitions are taken as normal, and that of the probability as their mean, which it is to first order.
     """

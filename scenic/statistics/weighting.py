@@ -58,7 +58,7 @@ class Proposal:
         return np.asarray(np.clip(points, _FIRST, 1 - _FIRST))
 
     def weights(self, points: Floats) -> Floats:
-        """The density of the uniform distribution over that of the proposal ``(n,)``, at points ``(n, d)``."""
+        """Return the density of the uniform distribution over that of the proposal ``(n,)``, at points ``(n, d)``."""
         from scipy.special import ndtri
 
         places = ndtri(points)
@@ -75,7 +75,7 @@ def effective_size(weights: Floats) -> float:
 
 
 def weighted_interval(weights: Floats, runs: int, confidence: float) -> Interval:
-    """The interval of a probability that is estimated by ``weights.sum() / runs``.
+    """Return the interval of a probability that is estimated by ``weights.sum() / runs``.
 
     Fay and Feuer, "Confidence intervals for directly standardized rates: a method based on the gamma distribution", 1997: exact
     where all weights are alike, conservative where they differ, in all studies so far.

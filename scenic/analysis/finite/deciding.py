@@ -188,7 +188,7 @@ def _pieces(checks: Sequence[Check], finite: _Finiteness) -> Iterator[_Piece]:
 
 
 def _conjuncts(node: Node) -> list[Node]:
-    """The conditions that hold together where a condition holds."""
+    """Return the conditions that hold together where a condition holds."""
     if node.operation.name != "and":
         return [node]
     return [inner for operand in node.operands for inner in _conjuncts(operand)]
@@ -241,7 +241,7 @@ class _Builder:
 
 
 def _simplified(scope: Sequence[int], allowed: Mask) -> Table:
-    """A table without the variables that it does not depend on."""
+    """Return a table without the variables that it does not depend on."""
     left = list(scope)
     for variable in scope:
         place = left.index(variable)

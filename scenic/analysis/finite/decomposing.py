@@ -108,7 +108,7 @@ class Decomposer:
         return self._passed_on(node, values)
 
     def _passed_on(self, node: Node, values: list[_Value]) -> _Value:
-        """The value of an operation on others, as an inner variable where these have more than one."""
+        """Return the value of an operation on others, as an inner variable where these have more than one."""
         column, shape = _applied(node, values, tuple(value.kind for value in values))
         scope = tuple(dict.fromkeys(value.variable for value in values if value.variable is not None))
         if len(scope) < 2:
@@ -127,7 +127,7 @@ class Decomposer:
 
 
 def _applied(node: Node, values: list[_Value], kinds: tuple[Kind, ...]) -> tuple[Column, tuple[int, ...]]:
-    """The values of an operation for all combinations of the variables of its operands, and how many these have."""
+    """Return the values of an operation for all combinations of the variables of its operands, and how many these have."""
     operation = node.operation
     if not operation.pure or node.kind.is_boxed or any(kind.is_boxed for kind in kinds):
         raise _TooLargeError

@@ -42,7 +42,7 @@ class Differing:
 
 
 def labelled(tables: Sequence[Table], sizes: Mapping[int, int]) -> dict[int, NDArray[np.intp]] | None:
-    """The labels of the values of variables, from 0 on, any two of which exclude each other where labels are equal.
+    """Return the labels of the values of variables, from 0 on, any two of which exclude each other where labels are equal.
 
     Returns the largest such set of variables that is met, ``None`` where there is none.
     """

@@ -118,7 +118,7 @@ def eliminate(tables: Sequence[Table], weights: Mapping[int, Floats], order: Seq
 
 
 def _law_of_rows(rows: NDArray[np.float64]) -> tuple[Floats, Floats]:
-    """The law that the weights of each row give, summed up, and the sums of the rows."""
+    """Return the law that the weights of each row give, summed up, and the sums of the rows."""
     cumulative = np.cumsum(rows, axis=1)
     sums = cumulative[:, -1].copy()
     cumulative /= np.where(sums > 0, sums, 1.0)[:, np.newaxis]

@@ -84,7 +84,7 @@ class LeftToChance:
 
 
 def left_to_chance(decision: Decision, checks: Sequence[Check]) -> tuple[LeftToChance, ...]:
-    """The requirements on discrete values that are left to chance, each once."""
+    """Return the requirements on discrete values that are left to chance, each once."""
     found = (
         LeftToChance(
             checks[number].label,

@@ -25,7 +25,7 @@ _LARGEST_PROJECTION: Final = 1 << 16
 def solutions(
     tables: Sequence[Table], sizes: Mapping[int, int], draws: Sequence[int]
 ) -> NDArray[np.intp] | None:
-    """The combinations ``(m, draws)`` of all variables in ``sizes`` that tables allow, without inner variables.
+    """Return the combinations ``(m, draws)`` of all variables in ``sizes`` that tables allow, without inner variables.
 
     ``None`` where there are too many, or too many of some of the variables. Inner variables must be fixed by the draws.
     """
@@ -52,7 +52,7 @@ def solutions(
 
 
 def _order(tables: Sequence[Table], sizes: Mapping[int, int]) -> list[int]:
-    """The variables, next always the one that the tables bind most to those before it."""
+    """Return the variables, next always the one that the tables bind most to those before it."""
     left = dict.fromkeys(sizes)
     ordered_variables: set[int] = set()
     order: list[int] = []
@@ -85,7 +85,7 @@ def _order(tables: Sequence[Table], sizes: Mapping[int, int]) -> list[int]:
 
 
 def _speaking(tables: Sequence[Table], variable: int, known: frozenset[int]) -> list[tuple[list[int], Mask]]:
-    """The tables about a variable, given known ones: of each table the known variables, and the entries by them and the variable."""
+    """Return the tables about a variable, given known ones: of each table the known variables, and the entries by them and the variable."""
     pairs = []
     for table in tables:
         if variable not in table.scope:

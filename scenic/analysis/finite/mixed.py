@@ -44,7 +44,7 @@ class Possible:
         self._known: dict[Hashable, Mask | None] = {}
 
     def table(self, check: Check) -> tuple[list[Variable], Mask] | None:
-        """The finite axes that a check reads, and which combinations may pass it; ``None`` where that is not found out."""
+        """Return the finite axes that a check reads, and which combinations may pass it; ``None`` where that is not found out."""
         every = Graph(check.nodes).nodes
         scope = [self._variables[node] for node in every if node in self._variables]
         count = float(np.prod([variable.size for variable in scope], dtype=np.float64))
@@ -67,7 +67,7 @@ class Possible:
         return None
 
     def _boxes(self, scope: Sequence[Variable], sizes: tuple[int, ...]) -> Boxes:
-        """A box of the cube for each combination."""
+        """Return a box of the cube for each combination."""
         cells = np.unravel_index(np.arange(int(np.prod(sizes))), sizes)
         lower = np.zeros((len(cells[0]), self._graph.dimension))
         upper = np.ones((len(cells[0]), self._graph.dimension))
@@ -77,7 +77,7 @@ class Possible:
         return Boxes(lower, upper)
 
     def _collides(self, pair: Sequence[ObjectNodes], boxes: Boxes) -> Mask:
-        """The boxes in which two objects collide in any case: balls within them, about their positions, meet."""
+        """Return the boxes in which two objects collide in any case: balls within them, about their positions, meet."""
         count = len(boxes)
         never = np.zeros(count, dtype=np.bool_)
         if not all(item.shape.is_constant and item.shape.value.mesh.is_box for item in pair):
@@ -100,5 +100,5 @@ class Possible:
 
 
 def _most_apart(one: Bounds, other: Bounds) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-    """The largest difference of two positions along each axis, ``(m, 3)``."""
+    """Return the largest difference of two positions along each axis, ``(m, 3)``."""
     return np.asarray(np.maximum(np.abs(one.upper - other.lower), np.abs(other.upper - one.lower)))

@@ -53,7 +53,7 @@ class FiniteProblem:
 
 
 def aligned(table: Table, scope: Sequence[int]) -> Mask:
-    """The entries of a table with dimensions for another, wider scope: of length 1 where it says nothing."""
+    """Return the entries of a table with dimensions for another, wider scope: of length 1 where it says nothing."""
     order = sorted(range(len(table.scope)), key=lambda place: scope.index(table.scope[place]))
     entries = table.allowed.transpose(order)
     mine = iter(entries.shape)
@@ -61,7 +61,7 @@ def aligned(table: Table, scope: Sequence[int]) -> Mask:
 
 
 def merged(tables: Iterable[Table]) -> list[Table]:
-    """The tables, those over the same variables as one; without those that allow everything."""
+    """Return the tables, those over the same variables as one; without those that allow everything."""
     groups: dict[frozenset[int], list[Table]] = {}
     for table in tables:
         if not table.allowed.all():
@@ -145,7 +145,7 @@ class Reduced:
         self.constraints = constraints
 
     def tables(self, constraints: Sequence[Constraint]) -> list[Table]:
-        """The tables of some constraints over the values that are left."""
+        """Return the tables of some constraints over the values that are left."""
         found = []
         for table in dict.fromkeys(table for constraint in constraints for table in constraint.tables):
             places = np.ix_(*(self.values[variable] for variable in table.scope))

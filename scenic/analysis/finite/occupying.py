@@ -119,7 +119,7 @@ def _bundled(reduced: Reduced) -> list[tuple[int, ...]] | None:
 
 
 def _exclusive(reduced: Reduced, bundles: Sequence[tuple[int, ...]]) -> Exclusive | None:
-    """The bundles whose values exclude each other, named by their first variables."""
+    """Return the bundles whose values exclude each other, named by their first variables."""
     bundle_of = {variable: bundle for bundle in bundles for variable in bundle}
     rows: dict[int, NDArray[np.intp]] = {}
     for bundle in bundles:
@@ -170,7 +170,7 @@ def _between(
     bundle_of: Mapping[int, tuple[int, ...]],
     rows: Mapping[int, NDArray[np.intp]],
 ) -> Table:
-    """A table over the combinations of two bundles."""
+    """Return a table over the combinations of two bundles."""
     one, two = sorted(pair)
     places = []
     for variable in table.scope:
@@ -306,7 +306,7 @@ class _Grouping:
 
 
 def _weights(reduced: Reduced, variables: Sequence[int], rows: NDArray[np.intp]) -> Floats:
-    """The weights of combinations of the values of some variables."""
+    """Return the weights of combinations of the values of some variables."""
     weights = np.ones(len(rows))
     for place, variable in enumerate(variables):
         weights = weights * reduced.weights[variable][rows[:, place]]

@@ -112,7 +112,7 @@ def _solved(problem: FiniteProblem, constraints: Sequence[Constraint]) -> Compon
 
 
 def _eliminated(reduced: Reduced, constraints: Sequence[Constraint]) -> Drawn | None:
-    """The way by elimination, if tables remain small."""
+    """Return the way by elimination, if tables remain small."""
     tables = reduced.tables(constraints)
     scopes = [frozenset(table.scope) for table in tables]
     variables_in_tables = frozenset().union(*scopes) if scopes else frozenset[int]()
@@ -164,7 +164,7 @@ def _listed(reduced: Reduced, constraints: Sequence[Constraint]) -> tuple[Drawn,
 
 
 def _alone(reduced: Reduced, variable: int) -> Drawn:
-    """A variable of which values were struck out, by itself."""
+    """Return a variable of which values were struck out, by itself."""
     weights = reduced.weights[variable]
     step = eliminate([], {variable: weights}, [variable])
     return Drawn(
@@ -189,7 +189,7 @@ def _strongest(reduced: Reduced) -> tuple[tuple[Drawn, ...], tuple[Constraint, .
 
 
 def _differing(reduced: Reduced, exclusive: Exclusive) -> tuple[Drawn | None, tuple[Constraint, ...]]:
-    """The way by values of which each occurs at most once, and the constraints that it meets always."""
+    """Return the way by values of which each occurs at most once, and the constraints that it meets always."""
     taken = occupied(reduced, exclusive)
     if taken is not None:
         values = tuple(reduced.values[variable] for variable in taken.variables)
@@ -207,7 +207,7 @@ def _differing(reduced: Reduced, exclusive: Exclusive) -> tuple[Drawn | None, tu
 def _relaxed(
     reduced: Reduced, constraints: Sequence[Constraint], without: frozenset[int]
 ) -> tuple[tuple[Drawn, ...], tuple[Constraint, ...]]:
-    """The way by elimination that takes as many constraints as possible, the strongest first, none about some variables."""
+    """Return the way by elimination that takes as many constraints as possible, the strongest first, none about some variables."""
     free = [constraint for constraint in constraints if not constraint.scope & without]
     free.sort(key=_strength)
     selection: list[Constraint] = []

@@ -176,7 +176,7 @@ class Likeness:
 
 
 def seeds_of_calls(graph: Graph) -> frozenset[Node]:
-    """The keys that only seed the random generators for calls of Python code, which mostly do not use them."""
+    """Return the keys that only seed the random generators for calls of Python code, which mostly do not use them."""
     readers: dict[Node, bool] = {}
     for node in graph.nodes:
         for operand in node.operands:

@@ -51,7 +51,7 @@ class Variable:
 
 
 def variables_of(graph: Graph) -> dict[Node, Variable]:
-    """The axes of a graph all of whose readers are discrete distributions, with at least two values."""
+    """Return the axes of a graph all of whose readers are discrete distributions, with at least two values."""
     cuts: dict[Node, list[Floats] | None] = {}
     for node in graph.nodes:
         for operand in node.operands:

@@ -186,7 +186,7 @@ class Classes:
         return known
 
     def of_symbol(self, symbol: Symbol | None) -> Class | None:
-        """The class that a symbol is; ``None`` if it is none."""
+        """Return the class that a symbol is; ``None`` if it is none."""
         if symbol is None or symbol.kind is not SymbolKind.CLASS:
             return None
         module = symbol.module
@@ -199,7 +199,7 @@ class Classes:
         return self._of_name(module, symbol)
 
     def of_node(self, module: Module, node: ast.AST) -> Class | None:
-        """The class that a statement of a module defines, whatever else has its name."""
+        """Return the class that a statement of a module defines, whatever else has its name."""
         binding = module.resolution.sites.get(node)
         if binding is None or not isinstance(node, ast.ClassDef):
             return None
@@ -215,7 +215,7 @@ class Classes:
         return None if member is None else member.symbol
 
     def _of_name(self, module: Module, symbol: Symbol) -> Class | None:
-        """The class that a name means: of several definitions the first."""
+        """Return the class that a name means: of several definitions the first."""
         node: Any = symbol.node
         sites = () if symbol.binding is None else sorted(symbol.binding.sites, key=position)
         if len(sites) > 1 and all(_refines(site, sites[0]) for site in sites[1:]):
@@ -299,7 +299,7 @@ def _outline(site: ast.AST) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
 
 
 def _built_in(name: str) -> Class:
-    """A class of objects of the language."""
+    """Return a class of objects of the language."""
     members = [_declared(each, name) for each in properties_of(name).values()]
     members += [
         Member(
@@ -368,7 +368,7 @@ def _own(module: Module, symbol: Symbol, node: ast.ClassDef) -> Iterator[Member]
 
 
 def _needs(default: ast.expr) -> tuple[str, ...]:
-    """The properties that a default reads."""
+    """Return the properties that a default reads."""
     needs = [
         part.attr
         for part in walk(default)

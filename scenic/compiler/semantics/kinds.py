@@ -76,7 +76,7 @@ RANGE: Final = ValueKind("range")
 
 
 def _built_in(name: str, cls: str) -> ValueKind:
-    """The kind of the direct instances of a built-in class."""
+    """Return the kind of the direct instances of a built-in class."""
     return ValueKind(name, members=frozenset(properties_of(cls)).union(attributes_of(cls)))
 
 
@@ -106,12 +106,12 @@ _OF_TYPE: Final[Mapping[str, ValueKind]] = MappingProxyType(
 
 
 def kind_of_type(declared: str) -> ValueKind | None:
-    """The kind of values of a declared type, if it is one word."""
+    """Return the kind of values of a declared type, if it is one word."""
     return _OF_TYPE.get(declared)
 
 
 def joint(kinds: Sequence[ValueKind | None]) -> ValueKind | None:
-    """The kind of a value that has one of some kinds; ``None`` if they differ."""
+    """Return the kind of a value that has one of some kinds; ``None`` if they differ."""
     first = kinds[0] if kinds else None
     if first is None or any(each is None or each.name != first.name for each in kinds):
         return None
@@ -150,7 +150,7 @@ def _accepts_sequence(wanted: Type, kind: ValueKind) -> bool:
 
 
 def kind_of_constant(value: object) -> ValueKind | None:
-    """The kind of a constant in the text."""
+    """Return the kind of a constant in the text."""
     if value is None:
         return NOTHING
     if isinstance(value, bool):

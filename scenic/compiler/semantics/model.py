@@ -30,7 +30,7 @@ class Model(Names):
         return Classes(self.modules, proxy(self))
 
     def beside(self, module: Module) -> "Model":
-        """The model of another module."""
+        """Return the model of another module."""
         return self if module is self.module else Model(module, self.modules)
 
     @cached_property
@@ -42,41 +42,41 @@ class Model(Names):
         return self._values.meaning(self.module, node)
 
     def kind_of(self, value: ast.expr | None) -> ValueKind | None:
-        """The kind of what an expression gives; ``None`` if it is not certain."""
+        """Return the kind of what an expression gives; ``None`` if it is not certain."""
         return None if value is None else self._values.value(self.module, value).kind
 
     def class_of(self, node: ast.expr) -> Symbol | None:
-        """The class of the value of an expression; ``None`` if it is unknown."""
+        """Return the class of the value of an expression; ``None`` if it is unknown."""
         return self._values.value(self.module, node).cls
 
     def class_of_elements(self, node: ast.expr) -> Symbol | None:
-        """The class of the elements of the sequence that an expression is; ``None`` if it is unknown."""
+        """Return the class of the elements of the sequence that an expression is; ``None`` if it is unknown."""
         return self._values.value(self.module, node).elements
 
     def class_of_exported(self, exported: Exported) -> Symbol | None:
-        """The class of a value that a module defines; ``None`` if it is unknown."""
+        """Return the class of a value that a module defines; ``None`` if it is unknown."""
         return self._values.of_exported(exported).cls
 
     def class_of_symbol(self, symbol: Symbol | None) -> Class | None:
-        """The class that a symbol is; ``None`` if it is none."""
+        """Return the class that a symbol is; ``None`` if it is none."""
         return self._classes.of_symbol(symbol)
 
     def class_named(self, name: ast.expr) -> Class | None:
-        """The class of objects that an expression certainly names; ``None`` if it is none, or may be another."""
+        """Return the class of objects that an expression certainly names; ``None`` if it is none, or may be another."""
         return self._values.class_of_objects(self.module, name)
 
     def class_at(self, definition: ast.AST) -> Class | None:
-        """The class of objects that a statement defines, if all of its members are known."""
+        """Return the class of objects that a statement defines, if all of its members are known."""
         known = self._classes.of_node(self.module, definition)
         return known if known is not None and known.complete and known.is_scenic else None
 
     def properties(self, name: ast.expr) -> Mapping[str, ClassMember] | None:
-        """All properties of the class of objects that an expression names; ``None`` if they cannot be known."""
+        """Return all properties of the class of objects that an expression names; ``None`` if they cannot be known."""
         known = self.class_named(name)
         return known.properties if known is not None and known.complete else None
 
     def built_in(self, name: ast.expr) -> str | None:
-        """The class of the language from which the class that an expression names certainly derives."""
+        """Return the class of the language from which the class that an expression names certainly derives."""
         known = self.class_named(name)
         return None if known is None else known.built_in
 
@@ -92,5 +92,5 @@ class Model(Names):
         )
 
     def method(self, function: ast.Attribute) -> Member | None:
-        """The declared method of a value that a call of an attribute calls."""
+        """Return the declared method of a value that a call of an attribute calls."""
         return self._values.method(self.module, function)

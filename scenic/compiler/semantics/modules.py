@@ -100,7 +100,7 @@ class Module:
         return Span(whole.end_line, start, whole.end_line, whole.end_column)
 
     def text(self, node: ast.AST) -> str:
-        """The text of a node, on one line."""
+        """Return the text of a node, on one line."""
         span = self.source.span(node)
         if span.line == span.end_line:
             return self.source.line(span.line)[span.column : span.end_column]
@@ -277,10 +277,10 @@ class Modules(Protocol):
         """Results about these modules, kept for all programs until one of the modules changes."""
 
     def find(self, name: str, *, importer: str, level: int = 0) -> FoundModule:
-        """The module that an import in a file means; ``level`` counts the dots before the name."""
+        """Return the module that an import in a file means; ``level`` counts the dots before the name."""
 
     def found_by(self, node: ast.ImportFrom | scenic.Model, importer: str) -> FoundModule:
-        """The module that ``from m import ...`` or ``model m`` means."""
+        """Return the module that ``from m import ...`` or ``model m`` means."""
 
     def exports_of(self, found: FoundModule) -> Exports:
         """The names of a module that was found; none and `Exports.unseen` if nobody can look into it."""
@@ -288,7 +288,7 @@ class Modules(Protocol):
     def member(
         self, found: FoundModule, name: str, *, importer: str, level: int = 0
     ) -> Exported | FoundModule | None:
-        """The meaning of ``from m import name``: a name of the module, else a module in it; ``None`` if it has neither."""
+        """Return the meaning of ``from m import name``: a name of the module, else a module in it; ``None`` if it has neither."""
 
     def follow(self, exported: Exported) -> Exported | FoundModule:
         """The definition behind an imported name, through all modules that pass it on."""

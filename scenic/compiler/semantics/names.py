@@ -71,7 +71,7 @@ class Names:
         return self.resolution.wildcard and (self.module.is_dynamic or not self.complete)
 
     def imported(self, alias: ast.alias) -> Exported | FoundModule | None:
-        """The definition or module that an import of a name brings; ``None`` if that is not known."""
+        """Return the definition or module that an import of a name brings; ``None`` if that is not known."""
         statement, importer = self.module.import_of.get(alias), self.module.filename
         if isinstance(statement, ast.ImportFrom):
             found = self.modules.found_by(statement, importer)
@@ -81,7 +81,7 @@ class Names:
         )
 
     def module_behind(self, node: ast.expr) -> FoundModule | None:
-        """The module that an expression such as ``m`` or ``package.m`` means; ``None`` if it is none."""
+        """Return the module that an expression such as ``m`` or ``package.m`` means; ``None`` if it is none."""
         chain: list[ast.Attribute] = []
         while isinstance(node, ast.Attribute) and node not in self._homes:
             chain.append(node)
@@ -95,7 +95,7 @@ class Names:
         return module
 
     def _module_named(self, name: ast.Name) -> FoundModule | None:
-        """The module that all bindings of a name bring."""
+        """Return the module that all bindings of a name bring."""
         binding = self.resolution.binding(name)
         if binding is None:
             return self._as_module(self.brought.get(name.id))
@@ -115,7 +115,7 @@ class Names:
         return target if isinstance(target, FoundModule) and not target.is_missing else None
 
     def attribute_of_module(self, node: ast.Attribute) -> Exported | FoundModule | None:
-        """The meaning of ``m.name``, where ``m`` is a module; ``None`` if it is not known."""
+        """Return the meaning of ``m.name``, where ``m`` is a module; ``None`` if it is not known."""
         home = self.module_behind(node.value)
         return None if home is None else self.modules.member(home, node.attr, importer=self.module.filename)
 
@@ -135,7 +135,7 @@ class Names:
         return builtin_symbol(name.id) if self.module.is_scenic else None
 
     def symbol_of(self, target: Exported | FoundModule) -> Symbol:
-        """The symbol of a module, or of what is behind a name that a module has."""
+        """Return the symbol of a module, or of what is behind a name that a module has."""
         if isinstance(target, Exported):
             target = self.modules.follow(target)
         if isinstance(target, FoundModule) or target.module is not self.module or target.binding is None:
@@ -170,7 +170,7 @@ class Names:
         return self._definitions[name]
 
     def definitions_brought(self) -> Iterator[Symbol]:
-        """The definitions that star imports and the model bring."""
+        """Return the definitions that star imports and the model bring."""
         symbols = (self.symbol_of(each) for each in self.brought.values())
         return (each for each in symbols if each.is_definite)
 
@@ -188,11 +188,11 @@ class Names:
         return isinstance(site, (*DEFINITIONS, ast.alias)) and self.stands(binding.name, site)
 
     def nodes(self, cls: type[ast.AST]) -> Sequence[tuple[Any, Scope]]:
-        """All nodes of a class, with their scopes."""
+        """Return all nodes of a class, with their scopes."""
         return self.resolution.nodes(cls)
 
     def nodes_around(self, node: ast.AST, cls: type[ast.AST]) -> Iterator[Any]:
-        """The nodes of a class in the statement of the top level that a node stands in."""
+        """Yield the nodes of a class in the statement of the top level that a node stands in."""
         nodes, starts = self.nodes(cls), self._starts
         index = bisect_right(starts, position(node))
         begin = bisect_left(nodes, starts[index - 1], key=_position_of_noted) if index else 0
@@ -247,7 +247,7 @@ class Names:
         return name.id if self.module.is_scenic or hasattr(builtins, name.id) else None
 
     def constant(self, name: ast.Name) -> ast.expr | None:
-        """The literal that is certainly the value of a name: a number, text or collection assigned just once."""
+        """Return the literal that is certainly the value of a name: a number, text or collection assigned just once."""
         binding = self.binding(name)
         if binding is None or len(binding.sites) != 1 or self.resolution.reflective:
             return None
@@ -304,7 +304,7 @@ class Names:
         return self.assigned.get(stores[0]) if len(stores) == 1 else None
 
     def values(self, binding: Binding) -> list[tuple[ast.expr, bool]] | None:
-        """The expressions that are bound to a name, one of which is its value; ``None`` if it may have another.
+        """Return the expressions that are bound to a name, one of which is its value; ``None`` if it may have another.
 
         Each comes with whether the name runs through the parts of that expression in turn.
         """
@@ -323,7 +323,7 @@ class Names:
         return binding.scope is self.resolution.module and binding.name in self.brought
 
     def returned(self, function: ast.AST) -> Sequence[ast.expr]:
-        """The expressions of which a function of the module returns one; none if it may return others."""
+        """Return the expressions of which a function of the module returns one; none if it may return others."""
         scope = self.resolution.scopes.get(function)
         if not isinstance(function, ast.FunctionDef) or scope is None:
             return ()
@@ -366,12 +366,12 @@ class Assigned:
         self._values = values
 
     def get(self, site: ast.AST) -> ast.expr | None:
-        """The value that is assigned to a name there, which is a whole target."""
+        """Return the value that is assigned to a name there, which is a whole target."""
         value, whole = self._values.get(site, (None, False))
         return value if whole else None
 
     def part(self, site: ast.AST) -> ast.expr | None:
-        """The value that is assigned to a name there, also as a part of a tuple."""
+        """Return the value that is assigned to a name there, also as a part of a tuple."""
         return self._values.get(site, (None, False))[0]
 
 

@@ -68,7 +68,7 @@ class Signature:
 
 
 def signature_of(modules: Modules, symbol: Symbol) -> Signature | None:
-    """The signature of a symbol; ``None`` if it cannot be called, or its signature is not known."""
+    """Return the signature of a symbol; ``None`` if it cannot be called, or its signature is not known."""
     if symbol.is_builtin:
         declaration = NAMES.get(symbol.name)
         if declaration is None or "(" not in declaration.signature:
@@ -143,7 +143,7 @@ def _signature(
 
 
 def _declared(text: str, documentation: str) -> Signature:
-    """The signature of a declaration such as ``DiscreteRange(low, high, weights=None)``."""
+    """Return the signature of a declaration such as ``DiscreteRange(low, high, weights=None)``."""
     name, _, inside = text.removesuffix(")").partition("(")
     parameters: list[Parameter] = []
     for part in _split(inside):
@@ -163,7 +163,7 @@ def _declared(text: str, documentation: str) -> Signature:
 
 
 def _split(text: str) -> list[str]:
-    """The parts between the commas that stand in no brackets."""
+    """Return the parts between the commas that stand in no brackets."""
     parts, depth, start = [], 0, 0
     for index, character in enumerate(text):
         depth += (character in "([{") - (character in ")]}")

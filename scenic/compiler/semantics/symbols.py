@@ -137,7 +137,7 @@ def builtin_symbol(name: str) -> Symbol | None:
 
 
 def symbol_of_module(found: FoundModule) -> Symbol:
-    """The symbol of a module: its place is the beginning of its file."""
+    """Return the symbol of a module: its place is the beginning of its file."""
     return Symbol(
         found.name.rpartition(".")[2],
         SymbolKind.MODULE,
@@ -147,7 +147,7 @@ def symbol_of_module(found: FoundModule) -> Symbol:
 
 
 def symbol_of_exported(modules: Modules, target: Exported | FoundModule) -> Symbol:
-    """The symbol of a module, or of what is behind a name that a module has."""
+    """Return the symbol of a module, or of what is behind a name that a module has."""
     if isinstance(target, Exported):
         target = modules.follow(target)
     if isinstance(target, FoundModule):
@@ -161,7 +161,7 @@ def symbol_of_exported(modules: Modules, target: Exported | FoundModule) -> Symb
 
 
 def symbol_of_binding(module: Module, binding: Binding) -> Symbol:
-    """The symbol of a binding: its first definition, else the first place where it gets a value."""
+    """Return the symbol of a binding: its first definition, else the first place where it gets a value."""
     sites = sorted(binding.sites, key=position)
     node: Any = next((site for site in sites if type(site) in _KINDS), sites[0])
     kind = _kind(node, binding)
@@ -197,13 +197,13 @@ def _kind(node: ast.AST, binding: Binding) -> SymbolKind:
 
 
 def _statement_span(module: Module, node: ast.AST) -> Span:
-    """The assignment that a name is the target of; else the name."""
+    """Return the assignment that a name is the target of; else the name."""
     statement = module.assignment_of.get(node)
     return module.source.span(node) if statement is None else header_span(module.source, statement)
 
 
 def symbols_of(module: Module) -> tuple[Symbol, ...]:
-    """The symbols that a module binds at its top level, in order of place."""
+    """Return the symbols that a module binds at its top level, in order of place."""
     bindings = module.resolution.names.values()
     return tuple(
         sorted(
@@ -214,7 +214,7 @@ def symbols_of(module: Module) -> tuple[Symbol, ...]:
 
 
 def documentation_of(symbol: Symbol) -> str | None:
-    """The docstring of a symbol, or the language's documentation of it; ``None`` if it has neither."""
+    """Return the docstring of a symbol, or the language's documentation of it; ``None`` if it has neither."""
     if symbol.is_builtin:
         declaration = NAMES.get(symbol.name)
         if declaration is None:

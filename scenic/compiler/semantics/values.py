@@ -106,7 +106,7 @@ class Values:
         self._meanings: Final[dict[ast.expr, Symbol | None]] = {}
 
     def value(self, module: Module, node: ast.expr, depth: int = 0) -> Value:
-        """The value of an expression."""
+        """Return the value of an expression."""
         if depth > _DEEPEST:
             return _UNKNOWN
         if node not in self._values:
@@ -124,7 +124,7 @@ class Values:
         return self._meanings[node]
 
     def of_exported(self, exported: Exported, depth: int = 0) -> Value:
-        """The value that a module defines under a name."""
+        """Return the value that a module defines under a name."""
         target = self._modules.follow(exported)
         if isinstance(target, FoundModule) or target.module is None or target.binding is None:
             return _UNKNOWN
@@ -175,7 +175,7 @@ class Values:
         return Value(self._plain(module, node, depth))
 
     def _plain(self, module: Module, node: ast.expr, depth: int) -> ValueKind | None:
-        """The kind of an expression that is no object of a class."""
+        """Return the kind of an expression that is no object of a class."""
 
         def kind(part: ast.expr | None) -> ValueKind | None:
             return None if part is None else self.value(module, part, depth).kind
@@ -206,7 +206,7 @@ class Values:
         return None
 
     def class_of_objects(self, module: Module, name: ast.expr) -> Class | None:
-        """The class that an expression certainly names, if it may make objects of the scene."""
+        """Return the class that an expression certainly names, if it may make objects of the scene."""
         if name not in self._named_classes:
             self._named_classes[name] = self._class_of_objects(module, name)
         return self._named_classes[name]
@@ -233,7 +233,7 @@ class Values:
 
     @staticmethod
     def _item(owner: Value, index: ast.expr) -> Value:
-        """The value of ``owner[index]``."""
+        """Return the value of ``owner[index]``."""
         kind = owner.kind
         if isinstance(index, ast.Slice):
             return Value(elements=owner.elements)
@@ -290,7 +290,7 @@ class Values:
         return Value(_BY_PROVIDED.get(name), cls)
 
     def _option(self, module: Module, option: ast.expr, choice: ast.Call, depth: int) -> Value:
-        """The value of an option of a choice; of ``*values`` that of the elements."""
+        """Return the value of an option of a choice; of ``*values`` that of the elements."""
         if option is choice:
             return _UNKNOWN
         if not isinstance(option, ast.Starred):
@@ -298,7 +298,7 @@ class Values:
         return self.value(module, option.value, depth).element
 
     def method(self, module: Module, function: ast.Attribute, depth: int = 0) -> DeclaredMember | None:
-        """The declared method that a call of an attribute calls."""
+        """Return the declared method that a call of an attribute calls."""
         names = self._classes.names(module)
         owner = self.value(module, function.value, depth).kind
         if owner is None:
@@ -343,7 +343,7 @@ class Values:
         return Value(None if names.is_hidden(binding) else value.kind, value.cls, value.elements)
 
     def _of_definition(self, definition: Symbol) -> ValueKind | None:
-        """The kind of a function, behavior, ... or class of objects itself."""
+        """Return the kind of a function, behavior, ... or class of objects itself."""
         if definition.kind is SymbolKind.CLASS:
             cls = self._classes.of_symbol(definition)
             return kinds.CLASS if cls is not None and cls.complete and cls.is_scenic else None
@@ -375,7 +375,7 @@ class Values:
         return Value(self._kind_of_class(value.cls) if certain else None, value.cls, value.elements)
 
     def _ego(self, module: Module, node: ast.Name, depth: int) -> Value:
-        """The value of the ego: one of the objects that the program makes it."""
+        """Return the value of the ego: one of the objects that the program makes it."""
         names = self._classes.names(module)
         uses = module.resolution.uses.get("ego", ())
         stores = [use.node for use in uses if isinstance(use.node.ctx, ast.Store)]
@@ -443,7 +443,7 @@ class Values:
         return None if known is None or known.names is None else _instance(known)
 
     def _annotated_symbol(self, symbol: Symbol, depth: int, *, called: bool) -> Value:
-        """The value of what a symbol means, or of a call of it, by its annotation."""
+        """Return the value of what a symbol means, or of a call of it, by its annotation."""
         node, home = symbol.node, symbol.module
         if home is None or node is None:
             return _UNKNOWN
@@ -457,7 +457,7 @@ class Values:
         return _UNKNOWN if annotation is None else self._annotated(home, annotation, depth + 1)
 
     def _annotated(self, module: Module, annotation: ast.expr, depth: int) -> Value:
-        """The class that an annotation of a module names, of a value or its elements; ``None`` beside a class counts for nothing."""
+        """Return the class that an annotation of a module names, of a value or its elements; ``None`` beside a class counts for nothing."""
         if depth > _DEEPEST:
             return _UNKNOWN
         match annotation:
@@ -485,7 +485,7 @@ class Values:
         return _UNKNOWN
 
     def _kind_of_class(self, symbol: Symbol | None) -> ValueKind | None:
-        """The kind of the instances of a class of Python, if the language declares it for the class or a base."""
+        """Return the kind of the instances of a class of Python, if the language declares it for the class or a base."""
         waiting = [symbol]
         for _ in range(_MOST_BASES):
             cls = waiting.pop(0) if waiting else None
@@ -502,14 +502,14 @@ class Values:
 
 
 def _instance(cls: Class | None) -> ValueKind:
-    """The kind of what ``new`` makes of a class."""
+    """Return the kind of what ``new`` makes of a class."""
     if cls is None:
         return ValueKind("object")
     return ValueKind(_KIND_OF_CLASS.get(cls.built_in or "", "object"), members=cls.names)
 
 
 def _common(values: Sequence[Value]) -> Value:
-    """The kind and classes that all of some values have."""
+    """Return the kind and classes that all of some values have."""
     if not values:
         return _UNKNOWN
     first = values[0]
@@ -529,7 +529,7 @@ def _last_word(node: ast.expr) -> str:
 
 
 def _class_of_self(module: Module, scope: Scope, name: str) -> Symbol | None:
-    """The class in whose property default or method ``self`` stands."""
+    """Return the class in whose property default or method ``self`` stands."""
     owner = scope.parent
     if owner is None or owner.kind is not ScopeKind.CLASS:
         return None
@@ -544,7 +544,7 @@ def _class_of_self(module: Module, scope: Scope, name: str) -> Symbol | None:
 
 
 def _binary(left: ValueKind | None, right: ValueKind | None, operator: ast.operator) -> ValueKind | None:
-    """The kind of an arithmetic operation."""
+    """Return the kind of an arithmetic operation."""
     number, vector = kinds.NUMBER, kinds.VECTOR
     if left == number == right:
         return number

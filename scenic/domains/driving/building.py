@@ -164,7 +164,7 @@ def _fill_polygons(strips: Sequence[_Strip]) -> None:
 
 
 def _folded(strip: _Strip) -> Any:
-    """The polygon of a strip that crosses itself: the union of its quadrilaterals."""
+    """Return the polygon of a strip that crosses itself: the union of its quadrilaterals."""
     import shapely
 
     left, right = strip.shape.boundaries[strip.index], strip.shape.boundaries[strip.index + 1]
@@ -176,7 +176,7 @@ def _folded(strip: _Strip) -> Any:
 
 
 def area_of(geometry: object) -> Any:
-    """The polygons of a geometry without slivers; ``None`` if there are none."""
+    """Return the polygons of a geometry without slivers; ``None`` if there are none."""
     import shapely
 
     parts = [
@@ -190,7 +190,7 @@ def area_of(geometry: object) -> Any:
 
 
 def union_of(polygons: Iterable[object]) -> Any:
-    """The union of polygons; ``None`` if there are none."""
+    """Return the union of polygons; ``None`` if there are none."""
     import shapely
 
     listed = [polygon for polygon in polygons if polygon is not None]
@@ -345,7 +345,7 @@ class _RoadBuilder:
     def _chains(
         self, sections: list[dict[int, LaneSection]]
     ) -> tuple[list[tuple[int, int, list[LaneSection]]], list[tuple[LaneSection, LaneSection]]]:
-        """The sections of each lane, with where it begins; and pairs of which the first leads into a lane that has begun."""
+        """Return the sections of each lane, with where it begins; and pairs of which the first leads into a lane that has begun."""
         lane_of: dict[int, list[LaneSection]] = {}
         chains: list[tuple[int, int, list[LaneSection]]] = []
         sections_taken: set[int] = set()
@@ -541,7 +541,7 @@ class _RoadBuilder:
         self._network.shoulders += tuple(shoulders)
 
     def _side(self, road: Road, cls: type[Any], rows: list[list[_Strip]], forward: bool, uid: str) -> Any:
-        """All strips of one kind on one side as an element: the outermost run of each section."""
+        """Return all strips of one kind on one side as an element: the outermost run of each section."""
         left, right, polygons = [], [], []
         for row in rows:
             mine = [s for s in row if self._is_forward(s.id) == forward and s.polygon is not None]
@@ -593,7 +593,7 @@ class _RoadBuilder:
 
 
 def id_of(thing: object) -> int:
-    """The identity of an object."""
+    """Return the identity of an object."""
     return id(thing)
 
 

@@ -101,7 +101,7 @@ class Course:
 def following_acceleration(
     speed: float, distance: float, ahead: float, gap: Gap, acceleration: float, deceleration: float
 ) -> float:
-    """The acceleration (m/s^2) by which a driver keeps the gap to a car ahead.
+    """Return the acceleration (m/s^2) by which a driver keeps the gap to a car ahead.
 
     The interaction of the intelligent driver model (M. Treiber, A. Hennecke, D. Helbing, Congested traffic states in empirical
     observations and microscopic simulations, Physical Review E 62, 2000): a [1 - (s* / s)^2] with
@@ -122,7 +122,7 @@ def following_acceleration(
 
 
 def leader_on(path: Path, index: int, agent: Any, traffic: Traffic, course: Course) -> Leader | None:
-    """The first object that is on a path ahead of a car, at the height of the path.
+    """Return the first object that is on a path ahead of a car, at the height of the path.
 
     Args:
         path: of the car.

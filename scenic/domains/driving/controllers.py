@@ -24,7 +24,7 @@ class PIDLongitudinalController:
         self._errors: deque[float] = deque(maxlen=10)
 
     def run_step(self, speed_error: float) -> float:
-        """The signal in [-1, 1] for an error in m/s: positive is throttle, negative is brake."""
+        """Return the signal in [-1, 1] for an error in m/s: positive is throttle, negative is brake."""
         errors = self._errors
         errors.append(speed_error)
         derivative = integral = 0.0
@@ -53,7 +53,7 @@ class PIDLateralController:
         self._integral = 0.0
 
     def run_step(self, cte: float) -> float:
-        """The steering in [-1, 1] for a distance in metres, both positive to the right of the car."""
+        """Return the steering in [-1, 1] for a distance in metres, both positive to the right of the car."""
         self._integral = min(20.0, max(-20.0, self._integral + cte * self._dt))
         derivative = (cte - self._previous) / self._dt
         self._previous = cte

@@ -62,7 +62,7 @@ def add_crossings(network: RoadNetwork, built: Mapping[str, BuiltRoad], tell: Te
 
 
 def _corners(road: BuiltRoad, crosswalk: Crosswalk) -> Floats:
-    """The corners of a crosswalk, ``(n, 2)``."""
+    """Return the corners of a crosswalk, ``(n, 2)``."""
     curve = Curve(road.record.geometry)
 
     def place(s: float, t: float) -> tuple[Floats, float]:

@@ -44,7 +44,7 @@ _MARK: Final = 1.1
 
 
 def svg(network: "RoadNetwork", width: int = 1200) -> str:
-    """A drawing as SVG text, ``width`` pixels wide: areas, edges of lanes, their middles, and signals."""
+    """Return a drawing as SVG text, ``width`` pixels wide: areas, edges of lanes, their middles, and signals."""
     left, bottom, right, top = _bounds(network)
     height = round(width * (top - bottom) / (right - left))
     view = f"{left:.2f} {-top:.2f} {right - left:.2f} {top - bottom:.2f}"
@@ -92,7 +92,7 @@ def _area(polygon: object) -> str:
 
 
 def png(network: "RoadNetwork", width: int = 1600) -> bytes:
-    """A drawing as the content of a PNG file, ``width`` pixels wide.
+    """Return a drawing as the content of a PNG file, ``width`` pixels wide.
 
     Raises ``MissingLibraryError`` without Pillow.
     """
@@ -145,7 +145,7 @@ class _Mark:
 
 
 def _marks(network: "RoadNetwork") -> list[_Mark]:
-    """The signals of a network; lights have the colours with which a simulation begins."""
+    """Return the signals of a network; lights have the colours with which a simulation begins."""
     lights = TrafficLights(network, LightTimes())
     signals = {signal.uid: signal for signal in network.signals}
     marks = []

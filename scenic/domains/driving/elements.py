@@ -48,7 +48,7 @@ CARS = frozenset({VehicleType.CAR})
 
 
 def _required(value: object, what: str) -> Any:
-    """A value that is there; rejects the sample otherwise."""
+    """Return a value that is there; rejects the sample otherwise."""
     if value is None:
         raise RejectionException(what)
     return value
@@ -141,7 +141,7 @@ class NetworkElement(Frozen, Surface):
         return self
 
     def _guides(self) -> Sequence["LinearElement"]:
-        """The elements whose directions hold where they are, in their order; the nearest one elsewhere."""
+        """Return the elements whose directions hold where they are, in their order; the nearest one elsewhere."""
         raise NotImplementedError
 
     def orientations(self, points: Points, *columns: Column) -> Column:
@@ -160,7 +160,7 @@ class NetworkElement(Frozen, Surface):
         return headings
 
     def _guide_at(self, places: Floats) -> NDArray[np.intp]:
-        """The guide ``(n,)`` that holds each place ``(n, 2)``, the first one if several do; else the nearest."""
+        """Return the guide ``(n,)`` that holds each place ``(n, 2)``, the first one if several do; else the nearest."""
         guides = self._guides()
         guide_numbers = np.full(len(places), -1, dtype=np.intp)
         for number, guide in enumerate(guides):
@@ -178,7 +178,7 @@ class NetworkElement(Frozen, Surface):
         return guide_numbers
 
     def nominalDirectionsAt(self, point: object) -> tuple[Orientation, ...]:
-        """The directions of traffic that are possible at a point; here one."""
+        """Return the directions of traffic that are possible at a point; here one."""
         return (self.orientation[point],)
 
     def elevationAt(self, point: object) -> Any:
@@ -192,7 +192,7 @@ class NetworkElement(Frozen, Surface):
         return None if road is None else road.uid
 
     def line_of(self, vertices: Floats) -> PolylineRegion:
-        """A line along the element, from its vertices ``(n, 2)``."""
+        """Return a line along the element, from its vertices ``(n, 2)``."""
         if self.ground is None:
             return ElementLine([(float(x), float(y), 0.0) for x, y in vertices])
         import shapely
@@ -322,7 +322,7 @@ class LaneSection(LinearElement):
         return found
 
     def shiftedBy(self, offset: int) -> "LaneSection":
-        """The lane section ``offset`` lanes to the left (to the right if negative); rejects the sample if there is none."""
+        """Return the lane section ``offset`` lanes to the left (to the right if negative); rejects the sample if there is none."""
         current = self
         for _ in range(abs(offset)):
             current = current.laneToLeft if offset > 0 else current.laneToRight
@@ -606,7 +606,7 @@ class Intersection(NetworkElement):
         return any(signal.isTrafficLight for signal in self.signals)
 
     def maneuversAt(self, point: object) -> list["Maneuver"]:
-        """The maneuvers whose connecting lane holds a point."""
+        """Return the maneuvers whose connecting lane holds a point."""
         found = []
         for maneuver in self.maneuvers:
             lane = maneuver.connectingLane
@@ -615,7 +615,7 @@ class Intersection(NetworkElement):
         return found
 
     def nominalDirectionsAt(self, point: object) -> tuple[Orientation, ...]:
-        """The directions of the maneuvers that are possible at a point; that of the nearest one where none is."""
+        """Return the directions of the maneuvers that are possible at a point; that of the nearest one where none is."""
         lanes = [maneuver.connectingLane for maneuver in self.maneuversAt(point)]
         if not lanes:
             return (self.orientation[point],)

@@ -132,7 +132,7 @@ class Elevation:
         return frames_on(self.gradients(roads, places), headings)
 
     def _lean(self, roads: Indices, s: Floats, t: Floats) -> tuple[Floats, Floats]:
-        """The slope across the road on the side where a point is, towards the left, and how it changes along the road."""
+        """Return the slope across the road on the side where a point is, towards the left, and how it changes along the road."""
         tilt, *falls = self._tilts
         lean, change = np.zeros(len(s)), np.zeros(len(s))
         for table, sign in (
@@ -148,7 +148,7 @@ class Elevation:
         return lean, change
 
     def bounds(self, road: int, reach: float) -> tuple[float, float]:
-        """The least and the greatest height of a road within ``reach`` metres of its reference line."""
+        """Return the least and the greatest height of a road within ``reach`` metres of its reference line."""
         end = float(self.roads[road].samples[-1, 0])
         low, high = self._profile.bounds(road, end)
         lean = sum(
@@ -200,7 +200,7 @@ class _Cubics:
         return np.asarray(b + ds * (2 * c + 3 * ds * d))
 
     def bounds(self, road: int, end: float) -> tuple[float, float]:
-        """The least and the greatest value on a road that is ``end`` metres long."""
+        """Return the least and the greatest value on a road that is ``end`` metres long."""
         mine = self._table[self._road == road]
         lows, highs = [], []
         for (start, a, b, c, d), stop in zip(mine, [*mine[1:, 0], end], strict=True):
@@ -243,7 +243,7 @@ class _Shapes:
         return one + share * (two - one), along, across
 
     def bounds(self, road: int, reach: float) -> tuple[float, float]:
-        """The least and the greatest height within ``reach`` metres of the reference line of a road."""
+        """Return the least and the greatest height within ``reach`` metres of the reference line of a road."""
         if self.is_zero:
             return 0.0, 0.0
         ends = [self._cubics.bounds(shape, reach) for shape in range(self._first[road], self._last[road] + 1)]

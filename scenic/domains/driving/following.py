@@ -117,7 +117,7 @@ class Driver:
         self._has_noted = False
 
     def lane_now(self) -> Any:
-        """The lane along which the car is driven; ``None`` if it is not on its path, or has been driven by something else."""
+        """Return the lane along which the car is driven; ``None`` if it is not on its path, or has been driven by something else."""
         if not self._path.lanes or self.has_paused:
             return None
         index, share, offset = self._path.locate(*self._place(), self._index)
@@ -303,7 +303,7 @@ class Driver:
                 self._simulation.note(self._agent, f"stands since {self.waiting:.1f} s, {reason}")
 
     def reason_to_stand(self) -> str | None:
-        """The reason for which the car stands; ``None`` if nothing holds it."""
+        """Return the reason for which the car stands; ``None`` if nothing holds it."""
         leader = self._leader
         if leader is None or self._gap is None:
             return None
@@ -311,11 +311,11 @@ class Driver:
         return f"behind {type(leader.item).__name__} {number}, which is in its way"
 
     def extra_acceleration(self, speed: float, own: float) -> float:
-        """The largest acceleration (m/s^2) that further rules allow at metres along the path; infinite for no rules."""
+        """Return the largest acceleration (m/s^2) that further rules allow at metres along the path; infinite for no rules."""
         return math.inf
 
     def _behind(self, speed: float, share: float) -> float:
-        """The acceleration that keeps the gap to the car ahead; infinite if there is none."""
+        """Return the acceleration that keeps the gap to the car ahead; infinite if there is none."""
         simulation, agent, path = self._simulation, self._agent, self._path
         now = simulation.currentTime * simulation.timestep
         if now >= self._look:
@@ -407,7 +407,7 @@ def _point_before(along: Sequence[float], place: float) -> float:
 
 
 def _stopping(speed: float, left: float, timestep: float) -> float:
-    """The acceleration (m/s^2) by which a car comes to rest metres ahead, with a deceleration that falls evenly to nothing.
+    """Return the acceleration (m/s^2) by which a car comes to rest metres ahead, with a deceleration that falls evenly to nothing.
 
     Over a time T from b to nothing, b T / 2 of speed and b T^2 / 6 of distance are left.
     """

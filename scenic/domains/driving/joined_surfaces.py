@@ -134,7 +134,7 @@ class JoinedSurface(Surface):
         return Finder(self.elements, self.network.tolerance, self.network.levels)
 
     def _beside(self, owner: int) -> Polygons:
-        """The union of the elements that do not pass above or below one of them."""
+        """Return the union of the elements that do not pass above or below one of them."""
         import shapely
 
         unions = self.__dict__.setdefault("_beside_known", {})

@@ -32,7 +32,7 @@ class ManeuverType(Enum):
     def guessTypeFromLanes(
         start: Any, end: Any, connecting: Any, turnThreshold: float = _STRAIGHT
     ) -> "ManeuverType":
-        """The type of the maneuver from lane ``start`` over lane ``connecting`` (perhaps ``None``) to lane ``end``.
+        """Return the type of the maneuver from lane ``start`` over lane ``connecting`` (perhaps ``None``) to lane ``end``.
 
         ``turnThreshold`` is the angle in radians from which on it counts as a turn.
         """
@@ -47,7 +47,7 @@ class ManeuverType(Enum):
 
 
 def turned(line: NDArray[np.float64]) -> float:
-    """The angle by which a line ``(n, 2)`` turns from its first to its last segment, accumulated, anticlockwise."""
+    """Return the angle by which a line ``(n, 2)`` turns from its first to its last segment, accumulated, anticlockwise."""
     steps = np.diff(line, axis=0)
     ways = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
     return float(ways[-1] - ways[0])

@@ -90,7 +90,7 @@ def _form(signal: Signal) -> str | None:
 
 
 def halting_lanes(signal: Signal) -> list[Lane]:
-    """The lanes outside intersections on which traffic halts for a signal, each once."""
+    """Return the lanes outside intersections on which traffic halts for a signal, each once."""
     lanes = {id(maneuver.startLane): maneuver.startLane for maneuver in signal.controlledManeuvers}
     return [lane for lane in lanes.values() if signal.stop_along(lane) is not None]
 

@@ -39,7 +39,7 @@ _TURN: Final = math.radians(20)
 
 
 def lane_under(agent: Any) -> Lane:
-    """The lane of a car: in an intersection, of those under it the one that leads from where it is in its direction best.
+    """Return the lane of a car: in an intersection, of those under it the one that leads from where it is in its direction best.
 
     Raises:
         RejectionException: there is none.
@@ -63,7 +63,7 @@ def lane_under(agent: Any) -> Lane:
 
 
 def _apart(agent: Any, lane: Lane) -> float:
-    """The angle from a car to a lane in radians, and its distance, of which two metres count as one radian."""
+    """Return the angle from a car to a lane in radians, and its distance, of which two metres count as one radian."""
     import shapely
 
     x, y, *_ = agent.position
@@ -379,7 +379,7 @@ def lanes_along(
 
 
 def junctions_of(path: Path) -> list[tuple[int, int]]:
-    """The stretches of a path, from and to an index, along connecting lanes that are not long."""
+    """Return the stretches of a path, from and to an index, along connecting lanes that are not long."""
     marks = [*path.lanes, (len(path.along) - 1, None)]
     return [
         (begin, end)
@@ -389,7 +389,7 @@ def junctions_of(path: Path) -> list[tuple[int, int]]:
 
 
 def turns_of(network: Any, path: Path) -> list[tuple[int, int]]:
-    """The stretches of a path, from and to an index, on which it turns within an intersection."""
+    """Return the stretches of a path, from and to an index, on which it turns within an intersection."""
     if not network.intersections:
         return []
     inside = network.intersections_holding(path.points())

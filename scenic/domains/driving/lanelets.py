@@ -189,12 +189,12 @@ class _Records:
 def _aside(
     element: LinearElement, kind: str, one_way: tuple[str, ...] = (), both_ways: tuple[str, ...] = ()
 ) -> Lanelet:
-    """A lanelet beside the traffic, without successors."""
+    """Return a lanelet beside the traffic, without successors."""
     return Lanelet(element.uid, element.left, element.right, (kind,), one_way, both_ways)
 
 
 def _after(section: LaneSection) -> Iterable[LaneSection]:
-    """The sections that follow one."""
+    """Yield the sections that follow one."""
     lane = section.lane
     if isinstance(section._successor, LaneSection):
         yield section._successor

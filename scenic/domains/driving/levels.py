@@ -69,7 +69,7 @@ class Levels:
         return low, high
 
     def bounds(self, roads: Sequence[int]) -> tuple[float, float]:
-        """The least and the greatest height of some roads, on their areas."""
+        """Return the least and the greatest height of some roads, on their areas."""
         low, high = self._bounds
         some = list(roads)
         return float(low[some].min()) - 1e-6, float(high[some].max()) + 1e-6

@@ -40,7 +40,7 @@ def concatenateCenterlines(centerlines: Sequence[Any] = ()) -> PolylineRegion:
 
 
 def joined_ground(levels: Levels, lines: Sequence[GroundedLine]) -> Ground:
-    """The surface along several lines: that of the nearest one."""
+    """Return the surface along several lines: that of the nearest one."""
     pieces = Segments(
         np.concatenate([line.pieces.starts for line in lines]),
         np.concatenate([line.pieces.ends for line in lines]),

@@ -242,7 +242,7 @@ class _Linker:
         self._network.connectingRoads += tuple(road.road for road in inside)
 
     def _ways(self, junction: records.Junction) -> Iterator[_Way]:
-        """The connections of a junction between roads that are there."""
+        """Yield the connections of a junction between roads that are there."""
         for connection in junction.connections:
             incoming, connecting = (
                 self._built.get(connection.incoming),
@@ -258,7 +258,7 @@ class _Linker:
     def _intersection(
         self, junction: records.Junction, inside: Sequence[BuiltRoad], ways: Sequence[_Way], *, fill: bool
     ) -> Intersection | None:
-        """The intersection of a junction over the areas of its roads; ``None`` where nothing goes through it."""
+        """Return the intersection of a junction over the areas of its roads; ``None`` where nothing goes through it."""
         import shapely
 
         through = {id(road): road for road in (*inside, *(way.connecting for way in ways)) if road.road.lanes}
@@ -344,7 +344,7 @@ class _Linker:
     def _beyond(
         self, connecting: BuiltRoad, end: str, id: int
     ) -> tuple[Lane | None, tuple[BuiltRoad, str] | None]:
-        """The lane that a connecting lane leads into, and the road end where that begins."""
+        """Return the lane that a connecting lane leads into, and the road end where that begins."""
         link: Link | None = connecting.record.predecessor if end == "start" else connecting.record.successor
         if link is None or link.element != "road" or link.id not in self._built:
             return None, None

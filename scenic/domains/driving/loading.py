@@ -66,7 +66,7 @@ class MapOptions:
 
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> "MapOptions":
-        """The options of a mapping; raises ``TypeError`` for unknown names."""
+        """Return the options of a mapping; raises ``TypeError`` for unknown names."""
         known = [field.name for field in fields(cls)]
         for name in given:
             if name not in known:
@@ -77,7 +77,7 @@ class MapOptions:
         return cls(**{**given, **lanes})
 
     def key(self) -> bytes:
-        """The options that decide about the network, as bytes that are the same in each run."""
+        """Return the options that decide about the network, as bytes that are the same in each run."""
         shown = [
             (field.name, sorted(value) if isinstance(value, frozenset) else value)
             for field in fields(self)
@@ -146,7 +146,7 @@ def network_of(
 
 
 def _found(content: bytes, filename: str, options: MapOptions, cls: type[RoadNetwork]) -> RoadNetwork:
-    """A network that was kept, or is built."""
+    """Return a network that was kept, or is built."""
     if not (options.useCache or options.writeCache):
         return _build(content, filename, options, cls)
     networks: list[RoadNetwork] = []

@@ -230,7 +230,7 @@ class RoadDirection(TabulatedField):
         return super().__getitem__(place)
 
     def _guide_at(self, places: Floats, element: Indices) -> Indices:
-        """The guide that holds each place, the first of its element; else the nearest one."""
+        """Return the guide that holds each place, the first of its element; else the nearest one."""
         import shapely
 
         guides, starts, counts = self._guides

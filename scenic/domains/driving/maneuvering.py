@@ -18,7 +18,7 @@ __all__ = [
 
 
 def intersection_ahead(lane: Lane) -> Any:
-    """The intersection into which a lane leads, else the last point of the lane."""
+    """Return the intersection into which a lane leads, else the last point of the lane."""
     if lane.maneuvers and lane.maneuvers[0].intersection is not None:
         return lane.maneuvers[0].intersection
     x, y = lane.line[-1]
@@ -32,7 +32,7 @@ def next_maneuver(lane: Lane) -> tuple[Maneuver, ...]:
 
 
 def closest_vehicle(agent: Any) -> float:
-    """The distance from an object to the nearest other vehicle in metres; infinite if there is none."""
+    """Return the distance from an object to the nearest other vehicle in metres; infinite if there is none."""
     x, y, z = agent.position
     closest = math.inf
     for other in running_simulation().objects:
@@ -43,7 +43,7 @@ def closest_vehicle(agent: Any) -> float:
 
 
 def sidewalk_under(agent: Any) -> Sidewalk | None:
-    """The sidewalk on which an object is."""
+    """Return the sidewalk on which an object is."""
     found: Sidewalk | None = agent.roadNetwork.sidewalkAt(agent.position)
     return found
 

@@ -137,7 +137,7 @@ def _whole(polygon: Any) -> Any:
 
 
 def _stripes(polygon: Any) -> Any:
-    """The stripes of a crossing, across the way of pedestrians."""
+    """Return the stripes of a crossing, across the way of pedestrians."""
     import shapely
 
     box = shapely.get_coordinates(shapely.minimum_rotated_rectangle(polygon))

@@ -31,7 +31,7 @@ def _extent(thing: Any, dx: float, dy: float) -> float:
 
 
 def bumper_gap(car: object, other: object) -> float:
-    """The distance from the front of a car to the rear of another object in its way, along its lane; infinite if it is not ahead.
+    """Return the distance from the front of a car to the rear of another object in its way, along its lane; infinite if it is not ahead.
 
     The way is the lane of the car and the lanes straight after it; beside the way, by more than half of both widths, nobody is ahead.
     """
@@ -40,7 +40,7 @@ def bumper_gap(car: object, other: object) -> float:
 
 
 def _along_lane(car: Any, other: Any) -> tuple[float, float, float] | None:
-    """The gap to an object ahead, and the speeds of both along the lane; ``None`` if it is not ahead in the way."""
+    """Return the gap to an object ahead, and the speeds of both along the lane; ``None`` if it is not ahead in the way."""
     import shapely
 
     lane = car._lane
@@ -113,7 +113,7 @@ def required_deceleration(car: object, other: object) -> float:
 
 
 def distance_to_lane_border(car: Any) -> float:
-    """The distance from the outline of a car to the nearest side of its lane; negative as far as the car is across it."""
+    """Return the distance from the outline of a car to the nearest side of its lane; negative as far as the car is across it."""
     import shapely
 
     lane = car._lane

@@ -23,7 +23,7 @@ _NEAR: Final = 5.0
 
 
 def line_to_drive(lane: Lane) -> Floats:
-    """The line ``(n, 2)`` that cars follow on a lane: its middle, and that of the lane beside it where it opens or closes.
+    """Return the line ``(n, 2)`` that cars follow on a lane: its middle, and that of the lane beside it where it opens or closes.
 
     A lane with lanes of its direction on both sides, or on none, is followed in its middle.
     """

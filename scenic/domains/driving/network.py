@@ -124,7 +124,7 @@ class RoadNetwork(Frozen):
         return tuple(maneuver for item in self.intersections for maneuver in item.maneuvers)
 
     def maneuvers_of(self, signal: Signal) -> tuple[Maneuver, ...]:
-        """The maneuvers for which a signal holds."""
+        """Return the maneuvers for which a signal holds."""
         return self._controlled.get(signal.uid, ())
 
     @cached_property
@@ -148,7 +148,7 @@ class RoadNetwork(Frozen):
         return limit
 
     def crossings_near(self, element: NetworkElement) -> tuple[PedestrianCrossing, ...]:
-        """The pedestrian crossings that touch an element."""
+        """Return the pedestrian crossings that touch an element."""
         return tuple(crossing for crossing in self.crossings if crossing.polygon.intersects(element.polygon))
 
     # Regions
@@ -209,7 +209,7 @@ class RoadNetwork(Frozen):
         )
 
     def region_of(self, elements: Sequence[NetworkElement], fillings: Sequence[object] = ()) -> Region:
-        """The union of elements as a region with their directions; the empty region if there are none.
+        """Return the union of elements as a region with their directions; the empty region if there are none.
 
         Args:
             elements: the elements, in order of precedence.
@@ -226,7 +226,7 @@ class RoadNetwork(Frozen):
         return PolygonalRegion(polygon=union, orientation=self.direction_of(elements))
 
     def direction_of(self, elements: Sequence[NetworkElement]) -> RoadDirection:
-        """The field of the first of some elements that holds a point."""
+        """Return the field of the first of some elements that holds a point."""
         return RoadDirection("direction of elements", elements, self.tolerance, self._levels_in_space)
 
     @cached_property
@@ -263,7 +263,7 @@ class RoadNetwork(Frozen):
     # Paths
 
     def path_pieces(self, *, backward: bool = False, tightest: float = TIGHTEST) -> PathPieces:
-        """The pieces of paths that cars share.
+        """Return the pieces of paths that cars share.
 
         Args:
             backward: those against the direction of lanes.
@@ -286,7 +286,7 @@ class RoadNetwork(Frozen):
         return to_vector(point, "a point of the map")
 
     def findPointIn(self, point: object, elems: Sequence[NetworkElement], reject: object = False) -> Any:
-        """The first of some elements that contains a point; if none does, the first within the tolerance.
+        """Return the first of some elements that contains a point; if none does, the first within the tolerance.
 
         Args:
             point: anything with a position. Where it is random, so is the element.
@@ -375,7 +375,7 @@ class RoadNetwork(Frozen):
         return finder
 
     def nominalDirectionsAt(self, point: object, reject: object = False) -> Any:
-        """The directions of traffic that are possible at a point: several in an intersection, none off the road."""
+        """Return the directions of traffic that are possible at a point: several in an intersection, none off the road."""
         place = self.vector(point)
         if isinstance(place, Lazy):
             return defer(self.nominalDirectionsAt, place, reject)

@@ -11,7 +11,7 @@ __all__ = ["toOpenScenario"]
 
 
 def toOpenScenario(simulation: Any, mapPath: Any = None, scenarioName: str = "ScenicScenario") -> Any:
-    """A ``scenariogeneration.xosc.Scenario`` in which all objects of a simulation follow their states.
+    """Return a ``scenariogeneration.xosc.Scenario`` in which all objects of a simulation follow their states.
 
     Args:
         simulation: one that has ended.

@@ -112,15 +112,15 @@ class PathPieces:
         return curve
 
     def start(self, lane: Lane) -> PathPiece:
-        """The first half of a long lane."""
+        """Return the first half of a long lane."""
         return self._known(("start", lane.uid), lambda: self._half(lane, first=True))
 
     def end(self, lane: Lane) -> PathPiece:
-        """The second half of a long lane."""
+        """Return the second half of a long lane."""
         return self._known(("end", lane.uid), lambda: self._half(lane, first=False))
 
     def between(self, lanes: Sequence[Lane], *, opens: bool, closes: bool) -> PathPiece:
-        """The piece along several lanes.
+        """Return the piece along several lanes.
 
         Args:
             lanes: one after the other.
@@ -296,7 +296,7 @@ class Path:
         return x + share * (self._x[index + 1] - x), y + share * (self._y[index + 1] - y)
 
     def lane_at(self, index: int) -> Any:
-        """The lane along which the path runs at a point; ``None`` off the lanes."""
+        """Return the lane along which the path runs at a point; ``None`` off the lanes."""
         lane = None
         for begin, candidate in self.lanes:
             if begin > index:

@@ -83,7 +83,7 @@ def comes_first(other: Maneuver, own: Maneuver) -> bool:
 
 @lru_cache(maxsize=16)
 def _roads_of_rings(network: RoadNetwork) -> frozenset[str]:
-    """The ``uid`` of the roads that are rings of roundabouts."""
+    """Return the ``uid`` of the roads that are rings of roundabouts."""
     return frozenset(lane.road.uid for ring in roundabouts(network) for lane in ring.lanes)
 
 

@@ -85,7 +85,7 @@ class Network(RoadNetwork):
 
     @classmethod
     def fromOpenDrive(cls, path: object, **options: Any) -> "Network":
-        """The network of an OpenDRIVE file; see `fromFile`."""
+        """Return the network of an OpenDRIVE file; see `fromFile`."""
         return cls.fromFile(path, **options)
 
     def dumpPickle(self, path: Any, digest: bytes = b"") -> None:
@@ -96,7 +96,7 @@ class Network(RoadNetwork):
 
     @classmethod
     def fromPickle(cls, path: Any, originalDigest: bytes | None = None) -> "Network":
-        """The network in a file that `dumpPickle` wrote. Nothing in the file is executed.
+        """Return the network in a file that `dumpPickle` wrote. Nothing in the file is executed.
 
         Args:
             path: the file.
@@ -123,7 +123,7 @@ class Network(RoadNetwork):
             ) from error
 
     def svg(self, width: int = 1200) -> str:
-        """A drawing of the network from above, as SVG, ``width`` pixels wide."""
+        """Return a drawing of the network from above, as SVG, ``width`` pixels wide."""
         return svg(self, width)
 
     def show(self, labelIncomingLanes: bool = False, showCurbArrows: bool = False) -> Path:

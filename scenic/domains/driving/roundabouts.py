@@ -62,7 +62,7 @@ def roundabouts(network: RoadNetwork) -> tuple[Roundabout, ...]:
 
 
 def _continuations(network: RoadNetwork) -> dict[int, list[Lane]]:
-    """The lanes that go on from each lane, by its identity."""
+    """Return the lanes that go on from each lane, by its identity."""
     after: dict[int, list[Lane]] = {}
     for maneuver in network.maneuvers:
         parts = [maneuver.startLane, maneuver.connectingLane, maneuver.endLane]
@@ -107,7 +107,7 @@ def _points(ring: tuple[Lane, ...]) -> NDArray[np.float64]:
 
 
 def _roundness(ring: tuple[Lane, ...]) -> float:
-    """The area that lanes enclose, in parts of that of a circle of the same length."""
+    """Return the area that lanes enclose, in parts of that of a circle of the same length."""
     points = _points(ring)
     x, y = (points - points.mean(axis=0)).T
     area = 0.5 * abs(float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))))

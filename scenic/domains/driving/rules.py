@@ -166,7 +166,7 @@ class RulesDriver(LaneDriver):
     # What they ask for now
 
     def extra_acceleration(self, speed: float, own: float) -> float:
-        """The largest acceleration (m/s^2) that the rules allow at metres along the path."""
+        """Return the largest acceleration (m/s^2) that the rules allow at metres along the path."""
         simulation = self._simulation
         now = simulation.currentTime * simulation.timestep
         if now >= self._next_check:
@@ -216,7 +216,7 @@ class RulesDriver(LaneDriver):
         return line_place
 
     def reason_to_stand(self) -> str | None:
-        """The reason for which the car stands: at a line, or behind somebody; ``None`` if nothing holds it."""
+        """Return the reason for which the car stands: at a line, or behind somebody; ``None`` if nothing holds it."""
         halt, behind = self._halted_at, super().reason_to_stand()
         if halt is None or (behind is not None and self._leader.along < halt.along):  # type: ignore[union-attr] # there is one
             return behind
@@ -350,7 +350,7 @@ def _length(lane: Lane) -> float:
 
 
 def _maneuver_of(before: Lane | None, connecting: Lane) -> Maneuver | None:
-    """The maneuver from a lane through a connecting lane."""
+    """Return the maneuver from a lane through a connecting lane."""
     if before is None:
         return None
     ways = before.maneuvers or ways_after(before)

@@ -15,7 +15,7 @@ ADVICE: Final = (
 
 
 def running_traffic() -> Any:
-    """The simulation that is running.
+    """Return the simulation that is running.
 
     Raises:
         InvalidScenarioError: none is, or it is not one of traffic.

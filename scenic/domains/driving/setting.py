@@ -98,7 +98,7 @@ def _wanted_by(parameter: str) -> str:
 
 
 def _wrong(parameter: str, message: str, help: str) -> SettingError:
-    """An error where a parameter is set: outside of the program, by a statement of it, else by its `model` statement."""
+    """Return an error where a parameter is set: outside of the program, by a statement of it, else by its `model` statement."""
     error = SettingError(message, help=help)
     context = current.get()
     if context is None:
@@ -111,7 +111,7 @@ def _wrong(parameter: str, message: str, help: str) -> SettingError:
 
 
 def standing(spot: Any) -> Lazy:
-    """The position of what stands on a spot: upright on a point, inclined as the ground is on an oriented one."""
+    """Return the position of what stands on a spot: upright on a point, inclined as the ground is on an oriented one."""
 
     def place(thing: Any) -> Any:
         gap = vector(0, 0, operate("divide", thing.contactTolerance, 2))
@@ -124,7 +124,7 @@ def standing(spot: Any) -> Lazy:
 
 
 def nearer(objects: Iterable[object], agent: Any, threshold: float, kind: Any) -> list[Any]:
-    """The objects of a class, others than an agent, whose centres are nearer to it than a threshold in metres."""
+    """Return the objects of a class, others than an agent, whose centres are nearer to it than a threshold in metres."""
     x, y, z = agent.position
     limit = threshold * threshold
     nearby: list[Any] = []

@@ -50,7 +50,7 @@ class LightTimes:
 
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> "LightTimes":
-        """The times of a mapping.
+        """Return the times of a mapping.
 
         Raises:
             InvalidScenarioError: an entry has an unknown name, or is not a time.
@@ -74,7 +74,7 @@ class LightTimes:
 
 
 def phases_of(intersection: Intersection) -> tuple[tuple[Signal, ...], ...]:
-    """The lights of an intersection that are green together: no maneuver of one conflicts with a maneuver of another one."""
+    """Return the lights of an intersection that are green together: no maneuver of one conflicts with a maneuver of another one."""
     phases: list[list[Signal]] = []
     for signal in intersection.signals:
         if not signal.isTrafficLight:
@@ -98,7 +98,7 @@ def _conflict(one: Signal, other: Signal) -> bool:
 
 
 def fixed_colors(network: RoadNetwork, states: Mapping[str, str]) -> dict[str, str]:
-    """The colours of lights that never change, by ``uid``, from colours by ids.
+    """Return the colours of lights that never change, by ``uid``, from colours by ids.
 
     Raises:
         InvalidScenarioError: a light is not there, or a colour is not one of `COLORS`.
@@ -160,7 +160,7 @@ class TrafficLights:
         return int(turn), (into >= times.green) + (into >= times.green + times.yellow), self._interventions
 
     def get(self, signal: Signal) -> str:
-        """The colour of a light now: ``red``, ``yellow``, ``green`` or ``off``."""
+        """Return the colour of a light now: ``red``, ``yellow``, ``green`` or ``off``."""
         fixed_color = self._fixed.get(signal.uid)
         if fixed_color is not None:
             return fixed_color

@@ -53,7 +53,7 @@ class Placement:
 
 
 def placement_of(reference: records.SignalReference, road: str) -> Placement:
-    """The placement of a reference on a road."""
+    """Return the placement of a reference on a road."""
     return Placement(road, reference.s, reference.orientation, reference.validity, is_reference=True)
 
 
@@ -244,7 +244,7 @@ def _length(line: Any) -> float:
 
 
 def halt_point_ahead(lane: "Lane", position: Any, lookahead: float) -> tuple["Signal", float] | None:
-    """The first signal ahead on a lane at which traffic may have to halt, and metres along the lane to its stopping point."""
+    """Return the first signal ahead on a lane at which traffic may have to halt, and metres along the lane to its stopping point."""
     import shapely
 
     x, y, *_ = position

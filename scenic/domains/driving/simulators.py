@@ -104,7 +104,7 @@ class DrivingSimulation(Simulation):
             self._law_abiding.discard(id(agent))
 
     def signalState(self, signal: Signal) -> str:
-        """The colour of a traffic light now: ``red``, ``yellow``, ``green`` or ``off``."""
+        """Return the colour of a traffic light now: ``red``, ``yellow``, ``green`` or ``off``."""
         lights = self.traffic_lights
         lights.time = self.currentTime * float(self.timestep)
         color: str = lights.get(signal)
@@ -137,7 +137,7 @@ class DrivingSimulation(Simulation):
     _light_colors: Mapping[str, str] = MappingProxyType({})
 
     def _light_ahead(self, vehicle: Any, distance: float) -> Signal | None:
-        """The first traffic light ahead of a vehicle within a distance in metres."""
+        """Return the first traffic light ahead of a vehicle within a distance in metres."""
         lane = vehicle._lane
         if lane is None:
             return None
@@ -155,7 +155,7 @@ class DrivingSimulation(Simulation):
         return None if best is None else best[1]
 
     def closest_traffic_light(self, vehicle: object, distance: float) -> str:
-        """The colour of the traffic light ahead of a vehicle within a distance in metres; ``none`` if there is none."""
+        """Return the colour of the traffic light ahead of a vehicle within a distance in metres; ``none`` if there is none."""
         signal = self._light_ahead(vehicle, distance)
         return "none" if signal is None else self.signalState(signal)
 
@@ -180,7 +180,7 @@ class DrivingSimulation(Simulation):
         )
 
     def steering_for(self, agent: Any, curvature: float) -> float:
-        """The position of the steering wheel, -1 (left) to 1 (right), by which an agent drives a curve.
+        """Return the position of the steering wheel, -1 (left) to 1 (right), by which an agent drives a curve.
 
         A car turns about its rear axle by ``tan(angle of the front wheels) / wheelbase``.
 
@@ -193,7 +193,7 @@ class DrivingSimulation(Simulation):
         return min(1.0, max(-1.0, -angle))
 
     def curvature_of(self, agent: Any, steering: float) -> float:
-        """The curvature (1/m, positive to the left) that an agent drives by a position of the steering wheel."""
+        """Return the curvature (1/m, positive to the left) that an agent drives by a position of the steering wheel."""
         return math.tan(-steering * float(agent.maxSteeringAngle)) / float(agent.wheelbase)
 
     def pivot_of(self, agent: Any) -> float:

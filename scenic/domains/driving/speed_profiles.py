@@ -179,7 +179,7 @@ class _Way:
 def _going_on(
     speed: float, acceleration: float, time: float, deceleration: float, comfort: Comfort
 ) -> tuple[float, float, float]:
-    """The acceleration of a car, within bounds, its speed after seconds of it, and the metres that it has gone by then."""
+    """Return the acceleration of a car, within bounds, its speed after seconds of it, and the metres that it has gone by then."""
     acceleration = min(max(acceleration, -deceleration), comfort.acceleration)
     if speed + acceleration * time < 0.0:
         time = speed / -acceleration
@@ -231,7 +231,7 @@ def _backward(squares: Floats, falls: Floats) -> Floats:
 
 
 def _needed(along: Floats, squares: Floats, speed: float, reach: float) -> float:
-    """The constant deceleration by which a car meets all squared speed limits from metres ahead of it on, m/s^2."""
+    """Return the constant deceleration by which a car meets all squared speed limits from metres ahead of it on, m/s^2."""
     ahead = along[1:] - along[0] - reach
     # What a car meets at once it is a little too fast for at most.
     return float(((speed * speed - squares[1:]) / (2 * np.maximum(ahead, 0.5 + 0.3 * speed))).max())

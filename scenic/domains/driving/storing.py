@@ -87,7 +87,7 @@ _LISTS: Final = ("roads", "connectingRoads", "intersections", "crossings", "side
 
 
 def stored(network: RoadNetwork) -> Arrays:
-    """The arrays from which `restored` makes an equal network."""
+    """Return the arrays from which `restored` makes an equal network."""
     elements = list(network.elements.values())
     number: dict[int | None, int] = {id(element): index for index, element in enumerate(elements)}
     number[id(None)] = -1
@@ -177,7 +177,7 @@ def _height_row(road: RoadHeight) -> tuple[object, ...]:
 
 
 def restored(arrays: Arrays, filename: str, tolerance: float, cls: type[_Network]) -> _Network:
-    """The network of arrays that `stored` made.
+    """Return the network of arrays that `stored` made.
 
     Raises ``LookupError``, ``TypeError`` or ``ValueError`` where the arrays are not of this form.
     """
@@ -331,7 +331,7 @@ def _at(elements: Sequence[object], index: int) -> Any:
 
 
 def _distinct(items: Iterable[object]) -> list[Any]:
-    """The items, each but once, by identity."""
+    """Return the items, each but once, by identity."""
     return list({id(item): item for item in items}.values())
 
 

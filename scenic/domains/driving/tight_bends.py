@@ -32,7 +32,7 @@ _STEP: Final = 0.6
 
 
 def nearer_in_bends(curve: Floats, line: Floats, bent: NDArray[np.bool_], sharpest: float) -> Floats:
-    """A curve ``(n, 2)`` that is nearer to a line than another one in bends, and bends no more than a car drives.
+    """Return a curve ``(n, 2)`` that is nearer to a line than another one in bends, and bends no more than a car drives.
 
     Args:
         curve: at equal distances, ``(n, 2)``.
@@ -106,7 +106,7 @@ def _away(points: Floats, normals: Floats, line: Floats) -> Floats:
 
 
 def _offsets(points: Floats, away: Floats, sharpest: float) -> Floats | None:
-    """The offsets ``(n,)`` along the normals; ``None`` if there is no curve within bounds."""
+    """Return the offsets ``(n,)`` along the normals; ``None`` if there is no curve within bounds."""
     from scipy.optimize import linprog
 
     count = len(points)
@@ -149,6 +149,6 @@ def _offsets(points: Floats, away: Floats, sharpest: float) -> Floats | None:
 
 
 def _row(sizes: Sequence[int], parts: dict[int, Floats]) -> Floats:
-    """A row of blocks of as many columns as sizes say: the parts, by their numbers, and zeros."""
+    """Return a row of blocks of as many columns as sizes say: the parts, by their numbers, and zeros."""
     height = len(next(iter(parts.values())))
     return np.hstack([parts.get(number, np.zeros((height, size))) for number, size in enumerate(sizes)])

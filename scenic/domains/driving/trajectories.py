@@ -44,7 +44,7 @@ class Trajectory:
 
     @classmethod
     def through(cls, parts: Sequence[Any], speed: float | None = None) -> "Trajectory":
-        """The way along the middle of lanes, or along polylines, one after the other, at one speed in m/s if given."""
+        """Return the way along the middle of lanes, or along polylines, one after the other, at one speed in m/s if given."""
         points = [point for part in parts for point in getattr(part, "centerline", part).points]
         kept = [point for index, point in enumerate(points) if index == 0 or point != points[index - 1]]
         return cls(kept, None if speed is None else [speed] * len(kept))

@@ -70,7 +70,7 @@ class UTurner:
         self._braked = False
 
     def lane(self) -> Lane:
-        """The lane of the other direction that is nearest to the car."""
+        """Return the lane of the other direction that is nearest to the car."""
         import shapely
 
         spot = shapely.Point(self._agent.position[0], self._agent.position[1])

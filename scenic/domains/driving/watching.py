@@ -118,7 +118,7 @@ class InsideWatch:
         return bool(shapely.covers(intersection.polygon, shapely.Polygon(self._corners(x, y))))
 
     def _corners(self, x: float, y: float) -> list[tuple[float, float]]:
-        """The corners of the object seen from above; it stands upright."""
+        """Return the corners of the object seen from above; it stands upright."""
         agent = self._agent
         sine, cosine = math.sin(agent.heading), math.cos(agent.heading)
         a, b = agent.width / 2, agent.length / 2

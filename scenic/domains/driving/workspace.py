@@ -55,7 +55,7 @@ class DrivingWorkspace(Workspace):
         return self._posts.around(places)
 
     def first_colors(self, params: Mapping[str, object]) -> Mapping[str, str]:
-        """The colours of traffic lights at the beginning, by ``uid``, by the parameters of a scene."""
+        """Return the colours of traffic lights at the beginning, by ``uid``, by the parameters of a scene."""
         lights = self._lights(params)
         return {signal.uid: lights.get(signal) for signal in self._signals}
 
@@ -68,11 +68,11 @@ class DrivingWorkspace(Workspace):
         return tuple(signal for signal in self.network.signals if signal.isTrafficLight)
 
     def commonroad_records(self, params: Mapping[str, object]) -> RoadRecords:
-        """The road network as a CommonRoad file has it, with traffic lights by the parameters of a scene."""
+        """Return the road network as a CommonRoad file has it, with traffic lights by the parameters of a scene."""
         return road_records(self.network, self._lights(params), Path(str(params.get("map", "Map"))).stem)
 
     def lanelets_at(self, place: tuple[float, float]) -> tuple[str, ...]:
-        """The keys of the CommonRoad lanelets for cars that contain a place."""
+        """Return the keys of the CommonRoad lanelets for cars that contain a place."""
         section = self.network.laneSectionAt(place)
         return () if section is None else (section.uid,)
 

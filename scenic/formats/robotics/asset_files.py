@@ -70,7 +70,7 @@ def obj_text(
     faces: npt.NDArray[Any],
     coordinates: npt.NDArray[np.float64] | None = None,
 ) -> bytes:
-    """A mesh as Wavefront OBJ, with every digit of its coordinates."""
+    """Return a mesh as Wavefront OBJ, with every digit of its coordinates."""
     return ("\n".join(_lines(vertices, faces, coordinates)) + "\n").encode()
 
 

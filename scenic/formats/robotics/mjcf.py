@@ -26,7 +26,7 @@ _GRAVITY: Final = 9.81
 
 
 def mjcf(scene: Scene, name: str, *, inline: bool) -> dict[str, bytes]:
-    """The files of a scene by their paths: its own first, then images, and meshes unless they are inline.
+    """Return the files of a scene by their paths: its own first, then images, and meshes unless they are inline.
 
     Args:
         scene: the scene.
@@ -184,7 +184,7 @@ class _Writer:
         )
 
     def _pieces(self, solid: Solid) -> Iterator[dict[str, str]]:
-        """The forms that touch others; none if the form itself is as good."""
+        """Yield the forms that touch others; none if the form itself is as good."""
         if solid.form == "cylinder":
             yield {"type": "cylinder", "size": numbers((solid.touching_radius, solid.size[2] / 2))}
         if solid.form in ("mesh", "cone"):
@@ -248,7 +248,7 @@ def bottom(solid: Solid) -> float:
 
 
 def _as_png(path: str, content: bytes) -> tuple[str, bytes]:
-    """An image as PNG, the only format of images that MuJoCo reads."""
+    """Return an image as PNG, the only format of images that MuJoCo reads."""
     from io import BytesIO
 
     from scenic.formats.imaging import require_pillow

@@ -29,7 +29,7 @@ _CLIP: Final = (0.01, 1000.0)
 
 
 def sdf(scene: Scene, name: str) -> dict[str, bytes]:
-    """The files of a scene by their paths: the world, the index of its objects with their URDF, these, meshes and images.
+    """Return the files of a scene by their paths: the world, the index of its objects with their URDF, these, meshes and images.
 
     Args:
         scene: the scene.
@@ -176,7 +176,7 @@ class _Writer:
     # Forms
 
     def _forms(self, solid: Solid) -> Iterator[ET.Element]:
-        """The geometries that others touch: the form itself, or convex parts of a mesh."""
+        """Yield the geometries that others touch: the form itself, or convex parts of a mesh."""
         pieces = solid.mesh.derived(convex_parts) if solid.form in ("mesh", "cone") else ()
         if not pieces:
             yield self._form(solid, touches=True)
@@ -207,7 +207,7 @@ class _Writer:
     # URDF
 
     def _urdf(self, solid: Solid) -> str:
-        """The path of the URDF of an object, named after its class and content."""
+        """Return the path of the URDF of an object, named after its class and content."""
         solid = solid.without_ellipsoid
         robot = ET.Element("robot", name=solid.class_name)
         link = ET.SubElement(robot, "link", name="base")
@@ -247,7 +247,7 @@ def _mesh_geometry(path: str, solid: Solid, *, convex: bool) -> ET.Element:
 
 
 def _urdf_form(geometry: ET.Element) -> ET.Element:
-    """A geometry of SDFormat as one of URDF."""
+    """Return a geometry of SDFormat as one of URDF."""
     (form,) = geometry
     texts: dict[str, Any] = {item.tag: item.text for item in form}
     if form.tag == "mesh":

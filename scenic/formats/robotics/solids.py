@@ -203,7 +203,7 @@ def _color(thing: SceneObject, number: int) -> Four:
 
 
 def _form(thing: SceneObject, size: Triple) -> str:
-    """The form that describes the shape at its size exactly, else ``mesh``."""
+    """Return the form that describes the shape at its size exactly, else ``mesh``."""
     data = thing.shape.source.as_dict()
     if "initial_rotation" in data:
         return "mesh"

@@ -43,7 +43,7 @@ def require_usd() -> None:
 
 
 def usd(scene: Scene, name: str) -> dict[str, bytes]:
-    """The files of a scene by their paths: its own layer as text, then the layers of meshes, and images.
+    """Return the files of a scene by their paths: its own layer as text, then the layers of meshes, and images.
 
     Args:
         scene: the scene.
@@ -54,7 +54,7 @@ def usd(scene: Scene, name: str) -> dict[str, bytes]:
 
 
 def usd_file(scene: Scene, name: str) -> dict[str, bytes]:
-    """One file with all meshes, ``.usda``, ``.usdc`` or ``.usdz``; images stand beside it unless it ends in ``.usdz``."""
+    """Return one file with all meshes, ``.usda``, ``.usdc`` or ``.usdz``; images stand beside it unless it ends in ``.usdz``."""
     if not name.endswith(".usdz"):
         return _Writer(scene, inline=True).files(name)
     from tempfile import TemporaryDirectory
@@ -201,7 +201,7 @@ class _Writer:
         api.CreatePrincipalAxesAttr(Gf.Quatf(w, x, y, z))
 
     def _geometry(self, solid: Solid, path: str) -> Any:
-        """The prim of the object's form."""
+        """Return the prim of the object's form."""
         from pxr import Gf, UsdGeom
 
         width, length, height = solid.size
@@ -224,7 +224,7 @@ class _Writer:
         return self._mesh(solid, path)
 
     def _round(self, path: str, solid: Solid, radius: float) -> Any:
-        """The prim of a cylinder or cone of a radius."""
+        """Return the prim of a cylinder or cone of a radius."""
         from pxr import Gf, UsdGeom
 
         half = Gf.Vec3f(radius, radius, solid.size[2] / 2)
@@ -237,7 +237,7 @@ class _Writer:
         return form.GetPrim()
 
     def _mesh(self, solid: Solid, path: str) -> Any:
-        """The prim of a mesh: defined here, or an instance of the shared one."""
+        """Return the prim of a mesh: defined here, or an instance of the shared one."""
         from pxr import Gf, UsdGeom, UsdPhysics
 
         if self._inline:
@@ -349,7 +349,7 @@ def _place(prim: Any, position: tuple[float, ...], quaternion: tuple[float, ...]
 
 
 def _turn_from_up(x: float, y: float, z: float) -> Four:
-    """The shortest rotation that takes +Z to a unit vector."""
+    """Return the shortest rotation that takes +Z to a unit vector."""
     quaternion = np.array([-y, x, 0.0, 1.0 + z])
     length = float(np.linalg.norm(quaternion))
     if length < 1e-9:
@@ -376,7 +376,7 @@ def _custom(solid: Solid) -> dict[str, Any]:
 
 
 def _plain(value: object) -> Any:
-    """A value as custom data has it; ``None`` if it cannot."""
+    """Return a value as custom data has it; ``None`` if it cannot."""
     from pxr import Gf
 
     if isinstance(value, bool | str):
@@ -395,7 +395,7 @@ def _linear(color: tuple[float, ...]) -> list[float]:
 
 
 def _define_mesh(stage: object, path: str, solid: Solid) -> Any:
-    """A mesh in the unit box, with normals of every corner and texture coordinates where the object has an image."""
+    """Return a mesh in the unit box, with normals of every corner and texture coordinates where the object has an image."""
     from pxr import Gf, Sdf, UsdGeom, Vt
 
     mesh = UsdGeom.Mesh.Define(stage, path)
@@ -431,7 +431,7 @@ def _touching(geometry: object, solid: Solid) -> None:
 
 
 def _mesh_layer(solid: Solid, name: str) -> bytes:
-    """The layer of one mesh."""
+    """Return the layer of one mesh."""
     from pxr import Usd, UsdGeom
 
     stage = Usd.Stage.CreateInMemory()
@@ -444,7 +444,7 @@ def _mesh_layer(solid: Solid, name: str) -> bytes:
 
 
 def _encoded(layer: Any, name: str) -> bytes:
-    """The content of a layer's file: text, or binary by the name's ending."""
+    """Return the content of a layer's file: text, or binary by the name's ending."""
     if name.endswith(".usda"):
         text: str = layer.ExportToString()
         return text.encode()

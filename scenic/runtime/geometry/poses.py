@@ -44,7 +44,7 @@ class Poses:
         orientation: npt.ArrayLike = (0, 0, 0, 1),
         size: npt.ArrayLike = (1, 1, 1),
     ) -> "Poses":
-        """One placement, the same in every lane of every batch."""
+        """Return one placement, the same in every lane of every batch."""
         return cls(
             np.asarray(position, dtype=np.float64).reshape(1, 3),
             np.asarray(orientation, dtype=np.float64).reshape(1, 4),
@@ -62,7 +62,7 @@ class Poses:
         return quaternions.to_matrix(self.orientation)
 
     def take(self, entries: Indices) -> "Poses":
-        """The poses of these entries; parts that are the same everywhere stay so."""
+        """Return the poses of these entries; parts that are the same everywhere stay so."""
         result = Poses(
             _take(self.position, entries),
             _take(self.orientation, entries),

@@ -34,7 +34,7 @@ def first_of_each(keys: Indices) -> Indices:
 
 
 def distinct(numbers: Indices) -> Indices:
-    """The different ones of integers of any shape, ascending."""
+    """Return the different ones of integers of any shape, ascending."""
     ordered = np.sort(numbers, axis=None)
     return ordered[_changes(ordered)]
 

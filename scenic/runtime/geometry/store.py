@@ -106,7 +106,7 @@ def programs_folder() -> Path | None:
 
 
 def _path(kind: str, content: bytes) -> Path | None:
-    """The file for some content; ``None`` if the store is turned off."""
+    """Return the file for some content; ``None`` if the store is turned off."""
     folder = store_folder()
     key = hashlib.sha256(kind.encode() + b"\0" + content).hexdigest()
     return None if folder is None else folder / f"{key}{_SUFFIX}"

@@ -7,7 +7,7 @@ __all__ = ["library_version"]
 
 
 def library_version(library: str) -> str:
-    """A text that differs between versions of a library: names of its metadata, and size and time of the file that is imported.
+    """Return a text that differs between versions of a library: names of its metadata, and size and time of the file that is imported.
 
     Reading metadata as `importlib.metadata` does takes 20 ms, most of them for its import.
     """

@@ -185,7 +185,7 @@ def _constant(node: Node) -> Hashable:
 def _narrowed(
     axis: int, domain: Domain, narrowing: Sequence[Sequence[int]], parts: dict[int, int]
 ) -> Hashable:
-    """The bounds of an axis in the domain; ``parts`` numbers the parts of the domain in the order of their first appearance."""
+    """Return the bounds of an axis in the domain; ``parts`` numbers the parts of the domain in the order of their first appearance."""
     result: list[Hashable] = []
     for part in narrowing[axis]:
         place = parts.setdefault(part, len(parts))

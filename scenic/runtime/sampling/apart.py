@@ -246,7 +246,7 @@ def _batch(
 
 
 def _nodes(kind: GroupKind) -> list[Node]:
-    """The nodes of the bodies of a kind."""
+    """Return the nodes of the bodies of a kind."""
     return [node for item in kind.objects for node in item.all]
 
 

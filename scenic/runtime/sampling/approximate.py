@@ -436,7 +436,7 @@ class _State:
         return self._made(dict(self._numbers), dict(self._words), self._lanes)
 
     def take(self, lanes: NDArray[np.intp]) -> "_State":
-        """Some of the lanes."""
+        """Return some of the lanes."""
         return self._made(
             {place: column[lanes] for place, column in self._numbers.items()},
             {place: column[lanes] for place, column in self._words.items()},
@@ -486,5 +486,5 @@ class _State:
         return float(((here - here.mean()) * (there - there.mean())).mean()) / spread
 
     def source(self, keys: Words) -> Points:
-        """The source of the lanes."""
+        """Return the source of the lanes."""
         return Points(self._numbers, Counter(keys), self._words)

@@ -42,7 +42,7 @@ class CheckVerdict:
         return self.holds if self.failed is None else self.holds | self.failed
 
     def unless(self, inactive: Mask) -> "CheckVerdict":
-        """The verdict of a soft requirement, which passes lanes where it is not active."""
+        """Return the verdict of a soft requirement, which passes lanes where it is not active."""
         failed = None if self.failed is None else self.failed & ~inactive
         return CheckVerdict(self.holds | inactive, failed)
 
@@ -70,7 +70,7 @@ class Check(Protocol):
         """Judge every lane of the batch."""
 
     def parts(self, batch: Batch) -> Sequence["Part"]:
-        """The requirements that it consists of, each with its own verdict, for reports."""
+        """Return the requirements that it consists of, each with its own verdict, for reports."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,7 @@ class Part:
 
 
 def joined(parts: Sequence[Part]) -> Part:
-    """One requirement on the lanes of several batches."""
+    """Return one requirement on the lanes of several batches."""
     return replace(
         parts[0],
         holds=np.concatenate([part.holds for part in parts]),
@@ -195,7 +195,7 @@ class ObjectNodes:
     span: Span | None
 
     def body(self, batch: Batch) -> Body:
-        """The object's body in every lane."""
+        """Return the object's body in every lane."""
         columns = [batch.column(node) for node in self.all[:4]]
         body = body_of(*columns)
         allow = batch.column(self.allow_collisions)

@@ -34,7 +34,7 @@ class Composed:
         return Composed([source.take(lanes) for source in self._sources], self._owner, self._first)
 
     def _keys(self, addresses: Words) -> Words | None:
-        """The keys of addresses in all lanes where all sources hash, ``(addresses, lanes)``."""
+        """Return the keys of addresses in all lanes where all sources hash, ``(addresses, lanes)``."""
         if len(self._sources) == 1 or not all(type(source) is Counter for source in self._sources):
             return None
         if self._stacked is None:

@@ -51,7 +51,7 @@ def _may_mark(node: Node) -> bool:
 
 
 def _owners(program: Program) -> Mapping[Node, object]:
-    """The first object of the program whose properties read each node."""
+    """Return the first object of the program whose properties read each node."""
     owners: dict[Node, object] = {}
     for item in program.objects:
         stack = [value.node for value in vars(item).values() if isinstance(value, Random)]
@@ -87,14 +87,14 @@ def _check(node: Node, program: Program, owners: Mapping[Node, object]) -> Drawi
 
 
 def _shortened(text: str) -> str:
-    """An expression on one line, without its middle if it is long."""
+    """Return an expression on one line, without its middle if it is long."""
     line = " ".join(text.split())
     half = (_LONGEST - 3) // 2
     return line if len(line) <= _LONGEST else f"{line[:half]}...{line[-half:]}"
 
 
 def called(program: Program, item: object, *, article: str = "") -> str:
-    """The property `name` of an instance, else the variable that holds it, else its class after ``article``."""
+    """Return the property `name` of an instance, else the variable that holds it, else its class after ``article``."""
     if is_random(item):
         return f"{article}random observer"
     given = getattr(item, "name", None)

@@ -130,7 +130,7 @@ class FinishedLanes:
         return SceneTask(self.seeds[lane], self.numbers[lane])
 
     def again(self, lane: int) -> Batch:
-        """A batch of that lane alone."""
+        """Return a batch of that lane alone."""
         return self.alone(lane)
 
     def is_active(self, lane: int, place: int, probability: float) -> bool:
@@ -276,7 +276,7 @@ class Engine:
     def foresee(
         self, tasks: Iterable[tuple[int, int]], *, max_attempts: int, more: bool = True
     ) -> Iterator[Accepted | Exhausted]:
-        """The same as `scenes` for tasks without end, of which nobody knows how many are wanted.
+        """Return the same as `scenes` for tasks without end, of which nobody knows how many are wanted.
 
         A few are looked for at first (one, unless ``more`` are expected to be wanted), then more at a time the more have
         been wanted, as long as that takes little time.
@@ -347,13 +347,13 @@ class Engine:
         return other
 
     def metered(self, meter: Meter) -> "Engine":
-        """The engine with a meter of what it does; it knows, and learns, what rounds and checks cost together with this one."""
+        """Return the engine with a meter of what it does; it knows, and learns, what rounds and checks cost together with this one."""
         other = copy(self)
         other._meter = meter
         return other
 
     def profile(self, scenes: int) -> Profile:
-        """The measurements of this engine's meter while it found a number of scenes."""
+        """Return the measurements of this engine's meter while it found a number of scenes."""
         assert self._meter is not None
         return self._meter.profile(scenes, self.plan.checks, self._scheduler)
 
@@ -428,7 +428,7 @@ class Engine:
     def first_candidates(
         self, tasks: Sequence[tuple[int, int]]
     ) -> list[tuple[int, Accepted | CandidateError]]:
-        """The first candidates for some scenes, each evaluated once: those that nothing rejects, with their places, in order."""
+        """Return the first candidates for some scenes, each evaluated once: those that nothing rejects, with their places, in order."""
         start_time = time.thread_time()
         pending = self.pending(tasks)
         owner = np.arange(len(tasks))
@@ -531,7 +531,7 @@ class Engine:
         return pending
 
     def attempts_at(self, pending: Pending, owner: NDArray[np.intp], attempts: NDArray[np.int64]) -> Batch:
-        """A batch of lanes: attempts ``(n,)`` at the scenes ``owner`` ``(n,)`` among the pending ones."""
+        """Return a batch of lanes: attempts ``(n,)`` at the scenes ``owner`` ``(n,)`` among the pending ones."""
         keys = attempt_keys(pending.key[owner], attempts)
         return self.batch(self._source(Lanes(pending.seed[owner], pending.k[owner], attempts, keys)))
 
@@ -561,7 +561,7 @@ class Engine:
         return Exhausted(seed, k, attempts, "attempts", self.report(SceneTask(seed, k), attempts))
 
     def batch(self, source: Source, *, grouped: bool = True, domain: Domain | None = None) -> Batch:
-        """A batch of lanes whose draws come from a source, in the plan's domain unless another one is given."""
+        """Return a batch of lanes whose draws come from a source, in the plan's domain unless another one is given."""
         return Batch(
             self._scheduler if grouped else self._single,
             source,
@@ -636,7 +636,7 @@ class Engine:
         return self._source(Lanes.of(task.seed, task.k, attempt))
 
     def _error(self, check: Check, task: SceneTask, attempt: int) -> CandidateError:
-        """The error of a lane, found by evaluating it alone."""
+        """Return the error of a lane, found by evaluating it alone."""
         batch = self._alone(task, attempt)
         check.test(batch)
         error = CandidateError(check, task.k, attempt)

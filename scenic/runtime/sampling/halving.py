@@ -144,7 +144,7 @@ class Divider:
         return batch
 
     def divide(self, plan: Plan, leaf: int) -> Tree | None:
-        """The division of a component, whose leaves are numbered from ``leaf``; ``None`` where that does not pay."""
+        """Return the division of a component, whose leaves are numbered from ``leaf``; ``None`` where that does not pay."""
         division = _divided(plan, self._reads, self._batch, leaf, self._always)
         if division is None:
             return None

@@ -60,7 +60,7 @@ def join(
     lanes: int | None = None,
     deadline: float | None = None,
 ) -> Joined:
-    """The first candidates for a component of some scenes that pass all of its checks.
+    """Return the first candidates for a component of some scenes that pass all of its checks.
 
     Args:
         engine: of the whole plan.
@@ -240,7 +240,7 @@ class _Search:
     def _next(
         self, queue: _Queue, scenes: NDArray[np.intp], counts: Numbers
     ) -> tuple[NDArray[np.intp], Numbers]:
-        """The next candidates for a part, at most so many for each of some scenes: whose they are, and attempts ``(m, leaves)``."""
+        """Return the next candidates for a part, at most so many for each of some scenes: whose they are, and attempts ``(m, leaves)``."""
         if queue.tree.halves is None:
             counts = np.minimum(counts, self._limit - queue.tried[scenes])
             self._is_over[scenes[counts == 0]] = True

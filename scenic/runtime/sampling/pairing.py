@@ -42,7 +42,7 @@ def pair(
     lanes: int | None = None,
     deadline: float | None = None,
 ) -> Joined:
-    """The first candidates for a component of some scenes that pass all of its checks; as `scenic.runtime.sampling.joining.join`."""
+    """Return the first candidates for a component of some scenes that pass all of its checks; as `scenic.runtime.sampling.joining.join`."""
     step = max(1, _SCENES // apart.leaves)
     most = engine.most_lanes if lanes is None else lanes
     parts = [

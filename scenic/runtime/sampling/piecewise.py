@@ -122,14 +122,14 @@ class PiecewiseEngine:
         return other
 
     def metered(self, meter: Meter) -> "PiecewiseEngine":
-        """The same with a meter of what it does (`Engine.metered`)."""
+        """Return the same with a meter of what it does (`Engine.metered`)."""
         other = copy(self)
         other._whole = self._whole.metered(meter)
         other._engines = [engine.metered(meter) for engine in self.engines]
         return other
 
     def profile(self, scenes: int) -> Profile:
-        """The measurements of the meter while a number of scenes were found; candidates of all components are counted together."""
+        """Return the measurements of the meter while a number of scenes were found; candidates of all components are counted together."""
         return self._whole.profile(scenes)
 
     def scenes(

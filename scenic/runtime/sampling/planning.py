@@ -346,7 +346,7 @@ def _collisions(program: Program) -> list[Check]:
 
 
 def _if_present(item: object, condition: Node) -> Node:
-    """A condition that applies to an object only if it is present."""
+    """Return a condition that applies to an object only if it is present."""
     return condition if is_always_present(item) else connect("or", [as_node(absent(item)), condition])
 
 
@@ -416,5 +416,5 @@ def _requirements(program: Program) -> list[Check]:
 
 
 def _subject(program: Program, item: object) -> str:
-    """An instance as the subject of a message at its own place."""
+    """Return an instance as the subject of a message at its own place."""
     return called(program, item, article="this ")

@@ -45,6 +45,6 @@ class _Driven:
 
 
 def driven(points: PointSet, graph: Graph) -> Callable[[Lanes], Source]:
-    """A function that makes the sources of lanes: axes are numbered in the order of the graph."""
+    """Return a function that makes the sources of lanes: axes are numbered in the order of the graph."""
     axes = {graph.address(node): place for place, node in enumerate(graph.axes)}
     return lambda lanes: _Driven(points, {**axes, BOX: -1}, graph.dimension, lanes)

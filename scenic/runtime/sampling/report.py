@@ -72,7 +72,7 @@ class RejectionReport:
     rows: tuple[RejectionRow, ...]
 
     def culprits(self) -> tuple[RejectionRow, ...]:
-        """The requirements that rejected every candidate."""
+        """Return the requirements that rejected every candidate."""
         return tuple(row for row in self.rows if row.rejected == 1)
 
     def __str__(self) -> str:

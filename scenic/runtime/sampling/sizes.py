@@ -51,5 +51,5 @@ def _side(low: float, high: float) -> str:
 
 
 def _metres(value: float) -> str:
-    """A length to the decimetre; one below a metre to two digits."""
+    """Return a length to the decimetre; one below a metre to two digits."""
     return f"{value:.1f}" if value >= 1 else f"{value:.2g}"

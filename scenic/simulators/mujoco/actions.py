@@ -41,7 +41,7 @@ class ApplyForce(Command):
         self.torque = to_vector(torque, "ApplyForce")
 
     def commands(self) -> Mapping[str, float]:
-        """The force and the torque."""
+        """Return the force and the torque."""
         return dict(zip(("fx", "fy", "fz", "tx", "ty", "tz"), (*self.force, *self.torque), strict=True))
 
     def __repr__(self) -> str:

@@ -63,7 +63,7 @@ _TURN: Final = Operation(
 
 
 def description_of(path: Any) -> Description:
-    """The description at a path, which starts from the folder of the program; raises `DescriptionError`."""
+    """Return the description at a path, which starts from the folder of the program; raises `DescriptionError`."""
     if not isinstance(path, str | os.PathLike):
         raise ScenicTypeError(
             f"`description` needs the path of an MJCF or URDF file, not {path!r}",
@@ -78,7 +78,7 @@ def description_of(path: Any) -> Description:
 
 
 def base_shape(path: Any) -> Shape:
-    """The shape of the part of a description that does not move; any for one that `assemble` refuses at its own place."""
+    """Return the shape of the part of a description that does not move; any for one that `assemble` refuses at its own place."""
     try:
         return _formed(description_of(path).links[0])[0]
     except (DescriptionError, ScenicTypeError):
@@ -86,18 +86,18 @@ def base_shape(path: Any) -> Shape:
 
 
 def origin_of(description: Description) -> Floats:
-    """The middle of the base in the description's frame ``(3,)``, metres: where the object is."""
+    """Return the middle of the base in the description's frame ``(3,)``, metres: where the object is."""
     return _formed(description.links[0])[1]
 
 
 def middle_of(description: Description, name: str) -> Floats:
-    """The middle of a link's box in the link's frame ``(3,)``, metres: where its object is."""
+    """Return the middle of a link's box in the link's frame ``(3,)``, metres: where its object is."""
     return _formed(next(link for link in description.links if link.name == name))[1]
 
 
 @lru_cache(maxsize=1024)
 def _formed(link: Link) -> tuple[Shape, Floats]:
-    """The shape of a link, and the middle of its box in its frame ``(3,)``, metres; of the base without geoms a small box."""
+    """Return the shape of a link, and the middle of its box in its frame ``(3,)``, metres; of the base without geoms a small box."""
     if link.mesh is None:
         return BoxShape((_MARK, _MARK, _MARK)), np.zeros(3)
     vertices = link.mesh.vertices
@@ -208,14 +208,14 @@ def _vector(point: Floats) -> Vector:
 
 
 def frame_of(thing: Any, name: str) -> Any:
-    """The frame of a body or a site of an object with joints, as an oriented point."""
+    """Return the frame of a body or a site of an object with joints, as an oriented point."""
     description = description_of(thing.description)
     position, orientation = _Frames(thing, origin_of(description)).at(description.frame(name))
     return new(OrientedPoint, [At(position), With("parentOrientation", orientation)])
 
 
 def link_of(thing: Any, name: str) -> Any:
-    """The object that is a link of an object with joints; raises `DescriptionError` if there is none of the name."""
+    """Return the object that is a link of an object with joints; raises `DescriptionError` if there is none of the name."""
     if name not in thing.links:
         from scenic.language.spelling import nearest
 

@@ -74,11 +74,11 @@ class Description:
     frames: Mapping[str, tuple[Segment, ...]]
 
     def joint(self, name: str) -> Joint:
-        """A joint; raises `DescriptionError` if there is none of the name."""
+        """Return a joint; raises `DescriptionError` if there is none of the name."""
         return self._known(self.joints, name, "joint")  # type: ignore[no-any-return] # the mapping is of joints
 
     def frame(self, name: str) -> tuple[Segment, ...]:
-        """The chain to a frame; raises `DescriptionError` if there is none of the name."""
+        """Return the chain to a frame; raises `DescriptionError` if there is none of the name."""
         return self._known(self.frames, name, "frame")  # type: ignore[no-any-return] # the mapping is of chains
 
     def _known(self, table: Mapping[str, object], name: str, kind: str) -> Any:
@@ -162,7 +162,7 @@ class _Reader:
         return Description(self._path, joints, tuple(links), frames)
 
     def _joint(self, number: int) -> Joint | None:
-        """A hinge or slide; ball joints stay as they are."""
+        """Return a hinge or slide; ball joints stay as they are."""
         model, kinds = self._model, library().mjtJoint
         kind = model.jnt_type[number]
         if kind not in (int(kinds.mjJNT_HINGE), int(kinds.mjJNT_SLIDE)):
@@ -179,7 +179,7 @@ class _Reader:
         )
 
     def _chain(self, body: int) -> tuple[Segment, ...]:
-        """The segments from the world to a body."""
+        """Return the segments from the world to a body."""
         model, segments = self._model, []
         while body:
             first, count = model.body_jntadr[body], model.body_jntnum[body]
@@ -195,7 +195,7 @@ class _Reader:
         return x, y, z, w
 
     def _geoms(self, root: int) -> list[int]:
-        """The geoms of a link with which it touches others, planes left out."""
+        """Return the geoms of a link with which it touches others, planes left out."""
         model, kinds = self._model, library().mjtGeom
         return [
             geom
@@ -210,7 +210,7 @@ class _Reader:
         return tuple(self._model.geom_rgba[geoms[0]].tolist()) if geoms else (0.5, 0.5, 0.5, 1.0)
 
     def _mesh(self, root: int) -> Mesh | None:
-        """The union of a link's geoms, in the frame of its outermost body; meshes as their convex hulls, as MuJoCo has them."""
+        """Return the union of a link's geoms, in the frame of its outermost body; meshes as their convex hulls, as MuJoCo has them."""
         import trimesh  # slow to import
 
         model = self._model

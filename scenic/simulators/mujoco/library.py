@@ -19,7 +19,7 @@ def draw_without_window() -> None:
 
 
 def library() -> Any:
-    """The module ``mujoco``; raises `UnsupportedError` without it. It has no types, hence `Any`."""
+    """Return the module ``mujoco``; raises `UnsupportedError` without it. It has no types, hence `Any`."""
     draw_without_window()
     try:
         import mujoco  # optional, and slow to import

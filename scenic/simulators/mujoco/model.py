@@ -89,12 +89,12 @@ class ModelPart:
 
 
 def wheelbase(thing: Any) -> float:
-    """The distance between the axles of a car, metres."""
+    """Return the distance between the axles of a car, metres."""
     return _BASE * float(thing.length)
 
 
 def wheels(thing: Any, track: float) -> Iterator[tuple[str, float, float]]:
-    """The wheels of a car: their names, and where they are in its frame, metres to the right and forward."""
+    """Yield the wheels of a car: their names, and where they are in its frame, metres to the right and forward."""
     for side, x in (("left", -0.5 * track), ("right", 0.5 * track)):
         for end, y in (("front", 0.5 * wheelbase(thing)), ("rear", -0.5 * wheelbase(thing))):
             yield f"{end} {side}", x, y
@@ -144,7 +144,7 @@ class Builder:
         )
 
     def add(self, thing: Any) -> ModelPart:
-        """An object; raises `SimulationCreationError` for one that cannot be made."""
+        """Return an object; raises `SimulationCreationError` for one that cannot be made."""
         model = model_of(thing)
         if model not in MODELS:
             raise SimulationCreationError(
@@ -206,7 +206,7 @@ class Builder:
         *,
         bottom: float = 0.0,
     ) -> Any:
-        """The object's shape as a geom of a body; ``bottom`` metres are taken off below."""
+        """Return the object's shape as a geom of a body; ``bottom`` metres are taken off below."""
         thing, kinds = part.thing, self._mj.mjtGeom
         size = (float(thing.width), float(thing.length), float(thing.height) - bottom)
         half = [0.5 * extent for extent in size]
@@ -235,7 +235,7 @@ class Builder:
         )
 
     def _whole(self, body: Any, part: ModelPart, whole: dict[str, Any], pieces: list[dict[str, Any]]) -> Any:
-        """A geom that is seen and has the inertia; its pieces touch others in its place, if there are any."""
+        """Return a geom that is seen and has the inertia; its pieces touch others in its place, if there are any."""
         if not pieces or not getattr(part.thing, "collides", True):
             return body.add_geom(name=part.name, **whole)
         weightless = {key: value for key, value in whole.items() if key not in ("mass", "density")}
@@ -397,7 +397,7 @@ class Builder:
                 self._wheel(body, part, name, place, thickness, mass, drive=drive)
 
     def _steering(self, body: Any, part: ModelPart, name: str, place: tuple[float, float, float]) -> Any:
-        """The body that holds a steered wheel, with the drive that turns it."""
+        """Return the body that holds a steered wheel, with the drive that turns it."""
         kinds, full = self._mj, f"{part.name} {name} steering"
         holder = body.add_body(name=full, pos=list(place))
         holder.add_geom(

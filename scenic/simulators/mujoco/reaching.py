@@ -68,7 +68,7 @@ def reaches(
 
 
 def _values(obstacles: Iterable[object]) -> Iterator[Any]:
-    """The values that describe obstacles, one after the other."""
+    """Yield the values that describe obstacles, one after the other."""
     for item in obstacles:
         if not is_body(item):
             raise wrong_type(OBJECT, item, "`avoiding`")

@@ -96,7 +96,7 @@ class Settling:
         return self._compared(before, world.poses())
 
     def settled(self, things: Sequence[object]) -> tuple[Any, ...]:
-        """The poses in which objects come to rest, and whether they do.
+        """Return the poses in which objects come to rest, and whether they do.
 
         Returns:
             Whether all objects are at rest in the end, then for each object its place and its yaw, pitch and roll.
@@ -211,7 +211,7 @@ class _World:
             library().mj_kinematics(model, data)
 
     def poses(self) -> list[_Pose]:
-        """The present poses of the parts that move."""
+        """Return the present poses of the parts that move."""
         bodies = [self._state.data.body(part.name) for part in self.parts]
         return [(body.xpos.copy(), body.xquat.copy()) for body in bodies]
 
@@ -224,7 +224,7 @@ def _change(first: _Pose, last: _Pose) -> tuple[float, float, float]:
 
 
 def _placed(thing: Any, pose: _Pose | None) -> tuple[Any, float, float, float]:
-    """The position, yaw, pitch and roll of an object in a pose; its own if there is none."""
+    """Return the position, yaw, pitch and roll of an object in a pose; its own if there is none."""
     if pose is None:
         return thing.position, thing.yaw, thing.pitch, thing.roll
     w, x, y, z = pose[1].tolist()

@@ -428,7 +428,7 @@ class MujocoSimulation(Simulation):
         return {name: values[name] if name in values else attributes[name] for name in properties}
 
     def _held(self, jointed: Jointed) -> tuple[Any, ...]:
-        """The objects that the links of a gripper touch."""
+        """Return the objects that the links of a gripper touch."""
         fingers = jointed.gripper_bodies()
         contacts = self.data.contact
         if not fingers or not len(contacts.geom):
@@ -448,12 +448,12 @@ class MujocoSimulation(Simulation):
         return {int(self.model.body(part.name).id)}
 
     def jointed(self, agent: object) -> Jointed:
-        """The joints of an agent."""
+        """Return the joints of an agent."""
         return self._jointed[id(agent)]
 
 
 def _matrix(turn: Any) -> Floats:
-    """The rotation matrix ``(3, 3)`` of a unit quaternion."""
+    """Return the rotation matrix ``(3, 3)`` of a unit quaternion."""
     x, y, z, w = turn.x, turn.y, turn.z, turn.w
     return np.array(
         [

@@ -61,7 +61,7 @@ class MujocoSimulator(Simulator):
         self.sleep = sleep
 
     def createSimulation(self, scene: Scene, **options: Any) -> MujocoSimulation:
-        """A simulation that has run."""
+        """Return a simulation that has run."""
         if options.get("timestep") is None:
             options["timestep"] = self.timestep
         return MujocoSimulation(

@@ -201,7 +201,7 @@ def _swept_pairs(lower: Cells, upper: Cells, moving: int) -> Iterator[tuple[Indi
 
 
 def _sweep_axes(lower: Cells, upper: Cells) -> tuple[int, int]:
-    """The horizontal axis on which bodies are smaller compared with their spread, and the other one."""
+    """Return the horizontal axis on which bodies are smaller compared with their spread, and the other one."""
     crowding = [
         float(np.mean(upper[axis] - lower[axis])) / (float(np.std(lower[axis])) + 1e-300) for axis in (0, 1)
     ]

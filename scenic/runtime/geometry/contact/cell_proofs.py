@@ -91,7 +91,7 @@ class ProofTable:
 
 
 def _in_line(tables: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
-    """The elements of tables, one table after the other. One alone is not copied: it is large."""
+    """Return the elements of tables, one table after the other. One alone is not copied: it is large."""
     flat = [table.ravel() for table in tables]
     return flat[0] if len(flat) == 1 else np.concatenate(flat)
 
@@ -110,10 +110,10 @@ def _scattered(values: Booleans, where: Indices, shape: tuple[int, ...]) -> Bool
 
 
 def _padded(items: Floats, length: int) -> Floats:
-    """The first ``length`` items; repeats the first one if there are fewer."""
+    """Return the first ``length`` items; repeats the first one if there are fewer."""
     return np.concatenate([items, np.repeat(items[:1], max(length - len(items), 0), axis=0)])[:length]
 
 
 def _gathered(table: Floats, numbers: Indices) -> Floats:
-    """The coordinates ``(3, k, n)`` of the members of each entry's mesh."""
+    """Return the coordinates ``(3, k, n)`` of the members of each entry's mesh."""
     return table.take(numbers, axis=2)

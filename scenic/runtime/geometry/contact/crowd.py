@@ -33,7 +33,7 @@ class Rows:
 
     @classmethod
     def of(cls, parts: Sequence[npt.NDArray[Any]]) -> "Rows":
-        """The rows ``(n | 1, ...)`` of some bodies."""
+        """Return the rows ``(n | 1, ...)`` of some bodies."""
         lengths = np.array([len(part) for part in parts], dtype=np.intp)
         return cls(
             np.concatenate(parts) if len(parts) else np.empty((0, 3)),
@@ -43,18 +43,18 @@ class Rows:
 
     @classmethod
     def stacked(cls, values: npt.NDArray[Any], bodies: int) -> "Rows":
-        """The rows of several bodies that come one body after the other already: ``(bodies * lanes, ...)``, or
+        """Return the rows of several bodies that come one body after the other already: ``(bodies * lanes, ...)``, or
         ``(bodies, ...)`` where they are the same in all lanes, or ``(1, ...)`` where also in all bodies.
         """
         each = len(values) // bodies
         return cls(values, np.arange(bodies) * each, np.full(bodies, each > 1, dtype=np.intp))
 
     def at(self, body: Indices, lane: Indices) -> npt.NDArray[Any]:
-        """The rows of these bodies in these lanes, which broadcast."""
+        """Return the rows of these bodies in these lanes, which broadcast."""
         return self.values[self.base[body] + self.stride[body] * lane]
 
     def over(self, bodies: Indices, lanes: slice) -> npt.NDArray[Any]:
-        """The rows of these bodies in consecutive lanes, ``(bodies, lanes, ...)`` or, if all are single, ``(bodies, 1, ...)``."""
+        """Return the rows of these bodies in consecutive lanes, ``(bodies, lanes, ...)`` or, if all are single, ``(bodies, 1, ...)``."""
         base = self.base[bodies]
         if not self.stride[bodies].any():
             return self.values[base[:, None]]
@@ -187,11 +187,11 @@ class Crowd:
         )
 
     def poses(self, body: Indices, lane: Indices) -> Poses:
-        """The poses of ``(e,)`` combinations of body and lane."""
+        """Return the poses of ``(e,)`` combinations of body and lane."""
         return Poses(self.position.at(body, lane), self.orientation.at(body, lane), self.size.at(body, lane))
 
     def radius(self) -> Rows:
-        """The radii of spheres around the bodies."""
+        """Return the radii of spheres around the bodies."""
         return self.size.mapped(_half_diagonal)
 
     def boxes(self, lanes: slice) -> tuple[Floats, Floats]:

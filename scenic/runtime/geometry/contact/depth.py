@@ -16,7 +16,7 @@ _ROUNDS: Final = 500
 
 
 def convex_depth(first: Floats, second: Floats) -> float:
-    """The length of the shortest way by which one of two convex solids that meet leaves the other, metres.
+    """Return the length of the shortest way by which one of two convex solids that meet leaves the other, metres.
 
     It is the distance from the origin to the surface of the differences of their points. An inner polytope of that solid grows
     where it comes nearest to the origin until it has the true face there (van den Bergen, "Proximity queries and penetration depth
@@ -84,7 +84,7 @@ def convex_gap(first: Floats, second: Floats) -> float:
 
 
 def _nearest_in(simplex: Floats, weights: Floats) -> tuple[Floats, Floats]:
-    """The corners that hold a simplex's point nearest to the origin, and its weights, from those of another point."""
+    """Return the corners that hold a simplex's point nearest to the origin, and its weights, from those of another point."""
     while True:
         new_weights = _nearest_in_plane(simplex)
         if (new_weights > 0).all():

@@ -185,7 +185,7 @@ class Solids:
         return _either(result)
 
     def touch(self, first: Indices, first_poses: Poses, second: Indices, second_poses: Poses) -> Booleans:
-        """The same as `intersect`, by the exact test, for entries (at least one) that `prove` leaves open.
+        """Return the same as `intersect`, by the exact test, for entries (at least one) that `prove` leaves open.
 
         Should proofs come to pay on the way, they are tried on what is left.
         """

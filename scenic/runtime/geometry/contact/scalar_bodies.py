@@ -40,7 +40,7 @@ class Placed(NamedTuple):
         return math.sqrt(a * a + b * b + c * c) + self.slack
 
     def reach(self, x: float, y: float, z: float) -> float:
-        """The distance to which its box extends from the centre along a direction of length 1."""
+        """Return the distance to which its box extends from the centre along a direction of length 1."""
         (ax, ay, az), (bx, by, bz), (cx, cy, cz) = self.axes
         a, b, c = self.half
         return (
@@ -60,7 +60,7 @@ class Placed(NamedTuple):
         )
 
     def corners(self) -> list[Triple]:
-        """The eight corners of its box."""
+        """Return the eight corners of its box."""
         x, y, z = self.position
         u, v, w = (
             (half * axis[0], half * axis[1], half * axis[2])
@@ -78,7 +78,7 @@ class Placed(NamedTuple):
         ]
 
     def hull(self) -> Floats:
-        """The corners of its convex hull, ``(n, 3)``."""
+        """Return the corners of its convex hull, ``(n, 3)``."""
         frame = np.array(self.axes) * (2 * np.array(self.half)[:, np.newaxis])
         corners: Floats = self.mesh.hull.vertices @ frame + np.array(self.position)
         return corners
@@ -87,7 +87,7 @@ class Placed(NamedTuple):
 def placed(
     position: Triple, orientation: tuple[float, float, float, float], size: Triple, mesh: Mesh
 ) -> Placed:
-    """A body of a unit mesh, from its position, unit quaternion and size."""
+    """Return a body of a unit mesh, from its position, unit quaternion and size."""
     width, length, height = size
     scale = max(map(abs, position)) + max(size)
     half = (width / 2, length / 2, height / 2)
@@ -95,7 +95,7 @@ def placed(
 
 
 def axes_of(orientation: tuple[float, float, float, float]) -> Rows:
-    """The unit vectors of a frame in the world, from its unit quaternion."""
+    """Return the unit vectors of a frame in the world, from its unit quaternion."""
     x, y, z, w = orientation
     xx, yy, zz = 2 * x * x, 2 * y * y, 2 * z * z
     xy, xz, yz = 2 * x * y, 2 * x * z, 2 * y * z
@@ -142,7 +142,7 @@ def gap(one: Placed, other: Placed) -> float | None:
 
 
 def overlap(one: Placed, other: Placed) -> float:
-    """The distance, in metres, by which one of two boxes that meet has to be moved until they only touch; 0 if they are apart.
+    """Return the distance, in metres, by which one of two boxes that meet has to be moved until they only touch; 0 if they are apart.
 
     Exact for boxes: the least way out of a body that is the sum of two boxes is across one of its faces, whose normals are the
     axes of the separation.
@@ -151,7 +151,7 @@ def overlap(one: Placed, other: Placed) -> float:
 
 
 def _separation(one: Placed, other: Placed) -> float:
-    """The largest gap between the boxes' projections on an axis that may separate them; negative if they overlap on all.
+    """Return the largest gap between the boxes' projections on an axis that may separate them; negative if they overlap on all.
 
     Axes: those of both boxes, and the products of two (Gottschalk, Lin and Manocha, "OBBTree", SIGGRAPH 1996).
     """

@@ -171,7 +171,7 @@ def _near(moving: tuple[Floats, Floats], one: Indices, still: tuple[Floats, Floa
 def _grid_near(
     moving: tuple[Floats, Floats], one: slice, still: tuple[Floats, Floats], two: slice
 ) -> Booleans:
-    """The same for each of ``one`` and each of ``two``, ``(len(one), len(two))``."""
+    """Return the same for each of ``one`` and each of ``two``, ``(len(one), len(two))``."""
     (centre, reach), (middle, half) = moving, still
     x, y, z = (
         np.abs(centre[axis, one, np.newaxis] - middle[axis, two])

@@ -23,7 +23,7 @@ _PARALLEL: Final = 1e-9
 
 
 def separated_by_edges(first: Corners, second: Corners) -> Booleans:
-    """The mask of triangles ``(m,)`` that are apart, given that each meets the plane of the other."""
+    """Return the mask of triangles ``(m,)`` that are apart, given that each meets the plane of the other."""
     # Near the origin, so that rounding is relative to the triangles' extent. From here on coordinates come first.
     a, b = ((corners - first[0]).swapaxes(0, 1) for corners in (first, second))
     edges_a, edges_b = _edges(a), _edges(b)
@@ -61,7 +61,7 @@ def _separated(axes: Columns, a: Floats, b: Floats, scale: Floats) -> Booleans:
 
 
 def _span(axes: Columns, corners: Floats) -> tuple[Floats, Floats]:
-    """The least and the greatest projections of the corners ``(3, 3, m)``, ``(k, m)`` each."""
+    """Return the least and the greatest projections of the corners ``(3, 3, m)``, ``(k, m)`` each."""
     first, second, third = (_dot(axes, corners[:, number]) for number in range(3))
     return np.minimum(np.minimum(first, second), third), np.maximum(np.maximum(first, second), third)
 

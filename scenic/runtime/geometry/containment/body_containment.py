@@ -267,7 +267,7 @@ def mesh_in_mesh(inner: Mesh, inner_poses: Poses, outer: Mesh, outer_poses: Pose
 
 
 def _container(dimensions: Floats, position: Floats, rotation: Floats) -> tuple[Poses, Booleans]:
-    """The poses of a container, and where it has a volume."""
+    """Return the poses of a container, and where it has a volume."""
     proper: Booleans = np.logical_and.reduce(dimensions > 0, axis=1)
     return Poses(position, rotation, np.where(dimensions > 0, dimensions, 1.0)), proper
 
@@ -290,12 +290,12 @@ _BOX_CORNERS: Final = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0
 
 
 def extreme_corners(mesh: Mesh) -> Floats:
-    """The hull's corners farthest along the axes and the diagonals, ``(k, 3)`` with k up to 26."""
+    """Return the hull's corners farthest along the axes and the diagonals, ``(k, 3)`` with k up to 26."""
     return mesh.derived(_find_extreme_corners)
 
 
 def _find_extreme_corners(mesh: Mesh) -> Floats:
-    """The hull's corners farthest along the axes and the diagonals, ``(k, 3)`` with k up to 26."""
+    """Return the hull's corners farthest along the axes and the diagonals, ``(k, 3)`` with k up to 26."""
     steps = (-1, 0, 1)
     directions = np.array([(x, y, z) for x in steps for y in steps for z in steps if (x, y, z) != (0, 0, 0)])
     highest = [int(np.argmax((mesh.vertices * direction).sum(axis=1))) for direction in directions]
@@ -321,7 +321,7 @@ def _world(poses: Poses, chosen: Indices, points: Floats) -> Columns:
 
 
 def _local(poses: Poses, container: Poses, chosen: Indices, points: Floats) -> tuple[Columns, Columns]:
-    """The coordinates in the container's unit frame, and the container's sizes, each ``(m | 1,)``."""
+    """Return the coordinates in the container's unit frame, and the container's sizes, each ``(m | 1,)``."""
     outer = container.take(chosen)
     images = _spread(relative_map(poses.take(chosen), outer), points, len(chosen))
     return images, (outer.size[:, 0], outer.size[:, 1], outer.size[:, 2])

@@ -90,7 +90,7 @@ class _Gaps:
         self._squared = np.full(count, np.inf)
 
     def least(self) -> Floats:
-        """The distances."""
+        """Return the distances."""
         count = len(self._squared)
         one, two = (np.full(count, root) for root in self._forest.roots.tolist())
         self._dive(np.arange(count), one, two)
@@ -188,7 +188,7 @@ def _least_of_each(entry: Indices, gap: Floats) -> Indices:
 
 
 def squared_distances(a: list[Floats], b: list[Floats]) -> Floats:
-    """The squared distances ``(m,)`` of triangles that share no point, given three corners ``(m, 3)`` each.
+    """Return the squared distances ``(m,)`` of triangles that share no point, given three corners ``(m, 3)`` each.
 
     The nearest points are a corner and a point of the other triangle, or points of two edges.
     """
@@ -205,7 +205,7 @@ def squared_distances(a: list[Floats], b: list[Floats]) -> Floats:
 
 
 def _squared_between_lines(a: Floats, a_end: Floats, b: Floats, b_end: Floats) -> Floats:
-    """The squared distances of segments whose nearest points lie within both; infinite for others.
+    """Return the squared distances of segments whose nearest points lie within both; infinite for others.
 
     Where one of the nearest points is an end, the end's distance from the other triangle is as small.
     """

@@ -60,7 +60,7 @@ class CellIndex:
         return clipped
 
     def first_at(self, x: Floats, y: Floats) -> Indices:
-        """The first polygon that holds each point ``(n,)``, edge included; the number of polygons where none does."""
+        """Return the first polygon that holds each point ``(n,)``, edge included; the number of polygons where none does."""
         import shapely
 
         result = np.full(len(x), len(self._polygons), dtype=np.intp)

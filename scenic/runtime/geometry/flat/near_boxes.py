@@ -11,7 +11,7 @@ __all__ = ["near_boxes", "tree_of_boxes"]
 
 
 def tree_of_boxes(lower: Floats, upper: Floats) -> Any:
-    """An index of boxes by their corners ``(k, 2 or more)``; heights do not count."""
+    """Return an index of boxes by their corners ``(k, 2 or more)``; heights do not count."""
     import shapely
 
     return shapely.STRtree(shapely.box(lower[:, 0], lower[:, 1], upper[:, 0], upper[:, 1]))

@@ -25,7 +25,7 @@ _INSET: Final = 1e-9
 
 
 def shadows(body: Body, lanes: Indices) -> Geometries:
-    """The outlines ``(n,)`` of the body seen from above, in some lanes."""
+    """Return the outlines ``(n,)`` of the body seen from above, in some lanes."""
     import shapely
 
     result: Geometries = np.empty(len(lanes), dtype=np.object_)
@@ -87,7 +87,7 @@ def shadows_meet(body: Body, lanes: Indices, area: Area) -> Booleans:
 
 
 def _hulls_of(mesh: Mesh, poses: Poses, lanes: Indices) -> Geometries:
-    """The convex hulls ``(n,)`` of a mesh seen from above."""
+    """Return the convex hulls ``(n,)`` of a mesh seen from above."""
     corners = mesh.hull.vertices
     result: Geometries = np.empty(len(lanes), dtype=np.object_)
     for some in rows(len(lanes), len(corners), _CHUNK):
@@ -96,7 +96,7 @@ def _hulls_of(mesh: Mesh, poses: Poses, lanes: Indices) -> Geometries:
 
 
 def _triangles(mesh: Mesh, poses: Poses, lanes: Indices) -> Geometries:
-    """The faces of a mesh seen from above, ``(n, faces)``; ``None`` for those that stand upright."""
+    """Return the faces of a mesh seen from above, ``(n, faces)``; ``None`` for those that stand upright."""
     import shapely
 
     flat = _placed(poses, lanes, mesh.vertices)[..., :2][:, mesh.faces]
@@ -108,7 +108,7 @@ def _triangles(mesh: Mesh, poses: Poses, lanes: Indices) -> Geometries:
 
 
 def _standing(mesh: Mesh, poses: Poses, lanes: Indices) -> Geometries:
-    """The outlines from above of a mesh that stands upright: all are images of one."""
+    """Return the outlines from above of a mesh that stands upright: all are images of one."""
     import shapely
 
     outline = mesh.derived(shadow)
@@ -122,7 +122,7 @@ def _standing(mesh: Mesh, poses: Poses, lanes: Indices) -> Geometries:
 
 
 def cuts(body: Body, lanes: Indices, heights: Floats) -> Geometries:
-    """The areas ``(n,)`` where the body meets level planes at ``heights``, ``(n | 1,)``, in some lanes."""
+    """Return the areas ``(n,)`` where the body meets level planes at ``heights``, ``(n | 1,)``, in some lanes."""
     import shapely
 
     result: Geometries = np.full(len(lanes), shapely.Polygon(), dtype=np.object_)
@@ -143,7 +143,7 @@ def cuts(body: Body, lanes: Indices, heights: Floats) -> Geometries:
 
 
 def _cut(mesh: Mesh, world: Floats, level: Floats) -> Geometries:
-    """The areas where planes meet a mesh with vertices ``(n, v, 3)``."""
+    """Return the areas where planes meet a mesh with vertices ``(n, v, 3)``."""
     import shapely
 
     edges, sides = mesh.derived(_edges)
@@ -167,7 +167,7 @@ def _cut(mesh: Mesh, world: Floats, level: Floats) -> Geometries:
 
 
 def _edges(mesh: Mesh) -> tuple[Indices, Indices]:
-    """The edges ``(e, 2)`` of a mesh, and those of each face ``(f, 3)``."""
+    """Return the edges ``(e, 2)`` of a mesh, and those of each face ``(f, 3)``."""
     pairs = np.sort(mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     edges, numbers = np.unique(pairs, axis=0, return_inverse=True)
     return edges, numbers.reshape(-1, 3)

@@ -56,7 +56,7 @@ class Polygons:
 
     @staticmethod
     def union(members: Sequence["Polygons"], buffer: float = 0.0) -> "Polygons":
-        """The union of polygons; gaps between and in them that are narrower than twice ``buffer`` metres are closed."""
+        """Return the union of polygons; gaps between and in them that are narrower than twice ``buffer`` metres are closed."""
         import shapely
 
         if not buffer:
@@ -248,7 +248,7 @@ class Polygons:
         return grown
 
     def holds_discs(self, x: Floats, y: Floats, radius: Floats) -> Booleans:
-        """The mask of discs that are quickly seen to lie inside, ``(n,)``; not all that do."""
+        """Return the mask of discs that are quickly seen to lie inside, ``(n,)``; not all that do."""
         import shapely
 
         near = shapely.dwithin(self._boundary, shapely.points(x, y), radius)

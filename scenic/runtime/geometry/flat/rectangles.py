@@ -23,7 +23,7 @@ class Rectangles:
 
     @classmethod
     def under(cls, poses: Poses) -> "Rectangles":
-        """The outlines from above of boxes that stand upright."""
+        """Return the outlines from above of boxes that stand upright."""
         return cls(poses.position[:, :2], poses.matrix[:, :2, 0], poses.size[:, :2] / 2)
 
     def local(self, points: Floats) -> tuple[Floats, Floats]:
@@ -66,7 +66,7 @@ class Rectangles:
         return overlap
 
     def corners(self) -> Floats:
-        """The corners ``(n, 4, 2)``, anticlockwise."""
+        """Return the corners ``(n, 4, 2)``, anticlockwise."""
         signs = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
         x, y = (signs[:, part] * self.half[:, part, np.newaxis] for part in (0, 1))
         cos, sin = self.axis[:, 0, np.newaxis], self.axis[:, 1, np.newaxis]
@@ -75,7 +75,7 @@ class Rectangles:
         return corners
 
     def take(self, lanes: Booleans | Indices) -> "Rectangles":
-        """The rectangles of some lanes."""
+        """Return the rectangles of some lanes."""
         return Rectangles(
             *(part if len(part) == 1 else part[lanes] for part in (self.centre, self.axis, self.half))
         )

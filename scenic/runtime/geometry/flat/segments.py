@@ -33,7 +33,7 @@ class Segments:
 
     @classmethod
     def of_chains(cls, chains: Sequence[Sequence[Sequence[float]]]) -> Self:
-        """The segments between the vertices of chains; raises ``ValueError`` if there is none."""
+        """Return the segments between the vertices of chains; raises ``ValueError`` if there is none."""
         pairs = [(a, b) for chain in chains for a, b in itertools.pairwise(chain) if tuple(a) != tuple(b)]
         if not pairs:
             raise ValueError("a line needs at least two different points")
@@ -76,7 +76,7 @@ class Segments:
         return np.concatenate([[0.0], self.sums[:-1]])
 
     def number_at(self, ways: Floats) -> Indices:
-        """The segments ``(n,)`` at lengths ``(n,)`` along the line."""
+        """Return the segments ``(n,)`` at lengths ``(n,)`` along the line."""
         return np.minimum(np.searchsorted(self.sums, ways, side="left"), len(self.sums) - 1)
 
     def at(self, ways: Floats) -> Floats:
@@ -125,7 +125,7 @@ class Segments:
         return distance, self._first_there(points, number), place
 
     def _first_there(self, points: Floats, number: Indices) -> Indices:
-        """The first segments that end where these nearest ones ``(n,)`` are nearest to points, if that is at an end.
+        """Return the first segments that end where these nearest ones ``(n,)`` are nearest to points, if that is at an end.
 
         Others may be as near only up to rounding, and a tree finds any of them.
         """
@@ -150,7 +150,7 @@ class Segments:
         return Nearest(np.stack([self.starts, self.ends, self.ends], axis=1))
 
     def _nearest_of_all(self, points: Floats) -> tuple[Floats, Indices, Floats]:
-        """The same by looking at all segments."""
+        """Return the same by looking at all segments."""
         distance = np.empty(len(points))
         segment = np.empty(len(points), dtype=np.intp)
         place = np.empty((len(points), 3))
@@ -206,7 +206,7 @@ class Lines:
         return np.clip(number, self._first[line], self._first[line + 1] - 1)
 
     def boxes_between(self, line: Indices, first: Floats, last: Floats) -> tuple[Floats, Floats]:
-        """The corners ``(m, 3)`` of boxes around the parts of lines ``(m,)`` between lengths ``(m,)`` along them."""
+        """Return the corners ``(m, 3)`` of boxes around the parts of lines ``(m,)`` between lengths ``(m,)`` along them."""
         starts, ends, before, sums = self._arrays
         runs = np.stack([self._segments_at(line, first), self._segments_at(line, last)], axis=1)
         part = np.clip((np.stack([first, last], axis=1) - before[runs]) / (sums[runs] - before[runs]), 0, 1)[

@@ -46,7 +46,7 @@ class Body:
         return lengths.pop() if lengths else 1
 
     def take(self, lanes: Indices) -> "Body":
-        """The body in these lanes; parts that are the same everywhere stay so."""
+        """Return the body in these lanes; parts that are the same everywhere stay so."""
         choice = self.choice
         return replace(
             self,
@@ -56,7 +56,7 @@ class Body:
         )
 
     def by_mesh(self, lanes: int) -> Iterator[tuple[Mesh, Indices]]:
-        """The meshes with the lanes ``(m,)`` in which the body has them, out of ``lanes``."""
+        """Yield the meshes with the lanes ``(m,)`` in which the body has them, out of ``lanes``."""
         if self.choice is None or len(self.choice) == 1:
             number = 0 if self.choice is None else int(self.choice[0])
             yield self.meshes[number], np.arange(lanes)

@@ -9,17 +9,17 @@ from scenic.runtime.geometry.meshes.mesh import Mesh
 
 
 def union(solids: Sequence[Mesh]) -> Mesh | None:
-    """The union of proper volumes; ``None`` if one of them is not a manifold or the result is empty."""
+    """Return the union of proper volumes; ``None`` if one of them is not a manifold or the result is empty."""
     return _combined(solids, "Add")
 
 
 def intersection(solids: Sequence[Mesh]) -> Mesh | None:
-    """The intersection of proper volumes; ``None`` if one of them is not a manifold or the result is empty."""
+    """Return the intersection of proper volumes; ``None`` if one of them is not a manifold or the result is empty."""
     return _combined(solids, "Intersect")
 
 
 def difference(first: Mesh, others: Sequence[Mesh]) -> Mesh | None:
-    """The rest of ``first``; ``None`` if one operand is not a manifold or the result is empty."""
+    """Return the rest of ``first``; ``None`` if one operand is not a manifold or the result is empty."""
     return _combined([first, *others], "Subtract")
 
 

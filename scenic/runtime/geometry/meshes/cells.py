@@ -65,7 +65,7 @@ def touched_cells(triangles: Floats, resolution: int) -> Iterator[tuple[Indices,
 
 
 def _cells_within(coarse: Indices, resolution: int) -> tuple[Indices, Indices]:
-    """The cells in each of some coarse ones: which coarse one, and the index ``(k, 3)`` of the cell."""
+    """Return the cells in each of some coarse ones: which coarse one, and the index ``(k, 3)`` of the cell."""
     size = resolution // _FINER
     corner = np.stack([coarse // (size * size), coarse // size % size, coarse % size], axis=1) * _FINER
     steps = np.stack(np.unravel_index(np.arange(_FINER**3), (_FINER,) * 3), axis=1)

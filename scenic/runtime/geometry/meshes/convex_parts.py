@@ -68,7 +68,7 @@ def _exact(mesh: Any) -> Arrays:
 
 
 def _approximate(mesh: Any, library: Any) -> Arrays:
-    """The parts of a solid as CoACD finds them."""
+    """Return the parts of a solid as CoACD finds them."""
     detail = {"preprocess_mode": "on" if len(mesh.faces) > _MANY_FACES else "off"}
     library.set_log_level("error")
     solid = library.Mesh(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int32))
@@ -83,7 +83,7 @@ def _stored(parts: Sequence[npt.NDArray[np.float64]] | None) -> Arrays:
 
 
 def _library() -> Any:
-    """The package ``coacd``, if it is there. It has no types, hence ``Any``."""
+    """Return the package ``coacd``, if it is there. It has no types, hence ``Any``."""
     try:
         import coacd  # optional, and slow to import
     except ImportError:

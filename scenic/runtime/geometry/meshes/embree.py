@@ -35,7 +35,7 @@ class RayScene:
             self._mesh: Any = TriangleMesh(self._scene, np.ascontiguousarray(triangles, dtype=np.float32))
 
     def first_hits(self, origins: Singles, directions: Singles) -> Hits:
-        """The first hit of each ray."""
+        """Return the first hit of each ray."""
         count = len(origins)
         if self._empty or not count:
             return Hits(
@@ -51,7 +51,7 @@ class RayScene:
         return Hits(triangle, distance, hits["u"], hits["v"])
 
     def first_triangles(self, origin: Singles, directions: Singles) -> npt.NDArray[np.int32]:
-        """The triangle that each ray from one place meets first, -1 for none."""
+        """Return the triangle that each ray from one place meets first, -1 for none."""
         count = len(directions)
         if self._empty or not count:
             return np.full(count, -1, np.int32)

@@ -71,7 +71,7 @@ def exact_parts(vertices: Floats, faces: npt.NDArray[Any], most: int) -> list[Fl
 
 
 def _cut(solid: Any, planes: Sequence[Plane]) -> list[Any]:
-    """The pieces of a solid on both sides of the first plane that really divides it; none if no plane does."""
+    """Return the pieces of a solid on both sides of the first plane that really divides it; none if no plane does."""
     hull = solid.hull().volume() if planes else 0.0
     for plane in planes[:_CHOICE]:
         sides = [side for side in solid.split_by_plane(*plane) if side.volume() > _DUST]
@@ -82,7 +82,7 @@ def _cut(solid: Any, planes: Sequence[Plane]) -> list[Any]:
 
 
 def _examined(solid: Any) -> tuple[Floats, list[Plane]]:
-    """The corners of a solid, and planes along which to cut it, the best first; none if it is convex."""
+    """Return the corners of a solid, and planes along which to cut it, the best first; none if it is convex."""
     mesh = solid.to_mesh64()
     corners = np.asarray(mesh.vert_properties, np.float64)[:, :3]
     triangles = corners[np.asarray(mesh.tri_verts, np.int64)]
@@ -98,7 +98,7 @@ def _examined(solid: Any) -> tuple[Floats, list[Plane]]:
 
 
 def _planes(corners: Floats, faces: npt.NDArray[np.int64], normals: Floats, offsets: Floats) -> list[Plane]:
-    """The planes of faces at reflex edges, those first on which the longest reflex edges lie, all together."""
+    """Return the planes of faces at reflex edges, those first on which the longest reflex edges lie, all together."""
     reflex = list(_reflex_edges(corners, faces, normals, offsets))
     ends = np.array([(one, other) for one, other, _, _ in reflex], dtype=np.intp).reshape(-1, 2)
     long = np.linalg.norm(corners[ends[:, 0]] - corners[ends[:, 1]], axis=1)

@@ -111,7 +111,7 @@ class FaceGrid:
 
 
 def face_grid(mesh: Mesh) -> FaceGrid:
-    """The grid of a unit mesh. Get it as ``mesh.derived(face_grid)``."""
+    """Return the grid of a unit mesh. Get it as ``mesh.derived(face_grid)``."""
     resolution = int(np.clip(np.sqrt(len(mesh.faces) / 6), 4, 96))
     pairs = list(touched_cells(mesh.triangles, resolution))
     face = np.concatenate([pair[0] for pair in pairs])

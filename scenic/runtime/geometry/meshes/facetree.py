@@ -52,7 +52,7 @@ class FaceTree:
 
 
 def face_tree(mesh: Mesh) -> FaceTree:
-    """The tree of a mesh. Get it as ``mesh.derived(face_tree)``."""
+    """Return the tree of a mesh. Get it as ``mesh.derived(face_tree)``."""
     lowest, highest = _boxes(mesh.derived(face_corners))
     if len(mesh.faces) < _LARGE:
         return _boxed(lowest, highest, _sorted(lowest, highest))
@@ -61,19 +61,19 @@ def face_tree(mesh: Mesh) -> FaceTree:
 
 
 def tree_of(triangles: Floats) -> FaceTree:
-    """The tree of triangles ``(f, 3, 3)``, at least one; they may have collapsed to segments or points."""
+    """Return the tree of triangles ``(f, 3, 3)``, at least one; they may have collapsed to segments or points."""
     lowest, highest = _boxes(np.ascontiguousarray(triangles.transpose(1, 2, 0)))
     return _boxed(lowest, highest, _sorted(lowest, highest))
 
 
 def face_corners(mesh: Mesh) -> Floats:
-    """The three corners of all faces, ``(3, 3, f)`` by corner and coordinate. Get them as ``mesh.derived(face_corners)``."""
+    """Return the three corners of all faces, ``(3, 3, f)`` by corner and coordinate. Get them as ``mesh.derived(face_corners)``."""
     vertices = np.ascontiguousarray(mesh.vertices.T)
     return np.stack([vertices.take(mesh.faces[:, number], axis=1) for number in range(3)])
 
 
 def _boxes(corners: Floats) -> tuple[Floats, Floats]:
-    """The lowest and the highest corners ``(3, f)`` of the boxes around triangles with corners ``(3, 3, f)``."""
+    """Return the lowest and the highest corners ``(3, f)`` of the boxes around triangles with corners ``(3, 3, f)``."""
     a, b, c = corners
     return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
@@ -97,7 +97,7 @@ def _sorted(lowest: Floats, highest: Floats) -> Indices:
 
 
 def _boxed(lowest: Floats, highest: Floats, faces: Indices) -> FaceTree:
-    """The tree whose leaves have the triangles in this order."""
+    """Return the tree whose leaves have the triangles in this order."""
     depth = _depth(len(faces))
     starts = _starts(len(faces), depth)
     low, high = (np.empty((3, (2 << depth) - 1)) for _ in range(2))
@@ -174,7 +174,7 @@ class Forest:
         """One of the faces below each node."""
 
     def level(self, level: int) -> tuple[Indices, Indices]:
-        """The first node of each mesh's tree at a level, or that of its leaves, and how many there are."""
+        """Return the first node of each mesh's tree at a level, or that of its leaves, and how many there are."""
         width = np.minimum(1 << level, self._leaves)
         return self.roots + width - 1, width
 
@@ -212,7 +212,7 @@ class Forest:
                 fronts.append(self.below(*below) if len(below[0]) <= _SMALL else below)
 
     def parts(self, entry: Indices, node: Indices) -> tuple[Indices, Indices]:
-        """The children of nodes; leaves stay."""
+        """Return the children of nodes; leaves stay."""
         child = self.child[node]
         owner, offset = expand((child >= 0) + 1)
         return entry[owner], np.where(child < 0, node, child)[owner] + offset

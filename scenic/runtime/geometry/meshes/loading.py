@@ -50,7 +50,7 @@ METRES: Final[Mapping[str, float]] = MappingProxyType(
 
 
 def factor_of(unit: object, scale: object, what: str) -> float:
-    """The factor that turns the numbers of a mesh file into metres.
+    """Return the factor that turns the numbers of a mesh file into metres.
 
     Args:
         unit: the unit of length of the file, one of `METRES`.
@@ -108,7 +108,7 @@ def load_mesh(path: str | Path, *, unify: bool = True, volume: bool = True) -> M
 
 
 def _finished(loaded: Any, name: str, *, unify: bool, volume: bool) -> Mesh:
-    """The mesh of what trimesh has read, checked and repaired."""
+    """Return the mesh of what trimesh has read, checked and repaired."""
     vertices = np.asarray(loaded.vertices, dtype=np.float64)
     faces = np.asarray(loaded.faces, dtype=np.intp)
     if not len(faces):
@@ -156,7 +156,7 @@ def _read(file: Path, name: str) -> tuple[bytes, str]:
 
 
 def _unpacked(data: bytes, packing: str) -> Any:
-    """A stream of the content of a packed file."""
+    """Return a stream of the content of a packed file."""
     if packing == ".gz":
         import gzip  # few programs read packed meshes
 
@@ -167,7 +167,7 @@ def _unpacked(data: bytes, packing: str) -> Any:
 
 
 def _limited(stream: Any, name: str) -> bytes:
-    """All of a stream, unless it is too long."""
+    """Return all of a stream, unless it is too long."""
     with stream:
         data: bytes = stream.read(_MOST_BYTES + 1)
     if len(data) > _MOST_BYTES:
@@ -223,7 +223,7 @@ def _loaded(data: bytes, file_type: str, file: Path, name: str) -> Any:
 
 
 def _beside(file: Path, mesh: str) -> Any:
-    """The resolver of files that a mesh file refers to: they lie beside it, packed or not, and their names are parts of URLs."""
+    """Return the resolver of files that a mesh file refers to: they lie beside it, packed or not, and their names are parts of URLs."""
     from trimesh.resolvers import FilePathResolver
 
     class Beside(FilePathResolver):
@@ -237,7 +237,7 @@ def _beside(file: Path, mesh: str) -> Any:
 
 
 def _absolute(data: bytes) -> bytes:
-    """An OBJ text whose faces have positive vertex numbers alone.
+    """Return an OBJ text whose faces have positive vertex numbers alone.
 
     Negative numbers count back from the vertices before the face; trimesh counts them back from the end of the file.
     """

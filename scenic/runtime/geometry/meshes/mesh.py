@@ -248,13 +248,13 @@ class Mesh:
         return _read_only(self.vertices[self.faces[first_of_each(components), 0]])
 
     def moved(self, matrix: npt.ArrayLike) -> "Mesh":
-        """The mesh with the vertices turned by a rotation matrix ``(3, 3)``."""
+        """Return the mesh with the vertices turned by a rotation matrix ``(3, 3)``."""
         m = np.asarray(matrix, dtype=np.float64)
         v = self.vertices
         return Mesh(v[:, :1] * m[:, 0] + v[:, 1:2] * m[:, 1] + v[:, 2:] * m[:, 2], self.faces)
 
     def normalized(self) -> tuple["Mesh", Floats, Floats]:
-        """The unit mesh, and the centre ``(3,)`` and extents ``(3,)`` of this one's bounding box.
+        """Return the unit mesh, and the centre ``(3,)`` and extents ``(3,)`` of this one's bounding box.
 
         An axis in which the mesh is flat gets the coordinate 0 and keeps the extent 0.
         """

@@ -129,7 +129,7 @@ class Nearest:
 
 
 def nearest_of(mesh: Mesh) -> Nearest:
-    """The index of a mesh. Get it as ``mesh.derived(nearest_of)``."""
+    """Return the index of a mesh. Get it as ``mesh.derived(nearest_of)``."""
     return Nearest(mesh.triangles, tree=mesh.derived(face_tree))
 
 

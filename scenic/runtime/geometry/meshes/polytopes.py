@@ -37,7 +37,7 @@ class Edges(NamedTuple):
 
 
 def half_spaces(mesh: Mesh, poses: Poses) -> Floats | None:
-    """The half-spaces ``(n | 1, k, 4)`` of a placed convex mesh; ``None`` of one that is not convex, or has many faces."""
+    """Return the half-spaces ``(n | 1, k, 4)`` of a placed convex mesh; ``None`` of one that is not convex, or has many faces."""
     if not mesh.is_convex or len(mesh.hull.planes) > MOST_PLANES:
         return None
     planes = mesh.hull.planes
@@ -56,7 +56,7 @@ def half_spaces(mesh: Mesh, poses: Poses) -> Floats | None:
 
 
 def joined(*parts: Floats) -> Floats:
-    """The half-spaces ``(n | 1, k, 4)`` of the intersection of polytopes."""
+    """Return the half-spaces ``(n | 1, k, 4)`` of the intersection of polytopes."""
     lanes = max(map(len, parts))
     return np.concatenate([np.broadcast_to(part, (lanes, *part.shape[1:])) for part in parts], axis=1)
 

@@ -19,7 +19,7 @@ SPHEROID_SUBDIVISIONS: Final = 3
 
 @cache
 def box() -> Mesh:
-    """The unit cube: 8 vertices, 12 faces."""
+    """Return the unit cube: 8 vertices, 12 faces."""
     vertices = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
     faces = [
         *((0, 1, 3), (0, 3, 2)),  # left
@@ -34,7 +34,7 @@ def box() -> Mesh:
 
 @cache
 def cylinder(sections: int = CYLINDER_SECTIONS) -> Mesh:
-    """The prism along Z over a regular polygon, the first vertex at +X; ends as fans about the axis."""
+    """Return the prism along Z over a regular polygon, the first vertex at +X; ends as fans about the axis."""
     rim = _circle(sections)
     count = sections
     vertices = np.concatenate([_at(rim, -0.5), _at(rim, 0.5), [(0, 0, -0.5), (0, 0, 0.5)]])
@@ -54,7 +54,7 @@ def cylinder(sections: int = CYLINDER_SECTIONS) -> Mesh:
 
 @cache
 def cone() -> Mesh:
-    """The pyramid along Z over a regular polygon, its apex up; the base as a fan about the axis."""
+    """Return the pyramid along Z over a regular polygon, its apex up; the base as a fan about the axis."""
     count = CONE_SECTIONS
     vertices = np.concatenate([_at(_circle(count), -0.5), [(0, 0, -0.5), (0, 0, 0.5)]])
     here = np.arange(count)
@@ -79,7 +79,7 @@ def round_share(mesh: Mesh) -> float:
 
 @cache
 def spheroid() -> Mesh:
-    """The icosahedron subdivided three times onto the sphere: 642 vertices, 1280 faces."""
+    """Return the icosahedron subdivided three times onto the sphere: 642 vertices, 1280 faces."""
     golden = (1 + np.sqrt(5)) / 2
     corners = [(-1, golden, 0), (1, golden, 0), (-1, -golden, 0), (1, -golden, 0)]
     vertices = np.array([np.roll(corner, shift) for shift in range(3) for corner in corners])
@@ -91,7 +91,7 @@ def spheroid() -> Mesh:
 
 
 def _icosahedron_faces(vertices: Floats) -> Indices:
-    """The triples of mutually nearest vertices, wound to face outwards."""
+    """Return the triples of mutually nearest vertices, wound to face outwards."""
     near = np.linalg.norm(vertices[:, None] - vertices, axis=2) < 1.2
     faces = [
         (a, b, c) if np.dot(np.cross(vertices[a], vertices[b]), vertices[c]) > 0 else (a, c, b)

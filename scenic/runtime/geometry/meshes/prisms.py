@@ -50,7 +50,7 @@ def _prism(polygon: object, low: float, high: float) -> Mesh:
 
 
 def slice_at(solid: Mesh, height: float) -> Any:
-    """The shapely polygon where a solid meets the plane at a height; empty where it does not."""
+    """Return the shapely polygon where a solid meets the plane at a height; empty where it does not."""
     import manifold3d
     import shapely
 
@@ -69,7 +69,7 @@ def slice_at(solid: Mesh, height: float) -> Any:
 
 
 def shadow(solid: Mesh) -> Any:
-    """The shapely polygon of a solid seen from above."""
+    """Return the shapely polygon of a solid seen from above."""
     import shapely
 
     flat = solid.triangles[:, :, :2]

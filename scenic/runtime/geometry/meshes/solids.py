@@ -17,7 +17,7 @@ _HELP: Final = "repair the mesh, so that closed surfaces with normals pointing o
 
 
 def proper_volume(mesh: Mesh, *, unify: bool = True, name: str = "the mesh") -> Mesh:
-    """The solid bounded by ``mesh``.
+    """Return the solid bounded by ``mesh``.
 
     Equal vertices are merged, bodies with inverted normals turned outwards (a body inside another one with
     normals inwards is a cavity and stays one), and overlapping bodies united if ``unify``.
@@ -83,7 +83,7 @@ def _bodies(vertices: Floats, faces: Indices) -> _Bodies:
 
 
 def _oriented(bodies: _Bodies, name: str) -> list[Mesh]:
-    """The solids, each an outer surface with its cavities."""
+    """Return the solids, each an outer surface with its cavities."""
     outer = [part for part in bodies.parts if part.volume > 0]
     cavities: dict[int, list[Mesh]] = {}
     for part in bodies.parts:

@@ -136,7 +136,7 @@ def _solid_angles(triangles: Floats) -> Floats:
 
 
 def hull_footing(mesh: Mesh) -> Footing:
-    """The faces of the convex hull of a unit solid of one density."""
+    """Return the faces of the convex hull of a unit solid of one density."""
     from scipy.spatial import ConvexHull  # slow to import
 
     outermost = mesh.outermost
@@ -185,7 +185,7 @@ def _faces(hull: Any) -> tuple[Indices, Floats]:
 
 
 def _centre_of_mass(mesh: Mesh) -> Floats:
-    """The centre of mass ``(3,)`` of a solid of one density, from the tetrahedra between the origin and its faces."""
+    """Return the centre of mass ``(3,)`` of a solid of one density, from the tetrahedra between the origin and its faces."""
     a, b, c = np.moveaxis(mesh.triangles, 1, 0)
     volumes = dot(a, cross(b, c))
     centre: Floats = (volumes[:, np.newaxis] * (a + b + c)).sum(axis=0) / (4 * volumes.sum())
@@ -253,7 +253,7 @@ def _limits(footing: Footing, sizes: Floats) -> Floats:
 
 
 def _poses(footing: Footing, sizes: Floats, faces: Indices) -> Floats:
-    """The poses ``(3, n)`` of a solid that rests on these faces, as `resting_poses` has them."""
+    """Return the poses ``(3, n)`` of a solid that rests on these faces, as `resting_poses` has them."""
     down = footing.normals[faces] / sizes
     down /= length(down)[:, np.newaxis]
     lifts = dot(footing.corners * sizes[:, np.newaxis], down[:, np.newaxis]).max(axis=1)

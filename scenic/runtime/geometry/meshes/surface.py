@@ -35,7 +35,7 @@ _VERTICAL: Final = 1e-9
 
 
 def draw_faces(body: Body, side: Side, threshold: float, uniforms: Floats, lanes: int) -> Indices:
-    """A random face of the side for each lane, by area in the world, ``(lanes,)``; -1 where it has no faces.
+    """Return a random face of the side for each lane, by area in the world, ``(lanes,)``; -1 where it has no faces.
 
     Args:
         body: the body.
@@ -66,7 +66,7 @@ def draw_faces(body: Body, side: Side, threshold: float, uniforms: Floats, lanes
 def _faces_one_by_one(
     mesh: Mesh, kinds: "_Stretches", kind_of: Indices, threshold: float, uniforms: Floats
 ) -> Indices:
-    """The same as below for lanes that have little in common, and meshes of a single block."""
+    """Return the same as below for lanes that have little in common, and meshes of a single block."""
     result = np.full(len(kind_of), -1, dtype=np.intp)
     for part in rows(len(kind_of), len(mesh.faces), _CHUNK):
         areas = _areas(mesh, slice(None), kinds.of(kind_of[part]), threshold)
@@ -100,7 +100,7 @@ def _chosen_faces(
 
 
 def _block_areas(mesh: Mesh, kinds: "_Stretches", threshold: float) -> Floats:
-    """The area of the side in each block of faces, ``(u, blocks)``."""
+    """Return the area of the side in each block of faces, ``(u, blocks)``."""
     starts = range(0, len(mesh.faces), _BLOCK)
     result = np.empty((len(kinds.size), len(starts)))
     for number, start in enumerate(starts):
@@ -113,7 +113,7 @@ def _block_areas(mesh: Mesh, kinds: "_Stretches", threshold: float) -> Floats:
 
 
 def _areas(mesh: Mesh, faces: slice, kinds: "_Stretches", threshold: float) -> Floats:
-    """The areas in the world of the faces that belong to the side, 0 for the others: ``(u, faces)``."""
+    """Return the areas in the world of the faces that belong to the side, 0 for the others: ``(u, faces)``."""
     x, y, z = mesh.derived(_area_columns)
     squares = mesh.derived(_squared_area_columns)
     cx, cy, cz = (kinds.cofactors[:, i, None] for i in range(3))
@@ -156,12 +156,12 @@ class _Stretches:
         return np.stack([y * z, x * z, x * y], axis=1)
 
     def of(self, chosen: Indices | slice) -> "_Stretches":
-        """Some of the kinds."""
+        """Return some of the kinds."""
         return _Stretches(self.size[chosen], None if self.axis is None else self.axis[chosen])
 
 
 def _stretches(poses: Poses, side: Side, count: int) -> tuple[_Stretches, Indices]:
-    """The different kinds among the lanes, and the kind of each lane ``(count,)``."""
+    """Return the different kinds among the lanes, and the kind of each lane ``(count,)``."""
     size = poses.size
     if side is None:
         keys = size
@@ -179,7 +179,7 @@ def _stretches(poses: Poses, side: Side, count: int) -> tuple[_Stretches, Indice
 
 
 def _grouped(kind_of: Indices, kinds: int) -> Iterator[Indices]:
-    """The members of each kind."""
+    """Yield the members of each kind."""
     order = np.argsort(kind_of, kind="stable")
     ends = np.searchsorted(kind_of[order], np.arange(1, kinds))
     yield from np.split(order, ends)
@@ -258,7 +258,7 @@ def face_points(body: Body, faces: Indices, first: Floats, second: Floats) -> Fl
 
 
 def face_normals(body: Body, faces: Indices) -> Floats:
-    """The unit normals of faces in the world, ``(n, 3)``."""
+    """Return the unit normals of faces in the world, ``(n, 3)``."""
     lanes = max(len(faces), len(body))
     faces = np.broadcast_to(faces, (lanes,))
     result = np.empty((lanes, 3))
@@ -270,7 +270,7 @@ def face_normals(body: Body, faces: Indices) -> Floats:
 
 
 def face_orientations(body: Body, faces: Indices) -> Floats:
-    """The preferred orientations of faces, quaternions ``(n, 4)``.
+    """Return the preferred orientations of faces, quaternions ``(n, 4)``.
 
     Local Z is the face's normal; local Y, straight ahead, is the direction in the face nearest to north
     (global +Y), so that yaw is as close to 0 as it can be; up if the normal itself is north or south.

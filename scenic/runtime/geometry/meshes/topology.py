@@ -43,7 +43,7 @@ def edge_census(faces: Indices) -> EdgeCensus:
 
 
 def face_components(faces: Indices, count: int) -> Indices:
-    """The component ``(f,)``, numbered from 0, of each face of ``(f, 3)`` over ``count`` vertices.
+    """Return the component ``(f,)``, numbered from 0, of each face of ``(f, 3)`` over ``count`` vertices.
 
     Faces that share a vertex belong together.
     """
@@ -61,13 +61,13 @@ def face_components(faces: Indices, count: int) -> Indices:
 
 
 def without_unused(vertices: Floats, faces: Indices) -> tuple[Floats, Indices]:
-    """The mesh with the vertices alone that faces use, in their order."""
+    """Return the mesh with the vertices alone that faces use, in their order."""
     used = distinct(faces)
     return vertices[used], np.searchsorted(used, faces)
 
 
 def merge_vertices(vertices: Floats, faces: Indices, *, tolerance: float = 0.0) -> tuple[Floats, Indices]:
-    """The mesh with equal vertices made one, unused vertices and collapsed faces dropped.
+    """Return the mesh with equal vertices made one, unused vertices and collapsed faces dropped.
 
     With a positive ``tolerance`` in metres, vertices connected by steps of at most that length are equal; the
     first of them stays.
@@ -112,7 +112,7 @@ def _close_groups(points: Floats, tolerance: float) -> Indices:
 
 
 def signed_volume(vertices: Floats, faces: Indices) -> float:
-    """The volume enclosed by closed faces; negative where their normals point inwards."""
+    """Return the volume enclosed by closed faces; negative where their normals point inwards."""
     centred = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
     a, b, c = (centred[faces[:, i]] for i in range(3))
     return float(np.sum(a * np.cross(b, c)) / 6)

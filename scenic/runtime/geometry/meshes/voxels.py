@@ -54,7 +54,7 @@ class Voxels:
 
 
 def voxels(mesh: Mesh) -> Voxels:
-    """The cells of a closed unit mesh. Get them as ``mesh.derived(voxels)``."""
+    """Return the cells of a closed unit mesh. Get them as ``mesh.derived(voxels)``."""
     if mesh.is_box:
         return _box_voxels(mesh)
     found = kept(_KIND, mesh.digest, lambda: _computed(mesh))
@@ -143,7 +143,7 @@ def _cover(occupied: Booleans) -> Floats:
 
 
 def _tight(part: Booleans, corner: tuple[int, int, int]) -> tuple[Booleans, tuple[int, int, int]]:
-    """The occupied part of a box of cells whose first cell is ``corner``, and the first cell of that."""
+    """Return the occupied part of a box of cells whose first cell is ``corner``, and the first cell of that."""
     spans = []
     for axis in range(3):
         used = np.flatnonzero(part.any(axis=tuple({0, 1, 2} - {axis})))
@@ -171,7 +171,7 @@ def _best_cut(part: Booleans) -> tuple[int, int]:
 
 
 def _volumes_up_to(part: Booleans) -> npt.NDArray[np.intp]:
-    """The volume of the tight box around the first 1, 2, ... slices."""
+    """Return the volume of the tight box around the first 1, 2, ... slices."""
     slices = np.arange(1, len(part) + 1)
     volume: npt.NDArray[np.intp] = np.maximum.accumulate(np.where(part.any(axis=(1, 2)), slices, 0))
     for other in (1, 2):

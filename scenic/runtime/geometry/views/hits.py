@@ -84,7 +84,7 @@ class Placed:
 
 
 def place(body: Body, views: Views, lanes: Indices) -> Placed:
-    """A body as seen in some of the lanes; the views have a row for each of these lanes."""
+    """Return a body as seen in some of the lanes; the views have a row for each of these lanes."""
     poses = body.poses.take(lanes)
     count = len(lanes)
     origin = np.broadcast_to(poses.to_unit(views.camera), (count, 3))
@@ -122,7 +122,7 @@ def box_span(origins: Floats, directions: Floats) -> tuple[Floats, Floats]:
 
 
 def _quick_first(mesh: Mesh, origins: Floats, directions: Floats, near: Floats) -> Floats:
-    """The first hits by Embree's faces, `exact_first` where those are in doubt."""
+    """Return the first hits by Embree's faces, `exact_first` where those are in doubt."""
     length = _length(directions)
     # From where they enter the unit box, so that coordinates stay small.
     starts = origins + np.maximum(near, 0.0)[:, None] * directions

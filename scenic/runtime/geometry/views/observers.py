@@ -62,7 +62,7 @@ class Views:
         count: tuple[int, int] = (0, 0),
         scaling: bool = False,
     ) -> "Views":
-        """One observer, the same in every lane."""
+        """Return one observer, the same in every lane."""
         return cls(
             np.asarray(camera, dtype=np.float64).reshape(1, 3),
             np.asarray(orientation, dtype=np.float64).reshape(1, 4),
@@ -74,7 +74,7 @@ class Views:
         )
 
     def spread(self, lanes: int) -> "Views":
-        """The same views with a row for each lane in every column."""
+        """Return the same views with a row for each lane in every column."""
         return Views(
             np.broadcast_to(self.camera, (lanes, 3)),
             np.broadcast_to(self.orientation, (lanes, 4)),
@@ -86,7 +86,7 @@ class Views:
         )
 
     def take(self, lanes: Indices) -> "Views":
-        """The views of these lanes; every column must have a row for each lane."""
+        """Return the views of these lanes; every column must have a row for each lane."""
         return Views(
             self.camera[lanes],
             self.orientation[lanes],
@@ -167,7 +167,7 @@ class Extents:
 
 
 def box_corners(views: Views, poses: Poses) -> Floats:
-    """The corners of boxes in the frames of the views, ``(n, 8, 3)``."""
+    """Return the corners of boxes in the frames of the views, ``(n, 8, 3)``."""
     return views.to_view(poses.to_world(CORNERS[None]))
 
 
@@ -215,7 +215,7 @@ def extents(corners: Floats) -> Extents:
 
 
 def _triple(nx: Floats, ny: Floats, nz: Floats, u: Floats, sx: Floats, sy: Floats, sz: Floats) -> Floats:
-    """The product n · (u × s): positive where s is ahead of u on the way round n."""
+    """Return the product n · (u × s): positive where s is ahead of u on the way round n."""
     result: Floats = (
         nx * (u[..., 1] * sz - u[..., 2] * sy)
         + ny * (u[..., 2] * sx - u[..., 0] * sz)

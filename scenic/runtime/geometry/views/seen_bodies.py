@@ -58,7 +58,7 @@ def sees_bodies(views: Views, target: Body, occluders: Sequence[Occluder], lanes
 
 
 def _sees(views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indices) -> Booleans:
-    """The same for some lanes; the views have a row for each of them."""
+    """Return the same for some lanes; the views have a row for each of them."""
     bounds = bounded(views, target, occluders, lanes)
     seen = bounds.seen
     if len(bounds.left):
@@ -94,7 +94,7 @@ class SightBounds:
 
 
 def bounded(views: Views, target: Body, occluders: Sequence[Occluder], lanes: Indices) -> SightBounds:
-    """The decisions by bounds and the middle of the target; the views have a row for each of the lanes."""
+    """Return the decisions by bounds and the middle of the target; the views have a row for each of the lanes."""
     poses = target.poses.take(lanes)
     position = np.broadcast_to(poses.position, (len(lanes), 3))
     placement = place(target, views, lanes)

@@ -150,7 +150,7 @@ class _Division:
             cells = cells.quartered()
 
     def _nearest(self, cells: _Cells) -> Floats:
-        """The least distance of parts of the target that may be in each cell; infinite where none is in range."""
+        """Return the least distance of parts of the target that may be in each cell; infinite where none is in range."""
         corners = cells.corners()
         middle = cells.middles()
         boxes, distance = self._boxes
@@ -182,7 +182,7 @@ class _Division:
         return result
 
     def _through(self, cells: _Cells) -> Indices:
-        """The cells whose middle ray meets the target, within range, before any occluder."""
+        """Return the cells whose middle ray meets the target, within range, before any occluder."""
         directions = cells.middles()
         distance = self._placed.first(cells.lane, directions, exact=True)
         meets = np.flatnonzero(distance <= self._views.distance[cells.lane] * (1 + DISTANCE_SLACK))
@@ -191,7 +191,7 @@ class _Division:
 
 
 def _first_cells(views: Views, target: Extents) -> _Cells:
-    """The parts of the views' windows in which targets lie, in cells that are not too wide."""
+    """Return the parts of the views' windows in which targets lie, in cells that are not too wide."""
     half = 0.5 * views.window
     lanes, azimuths, altitudes = [], [], []
     low = np.maximum(target.altitude[:, 0], -half[:, 1])
