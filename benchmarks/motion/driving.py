@@ -16,7 +16,8 @@ import scenic
 from benchmarks.motion.courses import Course, Lines
 from benchmarks.motion.figures import Run
 from scenic.domains.driving.following import Driver
-from scenic.domains.driving.lane_driving import LaneChanger, junctions_of, lanes_along
+from scenic.domains.driving.lane_changing import LaneChanger
+from scenic.domains.driving.lane_driving import junctions_of, lanes_along
 from scenic.domains.driving.narrow_lanes import line_to_drive, ways_after
 from scenic.domains.driving.planning import path_of_lines, speeds_of
 from scenic.domains.driving.speed_profiles import Comfort

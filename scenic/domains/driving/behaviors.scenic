@@ -2,7 +2,8 @@
 
 from scenic.domains.driving.actions import *
 from scenic.domains.driving.car_following import Gap
-from scenic.domains.driving.lane_driving import LaneChanger, LaneDriver, RouteDriver
+from scenic.domains.driving.lane_changing import LaneChanger
+from scenic.domains.driving.lane_driving import LaneDriver, RouteDriver
 from scenic.domains.driving.lines import concatenateCenterlines
 from scenic.domains.driving.maneuvering import nearest_end, sidewalk_under
 from scenic.domains.driving.rules import RulesDriver

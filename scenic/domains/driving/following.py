@@ -2,7 +2,7 @@
 
 import math
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from copy import deepcopy
 from typing import Any, Final
 
@@ -194,10 +194,17 @@ class Driver:
         self._planned = None
         self._time = self._simulation.currentTime
 
-    def _join(self, path: Path, speed: float, duration: float = 0.0, near: float | None = None) -> float:
+    def _join(
+        self,
+        path: Path,
+        speed: float,
+        duration: float = 0.0,
+        near: float | None = None,
+        reach: Callable[[float, float], float] | None = None,
+    ) -> float:
         """Bend a path so that the car joins it at a speed, from its present curvature; see `join`."""
         curvature = None if self._is_fresh else self._curvature
-        return join(path, self._place(), self._agent.heading, speed, duration, near, curvature)
+        return join(path, self._place(), self._agent.heading, speed, duration, near, curvature, reach)
 
     # Controllers that programs ask for
 

@@ -11,20 +11,18 @@ from numpy.typing import NDArray
 
 from scenic.domains.driving.actions import RegulatedControlAction
 from scenic.domains.driving.car_following import Gap
-from scenic.domains.driving.elements import Lane, LaneSection
+from scenic.domains.driving.elements import Lane
 from scenic.domains.driving.following import Driver
 from scenic.domains.driving.kinds import ManeuverType
 from scenic.domains.driving.paths import Path
 from scenic.domains.driving.planning import MotionPlan, path_of_lines
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.domains.driving.trajectories import Route
-from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.program.builtins import running_simulation
-from scenic.runtime.values.describing import wrong_type
 
 Floats = NDArray[np.float64]
 
-__all__ = ["LaneChanger", "LaneDriver", "RouteDriver", "lane_under"]
+__all__ = ["LaneDriver", "RouteDriver", "lane_under", "metres_along", "turned_from"]
 
 _BUFFER: Final = 1.0
 """Metres between the front of a car that stops at the end of the network and the end."""
@@ -68,10 +66,10 @@ def _apart(agent: Any, lane: Lane) -> float:
 
     x, y, *_ = agent.position
     distance = float(shapely.distance(shapely.linestrings(lane.line), shapely.points(x, y)))
-    return abs(_turned(agent, lane)) + distance / 2
+    return abs(turned_from(agent, lane)) + distance / 2
 
 
-def _turned(agent: Any, lane: Lane) -> float:
+def turned_from(agent: Any, lane: Lane) -> float:
     """The angle from the direction of a lane to the heading of a car at its place, -pi to pi."""
     x, y, *_ = agent.position
     along = float(lane.along(np.array([[x, y]]))[0])
@@ -112,20 +110,24 @@ class LaneDriver(Driver):
     def _begin_plan(self, lane: Lane, duration: float = 0.0) -> None:
         agent = self._agent
         # A car that faces against a lane drives against it.
-        self._backward = abs(_turned(agent, lane)) > math.pi / 2
+        backward = abs(turned_from(agent, lane)) > math.pi / 2
         before = self._simulation.drivers.get(id(agent))
-        if (
-            isinstance(before, LaneDriver)
-            and before.lane_now() is lane
-            and before._backward == self._backward
-        ):
+        if isinstance(before, LaneDriver) and before.lane_now() is lane and before._backward == backward:
             # The way that the behavior before has chosen, from the same curve: nobody sees who drives.
-            self._plan, self._near = before._plan, before.along
             self._is_joined = duration == 0.0
+            self._follow(before._plan, before.along, duration, backward=backward)
         else:
             self._is_joined = False
-            self._plan = MotionPlan(agent.roadNetwork, lane, backward=self._backward, tightest=self.tightest)
-            self._near = metres_along(lane.line[::-1] if self._backward else lane.line, self._place())
+            self._follow(*self._plan_along(lane, backward=backward), duration, backward=backward)
+
+    def _plan_along(self, lane: Lane, *, backward: bool) -> tuple[MotionPlan, float]:
+        """A new plan along a lane, and metres along it to the car."""
+        plan = MotionPlan(self._agent.roadNetwork, lane, backward=backward, tightest=self.tightest)
+        return plan, metres_along(lane.line[::-1] if backward else lane.line, self._place())
+
+    def _follow(self, plan: MotionPlan, near: float, duration: float, *, backward: bool) -> None:
+        """Take a plan, which the car joins from metres along it, in seconds."""
+        self._backward, self._plan, self._near = backward, plan, near
         self._path = Path()
         self._joining_time = duration
         self._cover()
@@ -135,23 +137,32 @@ class LaneDriver(Driver):
         plan = self._plan
         if not self._path.along and not plan.is_complete and not self._is_covered(plan.path):
             return
-        if self._path is not plan.path and plan.path.length > 0 and not self._is_joined:
-            self.joining = self._join(plan.path, self._pace(), self._joining_time, self._near)
-        stops = None
-        if plan.is_complete:
-            stops = self._agent.length / 2 + _BUFFER + self._simulation.pivot_of(self._agent)
+        must_join = self._path is not plan.path and plan.path.length > 0 and not self._is_joined
+        if must_join and not self._join_plan():
+            return
         if plan.path.length > 0:
             junctions = junctions_of(plan.path)
             self.set_path(
                 plan.path,
                 self._target,
                 limits=self._limits(),
-                stops=stops,
+                stops=self._stops(plan),
                 junctions=junctions,
                 near=self._near,
             )
         speed = max(self._agent.speed, min(self._target, 40.0))
         self._due = plan.path.length - plan.reserve(speed, self.comfort.deceleration)
+
+    def _join_plan(self) -> bool:
+        """Bend the path of the plan so that the car joins it; return false if another plan has been taken instead."""
+        self.joining = self._join(self._plan.path, self._pace(), self._joining_time, self._near)
+        return True
+
+    def _stops(self, plan: MotionPlan) -> float | None:
+        """Metres before the end of the path of a plan at which the car stops; ``None`` while it goes on."""
+        if not plan.is_complete:
+            return None
+        return float(self._agent.length / 2 + _BUFFER + self._simulation.pivot_of(self._agent))
 
     def _is_covered(self, path: Path) -> bool:
         """Return whether a path does not end behind the car, or before the car has come to it."""
@@ -233,62 +244,6 @@ class LaneDriver(Driver):
         if target != self._target:
             self._target = target
             self._cover()
-
-
-class LaneChanger(LaneDriver):
-    """Changes to a lane, and follows it.
-
-    Args:
-        agent: the car.
-        section: the section of the lane.
-        target: speed to reach, m/s.
-        oncoming: the lane may be one of oncoming traffic.
-        duration: seconds that the change takes at least.
-        comfort: limits of accelerations.
-        gap: kept behind others.
-
-    Raises:
-        InvalidScenarioError: the lane leads in the other direction, and ``oncoming`` is false.
-        ScenicTypeError: it is no lane.
-
-    """
-
-    def __init__(
-        self,
-        agent: object,
-        section: LaneSection | Lane,
-        target: float,
-        *,
-        oncoming: bool,
-        duration: float,
-        comfort: Comfort | None = None,
-        gap: Gap | None = None,
-    ) -> None:
-        lane = section.lane if isinstance(section, LaneSection) else section
-        if not isinstance(lane, Lane):
-            raise wrong_type("a lane or a lane section", lane, "the lane to change to")
-        if not oncoming and abs(_turned(agent, lane)) > math.pi / 2:
-            raise InvalidScenarioError(
-                f"{lane.uid} leads in the other direction than the car that is to change to it",
-                help="to drive against the traffic, say `is_oppositeTraffic=True`; to turn round, use `UTurnBehavior`",
-            )
-        self._duration = duration
-        self._end = math.inf
-        super().__init__(agent, target, lane, comfort, gap)
-        self.drive_by("change")
-
-    def _begin_plan(self, lane: Lane, duration: float = 0.0) -> None:
-        super()._begin_plan(lane, self._duration)
-
-    def _cover(self) -> None:
-        fresh = not self._path.along
-        super()._cover()
-        if fresh and self._path.along:
-            self._end = self._path.along[self._index] + self.joining
-
-    def has_arrived(self) -> bool:
-        """Return whether the car is in the lane, and in its direction."""
-        return bool(self._path.along and self._path.along[self._index] >= self._end)
 
 
 class RouteDriver(Driver):

@@ -232,6 +232,13 @@ class Path:
         self.bends.extend(piece.curvatures.tolist())
         self.lanes.extend((count + index, lane) for index, lane in piece.lanes)
 
+    def copy(self) -> "Path":
+        """A path of the same points, which can be bent and extended on its own."""
+        other = Path()
+        for name in Path.__slots__:
+            setattr(other, name, list(getattr(self, name)))
+        return other
+
     def points(self) -> Floats:
         """The points ``(n, 2)``."""
         return np.column_stack([self._x, self._y])

@@ -1,7 +1,7 @@
 """Plans of drivers: a path ahead, made longer as the car goes on, and the speeds on it."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -114,6 +114,7 @@ def join(
     duration: float = 0.0,
     near: float | None = None,
     curvature: float | None = None,
+    reach: Callable[[float, float], float] | None = None,
 ) -> float:
     """Bend a path so that it begins where a car is, in the direction of the car: a lateral offset of least jerk.
 
@@ -128,6 +129,8 @@ def join(
         duration: seconds that the car takes at least; 0 for as few as comfort allows.
         near: metres along the path about which the car is.
         curvature: of the way of the car, in 1/m, positive to the left; that of the path by default.
+        reach: metres that the car goes in some seconds, and at least as many as other seconds take it at its greatest speed in
+            them; at its present speed by default.
 
     Returns:
         Metres along the path until the car is on it.
@@ -150,11 +153,12 @@ def join(
     # The acceleration of a curve of least jerk is 5.77 d / T^2 at most, of which 2 m/s^2 are allowed, and its jerk 60 d / T^3, of
     # which 3.4 m/s^3 are unless a time is given; the jerk of a slope m is 36 m v / T^2.
     time = duration or math.cbrt(60.0 * abs(offset) / 3.4)
-    time = max(time, math.sqrt(5.77 * abs(offset) / 2.0))
+    least = math.sqrt(5.77 * abs(offset) / 2.0)
+    time = max(time, least)
     time = max(time, min(3.0 * math.sqrt(abs(slope) * speed), 4.0))
     # Acceleration `pull` ends with a jerk of 9 pull / T at first; longer ways would lead too far from the path.
     time = max(time, min(1.3 * pull, 2.0))
-    distance = max(speed * time, 4.0, 6.0 * abs(offset) ** 0.5)
+    distance = max(speed * time if reach is None else reach(time, least), 4.0, 6.0 * abs(offset) ** 0.5)
     along = np.array(path.along)
     start = along[index] + share * (along[index + 1] - along[index])
     left = along[-1] - start
