@@ -20,14 +20,18 @@ Floats = NDArray[np.float64]
 
 __all__ = ["LaneChanger"]
 
-_SHORTER: Final = (1.0, 0.9, 0.8, 0.001)
-"""Shares of the time that is asked which are tried; comfort asks for some seconds in any case."""
+_SHARES: Final = (1.0, 0.9, 0.8, 0.001)
+"""Shares of the time that is asked which are tried; some seconds are needed in any case."""
+_HARDER: Final = 1.3
+"""Times the comfortable deceleration up to which a car brakes for a lane change, or in the lane."""
 _BESIDE: Final = 0.1
 """Metres by which a corner of a car may leave the road in a lane change."""
 _AGAIN: Final = 0.5
 """Seconds after which a car looks again whether it can change lanes."""
 _FARTHEST: Final = 500.0
 """Metres of way on which a car looks for a place to change lanes."""
+_SPARE: Final = 1.06
+"""Times the least seconds of a change that it takes at the greatest speed: a car that speeds up is jolted more at its end."""
 _MOST: Final = 9
 """Lanes to either side that are looked at."""
 _CREEP: Final = 0.05
@@ -37,8 +41,8 @@ _CREEP: Final = 0.05
 class LaneChanger(LaneDriver):
     """Changes to a lane, and follows it.
 
-    The change begins at once if the road lies under the car all the way, in fewer seconds than are asked if comfort allows it.
-    Else the car follows its own lane up to the next place where it does, if need be beyond an intersection, where the lane on the
+    The change begins at once if the road lies under the car all the way, in fewer seconds than are asked if comfort allows it, and
+    nobody must brake hard for it. Else the car follows its own lane up to the next place where it does, if need be beyond an intersection, where the lane on the
     same side counts. A change for which there is no place is given up, which is noted.
 
     Args:
@@ -123,55 +127,57 @@ class LaneChanger(LaneDriver):
             return False
         else:
             # Who is in the lane already, or off all lanes, can only go there.
-            reach = self._reach(plan, near)
-            self.joining = self._join(plan.path, self._agent.speed, self._duration, near, reach)
+            self.joining = self._join(plan.path, self._agent.speed, self._duration, near)
         return True
 
     def _change_to(self, plan: Plan, near: float) -> tuple[Path, float] | None:
-        """The path of a plan, bent so that the car joins it from metres along it, and the metres of that; ``None`` for no road."""
-        path, reach = plan.path, self._reach(plan, near)
-        shortest = math.inf
-        for share in _SHORTER:
+        """The path of a plan, bent so that the car joins it from metres along it, and the metres of that; ``None`` if that cannot be."""
+        path, stops = plan.path, self._stops(plan)
+        x, y = self._place()
+        begin, _, _ = path.locate(x, y, path.nearest(x, y, near))
+        reach = self._reach(path, begin, stops)
+        for share in _SHARES:
             bent = path.copy()
             distance = self._join(bent, self._agent.speed, share * self._duration, near, reach)
-            if distance < shortest and self._is_on_road(bent, path, near, distance):
+            if not self._is_on_road(bent, path, begin, distance):
+                continue
+            _, rates = self._profile(bent, begin, stops)
+            if min(rates) >= -_HARDER * self.comfort.deceleration:
                 return bent, distance
-            shortest = min(shortest, distance)
         return None
 
-    def _reach(self, plan: Plan, near: float) -> Callable[[float, float], float]:
-        """The way of the car along a plan by its speed profile, as `join` asks for it."""
-        path = plan.path
-        x, y = self._place()
-        index, _, _ = path.locate(x, y, path.nearest(x, y, near))
-        speeds, _ = speeds_of(
+    def _profile(self, path: Path, begin: int, stops: float | None) -> tuple[list[float], list[float]]:
+        """Speeds and accelerations of the car at the points of a path from an index on."""
+        return speeds_of(
             path,
-            index,
+            begin,
             self._target,
             self._agent.speed,
             self.comfort,
             limits=None,
-            stops=self._stops(plan),
+            stops=stops,
             acceleration=self._acceleration,
             junctions=junctions_of(path),
         )
-        along, rates = np.array(path.along[index:]) - path.along[index], np.array(speeds)
-        means = np.maximum((rates[1:] + rates[:-1]) / 2, _CREEP)
+
+    def _reach(self, path: Path, begin: int, stops: float | None) -> Callable[[float, float], float]:
+        """The way of the car along a path by its speed profile, as `join` asks for it."""
+        profile, _ = self._profile(path, begin, stops)
+        along, speeds = np.array(path.along[begin:]) - path.along[begin], np.array(profile)
+        means = np.maximum((speeds[1:] + speeds[:-1]) / 2, _CREEP)
         moments = np.concatenate([[0.0], np.cumsum(np.diff(along) / means)])
 
         def reach(time: float, least: float) -> float:
             distance = float(np.interp(time, moments, along))
-            fastest = float(rates[: int(np.searchsorted(along, distance)) + 1].max())
-            return max(distance, fastest * least)
+            fastest = float(speeds[: int(np.searchsorted(along, distance)) + 1].max())
+            return max(distance, _SPARE * fastest * least)
 
         return reach
 
-    def _is_on_road(self, bent: Path, path: Path, near: float, distance: float) -> bool:
+    def _is_on_road(self, bent: Path, path: Path, begin: int, distance: float) -> bool:
         """Return whether the car stays on the road where it joins a path, or leaves it no more than now, or than on the path."""
         import shapely
 
-        x, y = self._place()
-        begin, _, _ = path.locate(x, y, path.nearest(x, y, near))
         end = bent.index_at(bent.along[begin] + distance, begin) + 1
         road = self._agent.roadNetwork.drivableRegion.polygons
         shapely.prepare(road)
@@ -253,7 +259,7 @@ class LaneChanger(LaneDriver):
     def _give_up(self) -> None:
         if not self._has_given_up:
             self._has_given_up = True
-            reason = "there is no place ahead where the road lies under the whole change"
+            reason = "there is no place ahead where the road lies under all of it and nobody must brake hard"
             self._simulation.note(self._agent, f"does not change to {self._asked.uid}: {reason}")
 
 
