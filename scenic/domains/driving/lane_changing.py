@@ -11,7 +11,7 @@ from scenic.domains.driving.car_following import Gap
 from scenic.domains.driving.elements import Lane, LaneSection
 from scenic.domains.driving.lane_driving import LaneDriver, junctions_of, turned_from
 from scenic.domains.driving.paths import Path
-from scenic.domains.driving.planning import Plan, speeds_of
+from scenic.domains.driving.planning import MotionPlan, speeds_of
 from scenic.domains.driving.speed_profiles import Comfort
 from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.values.describing import wrong_type
@@ -130,7 +130,7 @@ class LaneChanger(LaneDriver):
             self.joining = self._join(plan.path, self._agent.speed, self._duration, near)
         return True
 
-    def _change_to(self, plan: Plan, near: float) -> tuple[Path, float] | None:
+    def _change_to(self, plan: MotionPlan, near: float) -> tuple[Path, float] | None:
         """The path of a plan, bent so that the car joins it from metres along it, and the metres of that; ``None`` if that cannot be."""
         path, stops = plan.path, self._stops(plan)
         x, y = self._place()
