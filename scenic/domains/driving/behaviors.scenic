@@ -130,11 +130,14 @@ behavior LaneChangeBehavior(
 ):
     """Change to the lane of a lane section.
 
+    It begins where the road lies under the whole change and nobody must brake hard for it, or ends with a note if there is no
+    such place.
+
     Arguments:
         laneSectionToSwitch: the section of the lane to change to.
         is_oppositeTraffic: whether that lane is one of oncoming traffic.
         target_speed: m/s.
-        duration: seconds that the change takes; longer where comfort asks for it.
+        duration: seconds that the change takes; longer where comfort asks for it, shorter where the road does.
         follow_gap: seconds that the car keeps behind others; by default it has no regard of them.
         comfort: limits of accelerations, a `Comfort`.
     """

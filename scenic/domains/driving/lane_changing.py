@@ -41,9 +41,9 @@ _CREEP: Final = 0.05
 class LaneChanger(LaneDriver):
     """Changes to a lane, and follows it.
 
-    The change begins at once if the road lies under the car all the way, in fewer seconds than are asked if comfort allows it, and
-    nobody must brake hard for it. Else the car follows its own lane up to the next place where it does, if need be beyond an intersection, where the lane on the
-    same side counts. A change for which there is no place is given up, which is noted.
+    The change begins at once if the road lies under the car all the way and nobody must brake hard for it, if need be in fewer
+    seconds than are asked, as far as comfort allows it. Else the car follows its own lane up to the next place where that holds;
+    beyond an intersection the lane on the same side counts. A change for which there is no place is given up, which is noted.
 
     Args:
         agent: the car.
@@ -82,7 +82,7 @@ class LaneChanger(LaneDriver):
         self._asked, self._duration = lane, duration
         self._end = math.inf
         self._own: Lane | None = None
-        self._side = 0
+        self._side: tuple[int, bool] | None = None
         self._next_look, self._last_place = 0.0, math.inf
         self._has_given_up = False
         super().__init__(agent, target, lane, comfort, gap)
@@ -219,9 +219,9 @@ class LaneChanger(LaneDriver):
         sides = (
             side for part in own.sections for side, beside in _lanes_beside(part) if beside is self._asked
         )
-        self._side = next(sides, 0)
+        self._side = next(sides, None)
         self._begin_plan(own)
-        if self._side == 0:
+        if self._side is None:
             self._give_up()
         self._last_place = self._near + _FARTHEST
         return True
@@ -263,12 +263,13 @@ class LaneChanger(LaneDriver):
             self._simulation.note(self._agent, f"does not change to {self._asked.uid}: {reason}")
 
 
-def _lanes_beside(section: LaneSection) -> Iterator[tuple[int, Lane]]:
-    """The lanes beside a section, with their numbers: 1 is the next one to the left, -1 to the right."""
+def _lanes_beside(section: LaneSection) -> Iterator[tuple[tuple[int, bool], Lane]]:
+    """The lanes beside a section: their numbers, 1 is the next one to the left, -1 to the right; whether they lead as it does."""
     for step in (1, -1):
-        number, beside = step, section
-        while (found := beside._laneToLeft if step > 0 else beside._laneToRight) is not None and abs(
-            number
-        ) < 9:
-            yield number, found.lane
-            number, beside = number + step, found
+        beside = section
+        for number in range(1, _MOST + 1):
+            other = beside._laneToLeft if step > 0 else beside._laneToRight
+            if other is None:
+                break
+            yield (step * number, other.isForward == section.isForward), other.lane
+            beside = other
