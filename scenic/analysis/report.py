@@ -1,12 +1,13 @@
 """Diagnostics of facts that analysis proves."""
 
-from collections.abc import Collection, Sequence
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
 from typing import Final
 
 from scenic.analysis.contraction import contract
 from scenic.analysis.facts import Fact
 from scenic.analysis.smt import Contradiction, Support, judge
-from scenic.analysis.supports import supports
+from scenic.analysis.supports import DISCRETE, DeadValues, dead_values
 from scenic.analysis.terms import has_solver
 from scenic.analysis.traces import contradictions
 from scenic.graph.bounding import overall
@@ -74,24 +75,65 @@ def prove_in_time(
     return tuple(diagnostics)
 
 
-def prove_dead(graph: Graph, domain: Domain) -> tuple[Diagnostic, ...]:
-    """Options of choices that no scene has, since the requirements exclude them (SC702)."""
+def prove_dead(graph: Graph, domains: Sequence[Domain], names: Mapping[int, str]) -> tuple[Diagnostic, ...]:
+    """Values of choices and of ranges of integers that no scene has, since the requirements exclude them (SC702).
+
+    Of a range that is information, not a warning: its inner values cannot be removed, and who requires that a number be even
+    means just this.
+
+    Args:
+        graph: the graph.
+        domains: each with what the requirements leave of the cube, as far as one analysis shows it.
+        names: of draws, by the addresses of their axes.
+
+    """
+    by_place: dict[tuple[Span, bool], list[DeadValues]] = {}
+    draws: Counter[object] = Counter(node.span for node in graph.nodes if node.operation.name in DISCRETE)
+    for row in dead_values(graph, domains):
+        if isinstance(row.draw.span, Span):
+            by_place.setdefault((row.draw.span, row.draw.operation.name == "choice"), []).append(row)
     diagnostics = []
-    for row in supports(graph, domain):
-        dead = [text for number, text in enumerate(row.options) if number not in row.left]
-        if not dead or row.span is None:
-            continue
-        names = ", ".join(dead[:_SHOWN]) + (", ..." if len(dead) > _SHOWN else "")
+    for (span, is_choice), rows in by_place.items():
+        noun = "option" if is_choice else "integer"
+        of = f"{noun}s of this {'choice' if is_choice else 'range'}"
+        number = draws[span]
+        if len(rows) == number and len({row.values for row in rows}) == 1:
+            dead = rows[0].values
+            verb = "never occurs" if len(dead) == 1 else "never occur"
+            where = "" if number == 1 else f" in any of its {number} draws"
+            message = f"{len(dead)} of the {rows[0].count} {of} {verb}{where}: {_some(dead)}"
+        else:
+            of_draws = (f"{names[graph.address(row.axis)]} is {_left(row)}" for row in rows[:_SHOWN])
+            more = f"; and so on, for {len(rows)} draws" if len(rows) > _SHOWN else ""
+            message = f"some {of} never occur in some of its {number} draws: {'; '.join(of_draws)}{more}"
         diagnostics.append(
             Diagnostic(
                 "SC702",
-                f"{len(dead)} of the {len(row.options)} options of this choice never occur: {names}",
-                row.span,
-                Severity.WARNING,
-                help="the requirements exclude them; remove them, or check the requirements",
+                message,
+                span,
+                Severity.WARNING if is_choice else Severity.INFORMATION,
+                help="the requirements exclude them; remove them, or check the requirements"
+                if is_choice
+                else "the requirements exclude them; if that is not meant, check the requirements",
             )
         )
     return tuple(diagnostics)
+
+
+def _left(row: DeadValues) -> str:
+    """The values that are left of a draw, or those that are not, whichever are fewer."""
+    if len(row.left) == 1:
+        return f"always {row.left[0]}"
+    if len(row.left) < len(row.values):
+        return f"only {_some(row.left, ' or ')}"
+    return f"never {_some(row.values, ' or ')}"
+
+
+def _some(texts: Sequence[str], last: str = ", ") -> str:
+    """The first few of some texts."""
+    if len(texts) > _SHOWN:
+        return ", ".join(texts[:_SHOWN]) + ", ..."
+    return last.join([", ".join(texts[:-1]), texts[-1]] if len(texts) > 1 else texts)
 
 
 def _place(condition: Fact) -> tuple[bool, Span]:
@@ -130,18 +172,25 @@ def _contradiction(item: Contradiction, nodes: Sequence[Node] = ()) -> Diagnosti
         message = f"{subject} cannot hold for any value of what it depends on"
     else:
         message = f"{subject} can never hold"
-    labels = [
-        Label(
-            other.span, "while this is required", other.filename if other.filename != last.filename else None
+    # A line in a loop is required many times, but marked once.
+    labels = list(
+        dict.fromkeys(
+            Label(
+                other.span,
+                "while this is required",
+                other.filename if other.filename != last.filename else None,
+            )
+            for other in others
+            if other.span is not None and (other.span, other.filename) != (last.span, last.filename)
         )
-        for other in others
-        if other.span is not None
-    ]
+    )
     phrases: dict[Span, tuple[str, list[str]]] = {}
     for support in item.supports:
         if isinstance(support.node.span, Span):
             noun, phrase = _words(support, nodes)
-            phrases.setdefault(support.node.span, (noun, []))[1].append(phrase)
+            parts = phrases.setdefault(support.node.span, (noun, []))[1]
+            if phrase not in parts:
+                parts.append(phrase)
     labels += [Label(span, f"{noun} {' and '.join(parts)}") for span, (noun, parts) in phrases.items()]
     labels.sort(key=lambda label: (label.filename or "", label.span))
     return Diagnostic(

@@ -5,7 +5,9 @@ from types import MappingProxyType
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from scenic.analysis.finite.variables import Variable, variables_of
 from scenic.dataclass import dataclass
 from scenic.graph.bounding import over
 from scenic.graph.bounds import Bounds, Floats
@@ -14,7 +16,16 @@ from scenic.graph.node import Graph, Node
 from scenic.graph.operations import TABLE
 from scenic.language.spans import Span
 
-__all__ = ["NAMES", "DrawnSupport", "options_of", "places_of", "supports"]
+__all__ = [
+    "DISCRETE",
+    "NAMES",
+    "DeadValues",
+    "DrawnSupport",
+    "dead_values",
+    "options_of",
+    "places_of",
+    "supports",
+]
 
 NAMES: Final[Mapping[str, str]] = MappingProxyType(
     {
@@ -27,6 +38,9 @@ NAMES: Final[Mapping[str, str]] = MappingProxyType(
     }
 )
 """Names of primitive distributions for users, by operation; everything else that is drawn is a place in a region."""
+
+DISCRETE: Final = ("choice", "discrete range", "weighted integer")
+"""Operations that draw one of some integers, or of numbered options."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +69,52 @@ class DrawnSupport:
     axes: tuple[Node, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class DeadValues:
+    """The values of one draw that no scene has.
+
+    Attributes:
+        draw: the choice or the integer that is drawn.
+        axis: its axis.
+        count: the number of its values.
+        values: those that never occur, as text.
+        left: the others, as text.
+
+    """
+
+    draw: Node
+    axis: Node
+    count: int
+    values: tuple[str, ...]
+    left: tuple[str, ...]
+
+
+def dead_values(graph: Graph, domains: Sequence[Domain]) -> tuple[DeadValues, ...]:
+    """The draws of a graph some values of which are not left in one of some domains, though they have a weight."""
+    variables = variables_of(graph)
+    rows = []
+    for node in graph.nodes:
+        axis = next((operand for operand in node.operands if operand in variables), None)
+        if axis is None or node.operation.name not in DISCRETE:
+            continue
+        values = values_of_cells(node, graph, variables[axis])
+        if not len(values):
+            continue
+        left = np.logical_and.reduce([cells_left(domain, variables[axis]) for domain in domains])
+        alive = set(values[left].tolist())
+        possible = sorted(set(values.tolist()))
+        options = options_of(node, graph.nodes)
+        if node.operation.name == "choice":
+            texts = [options[value] if value < len(options) else f"number {value + 1}" for value in possible]
+        else:
+            texts = [str(value) for value in possible]
+        dead = tuple(text for value, text in zip(possible, texts, strict=True) if value not in alive)
+        left_texts = tuple(text for value, text in zip(possible, texts, strict=True) if value in alive)
+        if dead:
+            rows.append(DeadValues(node, axis, len(options) or len(possible), dead, left_texts))
+    return tuple(rows)
+
+
 def supports(graph: Graph, domain: Domain) -> tuple[DrawnSupport, ...]:
     """The supports of all primitive values of a graph, in the order of the graph."""
     axes_of_node: dict[Node, list[int]] = {}
@@ -64,6 +124,7 @@ def supports(graph: Graph, domain: Domain) -> tuple[DrawnSupport, ...]:
             axes_of_node[node] = axes
     whole = Domain.whole(graph.dimension).hull
     before, after = over(axes_of_node, graph.axes, *whole), over(axes_of_node, graph.axes, *domain.hull)
+    variables = variables_of(graph)
     rows: list[DrawnSupport] = []
     places: dict[Span | None, int] = {}
     for node, axes in axes_of_node.items():
@@ -91,7 +152,7 @@ def supports(graph: Graph, domain: Domain) -> tuple[DrawnSupport, ...]:
             continue
         options = options_of(node, graph.nodes)
         ends = _ends(after[node])
-        left = _options_left(node, graph, domain) if options else ()
+        left = _options_left(node, graph, domain, variables) if options else ()
         rows.append(
             DrawnSupport(kind, span, _ends(before[node]), ends, options, left, removed_share, own_axes)
         )
@@ -132,21 +193,38 @@ def options_of(choice: Node, nodes: Sequence[Node]) -> tuple[str, ...]:
     return ()
 
 
-def _options_left(choice: Node, graph: Graph, domain: Domain) -> tuple[int, ...]:
-    """Return the options that some box of each part of a domain holds."""
-    axis = graph.axes[choice.operands[0]]
-    left: set[int] | None = None
-    ranges = [(part.lower[:, axis], part.upper[:, axis]) for part in domain.parts]
-    for first, last in [*ranges, *_cells_left(domain, axis)]:
-        lower, upper = np.zeros((len(first), graph.dimension)), np.ones((len(first), graph.dimension))
-        lower[:, axis], upper[:, axis] = first, last
-        bounds = over([choice], graph.axes, lower, upper)[choice]
-        if bounds is None:
-            continue
-        ends = zip(bounds.lower.astype(int).tolist(), bounds.upper.astype(int).tolist(), strict=True)
-        mine = {option for low, high in ends for option in range(low, high + 1)}
-        left = mine if left is None else left & mine
-    return tuple(sorted(left or ()))
+def cells_left(domain: Domain, variable: Variable) -> NDArray[np.bool_]:
+    """The cells of an axis that reads as discrete values which are left in a domain, as a mask ``(d,)``."""
+    axis, middles = variable.number, variable.middles[:, np.newaxis]
+    mask = np.ones(variable.size, dtype=np.bool_)
+    for part in domain.parts:
+        # All points of a cell are alike, so that a cell of which a box lacks some has no solution in it.
+        mask &= ((part.lower[:, axis] <= middles) & (middles <= part.upper[:, axis])).any(axis=1)
+    for lower, _ in _cells_left(domain, axis):
+        mask &= np.isin(variable.lower, lower)
+    return mask
+
+
+def values_of_cells(node: Node, graph: Graph, variable: Variable) -> NDArray[np.intp]:
+    """The integer that a draw gives on each cell of its axis, ``(d,)``; empty where other draws decide it, too."""
+    lower, upper = np.zeros((variable.size, graph.dimension)), np.ones((variable.size, graph.dimension))
+    lower[:, variable.number] = upper[:, variable.number] = variable.middles
+    bounds = over([node], graph.axes, lower, upper)[node]
+    if bounds is None or bounds.lower.shape != (variable.size,) or (bounds.lower != bounds.upper).any():
+        return np.empty(0, dtype=np.intp)
+    return bounds.lower.astype(np.intp)
+
+
+def _options_left(
+    choice: Node, graph: Graph, domain: Domain, variables: Mapping[Node, Variable]
+) -> tuple[int, ...]:
+    """The options that are left of a choice, by number; all that it can have where they are too many to tell."""
+    variable = variables.get(choice.operands[0])
+    if variable is None:
+        return tuple(range(len(options_of(choice, graph.nodes))))
+    values = values_of_cells(choice, graph, variable)
+    left = values[cells_left(domain, variable)] if len(values) else np.arange(variable.size)
+    return tuple(sorted(set(left.tolist())))
 
 
 def _cells_left(domain: Domain, axis: int) -> list[tuple[Floats, Floats]]:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from scenic.analysis.finite.explaining import findings, left_to_chance
+from scenic.analysis.finite.explaining import findings, left_to_chance, with_possible_values
 from scenic.analysis.supports import DrawnSupport, places_of, supports
 from scenic.assessment.assessment import Assessment, ValueRow
 from scenic.assessment.drawing import Whereabouts
@@ -49,6 +49,8 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
         scenes = scenario.stream(_SHOWN, seed=seed, approximate=_SHOWN, max_attempts=tries)
     accepted_scenes = [scene for scene in scenes if isinstance(scene, Scene)]
     draws = scenario.draw_names
+    decision, checks = decision_of(scenario.outline), scenario.outline.checks
+    left = domain if impossible else with_possible_values(domain, decision)
     values = tuple(
         ValueRow(
             _text(scenario.text, row),
@@ -56,9 +58,8 @@ def assess(scenario: Scenario, *, candidates: int = CANDIDATES, seed: int = 0) -
             row,
             tuple(dict.fromkeys(draws[graph.address(axis)].thing for axis in row.axes)),
         )
-        for row in supports(graph, domain)
+        for row in supports(graph, left)
     )
-    decision, checks = decision_of(scenario.outline), scenario.outline.checks
     return Assessment(
         scenario.filename,
         values,

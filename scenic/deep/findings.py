@@ -9,6 +9,7 @@ from scenic.analysis.report import prove, prove_dead, prove_in_time
 from scenic.analysis.terms import has_solver
 from scenic.deep.dead_branches import prove_branches
 from scenic.failures import diagnose
+from scenic.graph.domain import Domain
 from scenic.language.diagnostics import Diagnostic, Severity
 from scenic.language.errors import ScenicSyntaxError
 from scenic.language.extras import installation
@@ -47,8 +48,10 @@ def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
     temporal = [item.formula for item in scenario.requirements if item.formula and item.probability == 1]
     findings += prove_in_time(temporal, {item.span for item in findings if item.severity is Severity.ERROR})
     if all(item.severity is not Severity.ERROR for item in findings):
-        domain = contract(graph, facts).domain.with_finite(narrowed_values(decision))
-        findings += prove_dead(graph, domain)
+        names = {address: name.thing for address, name in scenario.draw_names.items()}
+        boxes = contract(graph, facts).domain
+        combined = Domain.whole(graph.dimension).with_finite(narrowed_values(decision))
+        findings += prove_dead(graph, (boxes, combined), names)
         findings += prove_branches(scenario.text, filename, scenario.program, graph.nodes, facts)
     if not has_solver():
         findings += (_ADVICE,)

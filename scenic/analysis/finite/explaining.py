@@ -20,7 +20,15 @@ from scenic.graph.finite import Finite, Listed
 from scenic.language.diagnostics import Diagnostic, Label, Severity
 from scenic.runtime.sampling.checks import Check
 
-__all__ = ["FiniteFinding", "LeftToChance", "contradiction", "findings", "left_to_chance", "narrowed_values"]
+__all__ = [
+    "FiniteFinding",
+    "LeftToChance",
+    "contradiction",
+    "findings",
+    "left_to_chance",
+    "narrowed_values",
+    "with_possible_values",
+]
 
 
 _IN_BOXES: Final = "in boxes with continuous values"
@@ -161,6 +169,14 @@ def narrowed_values(decision: Decision) -> tuple[Finite, ...]:
     return tuple(parts)
 
 
+def with_possible_values(domain: Domain, decision: Decision) -> Domain:
+    """A domain in which each discrete value that is drawn by a finite part has just the values of some solution: for reports."""
+    drawn = {axis for one in domain.finite for axis in one.axes.tolist()}
+    return domain.with_finite(
+        tuple(one for one in narrowed_values(decision) if drawn.issuperset(one.axes.tolist()))
+    )
+
+
 def _alive(decision: Decision, component: Component) -> dict[int, Mask]:
     """The values of each draw that some solution has, as far as that is found out."""
     problem = decision.problem
@@ -217,7 +233,11 @@ def contradiction(decision: Decision, checks: Sequence[Check]) -> tuple[Diagnost
             if others
             else "no scene can meet it; change or remove it",
             labels=tuple(
-                Label(check.span, "while this is required") for check in others if check.span is not None
+                dict.fromkeys(
+                    Label(check.span, "while this is required")
+                    for check in others
+                    if check.span is not None and check.span != last.span
+                )
             ),
         ),
     )

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scenic.analysis.finite.differing import bounded
 from scenic.analysis.finite.elimination import eliminate, ordered
 from scenic.analysis.finite.listing import solutions
+from scenic.analysis.finite.matching import matchable
 from scenic.analysis.finite.network import Constraint, FiniteProblem, Reduced, components, consistent, merged
 from scenic.analysis.finite.occupying import Exclusive, exclusives, occupied
 from scenic.analysis.finite.tables import Mask
@@ -87,28 +88,56 @@ def _solved(problem: FiniteProblem, constraints: Sequence[Constraint]) -> Compon
     draws = tuple(variable for variable in scope if variable < problem.draws)
     every = tuple(constraints)
     tables = merged(table for constraint in constraints for table in constraint.tables)
+    nothing = Component(draws, domains, every, (), every, 0.0)
     if not consistent(tables, domains):
-        return Component(draws, domains, every, (), every, 0.0)
-    reduction = Reduced(problem, every, domains)
-    remaining_share = float(np.prod([reduction.weights[variable].sum() for variable in draws]))
-    best: tuple[tuple[Drawn, ...], tuple[Constraint, ...]] | None = None
-    elimination = _eliminated(reduction, every)
-    if elimination is not None:
-        best = (elimination,), every
-        count = None
-    else:
-        listing = _listed(reduction, every)
-        count = None
-        if listing is not None:
-            best = listing, every
-            count = len(listing[0].law.rows) if isinstance(listing[0].law, Listed) else None
-    if best is None:
-        best = _strongest(reduction)
-    share = float(np.prod([draw.share for draw in best[0]])) if best[0] else remaining_share
+        return nothing
+    while True:
+        reduced = Reduced(problem, every, domains)
+        best = _exact(reduced, every)
+        if best is not None:
+            break
+        sets = list(exclusives(reduced))
+        before = sum(int(mask.sum()) for mask in domains.values())
+        if not _strike_unmatched(reduced, sets, domains):
+            return nothing
+        if sum(int(mask.sum()) for mask in domains.values()) == before:
+            best = _strongest(reduced, sets)
+            break
+        if not consistent(tables, domains):
+            return nothing
+    struck = float(np.prod([reduced.weights[variable].sum() for variable in draws]))
+    share = float(np.prod([drawn.share for drawn in best[0]])) if best[0] else struck
     if share <= 0:
-        return Component(draws, domains, every, (), every, 0.0)
-    draws_to_use = best[0] if share <= GAIN else ()
-    return Component(draws, domains, every, draws_to_use, best[1] if draws_to_use else (), share, count)
+        return nothing
+    law = best[0][0].law if best[0] else None
+    count = len(law.rows) if isinstance(law, Listed) else None
+    kept = best[0] if share <= GAIN else ()
+    return Component(draws, domains, every, kept, best[1] if kept else (), share, count)
+
+
+def _exact(
+    reduced: Reduced, constraints: tuple[Constraint, ...]
+) -> tuple[tuple[Drawn, ...], tuple[Constraint, ...]] | None:
+    """A way that meets all constraints: by elimination, or from a list."""
+    eliminated = _eliminated(reduced, constraints)
+    if eliminated is not None:
+        return (eliminated,), constraints
+    listed = _listed(reduced, constraints)
+    return None if listed is None else (listed, constraints)
+
+
+def _strike_unmatched(reduced: Reduced, sets: Sequence[Exclusive], domains: dict[int, Mask]) -> bool:
+    """Strike out of ``domains`` the values that no choice of different labels has; return whether there is one."""
+    for exclusive in sets:
+        left = matchable(exclusive.labels)
+        if left is None:
+            return False
+        for bundle, rows, mask in zip(exclusive.bundles, exclusive.rows, left.values(), strict=True):
+            for place, variable in enumerate(bundle):
+                alive = np.zeros_like(domains[variable])
+                alive[reduced.values[variable][rows[mask, place]]] = True
+                domains[variable] = domains[variable] & alive
+    return True
 
 
 def _eliminated(reduced: Reduced, constraints: Sequence[Constraint]) -> Drawn | None:
@@ -177,15 +206,20 @@ def _alone(reduced: Reduced, variable: int) -> Drawn:
     )
 
 
-def _strongest(reduced: Reduced) -> tuple[tuple[Drawn, ...], tuple[Constraint, ...]]:
+def _strongest(
+    reduced: Reduced, sets: Sequence[Exclusive]
+) -> tuple[tuple[Drawn, ...], tuple[Constraint, ...]]:
     """Ways that meet the strongest constraints: by elimination alone, or after values that differ."""
+    # What values that were struck out have decided holds however the others are drawn.
+    decided = [constraint for constraint in reduced.constraints if not reduced.tables([constraint])]
     ways = [_relaxed(reduced, reduced.constraints, frozenset())]
-    for exclusive in exclusives(reduced):
-        draw, met_constraints = _differing(reduced, exclusive)
-        if draw is not None:
-            others, more = _relaxed(reduced, reduced.constraints, frozenset(draw.variables))
-            ways.append(((draw, *others), (*met_constraints, *more)))
-    return min(ways, key=lambda way: float(np.prod([draw.share for draw in way[0]])))
+    for exclusive in sets:
+        drawn, met = _differing(reduced, exclusive)
+        if drawn is not None:
+            others, more = _relaxed(reduced, reduced.constraints, frozenset(drawn.variables))
+            ways.append(((drawn, *others), (*met, *more)))
+    drawn_best, met_best = min(ways, key=lambda way: float(np.prod([drawn.share for drawn in way[0]])))
+    return drawn_best, tuple(dict.fromkeys([*met_best, *decided]))
 
 
 def _differing(reduced: Reduced, exclusive: Exclusive) -> tuple[Drawn | None, tuple[Constraint, ...]]:

@@ -43,10 +43,10 @@ def test_a_relation_of_random_values_is_random() -> None:
     assert any(either for *_, either in rows)
 
 
-@pytest.mark.parametrize("combinations", [[(1, 2), (1,)], [([1], 2)], [3]])
+@pytest.mark.parametrize("combinations", [[(1, 2), (1,)], [([1], 2)], [3], "ab", [(1, 2)], [()]])
 def test_combinations_that_cannot_be_looked_up_are_refused(combinations: list[object]) -> None:
     with pytest.raises(InvalidScenarioError, match="the combinations that are allowed"):
-        allowed(bool, combinations)  # type: ignore[arg-type] # that is the fault
+        allowed(lambda x: x, combinations)  # type: ignore[arg-type] # that is the fault
 
 
 def test_what_is_no_function_is_refused() -> None:
@@ -54,3 +54,18 @@ def test_what_is_no_function_is_refused() -> None:
         allowed(3, [(1, 2)])  # type: ignore[arg-type]
     with pytest.raises(InvalidScenarioError, match="marks a function or a class of regions, not 3"):
         bounded(lambda x: x)(3)  # type: ignore[type-var]
+
+
+def test_a_relation_asked_about_another_number_of_values_is_refused_where_it_is_asked() -> None:
+    with pytest.raises(
+        InvalidScenarioError, match="of ask have 2 values, but it is asked about 3 values"
+    ) as caught:
+        scenario(f"{PROGRAM}require fits(x, y, z)\n").sample(1, seed=1)
+    assert caught.value.span is not None
+    assert caught.value.span.line == 7
+    assert caught.value.help is not None
+    with pytest.raises(InvalidScenarioError, match="asked about 1 value"):
+        scenario(f"{PROGRAM}one = fits(x)\n")
+    everything_goes = allowed(max, [(1, 2)])
+    assert everything_goes(1, 2)
+    assert not allowed(max, [])(1)
