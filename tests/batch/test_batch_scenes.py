@@ -434,3 +434,39 @@ def test_scenario_rejects_in_processes_as_alone() -> None:
             scenario.sample(40, seed=1, max_attempts=1, processes=processes)
         messages.append(str(caught.value))
     assert messages[0] == messages[1]
+
+
+FINITE = [
+    (
+        "s = [DiscreteRange(0, 11) for i in range(12)]\nfor i in range(12):\n    for j in range(i):\n"
+        "        require s[i] != s[j]\nrequire s[0] + s[1] == 3\nego = new Object with foo s\n"
+    ),
+    (
+        "a, b, c = (Uniform('x', 'y', 'z') for i in range(3))\nrequire a != b\nrequire b != c\nrequire a != c\n"
+        "ego = new Object with foo (a, b, c)\n"
+    ),
+    (
+        "n, m, t = DiscreteRange(1, 9), Uniform(2, 4, 8), Range(0, 40)\nrequire n * m < 20\nrequire 30 < t * m + n < 31\n"
+        "ego = new Object at (t, n, 0), with foo m\n"
+    ),
+]
+
+
+@pytest.mark.parametrize("text", FINITE)
+def test_decided_values_are_the_same_with_a_store_and_in_processes(
+    text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "program.scenic").write_text(text)
+
+    def lines(processes: int) -> list[bytes]:
+        scenario = scenic.scenarioFromFile(tmp_path / "program.scenic")
+        return [scenario.sceneToBytes(scene) for scene in scenario.sample(40, seed=3, processes=processes)]
+
+    alone = lines(1)
+    assert lines(2) == alone
+    monkeypatch.setenv("SCENIC_CACHE", "")
+    monkeypatch.setenv("SCENIC_CACHE_DIR", str(tmp_path / "store"))
+    assert lines(1) == alone
+    # The second time what the first has stored is read.
+    assert lines(2) == alone
+    assert len(set(alone)) > 5
