@@ -63,6 +63,21 @@ def test_a_red_light_is_halted_for_and_a_green_one_is_not(folder: Path) -> None:
     assert speeds[green[1:, 0] > 60].min() > 9
 
 
+def test_a_car_that_is_moved_elsewhere_halts_for_the_light_there(folder: Path) -> None:
+    text = """
+behavior Moved():
+    try:
+        do DriveByRulesBehavior(10)
+    interrupt when simulation().currentTime == 10:
+        take SetPositionAction((80, 1.75)), SetOrientationAction(Orientation.fromEuler(90 deg, 0, 0))
+        take SetSpeedAction(8)
+ego = new Car at (-100, -1.75), facing -90 deg, with speed 8, with behavior Moved
+"""
+    motion = places(simulated(folder, text, "light", 200, "{'states': {'7': 'red'}}"))
+    assert motion[15, 0] > 70
+    assert 15.2 < motion[-1, 0] - 2.25 < 17
+
+
 def test_the_red_light_runner_runs_it(folder: Path) -> None:
     done = simulated(
         folder, WEST.format(more=", ignore={'signals'}"), "light", 100, "{'states': {'7': 'red'}}"

@@ -12,6 +12,7 @@ from scenic.domains.driving.car_following import Gap, following_acceleration
 from scenic.domains.driving.elements import Lane, Maneuver
 from scenic.domains.driving.lane_driving import LaneDriver
 from scenic.domains.driving.narrow_lanes import ways_after
+from scenic.domains.driving.planning import MotionPlan
 from scenic.domains.driving.right_of_way import Claim
 from scenic.domains.driving.speed_limits import limits_along
 from scenic.domains.driving.speed_profiles import Comfort
@@ -109,6 +110,11 @@ class RulesDriver(LaneDriver):
         """The ways to go on at the end of the last lane: all maneuvers, not only those straight ahead."""
         lane = self._plan.last_lane
         return self.choices if self._backward else lane.maneuvers or self.choices
+
+    def _follow(self, plan: MotionPlan, near: float, duration: float, *, backward: bool) -> None:
+        # Halts belong to a plan: those of the one before lie elsewhere.
+        self._halts, self._marks = [], 0
+        super()._follow(plan, near, duration, backward=backward)
 
     # What lies along the path
 
