@@ -1,5 +1,7 @@
 """Findings that are proved by running and analysing a program: `scenic check --deep`."""
 
+import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -51,7 +53,9 @@ def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
         names = {address: name.thing for address, name in scenario.draw_names.items()}
         boxes = contract(graph, facts).domain
         combined = Domain.whole(graph.dimension).with_finite(narrowed_values(decision))
-        findings += prove_dead(graph, (boxes, combined), names)
+        findings += tuple(
+            _placed(item, scenario.text) for item in prove_dead(graph, (boxes, combined), names)
+        )
         findings += prove_branches(scenario.text, filename, scenario.program, graph.nodes, facts)
     if not has_solver():
         findings += (_ADVICE,)
@@ -67,3 +71,16 @@ def deep_check(path: str | Path) -> tuple[Diagnostic, ...]:
         )
         for item in findings
     )
+
+
+def _placed(item: Diagnostic, text: str) -> Diagnostic:
+    """A finding about a draw, without a place where that is in another file than the program: draws do not know their files."""
+    span, lines = item.span, text.split("\n")
+    if span is None or (
+        span.end_line <= len(lines) and lines[span.end_line - 1][: span.end_column].endswith(")")
+    ):
+        return item
+    message = re.sub(
+        r"of this (choice|range)", rf"of a \1 in an imported module (line {span.line})", item.message, count=1
+    )
+    return replace(item, message=message, span=None)

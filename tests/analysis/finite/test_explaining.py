@@ -212,3 +212,15 @@ def test_values_that_too_few_others_could_take_are_found_dead(count: int, tmp_pa
     )
     outlined = scenic.scenarioFromString(text.replace("s[i] < 2", "s[i] < 1")).outline
     assert decision_of(outlined).impossible
+
+
+def test_a_choice_of_another_file_is_not_marked_in_the_program(tmp_path: Path) -> None:
+    from scenic.deep.findings import deep_check
+
+    (tmp_path / "colours_of_cars.scenic").write_text("\n" * 5 + "pick = Uniform(1, 2, 3)\n")
+    (tmp_path / "program.scenic").write_text(
+        "from colours_of_cars import pick\nrequire pick < 3\nego = new Object with foo pick\n"
+    )
+    (found,) = deep_check(tmp_path / "program.scenic")
+    assert found.span is None
+    assert found.message == "1 of the 3 options of a choice in an imported module (line 6) never occurs: 3"
