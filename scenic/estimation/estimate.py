@@ -9,6 +9,7 @@ from typing import Any, Final, Literal
 from scenic.dataclass import dataclass
 from scenic.estimation.branching import Rare
 from scenic.estimation.following import Weighted
+from scenic.formats.json_lines import real
 from scenic.statistics.comparisons import PairedComparison
 from scenic.statistics.intervals import Interval, exact_interval
 from scenic.statistics.sequences import sequence_interval
@@ -123,7 +124,7 @@ class Tally:
         self.violations += verdict in ("FALSE", "PRESUMABLY_FALSE")
         self.unmet += verdict == "PRESUMABLY_FALSE"
         self.presumable += verdict == "PRESUMABLY_TRUE"
-        self.flat += outcome["robustness"] is not None and math.isinf(float(outcome["robustness"]))
+        self.flat += outcome["robustness"] is not None and math.isinf(real(outcome["robustness"]))
 
     def interval(self, confidence: float, *, at_any_time: bool) -> Interval:
         """Return the interval of the probability; ``at_any_time`` where the number of runs was not fixed in advance."""

@@ -203,7 +203,8 @@ def _about_ending(estimate: Estimate) -> list[str]:
                 " holds whenever one stops."
             )
         else:
-            words.append(f"The test has no answer yet{because}.")
+            what = "test" if question.method == "bound" else "estimate"
+            words.append(f"The {what} has no answer yet{because}.")
     elif question.method == "fixed number" and estimate.at_any_time:
         words.append(
             "More runs were asked for when some had been looked at, so the interval is one that holds however often one looks; it"

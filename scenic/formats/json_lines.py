@@ -180,6 +180,11 @@ def number(value: float) -> float | dict[str, str]:
     return {"$float": "nan" if math.isnan(value) else "inf" if value > 0 else "-inf"}
 
 
+def real(value: Any) -> float:
+    """Return the real number that `number` has written."""
+    return float(value["$float"]) if isinstance(value, dict) else float(value)
+
+
 def plain(value: object, numbers: Mapping[int, int], within: tuple[int, ...] = ()) -> Any:
     """Return a value as JSON holds it; ``numbers`` maps the ``id`` of each object of the scene to its index.
 

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenic.dataclass import dataclass
+from scenic.formats.json_lines import real
 from scenic.formats.trajectories import FORMAT, VERSION
 from scenic.formats.trajectory_tables import parquet_about, parquet_steps
 from scenic.language.errors import Located, MissingFileError
@@ -112,7 +113,7 @@ def _trajectory(about: dict[str, Any], steps: list[dict[str, Any]]) -> Trajector
     count = len(about["objects"])
     return Trajectory(
         about,
-        np.array([_real(row["time"]) for row in steps], dtype=np.float64),
+        np.array([real(row["time"]) for row in steps], dtype=np.float64),
         np.array([_rows(row["positions"], count, 3) for row in steps]).reshape(len(steps), count, 3),
         np.array([_rows(row["orientations"], count, 4) for row in steps]).reshape(len(steps), count, 4),
         [{int(number): done for number, done in row["actions"].items()} for row in steps],
@@ -122,9 +123,5 @@ def _trajectory(about: dict[str, Any], steps: list[dict[str, Any]]) -> Trajector
 def _rows(values: list[list[Any]], count: int, width: int) -> Array:
     rows = np.full((count, width), np.nan)
     for number, row in enumerate(values):
-        rows[number] = [_real(value) for value in row]
+        rows[number] = [real(value) for value in row]
     return rows
-
-
-def _real(value: Any) -> float:
-    return float(value["$float"]) if isinstance(value, dict) else float(value)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from scenic.formats.files import OutputError, Waiting, refusing, writing
-from scenic.formats.json_lines import number
+from scenic.formats.json_lines import number, real
 from scenic.language.errors import UnsupportedError
 from scenic.language.extras import installation
 
@@ -144,4 +144,4 @@ def _text(value: object) -> str:
 
 def _number(value: object) -> Any:
     """A number that JSON cannot hold, as it is."""
-    return float(value["$float"]) if isinstance(value, dict) else value
+    return real(value) if isinstance(value, dict) else value

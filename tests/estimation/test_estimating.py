@@ -294,3 +294,12 @@ def test_folders_that_hold_something_else(tmp_path: Path) -> None:
         assert "scenic estimate -o FOLDER" in refused.stderr
     assert (tmp_path / "search" / "runs.jsonl").read_bytes() == before
     assert "-n does not go with a folder" in run_here(["estimate", "search", "-n", 5], folder=tmp_path).stderr
+
+
+def test_requirements_that_only_hold_or_fail_are_estimated() -> None:
+    # The robustness of a condition without a number is infinite.
+    text = "ego = new Object at Range(0, 1) @ 0\nrequire eventually bool(ego.position.x > 0.5) as right"
+    result = scenic.estimate(scenic.scenarioFromString(text), "kinematic", n=40, seed=2, max_steps=2)
+    right = result.requirements[0]
+    assert (right.label, right.runs, right.flat) == ("right", 40, 40)
+    assert right.violations == sum(row["status"] == "counterexample" for row in result.rows) > 10

@@ -831,6 +831,13 @@ def test_of_two_records_of_one_name_in_one_step_the_last_counts() -> None:
     assert done.records["b"] == 4
 
 
+def test_objects_are_recorded_as_they_are_in_each_step() -> None:
+    records = simulate("ego = new Object\nrecord [ego] as a\nrecord initial ego as b\n", 2, drift=1).records
+    places = [things[0].position for _, things in records["a"]]
+    assert len({tuple(place) for place in places}) == 3
+    assert records["b"].position == places[0] == (0, 0, 0)
+
+
 def test_what_cannot_be_recorded_is_shown_in_the_file_that_records_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

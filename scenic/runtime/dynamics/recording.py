@@ -10,6 +10,7 @@ from scenic.language.errors import Located, ScenicTypeError, ScenicValueError
 from scenic.language.spans import Span
 from scenic.runtime.description.declarations import RecordUse
 from scenic.runtime.dynamics.recorders import File, Files, Recorder, for_pattern
+from scenic.runtime.instances.objects import Point
 from scenic.runtime.values.values import describe, is_number
 
 if TYPE_CHECKING:
@@ -90,8 +91,10 @@ class Recording:
 
 
 def _as_it_is(value: Any, made: dict[int, Any]) -> Any:
-    """Return a value whose containers the simulation, or the next one, does not change any more."""
+    """Return a value that the simulation, or the next one, does not change any more: of containers and objects a copy."""
     cls = type(value)
+    if isinstance(value, Point):
+        return copy(value)
     if cls not in (list, tuple, dict, set, deque) and not (
         cls.__module__ == "numpy" and cls.__name__ == "ndarray"
     ):
