@@ -169,7 +169,8 @@ class LaneChanger(LaneDriver):
 
         def reach(time: float, least: float) -> float:
             distance = float(np.interp(time, moments, along))
-            fastest = float(speeds[: int(np.searchsorted(along, distance)) + 1].max())
+            # A car that sets out is slow where the change bends most at first, and keeps to what its second bend allows.
+            fastest = float(speeds[: int(np.searchsorted(along, distance / 2)) + 1].max())
             return max(distance, _SPARE * fastest * least)
 
         return reach
