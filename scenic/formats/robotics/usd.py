@@ -241,7 +241,7 @@ class _Writer:
         from pxr import Gf, UsdGeom, UsdPhysics
 
         if self._inline:
-            prim = _define_mesh(self._stage, path, solid)
+            prim = _define_mesh(self._stage, path, solid, solid.size)
         else:
             name = mesh_name(solid.mesh)
             if solid.texture is not None:
@@ -394,12 +394,15 @@ def _linear(color: tuple[float, ...]) -> list[float]:
     return [float(part) for part in linear(np.array(color))]
 
 
-def _define_mesh(stage: object, path: str, solid: Solid) -> Any:
-    """Return a mesh in the unit box, with normals of every corner and texture coordinates where the object has an image."""
+def _define_mesh(stage: object, path: str, solid: Solid, size: tuple[float, float, float]) -> Any:
+    """Return a mesh in the unit box, with normals of every corner and texture coordinates where the object has an image.
+
+    Edges are sharp or smooth as at a size.
+    """
     from pxr import Gf, Sdf, UsdGeom, Vt
 
     mesh = UsdGeom.Mesh.Define(stage, path)
-    surface = surface_of(solid.mesh, solid.size)
+    surface = surface_of(solid.mesh, size)
     faces = np.asarray(surface.faces, np.int32)
     mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(surface.vertices.astype(np.float32)))
     mesh.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(faces.ravel()))
@@ -439,7 +442,8 @@ def _mesh_layer(solid: Solid, name: str) -> bytes:
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
     holder = UsdGeom.Xform.Define(stage, f"/{name}")
     stage.SetDefaultPrim(holder.GetPrim())
-    _touching(_define_mesh(stage, f"/{name}/mesh", solid), solid)
+    # Objects of all sizes share it.
+    _touching(_define_mesh(stage, f"/{name}/mesh", solid, (1.0, 1.0, 1.0)), solid)
     return _encoded(stage.GetRootLayer(), "mesh.usdc")
 
 
