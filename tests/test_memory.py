@@ -16,12 +16,12 @@ import sys
 import numpy as np
 import scenic
 from scenic.runtime.sampling.engine import Engine
-from scenic.runtime.sampling.pending import Task
+from scenic.runtime.sampling.pending import SceneTask
 
 scenario = scenic.load(sys.argv[1])
 engine = Engine(scenario.outline.plan(scenario.domain))
 # Batches of 512 candidates through every check, none left out.
-report = engine.report(Task(1, 0), 512)
+report = engine.report(SceneTask(1, 0), 512)
 assert report.candidates == 512
 scenes = scenario.sample(2, seed=1, lanes=512)
 with open("/proc/self/status") as status:
