@@ -20,7 +20,7 @@ def random_scenes(count: int) -> list[Any]:
 
 
 def test_poses_bounds_and_masses_come_back(tmp_path: Path) -> None:
-    """What OpenUSD, MuJoCo and Drake read is what was written; their validators find no fault."""
+    """OpenUSD, MuJoCo and Drake read what was written, and their validators find no fault."""
     with Worlds() as worlds:
         for number, scene in enumerate([*scenes(1), *random_scenes(4)]):
             for form in forms():
