@@ -1,18 +1,16 @@
 """Approximate scenes of crowds: the law, against rejection; independence of scenes; crowds that do not fit."""
 
 import math
-from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy import stats
 
 from scenic.language.errors import RejectionException
 from scenic.runtime.sampling import crowd_chains
 from tests.amounts import amount
-from tests.runtime.programs import FALSE_ALARM, fingerprint, scenario
-from tests.runtime.sampling.test_apart import PROGRAMS, drawn_apart, observed
+from tests.runtime.programs import fingerprint, scenario
+from tests.runtime.sampling.test_apart import PROGRAMS, check_law, drawn_apart, observed
 
 CROWD = "yard = RectangularRegion((0, 0), 0, {0}, {0})\nfor i in range({1}):\n    new Object in yard, facing Range(0, 360) deg\n"
 
@@ -26,20 +24,7 @@ def test_the_law_is_nearly_that_of_rejection(name: str) -> None:
     found = observed(scenes)
     program._sampler._finder = program._sampler.engine
     whole = observed(program.sample(count, seed=2))
-    for item in range(found.shape[1]):
-        for axis in range(4):
-            ours, theirs = found[:, item, axis], whole[:, item, axis]
-            values = np.unique(np.concatenate([ours, theirs]))
-            if 1 < len(values) < 5:
-                counts = [[(each == value).sum() for value in values] for each in (ours, theirs)]
-                assert stats.chi2_contingency(counts).pvalue > FALSE_ALARM
-            elif len(values) > 1:
-                assert stats.ks_2samp(ours, theirs).pvalue > FALSE_ALARM
-    for one, other in combinations(range(found.shape[1]), 2):
-        ours, theirs = (
-            np.linalg.norm(each[:, one, :2] - each[:, other, :2], axis=1) for each in (found, whole)
-        )
-        assert stats.ks_2samp(ours, theirs).pvalue > FALSE_ALARM
+    check_law(found, whole)
     report = scenes[0].approximation
     assert report is not None
     assert report.is_mixed
