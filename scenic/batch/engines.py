@@ -221,10 +221,14 @@ class DaskCluster:
                 future.cancel()
 
     def _fetched(self, ended: Sequence[object]) -> list[bytes | None]:
-        """The results of tasks that have ended, ``None`` where their workers have died; raises what a task has raised.
+        """Return the results of tasks that have ended, ``None`` where their workers have died.
 
-        They are fetched together. Where that takes long, the scheduler may be lost, or a result with its worker, so that Dask
-        computes it again: then the states of the tasks are looked at before they are fetched again.
+        One call fetches all of them. A worker may die after its task has ended: its results are lost, and Dask computes them
+        again, for which this call waits. Where it waits long, it checks that the scheduler is still connected.
+
+        Raises:
+            Exception: the error that a task has raised.
+
         """
         while True:
             errors = [self._error_of(future) for future in ended]
@@ -240,13 +244,17 @@ class DaskCluster:
                 if self._client.status != "running":
                     raise
             except self._distributed.KilledWorker:
-                pass  # which of them, their states tell
+                pass  # the states of the tasks say which of them
             else:
                 return [None if error is not None else next(results) for error in errors]
 
     def _error_of(self, future: Any) -> Exception | None:
-        """Return the loss of the worker of a task that has ended; raises any other error of it."""
-        if future.status == "lost" or future.cancelled():
+        """Return the loss of the worker of a task that has ended; raises any other error of it.
+
+        Dask calls a future lost while the scheduler computes its result again, since the worker that had it has died. A lost
+        connection cancels the futures.
+        """
+        if future.cancelled():
             raise self._gone()
         error: Exception | None = future.exception(timeout=_PATIENCE) if future.status == "error" else None
         if error is not None and not isinstance(error, self._distributed.KilledWorker):

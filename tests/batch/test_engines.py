@@ -211,10 +211,46 @@ def test_a_task_whose_worker_dies_while_results_are_fetched_is_lost() -> None:
     assert _connected(Dying([]))._fetched(tasks) == [b"a", None]
 
 
-@pytest.mark.parametrize("state", ["lost", "cancelled"])
-def test_a_lost_task_is_an_error(state: str) -> None:
+@pytest.mark.parametrize("seconds", [0, 1, 2])
+@pytest.mark.parametrize("dies_again", [False, True])
+def test_a_result_that_is_lost_with_its_worker_is_computed_again(seconds: int, dies_again: bool) -> None:
+    """Dask's own futures are in the state ``lost``, and no longer done, from the death until the second result."""
+    distributed = pytest.importorskip("distributed")
+    future = distributed.client.FutureState("task")
+    future.finish()
+    future.lose()
+    assert future.status == "lost"
+    assert not future.done()
+    killed = distributed.KilledWorker("task", "worker", 3)
+    tasks = [_Ended(b"a", future.status), _Ended(b"b")]
+
+    class Computing(_Client):
+        async def gather(self, futures: list[_Ended], *, asynchronous: bool) -> list[object]:
+            if len(self.gathered) < seconds:
+                self.troubles.append(TimeoutError())
+            elif dies_again:
+                tasks[0].result, tasks[0].status = killed, "error"
+            else:
+                tasks[0].status = "finished"
+            if tasks[0].status == "error" and tasks[0] in futures:
+                self.troubles.append(killed)
+            return await super().gather(futures, asynchronous=asynchronous)
+
+    client = Computing([])
+    assert _connected(client)._fetched(tasks) == [None if dies_again else b"a", b"b"]
+    assert len(client.gathered) == seconds + 1 + dies_again
+
+
+def test_a_task_that_the_lost_connection_cancels_is_an_error() -> None:
+    distributed = pytest.importorskip("distributed")
+    future = distributed.client.FutureState("task")
+    future.finish()
+    future.cancel(reason="scheduler-connection-lost")
     with pytest.raises(ClusterError, match="is lost"):
-        _connected(_Client([]))._fetched([_Ended(b"a", state)])
+        _connected(_Client([]))._fetched([_Ended(b"a", future.status)])
+
+
+def test_an_error_of_a_task_is_raised() -> None:
     with pytest.raises(ZeroDivisionError):
         _connected(_Client([]))._fetched([_Ended(ZeroDivisionError(), "error")])
 
