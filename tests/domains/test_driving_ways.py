@@ -156,6 +156,25 @@ def test_walking_along_a_path(folder: Path) -> None:
     assert states[-1][0].distanceTo(states[-5][0]) == 0
     assert states[-1][0].x == pytest.approx(110, abs=0.1)
     assert states[20][0].distanceTo(states[10][0]) == pytest.approx(1.5, abs=0.01)
+    for before, after in pairwise(states):
+        if after[0].distanceTo(before[0]) > 1e-6:
+            east, north = after[0].x - before[0].x, after[0].y - before[0].y
+            assert after.orientations[0].yaw == pytest.approx(math.atan2(-east, north)), (
+                "they face the way they walk"
+            )
+
+
+@pytest.mark.parametrize(("face", "heading"), [("", 0.5), (", face=True", 1.0)])
+def test_a_direction_of_walking_turns_those_who_are_asked_to_face_it(
+    folder: Path, face: str, heading: float
+) -> None:
+    text = (
+        f"behavior Go():\n    while True:\n        take SetWalkingDirectionAction(1.0{face}), SetWalkingSpeedAction(1)\n"
+        "ego = new Pedestrian at (100, -4.5), facing 0.5, with behavior Go, with regionContainedIn None\n"
+    )
+    states = simulated(folder, text, steps=3).trajectory
+    assert states[-1].orientations[0].yaw == pytest.approx(heading)
+    assert states[-1][0].x - states[0][0].x == pytest.approx(-0.3 * math.sin(1.0))
 
 
 def test_walking_to_a_place(folder: Path) -> None:

@@ -27,6 +27,7 @@ LIGHT = '<signal id="7" s="99" t="-4" zOffset="3" orientation="+" dynamic="yes" 
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("rules")
     (made / "cross.xodr").write_text(cross(arm=100, half=15))
+    (made / "wide.xodr").write_text(cross(arm=100, half=30))
     (made / "light.xodr").write_text(cross(arm=100, half=15, signal=LIGHT.format(type="1000001")))
     (made / "stop.xodr").write_text(cross(arm=100, half=15, signal=LIGHT.format(type="206")))
     (made / "yield.xodr").write_text(cross(arm=100, half=15, signal=LIGHT.format(type="205")))
@@ -61,6 +62,39 @@ def test_a_red_light_is_halted_for_and_a_green_one_is_not(folder: Path) -> None:
     assert np.abs(green[-1]).max() > 30
     speeds = np.hypot(*np.diff(green, axis=0).T) * 10
     assert speeds[green[1:, 0] > 60].min() > 9
+
+
+LEFT = """
+own = network.laneAt((80, 1.75))
+left = [m for m in own.maneuvers if m.type is ManeuverType.LEFT_TURN][0]
+"""
+
+
+@pytest.mark.parametrize(
+    "trajectory", ["[own, left.connectingLane, left.endLane]", "(left,)", "[left.endLane]"]
+)
+def test_a_car_that_obeys_takes_the_ways_of_its_trajectory(folder: Path, trajectory: str) -> None:
+    text = LEFT + WEST.format(more=f", trajectory={trajectory}")
+    motion = places(simulated(folder, text, "light", 200, "{'states': {'7': 'green'}}"))
+    # From the east to the left is to the south.
+    assert motion[-1, 1] < -40
+    assert abs(motion[-1, 0]) < 3
+    held = places(simulated(folder, text, "light", 150, "{'states': {'7': 'red'}}"))
+    assert 15.2 < held[-1, 0] - 2.25 < 17
+
+
+def test_a_trajectory_must_be_one_that_can_be_driven(folder: Path) -> None:
+    with pytest.raises(InvalidScenarioError, match="does not follow"):
+        simulated(folder, LEFT + WEST.format(more=", trajectory=[left.endLane, own]"), "cross", 2)
+    with pytest.raises(TypeError, match="lanes or maneuvers"):
+        simulated(folder, LEFT + WEST.format(more=", trajectory=own"), "cross", 2)
+
+
+def test_a_car_that_obeys_begins_between_the_lanes_of_an_intersection(folder: Path) -> None:
+    text = "ego = new Car at (4.91, 6.32), facing 100 deg, with behavior DriveByRulesBehavior\nrecord ego._lane as lane\n"
+    done = simulated(folder, text, "wide", 150)
+    assert done.result.records["lane"][0][1] is None
+    assert np.abs(places(done)[-1]).max() > 30
 
 
 def test_a_car_that_is_moved_elsewhere_halts_for_the_light_there(folder: Path) -> None:

@@ -66,6 +66,9 @@ class Walks:
         moving = math.hypot(x, y) > 1e-9
         agent.setVelocity(_velocity(math.atan2(-x, y) if moving else agent.heading, speed))
 
+    def face(self, heading: float) -> None:
+        """Turn to a heading (radians); nothing to do where a simulator turns those who walk itself."""
+
 
 def _velocity(heading: float, speed: float) -> Vector:
     velocity: Vector = Vector(-speed * math.sin(heading), speed * math.cos(heading), 0)
@@ -238,13 +241,22 @@ class WalkingAction(Action):
 
 
 class SetWalkingDirectionAction(WalkingAction):
-    """Walk in a direction (radians, anticlockwise from north)."""
+    """Walk in a direction (radians, anticlockwise from north).
 
-    def __init__(self, heading: float) -> None:
+    Args:
+        heading: the direction.
+        face: turn towards it, too, instead of keeping the own heading.
+
+    """
+
+    def __init__(self, heading: float, face: bool = False) -> None:
         self.heading = heading
+        self.face = face
 
     def applyTo(self, agent: Any, simulation: object) -> None:
         """Set it."""
+        if self.face:
+            agent.face(self.heading)
         agent.setWalkingDirection(self.heading)
 
 

@@ -8,7 +8,7 @@ from scenic.domains.driving.lines import concatenateCenterlines
 from scenic.domains.driving.maneuvering import nearest_end, sidewalk_under
 from scenic.domains.driving.rules import RulesDriver
 from scenic.domains.driving.speed_profiles import Comfort
-from scenic.domains.driving.trajectories import Route, Trajectory
+from scenic.domains.driving.trajectories import LaneRoute, Route, Trajectory
 from scenic.domains.driving.u_turns import FASTEST, UTurner
 from scenic.domains.driving.walking import arrived, heading_to, places_of, walking_step
 from scenic.domains.driving.watching import InsideWatch, Nearness
@@ -35,7 +35,8 @@ behavior WalkForwardBehavior():
         end = nearest_end(walk, forward)
         while (distance from self to end) > 1:
             along = walk.orientation[self.position].yaw
-            take SetWalkingDirectionAction(along if forward else along + 180 deg), SetWalkingSpeedAction(1)
+            direction = along if forward else along + 180 deg
+            take SetWalkingDirectionAction(direction, face=True), SetWalkingSpeedAction(1)
         take SetWalkingSpeedAction(0)
 
 
@@ -58,7 +59,7 @@ behavior WalkPath(path, speed=1.4):
     """
     for place in places_of(path):
         while not arrived(self, place, speed):
-            take SetWalkingDirectionAction(heading_to(self, place)), SetWalkingSpeedAction(speed)
+            take SetWalkingDirectionAction(heading_to(self, place), face=True), SetWalkingSpeedAction(speed)
     take SetWalkingSpeedAction(0)
 
 
@@ -72,7 +73,7 @@ behavior Walk(path, speed=Range(0.9, 1.8)):
     for place in places_of(path):
         while not arrived(self, place, speed):
             heading, now = walking_step(self, place, speed)
-            take SetWalkingDirectionAction(heading), SetWalkingSpeedAction(now)
+            take SetWalkingDirectionAction(heading, face=True), SetWalkingSpeedAction(now)
     take SetWalkingSpeedAction(0)
 
 
@@ -203,7 +204,7 @@ behavior DriveAvoidingCollisions(target_speed=25, avoidance_threshold=10):
     take SetThrottleAction(0), SetBrakeAction(1.0)
 
 
-behavior DriveByRulesBehavior(target_speed=None, ignore=(), follow_gap=1.5, comfort=None):
+behavior DriveByRulesBehavior(target_speed=None, ignore=(), follow_gap=1.5, comfort=None, trajectory=None):
     """Drive by the rules of the road: speed limits, lights, stop signs, priority, pedestrians on crossings, gaps.
 
     Arguments:
@@ -211,8 +212,10 @@ behavior DriveByRulesBehavior(target_speed=None, ignore=(), follow_gap=1.5, comf
         ignore: names of rules that are not obeyed: 'speed_limits', 'signals', 'signs', 'priority', 'pedestrians', 'gaps'.
         follow_gap: seconds that the car keeps behind others.
         comfort: limits of accelerations, a `Comfort`.
+        trajectory: lanes, or maneuvers, to take one after the other; after the last one, and by default, any way is taken.
     """
-    driver = RulesDriver(self, target_speed, ignore, comfort, Gap(follow_gap))
+    route = None if trajectory is None else LaneRoute(trajectory)
+    driver = RulesDriver(self, target_speed, ignore, comfort, Gap(follow_gap), route)
     while not driver.is_over():
         while driver.must_choose():
             driver.choose(Uniform(*driver.ways))

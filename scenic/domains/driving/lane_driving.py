@@ -39,8 +39,10 @@ _TURN: Final = math.radians(20)
 def lane_under(agent: Any) -> Lane:
     """Return the lane of a car: in an intersection, of those under it the one that leads from where it is in its direction best.
 
+    Where no lane of an intersection is under the car, as between ways that part, all of its lanes are compared.
+
     Raises:
-        RejectionException: there is none.
+        RejectionException: there is none, outside of any intersection.
 
     """
     before = running_simulation().drivers.get(id(agent))
@@ -51,6 +53,8 @@ def lane_under(agent: Any) -> Lane:
     intersection = agent.roadNetwork.intersectionAt(agent.position)
     if intersection is not None:
         ways = intersection.maneuversAt(agent.position)
+        if not ways and agent._lane is None:
+            ways = [way for way in intersection.maneuvers if way.connectingLane is not None]
         if ways:
             # Of ways that have not parted yet the one straight ahead.
             turns = {way.connectingLane: way.type is not ManeuverType.STRAIGHT for way in ways}
@@ -111,14 +115,21 @@ class LaneDriver(Driver):
         agent = self._agent
         # A car that faces against a lane drives against it.
         backward = abs(turned_from(agent, lane)) > math.pi / 2
-        before = self._simulation.drivers.get(id(agent))
-        if isinstance(before, LaneDriver) and before.lane_now() is lane and before._backward == backward:
+        before = self._plan_before(lane, backward=backward)
+        if before is not None:
             # The way that the behavior before has chosen, from the same curve: nobody sees who drives.
             self._is_joined = duration == 0.0
             self._follow(before._plan, before.along, duration, backward=backward)
         else:
             self._is_joined = False
             self._follow(*self._plan_along(lane, backward=backward), duration, backward=backward)
+
+    def _plan_before(self, lane: Lane, *, backward: bool) -> "LaneDriver | None":
+        """The driver of the behavior before whose plan can be taken over; ``None`` if there is none."""
+        before = self._simulation.drivers.get(id(self._agent))
+        if isinstance(before, LaneDriver) and before.lane_now() is lane and before._backward == backward:
+            return before
+        return None
 
     def _plan_along(self, lane: Lane, *, backward: bool) -> tuple[MotionPlan, float]:
         """A new plan along a lane, and metres along it to the car."""

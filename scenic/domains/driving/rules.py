@@ -16,6 +16,7 @@ from scenic.domains.driving.planning import MotionPlan
 from scenic.domains.driving.right_of_way import Claim
 from scenic.domains.driving.speed_limits import limits_along
 from scenic.domains.driving.speed_profiles import Comfort
+from scenic.domains.driving.trajectories import LaneRoute
 from scenic.language.errors import InvalidScenarioError
 from scenic.language.spelling import nearest
 
@@ -75,6 +76,7 @@ class RulesDriver(LaneDriver):
         ignore: names of `RULES` that the driver does not obey.
         comfort: limits of accelerations.
         gap: kept behind others.
+        route: lanes to take; after the last one, and without it, ways are chosen.
 
     Raises:
         InvalidScenarioError: a name in ``ignore`` is not that of a rule.
@@ -88,7 +90,9 @@ class RulesDriver(LaneDriver):
         ignore: Iterable[str] = (),
         comfort: Comfort | None = None,
         gap: Gap | None = None,
+        route: LaneRoute | None = None,
     ) -> None:
+        self._route = route
         self._ignored = frozenset([ignore] if isinstance(ignore, str) else ignore)
         for name in sorted(map(str, self._ignored)):
             if name not in RULES:
@@ -108,8 +112,23 @@ class RulesDriver(LaneDriver):
     @property
     def ways(self) -> tuple[Any, ...]:
         """The ways to go on at the end of the last lane: all maneuvers, not only those straight ahead."""
-        lane = self._plan.last_lane
-        return self.choices if self._backward else lane.maneuvers or self.choices
+        if self._backward:
+            return self.choices
+        ways = self._plan.last_lane.maneuvers or self.choices
+        return (self._route.open_ways(ways) if self._route is not None else ()) or ways
+
+    def choose(self, choice: Any) -> None:
+        """Go on by one of the `ways`."""
+        if self._route is not None and isinstance(choice, Maneuver):
+            self._route.take(choice)
+        super().choose(choice)
+
+    def _begin_plan(self, lane: Lane, duration: float = 0.0) -> None:
+        super()._begin_plan(lane if self._route is None else self._route.begin(lane), duration)
+
+    def _plan_before(self, lane: Lane, *, backward: bool) -> LaneDriver | None:
+        # The way that another behavior has chosen may leave the route.
+        return None if self._route is not None else super()._plan_before(lane, backward=backward)
 
     def _follow(self, plan: MotionPlan, near: float, duration: float, *, backward: bool) -> None:
         # Halts belong to a plan: those of the one before lie elsewhere.

@@ -1,19 +1,21 @@
 """Ways for cars: lanes one after the other, or points with speeds."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from scenic.domains.driving.elements import Lane, LinearElement
+from scenic.domains.driving.elements import Lane, LinearElement, Maneuver
 from scenic.domains.driving.maneuvering import intersection_ahead
-from scenic.domains.driving.narrow_lanes import line_to_drive
+from scenic.domains.driving.narrow_lanes import line_to_drive, ways_after
+from scenic.language.errors import InvalidScenarioError
 from scenic.runtime.regions.lines import PolylineRegion
 from scenic.runtime.values.describing import wrong_type
 from scenic.runtime.values.values import Vector
 
-__all__ = ["Route", "Trajectory"]
+__all__ = ["LaneRoute", "Route", "Trajectory"]
 
 Floats = NDArray[np.float64]
 
@@ -103,6 +105,73 @@ class Route:
             shapely.line_locate_point(line, shapely.points(points)), lengths, self._speeds or ()
         )
         return speeds
+
+
+class LaneRoute:
+    """Lanes that a driver takes one after the other where it has a choice, and which of them come next.
+
+    Args:
+        trajectory: lanes, or maneuvers, one after the other; connecting lanes may be left out.
+
+    Attributes:
+        lanes: the lanes.
+
+    Raises:
+        ScenicTypeError: it is something else.
+        InvalidScenarioError: some lane does not follow the one before it.
+
+    """
+
+    def __init__(self, trajectory: object) -> None:
+        parts = list(trajectory) if isinstance(trajectory, list | tuple) else []
+        if not parts or not all(isinstance(part, Lane | Maneuver) for part in parts):
+            raise wrong_type("lanes or maneuvers in a list that is not empty", trajectory, "the trajectory")
+        lanes: list[Lane] = []
+        for part in parts:
+            ways = (part,) if isinstance(part, Lane) else (part.startLane, part.connectingLane, part.endLane)
+            lanes += [lane for lane in ways if lane is not None and lane not in lanes[-1:]]
+        for before, after in pairwise(lanes):
+            if not any(after in _taken_by(way) for way in _ways_from(before)):
+                ends = ", ".join(way.endLane.uid for way in _ways_from(before)) or "none"
+                raise InvalidScenarioError(
+                    f"the trajectory cannot be driven: {after.uid} does not follow {before.uid}",
+                    help=f"lanes that follow {before.uid}: {ends}",
+                )
+        self.lanes: tuple[Lane, ...] = tuple(lanes)
+        self._count = 0
+        """The number of lanes that have been taken."""
+
+    def begin(self, lane: Lane) -> Lane:
+        """Return the lane in which to begin: the own one if it belongs to the route, or leads to it, else the first."""
+        for number in (*range(self._count, len(self.lanes)), *range(self._count)):
+            if self.lanes[number] == lane:
+                self._count = number + 1
+                return lane
+        self._count = 0
+        if self.open_ways(_ways_from(lane)):
+            return lane
+        self._count = 1
+        return self.lanes[0]
+
+    def open_ways(self, ways: Sequence[Maneuver]) -> tuple[Maneuver, ...]:
+        """Return those of some maneuvers by which the route goes on; none after its last lane."""
+        wanted = self.lanes[self._count : self._count + 1]
+        return tuple(way for way in ways if any(lane in wanted for lane in _taken_by(way)))
+
+    def take(self, way: Maneuver) -> None:
+        """Go on by a maneuver."""
+        for lane in _taken_by(way):
+            if lane in self.lanes[self._count : self._count + 1]:
+                self._count += 1
+
+
+def _ways_from(lane: Lane) -> Sequence[Maneuver]:
+    return lane.maneuvers or ways_after(lane)
+
+
+def _taken_by(way: Maneuver) -> tuple[Lane, ...]:
+    """The lanes of a maneuver after the one in which it begins."""
+    return tuple(lane for lane in (way.connectingLane, way.endLane) if lane is not None)
 
 
 def _vertices(part: Any) -> Floats:

@@ -131,5 +131,9 @@ class Walking(_Moved, Walks):
             direction = math.atan2(-x, y) if math.hypot(x, y) > 1e-9 else self.heading
         self._walk(direction, speed)
 
+    def face(self, heading: float) -> None:
+        """Turn to a heading (radians)."""
+        running_simulation().turn(self, heading)
+
     def _walk(self, heading: float, speed: float) -> None:
         self.setVelocity((-speed * math.sin(heading), speed * math.cos(heading), 0.0))
