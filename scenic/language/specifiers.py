@@ -171,7 +171,7 @@ _ALL = (
         "position",
         ("resting on target",),
         "Lets the object lie or stand on a surface, in one of the stable poses of its shape, each as likely as a throw ends in it, "
-        "and with a uniformly random yaw. The place is that of `on`.",
+        "and with a uniformly random yaw. A place on the surface that no other specifier gives is below its centre of mass.",
         modifies=("position",),
         functions=(Function("RestingOn(thing)"),),
     ),

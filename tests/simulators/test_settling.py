@@ -44,6 +44,14 @@ def test_scenes_in_which_something_moves_are_rejected(program: Path) -> None:
     assert tally.fell + tally.tipped + tally.slid >= tally.scenes - tally.stable
 
 
+def test_candidates_that_other_requirements_reject_are_not_simulated(program: Path) -> None:
+    program.write_text(f"{PROGRAM}require tips == 0\nrequire ego.z < 1\n")
+    scenario = scenic.load(program, settle=0.1)
+    assert len(scenario.sample(4, seed=2)) == 4
+    tally = scenario.program.settling.tally
+    assert tally.scenes == tally.stable >= 4
+
+
 def test_scenes_do_not_depend_on_processes(program: Path) -> None:
     scenario = scenic.load(program, settle=0.2)
     alone = [scene.egoObject.position for scene in scenario.sample(4, seed=3)]

@@ -34,6 +34,8 @@ class Requirement:
     build: Callable[[], Node] | None = field(default=None, compare=False)
     formula: Required | None = field(default=None, compare=False)
     """The requirement as simulations follow it."""
+    is_simulated: bool = False
+    """True if a simulation decides it: it is then judged last."""
 
     def rebuilt(self) -> "Requirement":
         """Return the requirement about the objects as they are now."""

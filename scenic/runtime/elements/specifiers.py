@@ -29,7 +29,7 @@ from scenic.runtime.regions.scattered import PointSetRegion
 from scenic.runtime.regions.spaces import Everywhere, Workspace
 from scenic.runtime.regions.view_regions import place_in_plane, place_near
 from scenic.runtime.regions.visibility_nodes import Sighting
-from scenic.runtime.shapes.resting import resting_pose
+from scenic.runtime.shapes.resting import middle_of_mass, resting_pose
 from scenic.runtime.values.generic import call_later
 from scenic.runtime.values.lazy import Lazy, defer, reads_of, resolve
 from scenic.runtime.values.values import (
@@ -207,7 +207,7 @@ def in_(region: Region, *, name: str = "in") -> Specifier:
 def on(target: object) -> Specifier:
     """Section 6.3: the base point touches the target, with a gap of half the contact tolerance."""
 
-    def base(instance: Any) -> tuple[Any, Mapping[str, Any]]:
+    def base(instance: Any, _: bool) -> tuple[Any, Mapping[str, Any]]:
         gap = vector(0, 0, operate("divide", instance.contactTolerance, 2))
         return operate("subtract", gap, to_vector(instance.baseOffset)), {}
 
@@ -215,21 +215,31 @@ def on(target: object) -> Specifier:
 
 
 def resting_on(target: object) -> Specifier:
-    """A stable pose of the shape touches the target, with a gap of half the contact tolerance."""
+    """A stable pose of the shape touches the target, with a gap of half the contact tolerance.
 
-    def base(instance: Any) -> tuple[Any, Mapping[str, Any]]:
-        pose = resting_pose(instance.shape, instance.width, instance.length, instance.height)
-        pitch, roll, lift = pose.x, pose.y, pose.z
-        turned = {"pitch": pitch, "roll": roll, "yaw": operate("multiply", uniform(), 2 * math.pi)}
-        return vector(0, 0, operate("add", operate("divide", instance.contactTolerance, 2), lift)), turned
+    What is drawn is the place below the centre of mass: an object whose mass hangs over the rim of a table falls.
+    """
+
+    def base(instance: Any, is_drawn: bool) -> tuple[Any, Mapping[str, Any]]:
+        solid = instance.shape, instance.width, instance.length, instance.height
+        pose = resting_pose(*solid)
+        angles = {"yaw": operate("multiply", uniform(), 2 * math.pi), "pitch": pose.x, "roll": pose.y}
+        height = operate("add", operate("divide", instance.contactTolerance, 2), pose.z)
+        if not is_drawn:
+            return vector(0, 0, height), angles
+        mass = operate("rotate", operate("from euler", *angles.values()), middle_of_mass(*solid))
+        return vector(operate("negative", mass.x), operate("negative", mass.y), height), angles
 
     return _standing("resting on", target, base)
 
 
-def _standing(name: str, target: Any, base: Callable[[Any], tuple[Any, Mapping[str, Any]]]) -> Specifier:
+def _standing(
+    name: str, target: Any, base: Callable[[Any, bool], tuple[Any, Mapping[str, Any]]]
+) -> Specifier:
     """Return a specifier that puts an object on a surface.
 
-    ``base`` gives the place of the object's middle above the surface, in the frame of its parent, and further properties.
+    ``base`` gives the place of the object's middle from the point of the surface, in the frame of its parent, and further
+    properties; it is told whether that point is drawn, or is below a given place of the middle.
     """
     surface = target.onSurface if is_kind(target, Object) else target
     region = as_region(surface)
@@ -240,15 +250,17 @@ def _standing(name: str, target: Any, base: Callable[[Any], tuple[Any, Mapping[s
             raise wrong_type((REGION, OBJECT, VECTOR), surface, f"`{name}`")
         place = to_vector(surface, f"`{name}`")
 
-    def rest(instance: object, anchor: object, orientation: object) -> Mapping[str, Any]:
-        offset, properties = base(instance)
+    def rest(
+        instance: object, anchor: object, orientation: object, is_drawn: bool = True
+    ) -> Mapping[str, Any]:
+        offset, properties = base(instance, is_drawn)
         if orientation is not None:
             offset = operate("rotate", orientation, offset)
         return {"position": operate("add", anchor, offset), "parentOrientation": orientation, **properties}
 
     def evaluate(instance: Any) -> Mapping[str, Any]:
         if region is None:
-            return rest(instance, place, None)
+            return rest(instance, place, None, is_drawn=False)
         return rest(instance, *region.uniform_placement())
 
     def modify(instance: Any) -> Mapping[str, Any]:
@@ -258,7 +270,7 @@ def _standing(name: str, target: Any, base: Callable[[Any], tuple[Any, Mapping[s
                 span=here(),
                 help=f"use `at`, or `{name}` a region or object",
             )
-        return rest(instance, *region.project(instance.position, instance.onDirection))
+        return rest(instance, *region.project(instance.position, instance.onDirection), is_drawn=False)
 
     is_oriented = region is not None and region.has_orientation
     return _specifier(name, evaluate, modify=modify, conditional=is_oriented)

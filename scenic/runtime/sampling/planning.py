@@ -44,6 +44,8 @@ from scenic.runtime.sampling.engine import Plan
 from scenic.runtime.sampling.sizes import extents, outgrows, size_in_words
 from scenic.runtime.values.values import CODEC, Random, as_node, fixed_batch, is_random, operate
 
+_SIMULATION: Final = 1e6
+"""Cost of a check that simulates, as `Check` has it."""
 _FAR: Final = 1e100
 """Metres, or any other unit, that nothing is away."""
 
@@ -407,8 +409,8 @@ def _requirements(program: Program) -> list[Check]:
                 item.span,
                 position,
                 item.probability,
-                cost=60 if dear else 2,
-                separate=dear,
+                cost=_SIMULATION if item.is_simulated else 60 if dear else 2,
+                separate=dear or item.is_simulated,
                 filename=item.filename,
             )
         )

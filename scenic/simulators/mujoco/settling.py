@@ -143,12 +143,13 @@ def require_rest(program: Program, settling: Settling, *, keep: bool) -> Any:
     if not keep:
         stays = call_later(settling.stays, tuple(program.objects))
         label = f"nothing moves by more than {settling.distance:g} m in {settling.seconds:g} s (--settle)"
-        program.requirements.append(Requirement(as_node(stays), 1.0, label))
+        program.requirements.append(Requirement(as_node(stays), 1.0, label, is_simulated=True))
         return None
     # Copies keep the poses before, of which the settled ones are made.
     result = call_later(settling.settled, tuple(type(item)._make(item.__dict__) for item in program.objects))
     label = f"everything is at rest after {settling.seconds:g} s (--settle)"
-    program.requirements.append(Requirement(as_node(operate("getitem", result, 0)), 1.0, label))
+    at_rest = as_node(operate("getitem", result, 0))
+    program.requirements.append(Requirement(at_rest, 1.0, label, is_simulated=True))
     return result
 
 

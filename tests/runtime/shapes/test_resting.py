@@ -59,6 +59,24 @@ def test_poses_have_the_probabilities_of_throws() -> None:
     assert stats.kstest(yaws, stats.uniform(0, 2 * np.pi).cdf).pvalue > 1e-3
 
 
+def test_the_mass_is_above_the_surface() -> None:
+    """A cone that lies with its middle above the rim of a table falls off it."""
+    scenario = scenic.scenarioFromString(
+        "table = new Object with width 0.4, with length 0.4, with height 1\n"
+        "ego = new Object resting on table, with shape ConeShape((0.2, 0.2, 0.5)), with width Range(0.1, 0.3)\n"
+    )
+    farthest = [0.0, 0.0]
+    for scene in scenario.sample(300, seed=1):
+        thing = scene.egoObject
+        turn = thing.orientation
+        matrix = trimesh.transformations.quaternion_matrix([turn.w, turn.x, turn.y, turn.z])[:3, :3]
+        mesh = trimesh.Trimesh(thing.shape.mesh.vertices, thing.shape.mesh.faces)
+        mass = matrix @ (mesh.center_mass * (thing.width, thing.length, thing.height)) + tuple(thing.position)
+        for number, place in enumerate((mass, thing.position)):
+            farthest[number] = max(farthest[number], *map(abs, place[:2]))
+    assert farthest[0] < 0.2 < farthest[1]
+
+
 def test_a_choice_of_shapes_and_a_random_scale_rest_as_well() -> None:
     scenario = scenic.scenarioFromString(
         f"{TABLE}ego = new Object resting on table,\n"

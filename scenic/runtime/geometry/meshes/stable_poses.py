@@ -20,7 +20,7 @@ from scenic.runtime.geometry.poses import Floats, Indices
 from scenic.runtime.geometry.ragged import rows
 from scenic.runtime.geometry.vectors import cross, dot, length
 
-__all__ = ["Footing", "ellipsoid_footing", "hull_footing", "resting_poses"]
+__all__ = ["Footing", "centre_of_mass", "ellipsoid_footing", "hull_footing", "resting_poses"]
 
 _FIRM: Final = np.radians(3.0)
 """Poses that a smaller tilt would end count for those to which it leads."""
@@ -141,7 +141,7 @@ def hull_footing(mesh: Mesh) -> Footing:
 
     outermost = mesh.outermost
     hull: Any = ConvexHull(outermost)
-    middle = _centre_of_mass(mesh)
+    middle = centre_of_mass(mesh)
     points, corners = outermost - middle, outermost[hull.vertices]
     face, planes = _faces(hull)
     a, b, c = np.moveaxis(points[hull.simplices], 1, 0)
@@ -184,7 +184,7 @@ def _faces(hull: Any) -> tuple[Indices, Floats]:
     return numbers[group], planes[first[places]]
 
 
-def _centre_of_mass(mesh: Mesh) -> Floats:
+def centre_of_mass(mesh: Mesh) -> Floats:
     """Return the centre of mass ``(3,)`` of a solid of one density, from the tetrahedra between the origin and its faces."""
     a, b, c = np.moveaxis(mesh.triangles, 1, 0)
     volumes = dot(a, cross(b, c))
