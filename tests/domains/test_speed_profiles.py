@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scenic.domains.driving.speed_profiles import Comfort, speeds_along
+from scenic.domains.driving.speed_profiles import Comfort, _least_within, speeds_along
 
 ALONG = np.arange(0.0, 300.0, 0.5)
 COMFORT = Comfort()
@@ -49,3 +49,11 @@ def test_junctions_count_though_the_car_is_too_fast_for_a_bend_before_them() -> 
     _, accelerations = speeds_along(ALONG, allowed, 8.0, COMFORT, junctions=[(20, 40), (100, 145)])
     assert accelerations[:20].min() < -1.2 * COMFORT.deceleration
     assert accelerations[100:145].min() > -0.5
+
+
+@settings(max_examples=60)
+@given(st.lists(st.floats(0.0, 30.0), min_size=1, max_size=80), st.integers(0, 120), st.integers(0, 120))
+def test_least_values_around_points(values: list[float], before: int, after: int) -> None:
+    places = range(len(values))
+    least = [min(values[max(0, place - before) : place + after + 1]) for place in places]
+    assert _least_within(np.array(values), before, after).tolist() == least

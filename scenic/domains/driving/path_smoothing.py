@@ -6,12 +6,14 @@ weights grow where the curve leaves the tube, and shrink where it is bent more t
 """
 
 import math
-from typing import Final
+from functools import cache, lru_cache
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scenic.domains.driving.tight_bends import nearer_in_bends
+from scenic.graph.scipy_parts import compiled_part
 
 __all__ = ["SPACING", "TIGHTEST", "curvatures_of", "headings_of", "resampled", "smoothed"]
 
@@ -35,6 +37,8 @@ _PINNED: Final = 1e12
 """Weight of points through which a curve must go."""
 _ROUNDS: Final = 12
 """Times that weights are corrected."""
+_SCALE: Final = (_REACH / SPACING) ** 6
+"""Weight of squared third differences."""
 
 
 def resampled(points: Floats, spacing: float = SPACING) -> Floats:
@@ -147,22 +151,37 @@ def _solved(points: Floats, weights: Floats) -> Floats:
     The system is so ill-conditioned that processors disagree about micrometres, with which a car may brake a step later. So
     corrections of the points are solved for, the second time of what rounding has left, and their digits are cut.
     """
-    from scipy.linalg import cho_solve_banded, cholesky_banded
+    factor, solve = _banded_solver()
+    bands = _third_differences(len(points)).copy()
+    bands[0] += weights
+    factors, failure = factor(bands, lower=1, overwrite_ab=1)
+    if failure:
+        raise np.linalg.LinAlgError(f"no smooth curve: the system is singular at point {failure}")
+    curve = points
+    column_weights = weights[:, np.newaxis]
+    third = np.zeros((len(points) + 3, 2))
+    for _ in range(2):
+        third[3:-3] = np.diff(curve, 3, axis=0)
+        slope = column_weights * (points - curve) + _SCALE * np.diff(third, 3, axis=0)
+        curve = curve + solve(factors, slope, lower=1)[0]
+    solution: Floats = np.round(curve, _DIGITS)
+    return solution
 
-    count = len(points)
-    scale = (_REACH / SPACING) ** 6
-    bands = np.zeros((4, count))
+
+@cache
+def _banded_solver() -> tuple[Any, Any]:
+    """Return LAPACK's Cholesky factorization of banded matrices, and the solution of systems by it."""
+    lapack = compiled_part("scipy.linalg", "_flapack", ["dpbtrf", "dpbtrs"], "scipy.linalg.lapack")
+    return lapack.dpbtrf, lapack.dpbtrs
+
+
+@lru_cache(maxsize=64)
+def _third_differences(count: int) -> Floats:
+    """The lower bands ``(4, n)`` of the matrix of the sum of squared third differences of n values; not to be changed."""
+    bands = np.zeros((4, count), order="F")
     for offset in range(4):
         coefficients = (1.0, -3.0, 3.0, -1.0)
         for place in range(4 - offset):
-            product = coefficients[place] * coefficients[place + offset] * scale
+            product = coefficients[place] * coefficients[place + offset] * _SCALE
             bands[offset, place : count - 3 + place] += product
-    bands[0] += weights
-    factors = cholesky_banded(bands, lower=True, check_finite=False)
-    curve = points
-    for _ in range(2):
-        third = np.pad(np.diff(curve, 3, axis=0), ((3, 3), (0, 0)))
-        slope = weights[:, np.newaxis] * (points - curve) + scale * np.diff(third, 3, axis=0)
-        curve = curve + cho_solve_banded((factors, True), slope, check_finite=False)
-    solution: Floats = np.round(curve, _DIGITS)
-    return solution
+    return bands
