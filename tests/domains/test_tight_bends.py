@@ -1,10 +1,12 @@
 """Curves through bends that are sharper than a car drives."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from scenic.domains.driving import tight_bends
 from scenic.domains.driving.path_smoothing import curvatures_of, resampled, smoothed
 
 
@@ -32,3 +34,15 @@ def test_paths_swing_out_and_cut_alike(radius: float, most: float, angle: float)
 def test_change_of_curvature_is_bounded() -> None:
     curve = smoothed(resampled(bend(3.5, math.pi / 2)))
     assert np.abs(np.diff(curvatures_of(curve))).max() / 0.5 < 0.14
+
+
+def test_curves_are_kept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("SCENIC_CACHE_DIR", str(tmp_path))
+    monkeypatch.delenv("SCENIC_CACHE", raising=False)
+    points = resampled(bend(3.5, math.pi / 2))
+    first = smoothed(points)
+    monkeypatch.setattr(tight_bends, "_bend", lambda *given: pytest.fail("it has been computed again"))
+    assert (smoothed(points) == first).all()
+    # Another line is another curve, whatever is kept.
+    with pytest.raises(pytest.fail.Exception):
+        smoothed(points + 0.25)

@@ -6,16 +6,24 @@ linear program, as curvature is about linear in small offsets (as in path planni
 Hierarchical Trajectory Planning of an Autonomous Car, 2018). It is solved again about each solution.
 """
 
+import hashlib
+import sys
 from collections.abc import Sequence
+from functools import cache, partial
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from scenic.runtime.geometry.store import Arrays, digest_of, kept
+from scenic.runtime.ground.library_versions import library_version
+
 __all__ = ["nearer_in_bends"]
 
 Floats = NDArray[np.float64]
 
+_KIND: Final = "curve through a tight bend"
 _ROUNDS: Final = 4
 _ROOM: Final = 2.7
 """Points before and after a bend that may move, too, for each metre of the radius that a car drives."""
@@ -47,8 +55,23 @@ def nearer_in_bends(curve: Floats, line: Floats, bent: NDArray[np.bool_], sharpe
     result = curve.copy()
     for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
         if end - begin > 3 * _HELD:
-            result[begin:end] = _bend(result[begin:end], line[max(0, begin - 20) : end + 20], sharpest)
+            part, around = result[begin:end], line[max(0, begin - 20) : end + 20]
+            # A program takes less time to read a curve than to import SciPy's solver.
+            content = digest_of(part, around, np.array(sharpest)) + _makers()
+            curves = kept(_KIND, content, partial(_curves, part, around, sharpest))
+            result[begin:end] = curves["curve"]
     return result
+
+
+def _curves(part: Floats, line: Floats, sharpest: float) -> Arrays:
+    return {"curve": _bend(part, line, sharpest)}
+
+
+@cache
+def _makers() -> bytes:
+    """The digest of the code and the versions that decide a curve."""
+    versions = f"{sys.version} {sys.platform} {np.__version__} {library_version('scipy')}"
+    return hashlib.sha256(versions.encode() + Path(__file__).read_bytes()).digest()
 
 
 def _widened(bent: NDArray[np.bool_], room: int) -> NDArray[np.bool_]:
