@@ -41,6 +41,8 @@ _BOUND: Final = BatchPart("--at-most", frozenset({"budget", "power", "good"}))
 _RARE: Final = BatchPart("--rare", frozenset({"budget"}))
 _FOLLOW: Final = BatchPart("--follow")
 _AGAINST: Final = BatchPart("--against")
+_PAIR: Final = ("first", "second")
+"""Labels of the program and of the one of --against; a label of several values of a parameter has an equals sign."""
 _FOLDERS: Final = BatchPart("a folder in place of a program", frozenset({"others"}))
 _PARTS: Final = (_SCREEN, _FOLDER, _PRECISION, _BOUND, _RARE, _FOLDERS)
 
@@ -312,7 +314,7 @@ def _both(
         raise click.UsageError("--against does not go with several values of a parameter (-p)")
     (parameters, _), *_ = settings_of(request.swept)
     other = replace(request, file=request.against or request.file)
-    return [(programs[0][0], "first"), (request.runs(other.load(parameters), seed, None), "second")]
+    return [(programs[0][0], _PAIR[0]), (request.runs(other.load(parameters), seed, None), _PAIR[1])]
 
 
 def _seed(request: _EstimateRequest) -> tuple[int, bool]:
@@ -337,8 +339,11 @@ def _again(request: _EstimateRequest) -> int:
         results = {"": load_estimate([request.path, *request.others])}
     else:
         results = {item.name: load_estimate([item]) for item in inner}
+    if set(results) == set(_PAIR):
+        results[_PAIR[0]].other = results[_PAIR[1]]
     for label, result in results.items():
         _show(label, result)
+    _compare(results)
     write_files(request, _FILES, request.path.name, results)
     return CLEAN
 
@@ -348,7 +353,6 @@ def _estimates(
 ) -> "dict[str, Estimate]":
     """Estimate for each program, and write what is wanted; returns the results by the labels of the programs."""
     from scenic.estimation.estimating import Stop, estimate_runs
-    from scenic.estimation.sentences import comparison_words
     from scenic.estimation.store import EstimateFolder
 
     results: dict[str, Estimate] = {}
@@ -365,14 +369,21 @@ def _estimates(
                 )  # fmt: skip
             stop = Stop(request.time_limit, lambda _row: advance(1, 1))
             results[label] = estimate_runs(runs, asked, stop, engine=engine, folder=folder)
-            if request.against is not None and label == "second":
-                results["first"].other = results[label]
+            if label == _PAIR[1]:
+                results[_PAIR[0]].other = results[label]
             _show(label, results[label])
-        if request.against is not None:
-            for line in comparison_words(results["first"]):
-                print(line)
+        _compare(results)
         write_files(request, _FILES, request.path.name, results)
     return results
+
+
+def _compare(results: "Mapping[str, Estimate]") -> None:
+    """Print the comparisons of estimates with those of other programs."""
+    from scenic.estimation.sentences import comparison_words
+
+    for result in results.values():
+        for line in comparison_words(result):
+            print(line)
 
 
 def _show(label: str, result: "Estimate") -> None:

@@ -262,6 +262,9 @@ def test_the_command(tmp_path: Path) -> None:
     swept = run_here([*common, "-p", "p=0.1,0.6", "-n", 50, "-o", "swept"], folder=tmp_path)
     assert swept.stdout.count("97.5% interval") == 2
     assert run_here(["estimate", "swept"], folder=tmp_path).stdout == swept.stdout
+    compared = run_here([*common, "--against", "coin.scenic", "-n", 50, "-o", "pair"], folder=tmp_path)
+    assert "McNemar" in compared.stdout
+    assert run_here(["estimate", "pair"], folder=tmp_path).stdout == compared.stdout
     assert run_here([*common, "--at-most", "0.2"], folder=tmp_path).returncode == 3
     assert run_here([*common, "--at-most", "0.9"], folder=tmp_path).returncode == 0
 
