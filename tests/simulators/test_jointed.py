@@ -336,6 +336,13 @@ ego = new Articulated at (0, 0, 0.04), with description r"{ARM}", with behavior 
     with pytest.raises(DescriptionError, match=message) as caught:
         MujocoSimulator(timestep=0.1).simulate(scene, maxSteps=2)
     assert "did you mean" in (caught.value.help or "")
+    assert caught.value.span is not None
+
+
+def test_the_joints_of_a_gripper_are_joints(tmp_path: Path) -> None:
+    text = f"ego = new Articulated at (0, 0, 0.04), with description r'{ARM}', with gripper ('left', 'rigt')"
+    with pytest.raises(DescriptionError, match="no joint 'rigt'"):
+        loaded(text, tmp_path)
 
 
 def test_an_unchanged_description_is_read_once(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Protocol
 
-from scenic.language.errors import InvalidScenarioError, RejectSimulationException
+from scenic.language.errors import InvalidScenarioError, Located, RejectSimulationException
 from scenic.language.spans import Span
 from scenic.runtime.description.definitions import Behavior, Invocable, ModularScenario
 from scenic.runtime.description.mutation import mutate_now
@@ -478,7 +478,7 @@ class Run:
         if output:
             try:
                 self.simulation.check_actions(agent, output)
-            except InvalidScenarioError as error:
+            except Located as error:
                 error.at(self._waits_at(activation))
                 raise
         return output

@@ -12,6 +12,7 @@ from scenic.runtime.values.describing import wrong_type
 from scenic.runtime.values.values import to_vector
 from scenic.simulators.actions import Action
 from scenic.simulators.commands import Command, model_of
+from scenic.simulators.mujoco.articulated import description_of
 
 __all__ = [
     "ApplyForce",
@@ -99,9 +100,14 @@ class _JointAction(Action):
             )
         self.values = {str(name): float(value) for name, value in values.items()}
 
-    def canBeTakenBy(self, agent: object) -> bool:
-        """Return whether the agent has joints."""
-        return model_of(agent) == "articulated"
+    def canBeTakenBy(self, agent: Any) -> bool:
+        """Return whether the agent has joints; raises `DescriptionError` for a name that none of them has."""
+        if model_of(agent) != "articulated":
+            return False
+        description = description_of(agent.description)
+        for name in self.values:
+            description.joint(name)
+        return True
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.values})"
@@ -166,9 +172,12 @@ class MoveTo(Action):
         self.position = to_vector(position, "MoveTo")
         self.down = bool(down)
 
-    def canBeTakenBy(self, agent: object) -> bool:
-        """Return whether the agent has joints."""
-        return model_of(agent) == "articulated"
+    def canBeTakenBy(self, agent: Any) -> bool:
+        """Return whether the agent has joints; raises `DescriptionError` if it has no such frame."""
+        if model_of(agent) != "articulated":
+            return False
+        description_of(agent.description).frame(self.frame)
+        return True
 
     def applyTo(self, agent: object, simulation: Any) -> None:
         """Set the targets of the servos to the nearest solution."""

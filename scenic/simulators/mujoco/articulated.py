@@ -142,6 +142,8 @@ def assemble(thing: Any, part: type[Any]) -> None:
     """Make the links of an object with joints, which has just been made, as objects of the class ``part``."""
     description = description_of(thing.description)
     thing.__dict__["jointValues"] = joint_values(description, thing.joints)
+    for name in thing.gripper:
+        description.joint(name)
     thing.__dict__["description"] = str(description.path)
     for name in ("jointVelocities", "jointTorques"):
         thing.__dict__[name] = dict.fromkeys(description.joints, 0.0)
