@@ -117,8 +117,8 @@ class Instance:
 
     @property
     def label(self) -> str:
-        """The variable's name where it is known, else the class's."""
-        return self.name or ("ego" if self.is_ego else self.class_name)
+        """The variable's name where it is known, else the object's class in labels."""
+        return self.name or ("ego" if self.is_ego else self.category)
 
     def matrix(self) -> Array:
         """Return the matrix, shape ``(4, 4)``, that takes the unit box to the object."""
