@@ -156,6 +156,11 @@ class Tape:
 
     # States
 
+    @property
+    def keeps_states(self) -> bool:
+        """Return whether the properties of all steps are kept or compared."""
+        return self._keep_states
+
     def begin_state(self, step: int) -> None:
         """The properties of a step follow, those of objects that enter within it last."""
         self._step = step

@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import ExitStack
 from types import FrameType
-from typing import Any, Final, TypeAlias
+from typing import Any, ClassVar, Final, TypeAlias
 
 from scenic.graph.kinds import Kind
 from scenic.language.diagnostics import Diagnostic
@@ -104,6 +104,9 @@ class Simulation(ABC):
 
     """
 
+    _may_interrupt_steps: ClassVar[bool] = False
+    """True if `step` bears interruptions by a signal."""
+
     def __init__(
         self,
         scene: Scene,
@@ -174,10 +177,13 @@ class Simulation(ABC):
             on_random=on_random,
         )
         self._tape.draws = self._run.draws
-        self._isolated = _Isolated(self._run)
         self._watch = Watch(
-            patience() if stuck_after is None else stuck_after, self._where_now, is_error=stuck_is_error
+            patience() if stuck_after is None else stuck_after,
+            self._where_now,
+            is_error=stuck_is_error,
+            throughout=self._may_interrupt_steps,
         )
+        self._isolated = _Isolated(self._run, self._watch)
         self._loop = self._whole()
         if not deferred:
             self.runToEnd()
@@ -609,8 +615,9 @@ _SIMPLE: Final = frozenset({float, bool, Vector, Orientation})
 class _Isolated:
     """Within this the simulation goes on: in the run's context, with Python's and NumPy's global generators for itself."""
 
-    def __init__(self, run: Run) -> None:
+    def __init__(self, run: Run, watch: Watch) -> None:
         self._run = run
+        self._watch = watch
         self._states: Any = None
         self._before: Any = None
         self._open: ExitStack | None = None
@@ -627,6 +634,7 @@ class _Isolated:
 
     def __exit__(self, *details: object) -> None:
         assert self._open is not None
+        self._watch.release()
         if not is_as(self._before):
             self._run.draws.report_use()
         self._states = states()

@@ -985,6 +985,31 @@ def test_the_watch_puts_back_what_the_signal_called() -> None:
         signal.signal(signal.SIGALRM, before)
 
 
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there is no timer to watch with")
+def test_a_watch_throughout_counts_the_time_of_each_step() -> None:
+    """Short steps, and what goes on between them, take as long as they like; each long step is told of once."""
+    watch = Watch(0.06, lambda frame: (None, "a line"), is_error=False, throughout=True)
+
+    def spin(seconds: float) -> None:
+        end = time.process_time() + seconds
+        while time.process_time() < end:
+            pass
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        for inside, between in ((0.012, 0.0), (0.012, 0.0), (0.012, 0.08), *[(0.012, 0.0)] * 4):
+            with watch:
+                spin(inside)
+            spin(between)
+        assert caught == []
+        for number in (1, 2):
+            with watch:
+                spin(0.15)
+            assert len(caught) == number
+        watch.release()
+    assert signal.getitimer(signal.ITIMER_REAL)[0] == 0
+
+
 @pytest.mark.parametrize("tries", [3, 5, 9])
 def test_the_most_frequent_reason_of_rejections_is_the_first(tries: int) -> None:
     reasons = iter(["rare", "often", "often", "rare", "often"])

@@ -2,12 +2,15 @@
 
 import math
 import os
+import random
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import scenic
-from scenic.simulators.newtonian import NewtonianSimulator
+from scenic.simulators.newtonian import NewtonianSimulation, NewtonianSimulator
 
 MAPS = Path(os.environ.get("SCENIC_TEST_MAPS", "maps"))
 PROGRAM = """
@@ -45,3 +48,43 @@ def test_the_driving_model_brings_names_of_python() -> None:
     (scene,) = scenic.scenarioFromString(text, mode2D=True).sample(1, seed=1)
     assert scene.params["half"] == math.pi / 2
     assert scene.params["kinds"][0]
+
+
+class Asking(NewtonianSimulation):
+    """Gives its properties when asked for them, as any other simulator, where the built-in one writes them at once."""
+
+    def getProperties(self, obj: Any, properties: Any) -> Mapping[str, Any]:
+        return super().getProperties(obj, properties)
+
+
+MOVING = """
+model scenic.simulators.newtonian.driving_model
+behavior Weave():
+    while True:
+        take SetThrottleAction(Range(0, 1)), SetSteerAction(Range(-1, 1)), SetReverseAction(Uniform(True, False))
+        take SetBrakeAction(Range(0, 1)), SetHandBrakeAction(Uniform(True, False))
+        if Range(0, 1) < 0.1:
+            self.parentOrientation = Orientation.fromEuler(Range(-3, 3), 0, 0)
+        if Range(0, 1) < 0.1:
+            take SetPositionAction(self.position + Vector(1, 2, 0)), SetSpeedAction(3)
+ego = new Car on road, with behavior Weave, with speed Range(0, 9)
+new Car on road, facing Range(-180, 180) deg, with speed Range(0, 9), with regionContainedIn None, with requireVisible False
+new Car at (3, 200), with parentOrientation (Range(-180, 180) deg, TILT, 0), with behavior Weave, with regionContainedIn None, with requireVisible False
+new Pedestrian at (9, 200), with behavior WalkForwardBehavior, with regionContainedIn None, with requireVisible False
+new Debris at (12, 200), with regionContainedIn None, with requireVisible False
+record [(o.position, o.velocity, o.angularVelocity, o.orientation.q, o.heading, o.yaw, o.pitch, o.roll, o.speed, o.angularSpeed, getattr(o, 'elevation', 0)) for o in simulation().objects] as all
+"""
+
+
+@pytest.mark.parametrize("tilt", ["0", "0.1"])
+def test_properties_written_at_once_are_those_of_a_simulator_that_is_asked(tilt: str) -> None:
+    road_map = Path(__file__).parents[2] / "examples" / "driving" / "crossing.xodr"
+    text = f"param map = {str(road_map)!r}" + MOVING.replace("TILT", tilt)
+    for scene in scenic.scenarioFromString(text, mode2D=tilt == "0").sample(3, seed=2):
+        courses = []
+        for kind in (NewtonianSimulation, Asking):
+            random.seed(5)
+            done = kind(scene, maxSteps=60, name="weaving", timestep=0.1)
+            assert done.result is not None
+            courses.append(repr(done.result.records["all"]))
+        assert courses[0] == courses[1]

@@ -134,6 +134,7 @@ class TrafficLights:
 
     def __init__(self, network: RoadNetwork, times: LightTimes) -> None:
         self._times = times
+        self._length = times.green + times.yellow + times.all_red
         self._phase: dict[str, tuple[int, int]] = {}
         for intersection in network.intersections:
             phases = phases_of(intersection)
@@ -155,8 +156,7 @@ class TrafficLights:
     def moment(self) -> tuple[int, int, int]:
         """Numbers that are the same as long as no light changes."""
         times = self._times
-        length = times.green + times.yellow + times.all_red
-        turn, into = divmod(self._now, length)
+        turn, into = divmod(self._now, self._length)
         return int(turn), (into >= times.green) + (into >= times.green + times.yellow), self._interventions
 
     def get(self, signal: Signal) -> str:
@@ -178,8 +178,7 @@ class TrafficLights:
         if place is None:
             return "off"
         number, count = place
-        times = self._times
-        length = times.green + times.yellow + times.all_red
+        times, length = self._times, self._length
         into = self._now % (length * count) - number * length
         if 0 <= into < times.green:
             return "green"
@@ -191,8 +190,7 @@ class TrafficLights:
         if fixed_color is not None or place is None:
             return ((1.0, fixed_color or "off"),)
         number, count = place
-        times = self._times
-        length = times.green + times.yellow + times.all_red
+        times, length = self._times, self._length
         colors = ["red", "green", "yellow", "red"]
         ends = np.cumsum([number * length, times.green, times.yellow])
         borders = [0.0, *ends.tolist(), length * count]

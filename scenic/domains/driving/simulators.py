@@ -1,7 +1,7 @@
 """Bases of simulators for the driving domain."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, ClassVar
@@ -113,20 +113,27 @@ class DrivingSimulation(Simulation):
     def recordCurrentState(self) -> None:
         """Append the state to the trajectory, and the colours of lights to `light_course`."""
         super().recordCurrentState()
-        colors = getattr(self.scene.workspace, "light_colors", None)
-        if colors is None or not isinstance(self.trajectory, list):
+        planned = self._planned_lights
+        if planned is None:
             return
-        lights = self.traffic_lights
-        if (
-            not isinstance(lights, TrafficLights)
-            or type(self).signalState is not DrivingSimulation.signalState
-        ):
-            return  # those of another simulator
+        lights, colors = planned
         lights.time = self.currentTime * float(self.timestep)
-        if lights.moment != self._light_moment:
-            self._light_moment = lights.moment
+        moment = lights.moment
+        if moment != self._light_moment:
+            self._light_moment = moment
             self._light_colors = colors(self)
         self.light_course.append(self._light_colors)
+
+    @cached_property
+    def _planned_lights(self) -> tuple[TrafficLights, Callable[[object], Mapping[str, str]]] | None:
+        """The lights that change by plan and what gives their colours; ``None`` if there are none, or those of another simulator."""
+        colors = getattr(self.scene.workspace, "light_colors", None)
+        if colors is None or not isinstance(self.trajectory, list):
+            return None
+        if not isinstance(self.traffic_lights, TrafficLights):
+            return None
+        is_overridden = type(self).signalState is not DrivingSimulation.signalState
+        return None if is_overridden else (self.traffic_lights, colors)
 
     @cached_property
     def light_course(self) -> list[Mapping[str, str]]:

@@ -54,8 +54,7 @@ class Recording:
         name, moment = self.use.name, self.use.moment
         if step < self._delay or step % self._period != 0:
             return
-        with self._run.condition():
-            value = _as_it_is(self.use.value(), {})
+        value = self._run.evaluated(lambda: _as_it_is(self.use.value(), {}))
         self.begun = True
         if self._recorder is not None:
             try:

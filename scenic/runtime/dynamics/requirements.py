@@ -62,15 +62,19 @@ class Followed:
     def follow(self) -> None:
         """Add the present state. Raises `RejectSimulationException` if no continuation can meet the requirement."""
         run = self._run
-        with run.condition():
-            verdict = self._monitor.add(self._holds)
-            if self._robustness is not None:
-                margins = _Margins(self._margin)
-                self._robustness.add(margins.__getitem__)
-                if self._joint is not None:
-                    self._joint.add(margins.__getitem__)
-        if verdict is Verdict.FALSE and not run.keeps_violations:
+        if self._robustness is None and self._monitor.verdict is Verdict.TRUE:
+            return  # for good
+        run.evaluated(self._add)
+        if self._monitor.verdict is Verdict.FALSE and not run.keeps_violations:
             raise RejectSimulationException(f"{self._words} is violated")
+
+    def _add(self) -> None:
+        self._monitor.add(self._holds)
+        if self._robustness is not None:
+            margins = _Margins(self._margin)
+            self._robustness.add(margins.__getitem__)
+            if self._joint is not None:
+                self._joint.add(margins.__getitem__)
 
     def _holds(self, index: int) -> bool:
         return bool(self._required.atoms[index]())

@@ -190,15 +190,17 @@ class Run:
         """True if the code that runs may create objects: the set-up of a scenario may."""
         return self._creating is not None
 
-    @contextmanager
-    def condition(self) -> Iterator[None]:
-        """The condition of a requirement is evaluated within this, which draws and creates nothing."""
+    def evaluated(self, condition: Callable[[], Any], scenario: ScenarioActivation | None = None) -> Any:
+        """Return the value of a condition, which draws and creates nothing; of one of a scenario, if given."""
         context = self.context
-        before, context.evaluating = context.evaluating, True
+        before = context.evaluating, self.current, self._creating
+        context.evaluating = True
+        if scenario is not None:
+            self.current, self._creating = scenario, None
         try:
-            yield
+            return condition()
         finally:
-            context.evaluating = before
+            context.evaluating, self.current, self._creating = before
 
     @contextmanager
     def guard(self) -> Iterator[None]:
@@ -367,6 +369,8 @@ class Run:
         records = self.simulation.records
         # The top-level scenario may have stopped in this step, which belongs to it.
         for scenario in (self.top, *(each for each in self.scenarios if each is not self.top)):
+            if not scenario.records:
+                continue
             with self.within(scenario):
                 for recording in scenario.records:
                     if recording.use.moment == "initial" and not recording.begun:
@@ -389,6 +393,8 @@ class Run:
         reasons: dict[ScenarioActivation, str] = {}
         end: str | None = None
         for scenario in list(self.scenarios):
+            if not scenario.monitors:
+                continue
             finished_monitors = []
             # What a monitor asks for while it runs is a monitor of this step, too.
             for monitor in scenario.monitors:

@@ -158,35 +158,45 @@ class ScenarioActivation(Guarded):
             self.timed_out = True
             return self._stopped("reached time limit")
         self._elapsed += 1
-        with run.within(self):
-            violation: InvariantViolation | None = None
-            if self.invariants and self.direct and (self._resumed or self._compose is None):
-                try:
-                    self.check_invariants()
-                except InvariantViolation as error:
-                    if self._compose is None:
-                        raise
-                    violation = error
-            if self._compose is not None:
-                self._resumed = True
-                try:
-                    # A violation is raised where the block waits: there, or further out, it may be caught.
-                    output = next(self._compose) if violation is None else self._compose.throw(violation)
-                except StopIteration:
-                    return self._stopped("finished compose block")
-                if isinstance(output, Termination):
-                    if not output.simulation:
-                        return self._stopped(output.reason)
-                    run.end(output.reason)
+        if self.invariants or self._compose is not None:
+            with run.within(self):
+                has_stopped = self._go_on()
+            if has_stopped:
+                return None
         for end in self.declared.ends:
             if not end.simulation and self.holds(end):
                 return self._stopped(end.label)
         return ()
 
+    def _go_on(self) -> bool:
+        """Check the invariants and resume the compose block; return whether that stopped the scenario."""
+        violation: InvariantViolation | None = None
+        if self.invariants and self.direct and (self._resumed or self._compose is None):
+            try:
+                self.check_invariants()
+            except InvariantViolation as error:
+                if self._compose is None:
+                    raise
+                violation = error
+        if self._compose is None:
+            return False
+        self._resumed = True
+        try:
+            # A violation is raised where the block waits: there, or further out, it may be caught.
+            output = next(self._compose) if violation is None else self._compose.throw(violation)
+        except StopIteration:
+            self.stop("finished compose block")
+            return True
+        if isinstance(output, Termination):
+            if not output.simulation:
+                self.stop(output.reason)
+                return True
+            self.run.end(output.reason)
+        return False
+
     def holds(self, end: End) -> bool:
         """Return whether the condition of a ``terminate when`` holds."""
-        with self.run.within(self), self.run.condition():
-            return bool(end.condition())
+        return bool(self.run.evaluated(end.condition, self))
 
     # End
 

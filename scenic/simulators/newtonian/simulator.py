@@ -7,12 +7,15 @@ velocity. Objects pass through each other.
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, ClassVar, Final
 
 from scenic.domains.driving.actions import Steers
 from scenic.domains.driving.simulators import DrivingSimulation, DrivingSimulator
+from scenic.graph.quaternions import turned_upright
 from scenic.language.errors import SimulationCreationError
 from scenic.runtime.scenes.scene import Scene
+from scenic.runtime.values.lazy import MEMO
 from scenic.runtime.values.values import Orientation, Vector, operate
 from scenic.simulators.cameras import Cameras
 from scenic.simulators.newtonian.controls import Driven, Walking
@@ -27,6 +30,13 @@ _ACCELERATION: Final = 5.6
 _BRAKING: Final = 6.8
 """Of full brakes, in m/s^2."""
 _UPRIGHT: Final = Orientation()
+_PLAIN: Final = MappingProxyType(
+    {
+        **dict.fromkeys(("position", "velocity", "angularVelocity"), Vector),
+        **dict.fromkeys(("speed", "angularSpeed", "yaw"), float),
+    }
+)
+"""Types of the properties that this simulator decides."""
 
 
 class State:
@@ -37,8 +47,10 @@ class State:
         "frame",
         "heading",
         "is_car",
+        "is_plain",
         "length",
         "moment",
+        "own",
         "parent",
         "parent_yaw",
         "position",
@@ -65,6 +77,10 @@ class State:
         self.moment: tuple[Any, ...] | None = None
         """All that its values depend on, as they were asked for last."""
         self.values: Mapping[str, Any] = {}
+        self.is_plain = False
+        """True if all of its properties are known to follow from its place in the plane."""
+        self.own: tuple[Any, Any, Any] | None = None
+        """Its parent, pitch and roll, of which that is known."""
         self.parent_yaw: float | None = None
         """By how much that is turned; ``None`` if it is upright."""
         self.length = float(obj.length)
@@ -81,6 +97,7 @@ class NewtonianSimulation(DrivingSimulation):
     """One run; see `NewtonianSimulator`."""
 
     steering_lead = 0.5
+    _may_interrupt_steps = True
     _car_gains: ClassVar[dict[str, tuple[float, float, float]]] = {
         "keep": (0.2, 0.2, 0.02),
         "turn": (0.4, 0.3, 0.1),
@@ -180,7 +197,43 @@ class NewtonianSimulation(DrivingSimulation):
             present["elevation"] = None
         return present
 
-    def _values(self, state: State, parent: Any) -> Mapping[str, Any]:
+    def _update(self, obj: object) -> None:
+        """Read the properties of an object back: by `getProperties`, or sooner where they can only be what they are in the plane."""
+        state, attributes = self._states[id(obj)], obj.__dict__
+        own = attributes["parentOrientation"], attributes["pitch"], attributes["roll"]
+        if own != state.own or not state.is_plain or state.frame is not None:
+            self._inputs.pop(id(obj), None)
+            super()._update(obj)
+            if own != state.own and state.frame is None:
+                state.own, state.is_plain = own, self._is_plain(obj)
+            return
+        moment = state.position, state.velocity, state.heading, state.rate
+        if moment != state.moment:
+            parent = own[0]
+            values = self._values(state, parent)
+            if values["yaw"] != attributes["yaw"]:
+                orientation = Orientation.of(turned_upright(parent.q, values["yaw"]))
+                attributes["orientation"], attributes["heading"] = orientation, orientation.yaw
+            if attributes.get("elevation") is None:
+                del values["elevation"]
+            state.moment, state.values = moment, values
+        attributes.update(state.values)
+        attributes.pop(MEMO, None)
+
+    def _is_plain(self, obj: object) -> bool:
+        """Return whether nothing decides the properties of an object but its place in the plane."""
+        attributes, names, finals = obj.__dict__, self._dynamic(type(obj)), self._finals[type(obj)]
+        return (
+            type(self).getProperties is NewtonianSimulation.getProperties
+            and not self._tape.keeps_states
+            and not finals.own
+            and {entry.name for entry in finals.builtin} == {"orientation", "heading"}
+            and all(name in names and type(attributes[name]) is cls for name, cls in _PLAIN.items())
+            and type(attributes.get("elevation")) in (float, type(None))
+            and all(repr(attributes[name]) == "0.0" for name in ("pitch", "roll"))
+        )
+
+    def _values(self, state: State, parent: Any) -> dict[str, Any]:
         """Return what the simulator knows of an object, whose own angles are those in a frame."""
         yaw = state.heading
         if parent is not state.parent:

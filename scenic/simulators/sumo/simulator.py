@@ -23,6 +23,8 @@ __all__ = ["SumoSimulation", "SumoSimulator"]
 class SumoSimulation(NewtonianSimulation):
     """One run; see `SumoSimulator`."""
 
+    _may_interrupt_steps = False
+
     def __init__(self, scene: Scene, network: Path, *, timestep: float, **options: Any) -> None:
         self._network = network
         self._sumo = library()
